@@ -17,8 +17,15 @@ const SIZES: [usize; 4] = [1_000, 10_000, 100_000, 1_000_000];
 /// Steps before measuring, in which members spread out evenly.
 const WARM_UP: usize = 60;
 
+/// Returns a default school; in a small one, where most members are at the border, they see farther
+/// so that they have 20 neighbours, too.
 fn school(members: usize) -> SimulationOptions {
-    SimulationOptions { schools: vec![SchoolOptions::of(members)], ..Default::default() }
+    let mut options =
+        SimulationOptions { schools: vec![SchoolOptions::of(members)], ..Default::default() };
+    if members <= 1_000 {
+        options.behaviour.neighbour_radius = 2.5;
+    }
+    options
 }
 
 fn warm(options: &SimulationOptions) -> Simulation {

@@ -190,8 +190,9 @@ fn size_for(cells: Vec3, members: usize) -> [u32; 3] {
     let needed = cells.to_array().map(|cells| cells.min(1e9) as u32 + 1);
     let mut size: [u32; 3] = std::array::from_fn(|axis| needed[axis].max(LEAST[axis]));
     while size.iter().map(|&n| u64::from(n)).fold(1, u64::saturating_mul) > most {
-        // The axis that has the most cells to spare is halved.
-        let spare = |&axis: &usize| size[axis] / LEAST[axis];
+        // The axis that has the most cells to spare is halved; one has some, as `most` is enough
+        // for the least number along each.
+        let spare = |&axis: &usize| 64 * u64::from(size[axis]) / u64::from(LEAST[axis]);
         let widest = (0..3).max_by_key(spare).unwrap_or(0);
         size[widest] = (size[widest] / 2).max(LEAST[widest]);
     }
@@ -210,7 +211,7 @@ mod tests {
 
     #[test]
     fn all_neighbours_are_in_the_runs_once() {
-        for (count, scale) in [(0, 1.0), (1, 1.0), (500, 5.0), (500, 1e6), (3000, 0.1)] {
+        for (count, scale) in [(0, 1.0), (1, 1.0), (500, 5.0), (500, 1e6), (3000, 0.1), (22, 1.1)] {
             let position = scattered(count, scale);
             let mut grid = Grid::default();
             grid.sort(&position, 1.0);
