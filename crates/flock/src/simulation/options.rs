@@ -132,7 +132,7 @@ impl SchoolOptions {
 impl Default for Behaviour {
     fn default() -> Self {
         Self {
-            neighbour_radius: 2.4,
+            neighbour_radius: 2.25,
             separation_radius: 1.6,
             separation: 2.0,
             alignment: 0.4,
