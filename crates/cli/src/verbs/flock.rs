@@ -121,18 +121,12 @@ impl Flock {
     }
 
     fn table(&self, model: &FlockModel) -> Result<LevelTable, Failure> {
-        // The facing chains of a large model would fill the memory.
-        let directions = if model.mesh.faces.len() > MANY_FACES { 6 } else { 12 };
         let options = ChainOptions {
             axes: model.axes(),
             method: self.model.method,
-            directions,
             ..ChainOptions::default()
         };
         LevelTable::new(&model.mesh, &model.look, &options)
             .map_err(|error| Failure::at(Path::new(&model.name), error))
     }
 }
-
-/// Faces of a model above which its levels are told apart by fewer directions.
-const MANY_FACES: usize = 50_000;

@@ -13,7 +13,7 @@ use crate::evaluate::bootstrap::Interval;
 use crate::evaluate::curve::{Needed, Row, mean, triangles_for};
 use crate::evaluate::footage::Footage;
 use crate::evaluate::score::{FrameScore, Reference, temporal_error};
-use crate::levels::{ChainKind, Level, LevelTable, Look};
+use crate::levels::{LevelTable, Look};
 use crate::select::{Budget, InstanceLevel, Selector};
 
 /// Options of an evaluation.
@@ -263,8 +263,11 @@ impl<'a> Stage<'a> {
                         .iter()
                         .zip(chosen)
                         .filter(|(a, b)| a.level().is_some() && b.level().is_some());
+                    let look = |level: &InstanceLevel| {
+                        level.level().map(|level| self.table.appearance(level))
+                    };
                     let (same, other): (Vec<_>, Vec<_>) =
-                        both.partition(|(a, b)| self.look_of(**a) == self.look_of(**b));
+                        both.partition(|(a, b)| look(a) == look(b));
                     switches += other.len();
                     member_seconds += (same.len() + other.len()) as f64 * f64::from(*frame_s);
                 }
@@ -283,14 +286,6 @@ impl<'a> Stage<'a> {
         choice.selection_seconds /= f64::from(runs.max(1));
         choice.switches_per_second = switches as f64 / f64::max(member_seconds, 1e-9);
         choice
-    }
-
-    /// Returns what of a level can be seen to change: its depth in the chain, and the chain, but
-    /// for facing chains, which show the same as the whole.
-    fn look_of(&self, level: InstanceLevel) -> Option<(usize, ChainKind)> {
-        let Level { chain, depth, .. } = &self.table.levels[level.level()?];
-        let is_facing = matches!(chain, ChainKind::Facing(_));
-        Some((*depth, if is_facing { ChainKind::Whole } else { *chain }))
     }
 }
 

@@ -186,10 +186,11 @@ impl Builder {
             let hidden = HiddenFaces::new(mesh);
             let sides = [side, side / 2, side / 3, side / 4, side / 6];
             let fits = |side: &usize| side * side * mesh.faces.len() * 6 / 10 <= MOST_FACING;
-            let side = sides.into_iter().find(fits).unwrap_or(0).max(2);
-            let directions = DirectionGrid::new(side);
+            let side = sides.into_iter().filter(|side| *side >= 2).find(fits);
+            let directions = DirectionGrid::new(side.unwrap_or(2));
+            let cells = if side.is_some() { 0..directions.len() } else { 0..0 };
             let seen: Vec<Vec<usize>> =
-                (0..directions.len()).map(|cell| hidden.seen_from(&directions, cell)).collect();
+                cells.map(|cell| hidden.seen_from(&directions, cell)).collect();
             (depth, directions, seen)
         };
         let depths: Vec<_> = whole.par_iter().enumerate().map(at_depth).collect();

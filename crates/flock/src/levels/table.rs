@@ -83,7 +83,8 @@ pub struct FacingLevels {
     /// Directions in the frame of a member, from it to the eye. The finer a level, the fewer cells,
     /// so that no depth takes much more room than another.
     pub directions: DirectionGrid,
-    /// Levels in the order of the cells, a range of [`LevelTable::levels`].
+    /// Levels in the order of the cells, a range of [`LevelTable::levels`]; empty where the level
+    /// is so fine that even few cells would take too much room.
     pub levels: Range<usize>,
 }
 
@@ -126,7 +127,16 @@ impl LevelTable {
     /// the member. It holds from [`NEAREST_FACING`](crate::levels::NEAREST_FACING) body lengths on.
     pub fn facing_level(&self, depth: usize, direction: Vec3) -> usize {
         let FacingLevels { directions, levels } = &self.facing[depth];
-        levels.start + directions.cell(direction)
+        if levels.is_empty() { depth } else { levels.start + directions.cell(direction) }
+    }
+
+    /// Returns what decides how a level looks: its chain and its depth. A facing level looks like
+    /// that of the whole chain.
+    pub fn appearance(&self, level: usize) -> (ChainKind, usize) {
+        match self.levels[level] {
+            Level { chain: ChainKind::Facing(_), depth, .. } => (ChainKind::Whole, depth),
+            Level { chain, depth, .. } => (chain, depth),
+        }
     }
 
     /// Returns a level as a mesh of its own, with all vertices of the table.

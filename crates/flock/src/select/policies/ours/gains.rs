@@ -91,8 +91,11 @@ impl Gains {
 /// of directions that are compared in one.
 fn mean_triangles(table: &LevelTable, view: usize) -> Vec<u32> {
     let views = table.differences.directions();
-    let mean = |depth: &FacingLevels| {
-        let FacingLevels { directions, levels } = depth;
+    let mean = |(depth, facing): (usize, &FacingLevels)| {
+        let FacingLevels { directions, levels } = facing;
+        if levels.is_empty() {
+            return table.triangle_count(depth) as u32;
+        }
         let is_near = |cell: &usize| views.cell(directions.axis(*cell)) == view;
         let mut cells: Vec<usize> = (0..directions.len()).filter(is_near).collect();
         if cells.is_empty() {
@@ -101,7 +104,7 @@ fn mean_triangles(table: &LevelTable, view: usize) -> Vec<u32> {
         let sum: usize = cells.iter().map(|cell| table.triangle_count(levels.start + cell)).sum();
         sum.div_ceil(cells.len()) as u32
     };
-    table.facing.iter().map(mean).collect()
+    table.facing.iter().enumerate().map(mean).collect()
 }
 
 /// Level that may be chosen.
