@@ -1,11 +1,13 @@
 //! Parts of `flock`, which films schools of a model.
 //!
 //! [`model`] reads the model and finds its [`axes`]; [`shoot`] runs the film and writes its frames
-//! with their [`figures`]; [`summary`] is the answer.
+//! with their [`figures`]; [`summary`] is the answer. [`evaluate`] compares all policies instead.
 
 pub mod axes;
+pub mod evaluate;
 pub mod figures;
 pub mod model;
 pub mod names;
+mod sample_fish;
 pub mod shoot;
 pub mod summary;

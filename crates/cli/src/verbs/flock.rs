@@ -16,7 +16,7 @@ use crate::failure::Failure;
 use crate::files;
 use crate::flock::model::{FlockModel, ModelArgs};
 use crate::flock::summary::Summary;
-use crate::flock::{names, shoot};
+use crate::flock::{evaluate, names, shoot};
 use crate::parse;
 use crate::session::Session;
 
@@ -69,6 +69,14 @@ pub struct Flock {
     /// Folder to write to; created if missing
     #[arg(long, value_name = "DIR", default_value = "flock")]
     pub out: PathBuf,
+    /// Compare all policies instead, in five scenes: triangles against image error, written to OUT as
+    /// a page with pictures (index.html) and as figures (evaluation.json)
+    #[arg(long, conflicts_with_all = ["policy", "camera", "triangles", "detail", "frames", "size",
+        "no_pictures"])]
+    pub evaluate: bool,
+    /// Evaluate small pictures and few frames, within minutes
+    #[arg(long, requires = "evaluate")]
+    pub quick: bool,
     /// Draw no pictures: only OUT/frames.jsonl is written
     #[arg(long)]
     pub no_pictures: bool,
@@ -81,6 +89,11 @@ impl Flock {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         files::check_folder(&self.out)?;
         let model = FlockModel::load(&self.model, session)?;
+        if self.evaluate {
+            session.progress.stage("building levels");
+            let table = Arc::new(self.table(&model)?);
+            return evaluate::run(&self, &model, &table, session);
+        }
         session.progress.stage("setting the scene");
         let film = self.film()?;
         session.progress.stage("building levels");

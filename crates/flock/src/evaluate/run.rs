@@ -336,14 +336,22 @@ impl Evaluation {
     pub fn ratio(&self, arm: &str, other: &str, flip: f64) -> Option<Interval> {
         let scenes: Vec<&String> = self.full_triangles.iter().map(|(scene, _)| scene).collect();
         let frames = self.rows.first().map_or(0, |row| row.frames.len());
-        Interval::of(frames, |drawn| {
-            let log = |scene: &&String| {
-                let needs = |arm| triangles_for(&self.points(scene, arm, Some(drawn)), flip);
+        Interval::of(scenes.len(), frames, |drawn| {
+            let log = |(scene, frames): &(usize, Vec<usize>)| {
+                let points = |arm| self.points(scenes[*scene], arm, Some(frames));
+                let needs = |arm| triangles_for(&points(arm), flip);
                 Some((needs(arm)? / needs(other)?).ln())
             };
-            let logs: Vec<f64> = scenes.iter().filter_map(log).collect();
+            let logs: Vec<f64> = drawn.iter().filter_map(log).collect();
             (!logs.is_empty()).then(|| mean(logs.into_iter()).exp())
         })
+    }
+
+    /// Returns the mean over all scenes of a figure of an arm at a share of the triangles.
+    pub fn mean(&self, arm: &str, share: f64, figure: impl Fn(&Row) -> f64) -> Option<f64> {
+        let rows = self.rows.iter().filter(|row| row.arm == arm && row.share == share);
+        let values: Vec<f64> = rows.map(figure).collect();
+        (!values.is_empty()).then(|| mean(values.into_iter()))
     }
 }
 
