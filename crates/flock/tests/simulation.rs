@@ -141,7 +141,7 @@ fn a_ball_parts_the_school_and_it_closes_again() {
     let away = |flock: &Flock| {
         (0..300).map(|i| place(flock, i).distance(place(&first, i))).sum::<f32>() / 300.0
     };
-    let (mut farthest, mut most_sides) = (0.0_f32, [0; 4]);
+    let (mut farthest, mut closest, mut most_sides) = (0.0_f32, f32::MAX, [0; 4]);
     let mut flock = Flock::default();
     for _ in 0..1500 {
         simulation.step();
@@ -150,6 +150,7 @@ fn a_ball_parts_the_school_and_it_closes_again() {
             check(&simulation, &flock);
         }
         farthest = farthest.max(away(&flock));
+        closest = closest.min(order(&flock).nearest[1]);
         // Members beside the ball, by the quarter in which they pass it.
         let mut sides = [0; 4];
         for at in positions(&flock).into_iter().filter(|at| (at.z - center.z).abs() < 2.0) {
@@ -159,11 +160,14 @@ fn a_ball_parts_the_school_and_it_closes_again() {
     }
     let end = order(&flock);
     let back = away(&flock);
-    println!("from their places: {farthest} at most, {back} at the end, {most_sides:?} {end:?}");
+    println!(
+        "from their places: {farthest} at most, {back} at the end, {most_sides:?} {closest} {end:?}"
+    );
     assert!(
         farthest > 1.5 && most_sides.iter().all(|&side| side > 15),
         "{farthest} {most_sides:?}"
     );
+    assert!(closest > 0.3, "{closest}");
     assert!(back < 0.6 && end.polarisation > 0.99 && end.within == 1.0, "{back} {end:?}");
 }
 
@@ -224,8 +228,12 @@ fn any_number_of_threads_gives_the_same_bits() {
 
 #[test]
 fn looking_less_often_changes_little() {
-    for (level, bound) in [(1, 0.05), (2, 0.1), (3, 0.2)] {
-        let all = SimulationOptions { schools: vec![straight(2000)], ..Default::default() };
+    let ball = Obstacle::Sphere { center: Vec3::Z * 30.0, radius: 6.0 };
+    let open = [(1, 0.01), (2, 0.02), (3, 0.04)].map(|(level, bound)| (level, bound, vec![]));
+    let parted = [(1, 1.0), (2, 1.0), (3, 1.0)].map(|(level, b)| (level, b, vec![ball.clone()]));
+    for (level, bound, obstacles) in open.into_iter().chain(parted) {
+        let schools = vec![straight(2000)];
+        let all = SimulationOptions { schools, obstacles, ..Default::default() };
         let distances = std::array::from_fn(|k| if k < level { 0.0 } else { 1e6 });
         let steer_every = Some(SteerEvery { eye: Vec3::splat(-1e3), distances });
         let few = SimulationOptions { steer_every, ..all.clone() };
@@ -315,7 +323,7 @@ fn degenerate_schools_and_obstacles_hold() {
 #[test]
 fn options_out_of_range_are_refused() {
     type Change = fn(&mut SimulationOptions);
-    let refused: [Change; 12] = [
+    let refused: [Change; 14] = [
         |o| o.step_s = f32::NAN,
         |o| o.step_s = 10.0,
         |o| o.step_s = 0.0,
@@ -326,7 +334,15 @@ fn options_out_of_range_are_refused() {
         |o| o.schools[0].radii.y = -1.0,
         |o| o.schools[0].speed = 100.0,
         |o| o.schools[0].leader = Leader::Line { from: Vec3::ZERO, direction: Vec3::ZERO },
-        |o| o.obstacles = vec![Obstacle::Sphere { center: Vec3::NAN, radius: 1.0 }],
+        |o| o.obstacles = vec![Obstacle::Sphere { center: Vec3::X * f32::NAN, radius: 1.0 }],
+        |o| {
+            o.schools[0].leader =
+                Leader::Line { from: Vec3::new(0.0, f32::NAN, 1.0), direction: Vec3::X }
+        },
+        |o| {
+            let eye = Vec3::new(f32::NAN, 0.0, 1.0);
+            o.steer_every = Some(SteerEvery { eye, distances: [1.0; 3] });
+        },
         |o| o.steer_every = Some(SteerEvery { eye: Vec3::ZERO, distances: [2.0, 1.0, 3.0] }),
     ];
     for (i, change) in refused.iter().enumerate() {
@@ -385,7 +401,7 @@ prop_compose! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..Default::default() })]
     #[test]
     fn never_a_nan_nor_inside_an_obstacle_and_headings_are_unit(options in any_options()) {
         let mut simulation = Simulation::new(&options).unwrap();

@@ -78,7 +78,8 @@ impl Candidates<'_> {
                 left -= Vec4::splat(LANES as f32);
                 let mut one = Vec4::select(squared.cmplt(near) & is_in, Vec4::ONE, Vec4::ZERO);
                 let overlap = (Vec4::ONE + squared * too_near).max(Vec4::ZERO) * one;
-                let push = overlap * overlap;
+                let square = overlap * overlap;
+                let push = square * square;
                 count += one;
                 if MANY {
                     one = Vec4::select(Vec4::from_array(s[g]).cmpeq(school), one, Vec4::ZERO);
