@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 mod camera;
+mod cell_index;
 pub mod draw;
 pub mod evaluate;
 mod flock;

@@ -64,16 +64,14 @@ impl<'a> View<'a> {
     }
 
     /// Returns the next eight members from `first` on, as the camera sees them.
-    #[inline]
+    #[inline(always)]
     pub fn lanes(&self, first: usize) -> Lanes {
-        let position = &self.flock.members.position;
         let eye = self.camera.eye().to_array();
         let mut lanes = Lanes::default();
         for axis in 0..3 {
-            let values = &position[axis][first..];
+            let values = load(&self.flock.members.position[axis], first);
             for lane in 0..LANES {
-                let value = values.get(lane).copied().unwrap_or(values[values.len() - 1]);
-                lanes.offset[axis][lane] = value - eye[axis];
+                lanes.offset[axis][lane] = values[lane] - eye[axis];
             }
         }
         lanes.look(self.camera.axes(), self.camera.tangents(), self.margins, self.table.radius);
@@ -124,6 +122,20 @@ impl<'a> View<'a> {
             tasks.for_each(|(i, levels)| task(begin + i * TASK, levels));
         }
     }
+}
+
+/// Returns the next eight values from `first` on; the last one is repeated at the end.
+#[inline(always)]
+pub(crate) fn load(values: &[f32], first: usize) -> [f32; LANES] {
+    match values.get(first..first + LANES) {
+        Some(eight) => eight.try_into().expect("there are eight"),
+        None => padded(values, first),
+    }
+}
+
+#[cold]
+fn padded(values: &[f32], first: usize) -> [f32; LANES] {
+    std::array::from_fn(|lane| values[(first + lane).min(values.len() - 1)])
 }
 
 impl Lanes {
