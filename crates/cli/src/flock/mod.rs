@@ -1,11 +1,12 @@
 //! Parts of `flock`, which films schools of a model.
 //!
 //! [`model`] reads the model and finds its [`axes`]; [`shoot`] runs the film and writes its frames
-//! with their [`figures`]; [`summary`] is the answer.
+//! with their [`figures`], and [`record`] the files for others; [`summary`] is the answer.
 
 pub mod axes;
 pub mod figures;
 pub mod model;
 pub mod names;
+pub mod record;
 pub mod shoot;
 pub mod summary;

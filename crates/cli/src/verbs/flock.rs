@@ -16,7 +16,7 @@ use crate::failure::Failure;
 use crate::files;
 use crate::flock::model::{FlockModel, ModelArgs};
 use crate::flock::summary::Summary;
-use crate::flock::{names, shoot};
+use crate::flock::{names, record, shoot};
 use crate::parse;
 use crate::session::Session;
 
@@ -69,6 +69,10 @@ pub struct Flock {
     /// Folder to write to; created if missing
     #[arg(long, value_name = "DIR", default_value = "flock")]
     pub out: PathBuf,
+    /// Folder for a recording of members, cameras, levels and selection, as JSON and NumPy arrays;
+    /// created if missing
+    #[arg(long, value_name = "DIR")]
+    pub record: Option<PathBuf>,
     /// Draw no pictures: only OUT/frames.jsonl is written
     #[arg(long)]
     pub no_pictures: bool,
@@ -80,6 +84,9 @@ const TERRAIN_FACES: usize = 40_000;
 impl Flock {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         files::check_folder(&self.out)?;
+        if let Some(folder) = &self.record {
+            record::check(folder, self.members, self.frames)?;
+        }
         let model = FlockModel::load(&self.model, session)?;
         session.progress.stage("setting the scene");
         let film = self.film()?;
