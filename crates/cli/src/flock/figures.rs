@@ -1,6 +1,6 @@
 //! Figures of the frames of a film.
 
-use meshlod::flock::levels::{ChainKind, LevelTable};
+use meshlod::flock::levels::LevelTable;
 use meshlod::flock::select::InstanceLevel;
 use serde_json::{Value, json};
 
@@ -77,21 +77,8 @@ impl Figures {
 }
 
 /// Counts the members that are drawn in both frames, and differently.
-///
-/// The chains for directions show what the whole chain shows, so going from one to another changes
-/// nothing.
 pub fn switches(table: &LevelTable, before: &[InstanceLevel], now: &[InstanceLevel]) -> usize {
-    let shown = |level: &InstanceLevel| {
-        let level = level.level()?;
-        let chain = &table.chains[table.levels[level].chain];
-        let side = match chain.kind {
-            ChainKind::Whole | ChainKind::Facing(_) => 0,
-            // The chains of one side begin below the model itself.
-            ChainKind::LeftCoarsened => 1,
-            ChainKind::RightCoarsened => 2,
-        };
-        Some((side, level - chain.levels.start))
-    };
+    let shown = |level: &InstanceLevel| level.level().map(|level| table.appearance(level));
     let differ = |(a, b)| matches!((shown(a), shown(b)), (Some(a), Some(b)) if a != b);
     before.iter().zip(now).filter(|&pair| differ(pair)).count()
 }

@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use meshlod::flock::levels::{Look, ModelAxes};
 use meshlod::mesh::{Borders, ConditionOptions, Locks, Search, condition};
-use meshlod::{Mesh, Method, samples};
+use meshlod::{Mesh, Method};
 
 use crate::args::ReadArgs;
 use crate::failure::Failure;
 use crate::files;
 use crate::flock::axes::{self, Axis, Forward};
+use crate::flock::sample_fish::textured_fish;
 use crate::numbers::count;
 use crate::page::style::{self, OwnedPaint};
 use crate::parse;
@@ -57,9 +58,6 @@ pub struct FlockModel {
     pub up: Axis,
 }
 
-/// Faces of the sample fish, as in the paper.
-const SAMPLE_FACES: usize = 4_000;
-
 /// Greatest number of faces of a model: its levels for all directions take about a kilobyte a face.
 const MAX_FACES: usize = 1_000_000;
 
@@ -67,7 +65,7 @@ impl FlockModel {
     /// Reads the model, or generates the sample.
     pub fn load(args: &ModelArgs, session: &Session) -> Result<Self, Failure> {
         let (mesh, look) = match &args.model {
-            None => (samples::fish(SAMPLE_FACES), Look::default()),
+            None => textured_fish().map_err(Failure::new)?,
             Some(path) => read(path, &args.reading, session)?,
         };
         let (forward, is_guessed) = match args.forward {

@@ -16,7 +16,7 @@ use crate::failure::Failure;
 use crate::files;
 use crate::flock::model::{FlockModel, ModelArgs};
 use crate::flock::summary::Summary;
-use crate::flock::{names, record, shoot};
+use crate::flock::{evaluate, names, record, shoot};
 use crate::parse;
 use crate::session::Session;
 
@@ -73,6 +73,14 @@ pub struct Flock {
     /// created if missing
     #[arg(long, value_name = "DIR")]
     pub record: Option<PathBuf>,
+    /// Compare all policies instead, in five scenes: triangles against image error, written to OUT as
+    /// a page with pictures (index.html) and as figures (evaluation.json)
+    #[arg(long, conflicts_with_all = ["policy", "camera", "triangles", "detail", "frames", "size",
+        "no_pictures", "record"])]
+    pub evaluate: bool,
+    /// Evaluate small pictures and few frames, within minutes
+    #[arg(long, requires = "evaluate")]
+    pub quick: bool,
     /// Draw no pictures: only OUT/frames.jsonl is written
     #[arg(long)]
     pub no_pictures: bool,
@@ -88,6 +96,11 @@ impl Flock {
             record::check(folder, self.members, self.frames)?;
         }
         let model = FlockModel::load(&self.model, session)?;
+        if self.evaluate {
+            session.progress.stage("building levels");
+            let table = Arc::new(self.table(&model)?);
+            return evaluate::run(&self, &model, &table, session);
+        }
         session.progress.stage("setting the scene");
         let film = self.film()?;
         session.progress.stage("building levels");
@@ -128,18 +141,12 @@ impl Flock {
     }
 
     fn table(&self, model: &FlockModel) -> Result<LevelTable, Failure> {
-        // The facing chains of a large model would fill the memory.
-        let directions = if model.mesh.faces.len() > MANY_FACES { 6 } else { 12 };
         let options = ChainOptions {
             axes: model.axes(),
             method: self.model.method,
-            directions,
             ..ChainOptions::default()
         };
         LevelTable::new(&model.mesh, &model.look, &options)
             .map_err(|error| Failure::at(Path::new(&model.name), error))
     }
 }
-
-/// Faces of a model above which its levels are told apart by fewer directions.
-const MANY_FACES: usize = 50_000;

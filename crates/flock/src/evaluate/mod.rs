@@ -11,6 +11,7 @@ mod bootstrap;
 mod controls;
 mod curve;
 mod footage;
+mod over_time;
 mod run;
 mod score;
 
@@ -18,5 +19,6 @@ pub use arms::Arm;
 pub use bootstrap::Interval;
 pub use curve::{Needed, Row, triangles_for};
 pub use footage::Footage;
+pub use over_time::{Track, over_time};
 pub use run::{Evaluation, EvaluationOptions, Still, evaluate};
 pub use score::{FrameScore, Reference};

@@ -263,9 +263,11 @@ impl<'a> Stage<'a> {
                         .iter()
                         .zip(chosen)
                         .filter(|(a, b)| a.level().is_some() && b.level().is_some());
-                    let depth = |level: &InstanceLevel| self.depth(*level);
+                    let look = |level: &InstanceLevel| {
+                        level.level().map(|level| self.table.appearance(level))
+                    };
                     let (same, other): (Vec<_>, Vec<_>) =
-                        both.partition(|(a, b)| depth(a) == depth(b));
+                        both.partition(|(a, b)| look(a) == look(b));
                     switches += other.len();
                     member_seconds += (same.len() + other.len()) as f64 * f64::from(*frame_s);
                 }
@@ -284,15 +286,6 @@ impl<'a> Stage<'a> {
         choice.selection_seconds /= f64::from(runs.max(1));
         choice.switches_per_second = switches as f64 / f64::max(member_seconds, 1e-9);
         choice
-    }
-
-    /// Returns what of a level can be seen to change: its depth in the chain, and the chain, but
-    /// for facing chains, which show the same as the whole.
-    fn depth(&self, level: InstanceLevel) -> Option<(usize, usize)> {
-        let level = level.level()?;
-        let chain = self.table.levels[level].chain;
-        let start = self.table.chains[chain].levels.start;
-        Some((level - start, if chain > 2 { 0 } else { chain }))
     }
 }
 
@@ -343,14 +336,22 @@ impl Evaluation {
     pub fn ratio(&self, arm: &str, other: &str, flip: f64) -> Option<Interval> {
         let scenes: Vec<&String> = self.full_triangles.iter().map(|(scene, _)| scene).collect();
         let frames = self.rows.first().map_or(0, |row| row.frames.len());
-        Interval::of(frames, |drawn| {
-            let log = |scene: &&String| {
-                let needs = |arm| triangles_for(&self.points(scene, arm, Some(drawn)), flip);
+        Interval::of(scenes.len(), frames, |drawn| {
+            let log = |(scene, frames): &(usize, Vec<usize>)| {
+                let points = |arm| self.points(scenes[*scene], arm, Some(frames));
+                let needs = |arm| triangles_for(&points(arm), flip);
                 Some((needs(arm)? / needs(other)?).ln())
             };
-            let logs: Vec<f64> = scenes.iter().filter_map(log).collect();
+            let logs: Vec<f64> = drawn.iter().filter_map(log).collect();
             (!logs.is_empty()).then(|| mean(logs.into_iter()).exp())
         })
+    }
+
+    /// Returns the mean over all scenes of a figure of an arm at a share of the triangles.
+    pub fn mean(&self, arm: &str, share: f64, figure: impl Fn(&Row) -> f64) -> Option<f64> {
+        let rows = self.rows.iter().filter(|row| row.arm == arm && row.share == share);
+        let values: Vec<f64> = rows.map(figure).collect();
+        (!values.is_empty()).then(|| mean(values.into_iter()))
     }
 }
 

@@ -12,7 +12,8 @@ use crate::levels::directions::DirectionGrid;
 use crate::levels::facing::HiddenFaces;
 use crate::levels::model::{ModelAxes, in_member_frame};
 use crate::levels::pool::VertexPool;
-use crate::levels::table::{Chain, ChainKind, Level, LevelTable, TableError};
+use crate::levels::table::{Chain, ChainKind, FacingLevels, Level, LevelTable, TableError};
+use crate::select::InstanceLevel;
 
 /// Options for building a [`LevelTable`].
 #[derive(Clone, Debug)]
@@ -27,7 +28,8 @@ pub struct ChainOptions {
     pub step: f64,
     /// Number of triangles at which a chain ends, at least 1.
     pub coarsest: usize,
-    /// Number of cells along the side of the grid of directions, 2 to 16.
+    /// Number of cells along the side of the grid of directions of coarse levels, 2 to 32. Finer
+    /// levels have a half, a third, a quarter or a sixth of that.
     pub directions: usize,
     /// Vertices to keep in place or to protect; `None` for those that [`meshlod_check::locks`]
     /// finds where parts of the model meet.
@@ -41,7 +43,7 @@ impl Default for ChainOptions {
             method: Method::LindstromTurk,
             step: std::f64::consts::FRAC_1_SQRT_2,
             coarsest: 12,
-            directions: 12,
+            directions: 24,
             locks: None,
         }
     }
@@ -90,14 +92,21 @@ impl LevelTable {
         let [mut whole, left, right]: [Vec<Mesh>; 3] =
             chains?.try_into().expect("three chains are simplified");
         whole.insert(0, model);
-        let directions = DirectionGrid::new(options.directions);
         let differences = Differences::measure(&whole, look)?;
         let mut table = Builder::default();
-        table.simplified(ChainKind::Whole, &whole, &whole[0])?;
-        table.simplified(ChainKind::LeftCoarsened, &left, &whole[0])?;
-        table.simplified(ChainKind::RightCoarsened, &right, &whole[0])?;
-        table.facing(&whole, &directions);
-        Ok(table.finish(directions, differences))
+        let chains = [
+            table.chain(ChainKind::Whole, &whole, &whole[0]),
+            table.chain(ChainKind::LeftCoarsened, &left, &whole[0]),
+            table.chain(ChainKind::RightCoarsened, &right, &whole[0]),
+        ];
+        let facing = table.facing(&whole, options.directions);
+        let count = table.levels.len();
+        if count >= InstanceLevel::MOST {
+            let message =
+                format!("{count} levels are too many; use a larger step or fewer directions");
+            return Err(TableError::Option(message));
+        }
+        Ok(table.finish(chains, facing, differences))
     }
 }
 
@@ -146,61 +155,84 @@ struct Builder {
     triangles: Vec<[u32; 3]>,
     materials: Option<Labels>,
     levels: Vec<Level>,
-    chains: Vec<Chain>,
 }
+
+/// Most triangles of all facing chains at one depth, 6 MB of indices; a level with more in its
+/// finest grid gets a coarser one. Triangles left for a fish of 4,000 by 64, 144, 256 and 576 cells:
+/// 74, 66, 62 and 58 %; the half that faces away would leave 50 %.
+const MOST_FACING: usize = 500_000;
 
 impl Builder {
     /// Adds a chain of levels of a model.
-    fn simplified(
-        &mut self,
-        kind: ChainKind,
-        meshes: &[Mesh],
-        model: &Mesh,
-    ) -> Result<(), TableError> {
+    fn chain(&mut self, kind: ChainKind, meshes: &[Mesh], model: &Mesh) -> Chain {
         let errors: Vec<f32> = meshes.par_iter().map(|mesh| error(mesh, model)).collect();
         let first = self.levels.len();
-        for (mesh, error) in meshes.iter().zip(errors) {
-            let triangles = self.pool.add(mesh);
-            self.push(triangles, mesh.materials.as_ref(), error);
-        }
-        self.chains.push(Chain { kind, levels: first..self.levels.len() });
-        Ok(())
-    }
-
-    /// Adds a facing chain for every direction, from the levels of the whole chain.
-    fn facing(&mut self, whole: &[Mesh], directions: &DirectionGrid) {
-        let hidden: Vec<HiddenFaces> = whole.par_iter().map(HiddenFaces::new).collect();
-        for cell in 0..directions.len() {
-            let first = self.levels.len();
-            for (i, hidden) in hidden.iter().enumerate() {
-                let Level { triangles, error, .. } = self.levels[i].clone();
-                let seen = hidden.seen_from(directions, cell);
-                let kept: Vec<u32> = seen.iter().map(|&f| (triangles.start + f) as u32).collect();
-                let faces = kept.iter().map(|&t| self.triangles[t as usize]).collect();
-                let labels = self.materials.as_ref().map(|labels| labels.select(&kept));
-                self.push(faces, labels.as_ref(), error);
+        for (depth, (mesh, error)) in meshes.iter().zip(errors).enumerate() {
+            let start = self.triangles.len();
+            let faces = self.pool.add(mesh);
+            self.triangles.extend(faces);
+            if let Some(materials) = &mesh.materials {
+                self.label(materials);
             }
-            let kind = ChainKind::Facing(cell);
-            self.chains.push(Chain { kind, levels: first..self.levels.len() });
+            let triangles = start..self.triangles.len();
+            self.levels.push(Level { chain: kind, depth, triangles, error });
         }
+        Chain { kind, levels: first..self.levels.len() }
     }
 
-    fn push(&mut self, faces: Vec<[u32; 3]>, materials: Option<&Labels>, error: f32) {
+    /// Adds the facing chains, from the levels of the whole chain, which are the first.
+    fn facing(&mut self, whole: &[Mesh], side: usize) -> Vec<FacingLevels> {
+        let at_depth = |(depth, mesh): (usize, &Mesh)| {
+            let hidden = HiddenFaces::new(mesh);
+            let sides = [side, side / 2, side / 3, side / 4, side / 6];
+            let fits = |side: &usize| side * side * mesh.faces.len() * 6 / 10 <= MOST_FACING;
+            let side = sides.into_iter().filter(|side| *side >= 2).find(fits);
+            let directions = DirectionGrid::new(side.unwrap_or(2));
+            let cells = if side.is_some() { 0..directions.len() } else { 0..0 };
+            let seen: Vec<Vec<usize>> =
+                cells.map(|cell| hidden.seen_from(&directions, cell)).collect();
+            (depth, directions, seen)
+        };
+        let depths: Vec<_> = whole.par_iter().enumerate().map(at_depth).collect();
+        depths
+            .into_iter()
+            .map(|(depth, directions, seen)| {
+                let first = self.levels.len();
+                for (cell, seen) in seen.iter().enumerate() {
+                    self.facing_level(depth, cell, seen);
+                }
+                FacingLevels { directions, levels: first..self.levels.len() }
+            })
+            .collect()
+    }
+
+    /// Adds the seen faces of a level of the whole chain.
+    fn facing_level(&mut self, depth: usize, cell: usize, seen: &[usize]) {
+        let Level { triangles, error, .. } = self.levels[depth].clone();
+        let kept: Vec<u32> = seen.iter().map(|&face| (triangles.start + face) as u32).collect();
         let start = self.triangles.len();
-        self.triangles.extend(faces);
-        if let Some(materials) = materials {
-            let all = self.materials.get_or_insert_with(|| Labels {
-                names: materials.names.clone(),
-                of_face: Vec::new(),
-            });
-            all.of_face.extend(&materials.of_face);
+        self.triangles.extend(
+            kept.iter().map(|&triangle| self.triangles[triangle as usize]).collect::<Vec<_>>(),
+        );
+        if let Some(labels) = self.materials.as_ref().map(|labels| labels.select(&kept)) {
+            self.label(&labels);
         }
         let triangles = start..self.triangles.len();
-        self.levels.push(Level { chain: self.chains.len(), triangles, error });
+        self.levels.push(Level { chain: ChainKind::Facing(cell), depth, triangles, error });
     }
 
-    fn finish(self, directions: DirectionGrid, differences: Differences) -> LevelTable {
-        let Self { pool, triangles, materials, levels, chains } = self;
+    fn label(&mut self, labels: &Labels) {
+        let empty = || Labels { names: labels.names.clone(), of_face: Vec::new() };
+        self.materials.get_or_insert_with(empty).of_face.extend(&labels.of_face);
+    }
+
+    fn finish(
+        self,
+        chains: [Chain; 3],
+        facing: Vec<FacingLevels>,
+        differences: Differences,
+    ) -> LevelTable {
+        let Self { pool, triangles, materials, levels } = self;
         let positions: Vec<[f32; 3]> = pool.positions.iter().map(|p| p.map(|x| x as f32)).collect();
         let (radius, half_extent) = LevelTable::extent_of(&positions);
         LevelTable {
@@ -212,7 +244,7 @@ impl Builder {
             materials,
             levels,
             chains,
-            directions,
+            facing,
             differences,
         }
     }

@@ -14,10 +14,10 @@ pub struct DirectionGrid {
 }
 
 /// Largest number of cells along a side of the grid.
-pub(crate) const MAX_SIDE: usize = 16;
+pub(crate) const MAX_SIDE: usize = 32;
 
 impl DirectionGrid {
-    /// Creates a grid of `side` by `side` cells, at least 2 and at most 16 a side.
+    /// Creates a grid of `side` by `side` cells, at least 2 and at most 32 a side.
     pub fn new(side: usize) -> Self {
         let side = side.clamp(2, MAX_SIDE);
         let place = |cell: usize, step: f32| (cell as f32 + step) / side as f32;

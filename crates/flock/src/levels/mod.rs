@@ -23,4 +23,4 @@ pub use difference::Differences;
 pub use directions::DirectionGrid;
 pub use facing::NEAREST_FACING;
 pub use model::ModelAxes;
-pub use table::{Chain, ChainKind, Level, LevelTable, TableError};
+pub use table::{Chain, ChainKind, FacingLevels, Level, LevelTable, TableError};

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use glam::Vec3;
 use meshlod_mesh::{Attributes, Labels, Layer, Mesh, MeshError, VertexId, WedgeId};
 use meshlod_picture::PictureError;
 use meshlod_simplify::SimplifyError;
@@ -25,12 +26,12 @@ pub struct LevelTable {
     pub triangles: Vec<[u32; 3]>,
     /// Material of each triangle, if the model has materials; within a level they are sorted.
     pub materials: Option<Labels>,
-    /// Levels of all chains, chain after chain.
+    /// Levels of all chains, chain after chain, then those of the facing chains, depth after depth.
     pub levels: Vec<Level>,
-    /// Chains; the first is [`ChainKind::Whole`].
-    pub chains: Vec<Chain>,
-    /// Directions of the facing chains.
-    pub directions: DirectionGrid,
+    /// Simplified chains: the whole, the left-coarsened and the right-coarsened.
+    pub chains: [Chain; 3],
+    /// Levels of the facing chains at each depth of the whole chain.
+    pub facing: Vec<FacingLevels>,
     /// What the levels of the whole chain show differently.
     pub differences: Differences,
     /// Radius of the ball around the origin that holds all vertices, in body lengths.
@@ -42,21 +43,23 @@ pub struct LevelTable {
 /// Level of a chain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Level {
-    /// Chain of the level, an index into [`LevelTable::chains`].
-    pub chain: usize,
+    /// Chain of the level.
+    pub chain: ChainKind,
+    /// Place of the level in its chain, the finest first.
+    pub depth: usize,
     /// Triangles of the level, a range of [`LevelTable::triangles`].
     pub triangles: Range<usize>,
     /// Greatest distance of the model's vertices from the level, in body lengths.
     pub error: f32,
 }
 
-/// Chain of levels, finest first.
+/// Chain of simplified levels, finest first.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Chain {
     /// How the levels of the chain are coarsened.
     pub kind: ChainKind,
-    /// Levels of the chain, a range of [`LevelTable::levels`]. All but the finest level of the
-    /// whole chain are coarser than the model.
+    /// Levels of the chain, a range of [`LevelTable::levels`]. The first is the model itself in the
+    /// whole chain, and coarser than the model in the others.
     pub levels: Range<usize>,
 }
 
@@ -69,9 +72,20 @@ pub enum ChainKind {
     LeftCoarsened,
     /// Mostly on the member's right side.
     RightCoarsened,
-    /// As the whole chain, without the faces that are hidden from a direction of the grid with this
-    /// number.
+    /// As the whole chain, without the faces that are hidden from a cell of the grid of directions
+    /// of the depth.
     Facing(usize),
+}
+
+/// Levels of all facing chains at one depth, one for each cell of a grid of directions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FacingLevels {
+    /// Directions in the frame of a member, from it to the eye. The finer a level, the fewer cells,
+    /// so that no depth takes much more room than another.
+    pub directions: DirectionGrid,
+    /// Levels in the order of the cells, a range of [`LevelTable::levels`]; empty where the level
+    /// is so fine that even few cells would take too much room.
+    pub levels: Range<usize>,
 }
 
 /// Reason why no levels can be built for a model.
@@ -104,14 +118,25 @@ impl LevelTable {
         self.levels[level].triangles.len()
     }
 
-    /// Returns the number of levels of the whole chain, which the facing chains have too.
+    /// Returns the number of levels of the whole chain, and of each facing chain.
     pub fn depth(&self) -> usize {
         self.chains[0].levels.len()
     }
 
-    /// Returns the chain of this kind; the whole chain if there is none.
-    pub fn chain(&self, kind: ChainKind) -> &Chain {
-        self.chains.iter().find(|chain| chain.kind == kind).unwrap_or(&self.chains[0])
+    /// Returns the level of the facing chains at a depth for an eye in a direction, in the frame of
+    /// the member. It holds from [`NEAREST_FACING`](crate::levels::NEAREST_FACING) body lengths on.
+    pub fn facing_level(&self, depth: usize, direction: Vec3) -> usize {
+        let FacingLevels { directions, levels } = &self.facing[depth];
+        if levels.is_empty() { depth } else { levels.start + directions.cell(direction) }
+    }
+
+    /// Returns what decides how a level looks: its chain and its depth. A facing level looks like
+    /// that of the whole chain.
+    pub fn appearance(&self, level: usize) -> (ChainKind, usize) {
+        match self.levels[level] {
+            Level { chain: ChainKind::Facing(_), depth, .. } => (ChainKind::Whole, depth),
+            Level { chain, depth, .. } => (chain, depth),
+        }
     }
 
     /// Returns the radius of the ball around the origin that holds all vertices, and half of their

@@ -4,7 +4,7 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 use crate::camera::Camera;
-use crate::recording::{RecordingError, Source, VERSION};
+use crate::recording::{RecordingError, Source, VERSION, json};
 
 /// Name of the file.
 const FILE: &str = "cameras.json";
@@ -48,14 +48,7 @@ pub fn write(cameras: &[Camera]) -> Vec<u8> {
         }
     };
     let file = CamerasFile { version: VERSION, cameras: cameras.iter().map(entry).collect() };
-    json_lines(&file)
-}
-
-/// Returns a value as JSON with a line end.
-pub fn json_lines(value: &impl Serialize) -> Vec<u8> {
-    let mut bytes = serde_json::to_vec_pretty(value).expect("strings are the only keys");
-    bytes.push(b'\n');
-    bytes
+    json::compact(&file)
 }
 
 /// Reads the cameras of all frames.

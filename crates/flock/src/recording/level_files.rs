@@ -3,8 +3,8 @@
 use meshlod_mesh::LayerKind;
 use serde::{Deserialize, Serialize};
 
-use crate::levels::{Chain, ChainKind, Differences, Level, LevelTable};
-use crate::recording::{VERSION, cameras::json_lines, npy};
+use crate::levels::{Chain, ChainKind, Differences, FacingLevels, Level, LevelTable};
+use crate::recording::{VERSION, json, npy};
 
 /// Names of the files with fixed names.
 pub const FILE: &str = "levels.json";
@@ -13,16 +13,17 @@ pub const TRIANGLES: &str = "triangles.npy";
 pub const MATERIALS: &str = "triangle_materials.npy";
 pub const DIFFERENCES: &str = "differences.npy";
 pub const SILHOUETTES: &str = "silhouettes.npy";
+pub const DIRECTIONS: &str = "facing_directions.npy";
 
 /// `levels.json`.
 #[derive(Serialize, Deserialize)]
 pub struct LevelsFile {
     pub version: u32,
-    /// Cells along the side of the grid of directions of the facing chains.
-    pub direction_side: usize,
-    /// Chains, one after the other.
+    /// Simplified chains, one after the other.
     pub chains: Vec<ChainEntry>,
-    /// Levels of all chains, finest first in each.
+    /// Facing levels at each depth of the whole chain, after those of the chains.
+    pub facing: Vec<FacingEntry>,
+    /// Levels of all chains, finest first in each, and then the facing ones, direction by direction.
     pub levels: Vec<LevelEntry>,
     pub layers: Vec<LayerEntry>,
     /// Names of the materials, in the order of the model's; `None` without materials.
@@ -35,12 +36,6 @@ pub struct ChainEntry {
     pub kind: ChainWord,
     pub first_level: usize,
     pub levels: usize,
-    /// Unit vector from the member to the eyes that a facing chain is for, in the member's frame.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub direction: Option<[f32; 3]>,
-    /// Greatest angle between that vector and the eyes.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub half_angle_rad: Option<f32>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -49,7 +44,15 @@ pub enum ChainWord {
     Whole,
     LeftCoarsened,
     RightCoarsened,
-    Facing,
+}
+
+/// One level for each direction of a grid; none where the depth has no facing levels.
+#[derive(Serialize, Deserialize)]
+pub struct FacingEntry {
+    /// Cells along the side of the grid.
+    pub side: usize,
+    pub first_level: usize,
+    pub levels: usize,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -117,10 +120,12 @@ pub fn write_levels<E>(
     let shape = [grid.len(), table.depth(), Differences::SIZES];
     put(DIFFERENCES, &floats(&shape, areas))?;
     put(SILHOUETTES, &floats(&[grid.len()], silhouettes))?;
+    let directions: Vec<f32> = table.facing.iter().flat_map(cells).collect();
+    put(DIRECTIONS, &floats(&[directions.len() / 4, 4], &directions))?;
     let file = LevelsFile {
         version: VERSION,
-        direction_side: table.directions.len().isqrt(),
-        chains: chains(table),
+        chains: table.chains.iter().map(chain_entry).collect(),
+        facing: table.facing.iter().map(facing_entry).collect(),
         levels: levels(table),
         layers,
         materials: table.materials.as_ref().map(|labels| labels.names.clone()),
@@ -129,26 +134,34 @@ pub fn write_levels<E>(
             pixels_per_body_length: Differences::pixels_per_body_length().to_vec(),
         },
     };
-    put(FILE, &json_lines(&file))
+    put(FILE, &json::compact(&file))
 }
 
-fn chains(table: &LevelTable) -> Vec<ChainEntry> {
-    let entry = |chain: &Chain| {
-        let (kind, cell) = match chain.kind {
-            ChainKind::Whole => (ChainWord::Whole, None),
-            ChainKind::LeftCoarsened => (ChainWord::LeftCoarsened, None),
-            ChainKind::RightCoarsened => (ChainWord::RightCoarsened, None),
-            ChainKind::Facing(cell) => (ChainWord::Facing, Some(cell)),
-        };
-        ChainEntry {
-            kind,
-            first_level: chain.levels.start,
-            levels: chain.levels.len(),
-            direction: cell.map(|cell| table.directions.axis(cell).to_array()),
-            half_angle_rad: cell.map(|cell| table.directions.half_angle_rad(cell)),
-        }
+fn chain_entry(chain: &Chain) -> ChainEntry {
+    let kind = match chain.kind {
+        ChainKind::LeftCoarsened => ChainWord::LeftCoarsened,
+        ChainKind::RightCoarsened => ChainWord::RightCoarsened,
+        ChainKind::Whole | ChainKind::Facing(_) => ChainWord::Whole,
     };
-    table.chains.iter().map(entry).collect()
+    ChainEntry { kind, first_level: chain.levels.start, levels: chain.levels.len() }
+}
+
+fn facing_entry(facing: &FacingLevels) -> FacingEntry {
+    FacingEntry {
+        side: facing.directions.len().isqrt(),
+        first_level: facing.levels.start,
+        levels: facing.levels.len(),
+    }
+}
+
+/// Returns for each facing level the unit vector to the eyes that it is for, and the greatest angle
+/// between that and them.
+pub fn cells(facing: &FacingLevels) -> impl Iterator<Item = f32> {
+    let grid = &facing.directions;
+    (0..facing.levels.len()).flat_map(move |cell| {
+        let [x, y, z] = grid.axis(cell).to_array();
+        [x, y, z, grid.half_angle_rad(cell)]
+    })
 }
 
 fn levels(table: &LevelTable) -> Vec<LevelEntry> {

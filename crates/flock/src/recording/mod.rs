@@ -44,6 +44,7 @@
 
 mod cameras;
 mod error;
+mod json;
 mod level_files;
 mod level_reader;
 pub mod npy;

@@ -6,7 +6,7 @@ use glam::Vec3;
 use meshlod_mesh::{Mesh, VertexId};
 use serde::{Deserialize, Serialize};
 
-use crate::recording::{RecordingError, Source, VERSION, cameras::json_lines, npy};
+use crate::recording::{RecordingError, Source, VERSION, json, npy};
 use crate::scene::{Scenario, SceneObstacle};
 use crate::simulation::SchoolOptions;
 
@@ -111,7 +111,7 @@ impl RecordedScene {
             schools: self.schools.iter().map(school).collect(),
             obstacles,
         };
-        put(FILE, &json_lines(&file))
+        put(FILE, &json::pretty(&file))
     }
 
     /// Reads the scene and the number of its frames.

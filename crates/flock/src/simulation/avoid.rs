@@ -16,6 +16,8 @@ pub struct Waters<'a> {
 /// Points on the way ahead at which members look for obstacles, as shares of the time that they
 /// look ahead, and how much of their velocity they give up for what they find there.
 const AHEAD: [(f32, f32); 4] = [(0.0, 1.0), (0.25, 0.9), (0.55, 0.7), (1.0, 0.5)];
+/// Speed away from an obstacle, over that along it, of a member that gives way to it entirely.
+const REPULSION: f32 = 0.3;
 /// Rounds in which a point is pushed out of overlapping obstacles.
 const ROUNDS: usize = 12;
 
@@ -136,5 +138,5 @@ fn along(wanted: Vec3, velocity: Vec3, outward: Vec3, urgency: f32) -> Vec3 {
         .try_normalize()
         .or_else(|| aside.try_normalize())
         .unwrap_or_else(|| outward.any_orthonormal_vector());
-    wanted.lerp(side * wanted.length(), urgency)
+    wanted.lerp((side + outward * REPULSION) * wanted.length(), urgency)
 }

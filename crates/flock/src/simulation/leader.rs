@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glam::{DVec3, Vec3};
 
 use super::error::PathError;
-use super::options::FARTHEST;
+use super::options::{FARTHEST, is_near};
 
 /// Leader of a school, who knows the way and is not a member.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,7 +59,7 @@ impl LeaderPath {
             return Err(PathError::TooFew(count));
         }
         for (i, waypoint) in waypoints.iter().enumerate() {
-            if !(waypoint.abs().max_element() <= FARTHEST) {
+            if !is_near(*waypoint) {
                 return Err(PathError::NotFinite(i));
             }
             if *waypoint == waypoints[(i + count - 1) % count] {
@@ -177,6 +177,6 @@ mod tests {
         };
         assert_eq!(path(&[[0.0; 3], [1.0; 3]]), Err(PathError::TooFew(2)));
         assert_eq!(path(&[[0.0; 3], [1.0; 3], [0.0; 3]]), Err(PathError::Repeated(0)));
-        assert_eq!(path(&[[0.0; 3], [f32::NAN; 3], [1.0; 3]]), Err(PathError::NotFinite(1)));
+        assert_eq!(path(&[[0.0; 3], [1.0, f32::NAN, 1.0], [1.0; 3]]), Err(PathError::NotFinite(1)));
     }
 }

@@ -1,7 +1,7 @@
 //! Simulation of schools that follow their leaders round obstacles.
 //!
 //! Each member steers by Reynolds' three rules (keep apart, align, stay together) and towards a
-//! slot of its own in an ellipsoid that moves with the leader [Rey87] [CC05]. Obstacles part a
+//! slot of its own in an ellipsoid that moves with the leader \[Rey87\] \[CC05\]. Obstacles part a
 //! school, and it closes again behind them. Lengths are in body lengths, times in seconds.
 //!
 //! ```

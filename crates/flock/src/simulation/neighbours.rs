@@ -1,27 +1,28 @@
-//! Neighbours of a member: candidates gathered once for a cell and examined in lanes.
+//! Neighbours of a member, among runs of candidates that are examined in lanes.
 
-use glam::Vec3;
+use std::ops::Range;
+
+use glam::{Vec3, Vec4};
 
 use super::options::Behaviour;
+use super::swarm::Motion;
 
-/// Candidates examined together, in two registers of the baseline.
-const LANES: usize = 8;
-/// Greatest number of candidates around a cell; where members are denser, some are left out.
-pub const MOST: usize = 2048;
+/// Candidates examined together: the registers of the baseline hold four numbers. With eight the
+/// sums would not fit into its sixteen registers.
+pub const LANES: usize = 4;
+/// Greatest number of candidates in a run; where members are denser, some are left out.
+const MOST: usize = 256;
+/// Lane numbers.
+const LANE: Vec4 = Vec4::new(0.0, 1.0, 2.0, 3.0);
 
-type Lanes = [f32; LANES];
-
-/// Members in a cell and around it, by coordinate, in groups of [`LANES`].
-pub struct Candidates {
-    /// Position and velocity by axis, and the school.
-    values: [Vec<Lanes>; VALUES],
-    len: usize,
+/// Members among which neighbours are searched, in the order of the grid.
+///
+/// There are [`LANES`] entries more than members, so that the last group of a run can be read.
+#[derive(Clone, Copy)]
+pub struct Candidates<'a> {
+    pub motion: &'a Motion,
+    pub school: &'a [f32],
 }
-
-/// Position and velocity by axis, and the school.
-const VALUES: usize = 7;
-/// Coordinate of the lanes after the last candidate, which are nobody's neighbours.
-const NOWHERE: f32 = 1e18;
 
 /// Neighbours that a member has, summed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -38,83 +39,72 @@ pub struct Neighbours {
     pub away: Vec3,
 }
 
-impl Candidates {
-    pub fn new() -> Self {
-        Self { values: std::array::from_fn(|_| vec![[0.0; LANES]; MOST / LANES + 1]), len: 0 }
-    }
-
-    pub fn clear(&mut self) {
-        self.len = 0;
-    }
-
-    /// Appends members of a run as far as there is room.
+impl Candidates<'_> {
+    /// Sums the neighbours of the member at `position` of a school, itself included, over runs.
+    ///
+    /// If there are not `MANY` schools, all neighbours are of the member's.
     #[inline]
-    pub fn extend(&mut self, run: [&[f32]; VALUES]) {
-        let count = run[0].len().min(MOST - self.len);
-        for (to, from) in self.values.iter_mut().zip(run) {
-            to.as_flattened_mut()[self.len..self.len + count].copy_from_slice(&from[..count]);
-        }
-        self.len += count;
-    }
-
-    /// Fills the last group of lanes; to be called before [`Self::around`].
-    #[inline]
-    pub fn finish(&mut self) {
-        let end = self.len.next_multiple_of(LANES);
-        for to in &mut self.values {
-            to.as_flattened_mut()[self.len..end].fill(NOWHERE);
-        }
-    }
-
-    /// Sums the neighbours of the member at `position` of a school, itself included.
-    #[inline]
-    pub fn around(&self, position: Vec3, school: f32, behaviour: &Behaviour) -> Neighbours {
-        let groups = self.len.div_ceil(LANES);
-        let near = behaviour.neighbour_radius * behaviour.neighbour_radius;
-        let too_near = -behaviour.separation_radius.max(1e-3).powi(2).recip();
-        let [x, y, z, u, v, w, s] = self.values.each_ref().map(|lanes| &lanes[..groups]);
-        let mut sums = [[0.0_f32; LANES]; 11];
-        for g in 0..groups {
-            let (x, y, z) = (&x[g], &y[g], &z[g]);
-            let (u, v, w, s) = (&u[g], &v[g], &w[g], &s[g]);
-            for l in 0..LANES {
-                let (dx, dy, dz) = (x[l] - position.x, y[l] - position.y, z[l] - position.z);
-                let squared = dx * dx + dy * dy + dz * dz;
-                let one = if squared < near { 1.0 } else { 0.0 };
-                let own = if s[l] == school { one } else { 0.0 };
-                let overlap = (1.0 + squared * too_near).max(0.0);
-                let push = overlap * overlap;
-                let terms = [
-                    one,
-                    own,
-                    own * dx,
-                    own * dy,
-                    own * dz,
-                    own * u[l],
-                    own * v[l],
-                    own * w[l],
-                    push * dx,
-                    push * dy,
-                    push * dz,
-                ];
-                for (sum, term) in sums.iter_mut().zip(terms) {
-                    sum[l] += term;
+    pub fn around<const MANY: bool>(
+        &self,
+        runs: &[Range<u32>],
+        position: Vec3,
+        school: f32,
+        behaviour: &Behaviour,
+    ) -> Neighbours {
+        let p = position.to_array().map(Vec4::splat);
+        let near = Vec4::splat(behaviour.neighbour_radius * behaviour.neighbour_radius);
+        let too_near = Vec4::splat(-behaviour.separation_radius.max(1e-3).powi(2).recip());
+        let school = Vec4::splat(school);
+        let (mut count, mut own) = (Vec4::ZERO, Vec4::ZERO);
+        let zero = [Vec4::ZERO; 3];
+        let (mut offset, mut velocity, mut away) = (zero, zero, zero);
+        let position_of = self.motion.position.each_ref();
+        let velocity_of = self.motion.velocity.each_ref();
+        for run in runs {
+            let length = run.len().min(MOST);
+            let groups = length.div_ceil(LANES);
+            let range = run.start as usize..run.start as usize + groups * LANES;
+            // Slices of one known length, so that bounds are checked once.
+            let [x, y, z] = position_of.map(|axis| &axis[range.clone()].as_chunks().0[..groups]);
+            let [u, v, w] = velocity_of.map(|axis| &axis[range.clone()].as_chunks().0[..groups]);
+            let s = &self.school[range].as_chunks::<LANES>().0[..groups];
+            let mut left = Vec4::splat(length as f32);
+            for g in 0..groups {
+                let [x, y, z] = [x[g], y[g], z[g]].map(Vec4::from_array);
+                let d = [x - p[0], y - p[1], z - p[2]];
+                let squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+                // What is after the end of the run may belong to another, and must not count twice.
+                let is_in = LANE.cmplt(left);
+                left -= Vec4::splat(LANES as f32);
+                let mut one = Vec4::select(squared.cmplt(near) & is_in, Vec4::ONE, Vec4::ZERO);
+                let overlap = (Vec4::ONE + squared * too_near).max(Vec4::ZERO) * one;
+                let square = overlap * overlap;
+                let push = square * square;
+                count += one;
+                if MANY {
+                    one = Vec4::select(Vec4::from_array(s[g]).cmpeq(school), one, Vec4::ZERO);
+                    own += one;
+                }
+                for (axis, values) in [u[g], v[g], w[g]].into_iter().enumerate() {
+                    offset[axis] += one * d[axis];
+                    velocity[axis] += one * Vec4::from_array(values);
+                    away[axis] += push * d[axis];
                 }
             }
         }
-        let [count, own, ox, oy, oz, vx, vy, vz, ax, ay, az] = sums.map(total);
+        let vector = |lanes: [Vec4; 3]| Vec3::from(lanes.map(total));
         Neighbours {
-            count,
-            own,
-            offset: Vec3::new(ox, oy, oz),
-            velocity: Vec3::new(vx, vy, vz),
-            away: -Vec3::new(ax, ay, az),
+            count: total(count),
+            own: total(if MANY { own } else { count }),
+            offset: vector(offset),
+            velocity: vector(velocity),
+            away: -vector(away),
         }
     }
 }
 
 /// Adds lanes in a fixed order.
 #[inline]
-fn total([a, b, c, d, e, f, g, h]: Lanes) -> f32 {
-    ((a + e) + (c + g)) + ((b + f) + (d + h))
+fn total(lanes: Vec4) -> f32 {
+    (lanes.x + lanes.z) + (lanes.y + lanes.w)
 }

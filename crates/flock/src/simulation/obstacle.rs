@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::field::DistanceField;
-use super::options::FARTHEST;
+use super::options::{FARTHEST, is_near};
 
 /// Solid obstacle; lengths are in body lengths.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,7 +65,7 @@ impl Obstacle {
     }
 
     pub(super) fn is_valid(&self) -> bool {
-        let near = |point: &Vec3| point.abs().max_element() <= FARTHEST;
+        let near = |point: &Vec3| is_near(*point);
         let wide = |radius: f32| radius > 0.0 && radius <= FARTHEST;
         match self {
             Self::Sphere { center, radius } => near(center) && wide(*radius),

@@ -11,6 +11,11 @@ use super::obstacle::Obstacle;
 /// Greatest coordinate and length, so that single precision resolves a tenth of a body length.
 pub(super) const FARTHEST: f32 = 1e6;
 
+/// Returns true if a point is finite and near enough to the origin.
+pub(super) fn is_near(point: Vec3) -> bool {
+    point.to_array().iter().all(|x| x.abs() <= FARTHEST)
+}
+
 /// Options of a simulation; lengths are in body lengths, times in seconds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulationOptions {
@@ -132,9 +137,9 @@ impl SchoolOptions {
 impl Default for Behaviour {
     fn default() -> Self {
         Self {
-            neighbour_radius: 2.4,
+            neighbour_radius: 2.25,
             separation_radius: 1.6,
-            separation: 2.0,
+            separation: 6.0,
             alignment: 0.4,
             cohesion: 0.05,
             keeping: 0.8,
@@ -170,8 +175,10 @@ impl SimulationOptions {
             return Err(SimulationError::Obstacle(i));
         }
         if let Some(SteerEvery { eye, distances }) = &self.steer_every {
-            let any = "within 1e6 of the origin";
-            within("steer_every.eye", eye.abs().max_element(), 0.0..=FARTHEST, any)?;
+            if !is_near(*eye) {
+                let (option, range) = ("steer_every.eye", "within 1e6 of the origin");
+                return Err(SimulationError::Option { option, range, value: eye.length() });
+            }
             let [near, middle, far] = *distances;
             let order = "0 or more, and in ascending order";
             within("steer_every.distances", near, 0.0..=middle, order)?;
@@ -198,9 +205,8 @@ impl SchoolOptions {
             return fail("speed", "between min_speed and max_speed", self.speed);
         }
         if let Leader::Line { from, direction } = &self.leader {
-            let farthest = from.abs().max_element();
-            if !(farthest <= FARTHEST) {
-                return fail("leader.from", "within 1e6 of the origin", farthest);
+            if !is_near(*from) {
+                return fail("leader.from", "within 1e6 of the origin", from.length());
             }
             if direction.try_normalize().is_none() {
                 return fail("leader.direction", "a direction", direction.length());

@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::Vec3;
 
 use super::avoid::Waters;
-use super::grid::Grid;
+use super::grid::{Grid, Runs};
 use super::motion::{Lead, Member};
 use super::neighbours::{Candidates, Neighbours};
 use super::options::{Behaviour, SteerEvery};
@@ -68,21 +68,27 @@ impl Moment<'_> {
     }
 
     fn range(&self, cells: Range<usize>, still: &Still<'_>, mut moved: Moved<'_>) -> Looks {
-        let mut candidates = Candidates::new();
+        let candidates = Candidates { motion: still.from, school: still.school };
+        let mut runs = Runs::default();
         let mut looks = Looks::default();
         let first = self.grid.members(cells.clone()).start;
         for cell in cells {
-            let members = self.grid.members(cell..cell + 1);
-            let mut is_gathered = false;
-            for i in members {
+            let mut is_found = false;
+            for i in self.grid.members(cell..cell + 1) {
                 let mut member = still.member(i, moved.social(i - first));
                 let school = still.school[i];
                 if self.looks(member.id, member.position) {
-                    if !is_gathered {
-                        self.gather(cell, still, &mut candidates);
-                        is_gathered = true;
+                    if !is_found {
+                        self.grid.find_runs(cell, &mut runs);
+                        is_found = true;
                     }
-                    let found = candidates.around(member.position, school, self.behaviour);
+                    let around = if self.leads.len() > 1 {
+                        Candidates::around::<true>
+                    } else {
+                        Candidates::around::<false>
+                    };
+                    let (runs, position) = (runs.as_slice(), member.position);
+                    let found = around(&candidates, runs, position, school, self.behaviour);
                     member.social = self.behaviour.social(&found, member.velocity);
                     looks.add(&found);
                 }
@@ -93,15 +99,6 @@ impl Moment<'_> {
             }
         }
         looks
-    }
-
-    fn gather(&self, cell: usize, still: &Still<'_>, candidates: &mut Candidates) {
-        let Motion { position: [x, y, z], velocity: [u, v, w] } = still.from;
-        candidates.clear();
-        self.grid.for_runs_around(cell, |run| {
-            candidates.extend([x, y, z, u, v, w, still.school].map(|values| &values[run.clone()]));
-        });
-        candidates.finish();
     }
 
     /// Returns true if a member looks at its neighbours in this step.
@@ -126,7 +123,7 @@ impl Looks {
 struct Still<'a> {
     from: &'a Motion,
     id: &'a [u32],
-    school: &'a Vec<f32>,
+    school: &'a [f32],
     slot: &'a Axes,
 }
 

@@ -3,6 +3,8 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
+use super::neighbours::LANES;
+
 /// Arrays by axis.
 pub type Axes = [Vec<f32>; 3];
 
@@ -16,7 +18,7 @@ pub struct Motion {
 /// All members, in the order of the cells in which the last step found them.
 #[derive(Clone, Debug, Default)]
 pub struct Swarm {
-    /// Motion at the beginning of the last step.
+    /// Motion at the beginning of the last step, with [`LANES`] entries after the last member.
     pub from: Motion,
     /// Motion at the end of the last step.
     pub to: Motion,
@@ -30,7 +32,8 @@ pub struct Swarm {
 pub struct Kept {
     /// Number of the member.
     pub id: Vec<u32>,
-    /// Index of the member's school; a number so that lanes can compare it.
+    /// Index of the member's school, a number so that lanes can compare it, with [`LANES`] entries
+    /// after the last member.
     pub school: Vec<f32>,
     /// Offset of the slot from the leader, in the leader's frame.
     pub slot: Axes,
@@ -57,6 +60,10 @@ impl Swarm {
     /// Prepares for the first step, once all members are there: the beginning is the end.
     pub fn start(&mut self) {
         self.from = self.to.clone();
+        let Motion { position, velocity } = &mut self.from;
+        for values in position.iter_mut().chain(velocity).chain([&mut self.kept.school]) {
+            values.extend([0.0; LANES]);
+        }
         self.spare = self.kept.clone();
     }
 

@@ -65,11 +65,7 @@ pub(crate) fn validate(locks: &Locks, mesh: &Mesh) -> Result<(), SimplifyError> 
 }
 
 /// Flags locked and protected vertices of a surface, and stores its ties.
-pub(crate) fn apply(
-    options: &Options,
-    connectivity: &Connectivity,
-    surface: &mut Surface,
-) -> Held {
+pub(crate) fn apply(options: &Options, connectivity: &Connectivity, surface: &mut Surface) -> Held {
     let Options { locks, lock_boundary, .. } = options;
     let mut held = Held::default();
     for v in (0..surface.vertex_count()).map(VertexId::new) {

@@ -1,7 +1,7 @@
 //! Chains by the side of the school that is seen.
 
 use crate::flock::School;
-use crate::levels::{ChainKind, LevelTable};
+use crate::levels::LevelTable;
 use crate::select::policies::{each_school, fill_by_distance};
 use crate::select::{ChainLevels, InstanceLevel, Policy, View};
 
@@ -36,9 +36,8 @@ pub(crate) struct SidedLevels([ChainLevels; 3]);
 
 impl SidedLevels {
     pub(crate) fn fill(&mut self, view: &View<'_>) {
-        let kinds = [ChainKind::Whole, ChainKind::LeftCoarsened, ChainKind::RightCoarsened];
-        for (levels, kind) in self.0.iter_mut().zip(kinds) {
-            fill_by_distance(levels, view, view.table.chain(kind));
+        for (levels, chain) in self.0.iter_mut().zip(&view.table.chains) {
+            fill_by_distance(levels, view, chain);
         }
     }
 

@@ -1,6 +1,6 @@
 //! What finer levels add to the picture per triangle, by direction and size.
 
-use crate::levels::{ChainKind, LevelTable};
+use crate::levels::{FacingLevels, LevelTable};
 
 /// Number of sizes: four to the octave of pixels per body length, twelve octaves.
 pub(super) const SIZES: usize = 48;
@@ -90,18 +90,21 @@ impl Gains {
 /// Returns the number of triangles of every level, finest first, as a mean over the facing chains
 /// of directions that are compared in one.
 fn mean_triangles(table: &LevelTable, view: usize) -> Vec<u32> {
-    let (directions, views) = (&table.directions, table.differences.directions());
-    let is_near = |cell: &usize| views.cell(directions.axis(*cell)) == view;
-    let mut cells: Vec<usize> = (0..directions.len()).filter(is_near).collect();
-    if cells.is_empty() {
-        cells.push(directions.cell(views.axis(view)));
-    }
-    let of_level = |depth: usize| {
-        let level = |&cell: &usize| table.chain(ChainKind::Facing(cell)).levels.start + depth;
-        let sum: usize = cells.iter().map(|cell| table.triangle_count(level(cell))).sum();
+    let views = table.differences.directions();
+    let mean = |(depth, facing): (usize, &FacingLevels)| {
+        let FacingLevels { directions, levels } = facing;
+        if levels.is_empty() {
+            return table.triangle_count(depth) as u32;
+        }
+        let is_near = |cell: &usize| views.cell(directions.axis(*cell)) == view;
+        let mut cells: Vec<usize> = (0..directions.len()).filter(is_near).collect();
+        if cells.is_empty() {
+            cells.push(directions.cell(views.axis(view)));
+        }
+        let sum: usize = cells.iter().map(|cell| table.triangle_count(levels.start + cell)).sum();
         sum.div_ceil(cells.len()) as u32
     };
-    (0..table.depth()).map(of_level).collect()
+    table.facing.iter().enumerate().map(mean).collect()
 }
 
 /// Level that may be chosen.

@@ -19,7 +19,7 @@ mod visibility;
 use glam::Vec3;
 use rayon::prelude::*;
 
-use crate::levels::{ChainKind, LevelTable, NEAREST_FACING};
+use crate::levels::{DirectionGrid, LevelTable, NEAREST_FACING};
 use crate::select::policies::ours::allocation::Allocation;
 use crate::select::policies::ours::gains::{Gains, SIZES, size_of};
 use crate::select::policies::ours::visibility::{NOWHERE, VISIBILITIES, VisibilityGrid};
@@ -30,12 +30,16 @@ pub struct Ours {
     gains: Gains,
     grid: VisibilityGrid,
     allocation: Allocation,
-    /// First level of the facing chain of each direction.
+    /// Directions that are told apart, the cells of the finest grid of the facing chains.
+    directions: DirectionGrid,
+    /// Level for every depth and direction, direction by direction.
     facing: Vec<u16>,
-    /// Direction of the differences for each direction of the facing chains.
+    /// Direction of the differences for each direction.
     view_of_facing: Vec<u8>,
-    /// Depth in its chain of every level of the whole and the facing chains.
+    /// Depth in its chain of every level.
     depth_of: Vec<u8>,
+    /// Triangles of every level.
+    triangles_of: Vec<u32>,
     /// What is known of each member: first its froxel, then its cell.
     places: Vec<u32>,
     /// Size and direction of each member.
@@ -47,7 +51,7 @@ pub struct Ours {
 struct Look {
     size: u8,
     /// Direction of the facing chains in which the eye is.
-    facing: u8,
+    facing: u16,
 }
 
 /// Members that one task handles.
@@ -65,23 +69,22 @@ const NEAR: u32 = 1 << 31;
 impl Ours {
     /// Creates the policy for a table of levels.
     pub fn new(table: &LevelTable) -> Self {
-        let directions = &table.directions;
+        let finest =
+            table.facing.iter().map(|depth| &depth.directions).max_by_key(|grid| grid.len());
+        let directions = finest.cloned().unwrap_or_else(|| DirectionGrid::new(2));
         let views = table.differences.directions();
-        let view_of = |cell: usize| views.cell(directions.axis(cell)) as u8;
-        let depth = table.depth();
-        let first = |cell: usize| table.chain(ChainKind::Facing(cell)).levels.start as u16;
-        let facing: Vec<u16> = (0..directions.len()).map(first).collect();
-        let mut depth_of = vec![0; table.levels.len()];
-        for start in facing.iter().copied().chain([0]) {
-            (0..depth).for_each(|i| depth_of[usize::from(start) + i] = i as u8);
-        }
+        let axes = (0..directions.len()).map(|cell| directions.axis(cell));
+        let level = |(axis, depth): (Vec3, usize)| table.facing_level(depth, axis) as u16;
+        let of_axis = |axis: Vec3| (0..table.depth()).map(move |depth| (axis, depth));
         Self {
             gains: Gains::new(table),
             grid: VisibilityGrid::new(table),
             allocation: Allocation::new(views.len() * SIZES * VISIBILITIES),
-            view_of_facing: (0..directions.len()).map(view_of).collect(),
-            facing,
-            depth_of,
+            view_of_facing: axes.clone().map(|axis| views.cell(axis) as u8).collect(),
+            facing: axes.flat_map(of_axis).map(level).collect(),
+            directions,
+            depth_of: table.levels.iter().map(|level| level.depth as u8).collect(),
+            triangles_of: table.levels.iter().map(|level| level.triangles.len() as u32).collect(),
             places: Vec::new(),
             looks: Vec::new(),
         }
@@ -92,7 +95,7 @@ impl Ours {
         let count = view.flock.members.len();
         self.places.resize(count, NOWHERE);
         self.looks.resize(count, Look::default());
-        let grid = &self.grid;
+        let (grid, directions) = (&self.grid, &self.directions);
         let focal = view.camera.pixels_at_one();
         let tasks = self.places.par_chunks_mut(TASK).zip(self.looks.par_chunks_mut(TASK));
         tasks.enumerate().for_each(|(task, (places, looks))| {
@@ -101,7 +104,7 @@ impl Ours {
                 let first = task * TASK + i * LANES;
                 let lanes = view.lanes(first);
                 let froxels = grid.froxels(&lanes);
-                let facing = facing(view, first, &lanes);
+                let facing = facing(view, directions, first, &lanes);
                 for lane in 0..places.len() {
                     let hidden = view.visible.is_some_and(|visible| !visible[first + lane]);
                     let drawn = lanes.in_frustum[lane] & !hidden;
@@ -137,6 +140,7 @@ impl Ours {
     fn assign(&self, view: &View<'_>, levels: &mut [InstanceLevel], band: Band) -> usize {
         let task = |(task, levels): (usize, &mut [InstanceLevel])| {
             let first = task * TASK;
+            let depths = view.table.depth();
             let mut triangles = 0;
             for (i, level) in levels.iter_mut().enumerate() {
                 let (place, look) = (self.places[first + i], self.looks[first + i]);
@@ -150,10 +154,14 @@ impl Ours {
                     Some(before) => self.depth_of[before].clamp(finest, of_cell.coarsest),
                     None => of_cell.best,
                 };
-                let chain =
-                    if place & NEAR != 0 { 0 } else { self.facing[usize::from(look.facing)] };
-                *level = InstanceLevel::drawn(usize::from(chain) + usize::from(depth));
-                triangles += view.table.triangle_count(usize::from(chain) + usize::from(depth));
+                let depth = usize::from(depth);
+                let drawn = match place & NEAR {
+                    0 => self.facing[usize::from(look.facing) * depths + depth],
+                    // The whole chain comes first.
+                    _ => depth as u16,
+                };
+                *level = InstanceLevel::drawn(drawn.into());
+                triangles += self.triangles_of[usize::from(drawn)] as usize;
             }
             triangles
         };
@@ -195,7 +203,12 @@ impl Policy for Ours {
 
 /// Returns the direction of the facing chains in which each of eight members sees the eye.
 #[inline(always)]
-fn facing(view: &View<'_>, first: usize, lanes: &Lanes) -> [u8; LANES] {
+fn facing(
+    view: &View<'_>,
+    directions: &DirectionGrid,
+    first: usize,
+    lanes: &Lanes,
+) -> [u16; LANES] {
     let heading = &view.flock.members.heading;
     let mut h = [[0.0; LANES]; 3];
     for axis in 0..3 {
@@ -216,6 +229,7 @@ fn facing(view: &View<'_>, first: usize, lanes: &Lanes) -> [u8; LANES] {
         local[1][i] = -(x[i] * ux + y[i] * uy + z[i] * uz);
         local[2][i] = -(x[i] * h[0][i] + y[i] * h[1][i] + z[i] * h[2][i]);
     }
-    let directions = &view.table.directions;
-    std::array::from_fn(|i| directions.cell(Vec3::new(local[0][i], local[1][i], local[2][i])) as u8)
+    std::array::from_fn(|i| {
+        directions.cell(Vec3::new(local[0][i], local[1][i], local[2][i])) as u16
+    })
 }

@@ -1,0 +1,163 @@
+//! `flock --evaluate`: triangles against image error for all policies, as a page and as JSON.
+
+mod chart;
+mod page;
+mod pictures;
+mod summary;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use meshlod::flock::evaluate::{
+    Arm, Evaluation, EvaluationOptions, Footage, Track, evaluate, over_time,
+};
+use meshlod::flock::levels::LevelTable;
+use meshlod::flock::scene::{Scenario, ScenarioName, ScenarioOptions};
+use meshlod::flock::select::policies::Factors;
+use meshlod::flock::select::{Budget, PolicyName};
+use meshlod::io::write_file;
+use meshlod::samples;
+
+use crate::answer::Answer;
+use crate::failure::Failure;
+use crate::files;
+use crate::flock::evaluate::pictures::Pictures;
+use crate::flock::model::FlockModel;
+use crate::session::Session;
+use crate::verbs::flock::Flock;
+
+/// How much is drawn.
+struct Extent {
+    size: [u32; 2],
+    frames: usize,
+    pairs: usize,
+    shares: &'static [f64],
+    /// Frames from one that is compared over time to the next.
+    step: usize,
+}
+
+const QUICK: Extent = Extent {
+    size: [640, 360],
+    frames: 45,
+    pairs: 1,
+    shares: &[0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.6],
+    step: 15,
+};
+
+const FULL: Extent = Extent {
+    size: [1920, 1080],
+    frames: 240,
+    pairs: 4,
+    shares: &[0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8],
+    step: 10,
+};
+
+/// Image errors for which the triangles needed are found.
+pub const FLIPS: [f64; 3] = [0.01, 0.02, 0.05];
+
+/// Share of the triangles of full detail at which pictures are shown.
+pub const SHOWN_SHARE: f64 = 0.05;
+
+/// Name of the arm that stands for what engines do, and of the one with occlusion.
+pub const BUDGET: &str = "budget";
+pub const SCREEN_ERROR: &str = "screen-error, occluded skipped";
+pub const OURS: &str = "ours";
+pub const OURS_VISIBLE: &str = "ours, occluded skipped";
+
+/// Everything that the page shows.
+pub struct Report<'a> {
+    pub model: &'a FlockModel,
+    pub members: usize,
+    pub size: [u32; 2],
+    pub is_quick: bool,
+    pub evaluation: &'a Evaluation,
+    /// Paper's experiment.
+    pub tracks: &'a [Track],
+    pub frame_s: f32,
+    pub pictures: &'a Pictures,
+}
+
+/// Evaluates all policies in all scenes and writes the page.
+pub fn run(
+    options: &Flock,
+    model: &FlockModel,
+    table: &Arc<LevelTable>,
+    session: &Session,
+) -> Result<Answer, Failure> {
+    let extent = if options.quick { QUICK } else { FULL };
+    let footage = footage(options, &extent, session)?;
+    let settings = EvaluationOptions {
+        shares: extent.shares.to_vec(),
+        pairs: extent.pairs,
+        flips: FLIPS.to_vec(),
+        ..EvaluationOptions::default()
+    };
+    let mut pictures = Pictures::default();
+    let mut watch = |part: f64, what: &str| {
+        session.progress.part(what, (part * 1000.0) as usize, 1000);
+    };
+    let mut keep = |still| pictures.keep(still);
+    let evaluation = evaluate(&footage, table, &model.look, &settings, &mut watch, &mut keep)
+        .map_err(Failure::new)?;
+    session.progress.stage("paper's experiment");
+    let tracks =
+        over_time(&footage[0], table, &model.look, &paper_arms(), &Budget::default(), extent.step)
+            .map_err(Failure::new)?;
+    session.progress.stage("strips of frames");
+    pictures.strips(&footage, table, &model.look)?;
+    let report = Report {
+        model,
+        members: options.members,
+        size: extent.size,
+        is_quick: options.quick,
+        evaluation: &evaluation,
+        tracks: &tracks,
+        frame_s: footage[0].frame_s,
+        pictures: &pictures,
+    };
+    write(&options.out, &report)?;
+    Ok(Answer::new(summary::json(&report, &options.out), summary::text(&report, &options.out)))
+}
+
+/// Records the five scenes.
+fn footage(options: &Flock, extent: &Extent, session: &Session) -> Result<Vec<Footage>, Failure> {
+    const TERRAIN_FACES: usize = 40_000;
+    let terrain = samples::terrain(TERRAIN_FACES);
+    let record = |(i, name): (usize, ScenarioName)| {
+        session.progress.part("recording", i, ScenarioName::ALL.len());
+        let options = ScenarioOptions {
+            members: options.members,
+            schools: options.schools,
+            seed: options.seed,
+            size: extent.size,
+            frame_s: 1.0 / options.fps,
+            terrain: Some(&terrain),
+        };
+        Scenario::named(name, &options)
+            .and_then(|scenario| scenario.footage(extent.frames))
+            .map_err(Failure::new)
+    };
+    ScenarioName::ALL.into_iter().enumerate().map(record).collect()
+}
+
+/// Returns the arms of the paper's figures 19 to 22.
+fn paper_arms() -> Vec<Arm> {
+    vec![
+        Arm::Policy(PolicyName::None),
+        Arm::Policy(PolicyName::Distance),
+        Arm::Policy(PolicyName::Paper),
+        Arm::Paper(Factors::WithoutDirection),
+        Arm::Paper(Factors::WithoutLayer),
+        Arm::Policy(PolicyName::RelativeDistance),
+    ]
+}
+
+fn write(folder: &Path, report: &Report<'_>) -> Result<(), Failure> {
+    files::make_folder(folder)?;
+    for (name, png) in report.pictures.files() {
+        write_file(&folder.join(name), &png)?;
+    }
+    let json = serde_json::to_vec_pretty(&summary::full_json(report)).map_err(Failure::new)?;
+    write_file(&folder.join("evaluation.json"), &json)?;
+    Ok(write_file(&folder.join("index.html"), page::page(report).into_string().as_bytes())?)
+}
