@@ -111,8 +111,8 @@ fn check_directions(
 ) -> Result<(), RecordingError> {
     let expected: Vec<f32> = facing.iter().flat_map(cells).collect();
     let found = source.array::<f32>(DIRECTIONS, &[Some(expected.len() / 4), Some(4)])?.values;
-    let differs = |(found, expected): (&f32, f32)| !((found - expected).abs() <= SLACK);
-    match found.iter().zip(expected).position(differs) {
+    let fits = |(found, expected): (&f32, f32)| (found - expected).abs() <= SLACK;
+    match found.iter().zip(expected).position(|pair| !fits(pair)) {
         None => Ok(()),
         Some(at) => {
             let reason = "it is not that of the grid in levels.json";
@@ -213,7 +213,8 @@ fn differences(depth: usize, source: &mut Source<'_>) -> Result<Differences, Rec
 
 /// Checks that all values are finite; `width` of them are an entry.
 fn check_finite(file: &str, values: &[f32], width: usize) -> Result<(), RecordingError> {
-    match values.iter().position(|x| !(x.abs() <= FARTHEST)) {
+    let fits = |x: &f32| x.abs() <= FARTHEST;
+    match values.iter().position(|x| !fits(x)) {
         None => Ok(()),
         Some(at) => {
             let place = format!("entry {}", at / width);

@@ -8,8 +8,11 @@ use crate::recording::{RecordingError, VERSION};
 /// Where the files of a recording come from: a closure that returns the bytes of a name, or the
 /// reason why it cannot.
 pub struct Source<'a> {
-    load: Box<dyn FnMut(&str) -> Result<Vec<u8>, String> + 'a>,
+    load: Box<Load<'a>>,
 }
+
+/// Function that returns the bytes of a file, or the reason why it cannot.
+type Load<'a> = dyn FnMut(&str) -> Result<Vec<u8>, String> + 'a;
 
 impl<'a> Source<'a> {
     /// Creates a source; `load` gets names without folders, such as `scene.json`.
