@@ -59,7 +59,30 @@ impl Camera {
         if !(from.is_finite() && to.is_finite()) {
             return Err(CameraError::NotFinite { eye, target });
         }
-        let forward = (to - from).try_normalize().ok_or(CameraError::NoDirection(eye))?;
+        Self::look_along(eye, (to - from).into(), fov_rad, size)
+    }
+
+    /// Creates a camera at `eye` that looks along `forward`, a vector of any length above zero, with
+    /// +y up in the picture; the rest is as in [`Camera::look_at`].
+    ///
+    /// A unit vector is kept bit for bit, so that a camera can be stored by it.
+    ///
+    /// # Errors
+    /// Those of [`Camera::look_at`].
+    pub fn look_along(
+        eye: [f32; 3],
+        forward: [f32; 3],
+        fov_rad: f32,
+        size: [u32; 2],
+    ) -> Result<Self, CameraError> {
+        let (from, along) = (Vec3::from(eye), Vec3::from(forward));
+        if !(from.is_finite() && along.is_finite()) {
+            let target = (from + along).into();
+            return Err(CameraError::NotFinite { eye, target });
+        }
+        let is_unit = (along.length_squared() - 1.0).abs() < 1e-6;
+        let forward = if is_unit { Some(along) } else { along.try_normalize() };
+        let forward = forward.ok_or(CameraError::NoDirection(eye))?;
         if !(0.017..=2.62).contains(&fov_rad) {
             return Err(CameraError::FieldOfView(fov_rad.to_degrees()));
         }
@@ -127,6 +150,11 @@ impl Camera {
     /// Returns the tangents of half the fields of view across and down.
     pub fn tangents(&self) -> [f32; 2] {
         self.tangents
+    }
+
+    /// Returns the field of view along the picture's shorter side, in radians.
+    pub fn fov_rad(&self) -> f32 {
+        self.fov_rad
     }
 
     /// Returns the number of pixels that a body length spans at distance 1.

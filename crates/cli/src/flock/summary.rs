@@ -69,6 +69,7 @@ impl Summary<'_> {
             "switches_per_member_second": figures.switches_per_member_second(options.fps),
             "out": files::name(&options.out),
             "figures": files::name(&self.take.lines),
+            "recording": options.record.as_deref().map(files::name),
             "pictures": if options.no_pictures { 0 } else { figures.frames.len() },
         })
     }
@@ -112,7 +113,11 @@ impl Summary<'_> {
             text += &format!(", drawing: {} ms", value(rounded(draw_ms)));
         }
         text += "\n";
-        text + &format!("{}\n", files::name(&self.take.lines))
+        text += &format!("{}\n", files::name(&self.take.lines));
+        if let Some(folder) = &options.record {
+            text += &format!("{}\n", files::name(folder));
+        }
+        text
     }
 
     /// Returns the mean time for drawing a frame, if pictures were drawn.

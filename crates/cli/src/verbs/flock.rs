@@ -16,7 +16,7 @@ use crate::failure::Failure;
 use crate::files;
 use crate::flock::model::{FlockModel, ModelArgs};
 use crate::flock::summary::Summary;
-use crate::flock::{evaluate, names, shoot};
+use crate::flock::{evaluate, names, record, shoot};
 use crate::parse;
 use crate::session::Session;
 
@@ -69,10 +69,14 @@ pub struct Flock {
     /// Folder to write to; created if missing
     #[arg(long, value_name = "DIR", default_value = "flock")]
     pub out: PathBuf,
+    /// Folder for a recording of members, cameras, levels and selection, as JSON and NumPy arrays;
+    /// created if missing
+    #[arg(long, value_name = "DIR")]
+    pub record: Option<PathBuf>,
     /// Compare all policies instead, in five scenes: triangles against image error, written to OUT as
     /// a page with pictures (index.html) and as figures (evaluation.json)
     #[arg(long, conflicts_with_all = ["policy", "camera", "triangles", "detail", "frames", "size",
-        "no_pictures"])]
+        "no_pictures", "record"])]
     pub evaluate: bool,
     /// Evaluate small pictures and few frames, within minutes
     #[arg(long, requires = "evaluate")]
@@ -88,6 +92,9 @@ const TERRAIN_FACES: usize = 40_000;
 impl Flock {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         files::check_folder(&self.out)?;
+        if let Some(folder) = &self.record {
+            record::check(folder, self.members, self.frames)?;
+        }
         let model = FlockModel::load(&self.model, session)?;
         if self.evaluate {
             session.progress.stage("building levels");

@@ -24,7 +24,7 @@ pub(super) fn set_up(counts: &[usize]) -> Result<Setting, SceneError> {
     let count = (TAU / ring.angle_of(APART * ring.radii.z)) as usize;
     let angle = |i: usize| first + i as f32 * TAU / count as f32;
     let obstacles = (0..count).flat_map(|i| at(&ring, angle(i), i)).collect();
-    let shot = Shot::Beside { outside: 1.2 * ring.radii.x + 1.3 * ring.radii.z + 2.5 };
+    let shot = Shot::Beside { outside: 0.8 * ring.radii.x + 1.2 * ring.radii.z + 2.0 };
     Ok(Setting { schools, obstacles, shot, warm_up_s: WARM_UP_S })
 }
 

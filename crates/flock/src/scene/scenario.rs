@@ -91,7 +91,7 @@ impl Scenario {
         let setting = match name {
             ScenarioName::Ring => ring::set_up(&counts, circle([1.4, 3.4], 3.0))?,
             ScenarioName::Inside => ring::set_up(&counts, Shot::Inside)?,
-            ScenarioName::Far => ring::set_up(&counts, circle([8.0, 11.0], 12.0))?,
+            ScenarioName::Far => ring::set_up(&counts, circle([5.0, 9.0], 8.0))?,
             ScenarioName::Obstacles => obstacle_course::set_up(&counts)?,
             ScenarioName::Terrain => {
                 terrain::set_up(&counts, options.terrain.ok_or(SceneError::NoTerrain)?)?
