@@ -36,7 +36,7 @@ fn result() -> &'static Evaluation {
                 Arm::VisibleOnly(PolicyName::Ours),
                 Arm::Random,
             ],
-            shares: vec![0.05, 0.2, 0.5],
+            shares: vec![0.05, 0.2, 0.7],
             pairs: 1,
             flips: vec![0.05],
         };
@@ -62,9 +62,11 @@ fn every_arm_keeps_to_its_share_and_errs_less_with_more() {
 
 #[test]
 fn ours_needs_fewer_triangles_and_random_levels_more() {
-    let ratio = |arm: &str| result().ratio(arm, "screen-error", 0.1).unwrap();
-    assert!(ratio("ours, occluded skipped").mean < 0.8);
-    assert!(ratio("control: random").mean > 1.3);
+    let ratio = |arm: &str| result().ratio(arm, "screen-error", 0.2).unwrap();
+    let ours = ratio("ours, occluded skipped").mean;
+    assert!(ours < 0.8, "{ours}");
+    let random = ratio("control: random").mean;
+    assert!(random > 1.3, "{random}");
     let itself = ratio("screen-error");
     assert_eq!((itself.low, itself.mean, itself.high), (1.0, 1.0, 1.0));
     let floor = result().floors[0].1;
