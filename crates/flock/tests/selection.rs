@@ -1,5 +1,5 @@
-//! What must hold for every policy: levels exist, budgets hold, nothing depends on threads, and no
-//! input makes it panic.
+//! Every policy: levels exist, budgets hold, nothing depends on threads, and no input makes it
+//! panic.
 
 use std::sync::{Arc, OnceLock};
 

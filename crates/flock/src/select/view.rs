@@ -16,7 +16,7 @@ pub const LANES: usize = 8;
 /// Members that one task handles; fewer are handled by the calling thread.
 const TASK: usize = 1 << 14;
 
-/// What a policy decides on: the flock, the camera, the levels and the budget of a frame.
+/// Basis of a policy's choice: the flock, the camera, the levels and the budget of a frame.
 #[derive(Clone, Copy)]
 pub struct View<'a> {
     /// Flock to draw.

@@ -26,7 +26,7 @@ use crate::flock::model::FlockModel;
 use crate::session::Session;
 use crate::verbs::flock::Flock;
 
-/// How much is drawn.
+/// Extent of an evaluation.
 struct Extent {
     size: [u32; 2],
     frames: usize,
