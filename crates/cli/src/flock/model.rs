@@ -10,7 +10,7 @@ use meshlod::{Mesh, Method};
 use crate::args::ReadArgs;
 use crate::failure::Failure;
 use crate::files;
-use crate::flock::axes::{self, Axis, Forward};
+use crate::flock::axes::{self, Forward, SignedAxis};
 use crate::flock::sample_fish::textured_fish;
 use crate::numbers::count;
 use crate::page::style::{self, OwnedPaint};
@@ -32,7 +32,7 @@ pub struct ModelArgs {
     /// Way that is up for the model
     #[arg(long, value_name = "AXIS", default_value = "+y", value_parser = axes::axis,
         allow_hyphen_values = true)]
-    pub up: Axis,
+    pub up: SignedAxis,
     /// Simplification method of the levels
     #[arg(long, value_name = "NAME", default_value = Method::default().name(),
         value_parser = parse::method, help = parse::methods())]
@@ -52,10 +52,10 @@ pub struct FlockModel {
     pub look: Look,
     /// Number of faces in the file.
     pub faces: usize,
-    pub forward: Axis,
+    pub forward: SignedAxis,
     /// True if the forward axis was not given.
     pub is_guessed: bool,
-    pub up: Axis,
+    pub up: SignedAxis,
 }
 
 /// Greatest number of faces of a model: its levels for all directions take about a kilobyte a face.

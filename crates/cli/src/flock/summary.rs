@@ -10,7 +10,7 @@ use crate::flock::shoot::Take;
 use crate::numbers::{count, faces, percent, plural, value};
 use crate::verbs::flock::Flock;
 
-/// What a film was made of, and its figures.
+/// Film with its model, levels and figures.
 pub struct Summary<'a> {
     pub options: &'a Flock,
     pub model: &'a FlockModel,

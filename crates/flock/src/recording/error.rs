@@ -20,7 +20,7 @@ pub enum RecordingError {
     Json {
         /// Name of the file.
         file: String,
-        /// What is wrong, with line and column.
+        /// Reason, with line and column.
         reason: String,
     },
     /// A file has another version of the format.
@@ -36,7 +36,7 @@ pub enum RecordingError {
     Array {
         /// Name of the file.
         file: String,
-        /// What is wrong with the array.
+        /// Reason why the array cannot be read.
         error: NpyError,
     },
     /// The shape of an array does not match the other files.
@@ -56,7 +56,7 @@ pub enum RecordingError {
         file: String,
         /// Place of the value in the file.
         place: String,
-        /// What is wrong with the value.
+        /// Reason why the value is refused.
         reason: String,
     },
 }

@@ -84,7 +84,7 @@ pub enum LayerWord {
     Other,
 }
 
-/// What the axes of `differences.npy` mean: direction, level of the whole chain, size.
+/// Axes of `differences.npy`, but for its second, the levels of the whole chain.
 #[derive(Serialize, Deserialize)]
 pub struct DifferencesEntry {
     /// Unit vector from the member to the eye, in the member's frame.

@@ -1,4 +1,4 @@
-//! What is recorded: schools, obstacles, model and seed, as `scene.json`.
+//! Scene of a recording: schools, obstacles, model and seed, as `scene.json`.
 
 use std::ops::Range;
 
@@ -13,7 +13,7 @@ use crate::simulation::SchoolOptions;
 /// Name of the file.
 pub const FILE: &str = "scene.json";
 
-/// What a recording shows, beside the frames.
+/// Scene of a recording: all that does not change from frame to frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedScene {
     /// Name of the scenario.

@@ -1,4 +1,4 @@
-//! What is written is read again, and what is broken is named.
+//! Tests that recordings come back as they were, and that broken files are named.
 
 use std::collections::BTreeMap;
 

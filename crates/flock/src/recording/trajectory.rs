@@ -162,7 +162,7 @@ impl Recording {
     }
 }
 
-/// What the entries of an array are, and what must hold for them.
+/// Name of the entries of an array, and the rule that they keep.
 const NEAR: [&str; 2] = ["member", "a position must be finite and within 1e7 of the origin"];
 const UNIT: [&str; 2] = ["member", "a heading must be a unit vector"];
 const SPEED: [&str; 2] = ["member", "a speed must be between 0 and 1e7"];

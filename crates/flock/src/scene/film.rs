@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use crate::camera::Camera;
+use crate::evaluate::Footage;
 use crate::flock::Flock;
 use crate::scene::{Scenario, SceneError};
 use crate::simulation::Simulation;
@@ -68,6 +69,29 @@ impl Film {
             eye += found.outward * (CLEARANCE - found.distance).max(0.0);
         }
         [eye, target]
+    }
+}
+
+impl Scenario {
+    /// Runs the scenario and keeps all frames. Takes 28 bytes a member and frame.
+    ///
+    /// # Errors
+    /// What the simulation and the camera refuse.
+    pub fn footage(self, frames: usize) -> Result<Footage, SceneError> {
+        let mut footage = Footage {
+            name: self.name.name().into(),
+            flocks: Vec::new(),
+            cameras: Vec::new(),
+            obstacles: self.obstacle_meshes(),
+            frame_s: self.frame_s as f32,
+        };
+        let mut film = Film::new(self)?;
+        for _ in 0..frames {
+            let (flock, camera) = film.next_frame()?;
+            footage.flocks.push(flock.clone());
+            footage.cameras.push(camera);
+        }
+        Ok(footage)
     }
 }
 

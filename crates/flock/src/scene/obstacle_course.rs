@@ -5,7 +5,7 @@ use std::f32::consts::TAU;
 use glam::Vec3;
 
 use crate::scene::lanes::Ring;
-use crate::scene::scenario::Setting;
+use crate::scene::setting::Setting;
 use crate::scene::shot::Shot;
 use crate::scene::{SceneError, SceneObstacle};
 

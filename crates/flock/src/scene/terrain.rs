@@ -4,7 +4,7 @@ use meshlod_mesh::Mesh;
 
 use crate::scene::ground::{CircleHeights, Ground};
 use crate::scene::lanes::Ring;
-use crate::scene::scenario::Setting;
+use crate::scene::setting::Setting;
 use crate::scene::shot::Shot;
 use crate::scene::{SceneError, SceneObstacle};
 
