@@ -7,7 +7,7 @@ use meshlod_picture::{
     PictureError, Style, render,
 };
 
-use crate::camera::Camera;
+use crate::camera::FlockCamera;
 use crate::flock::Flock;
 use crate::levels::{LevelTable, Look};
 use crate::select::InstanceLevel;
@@ -95,7 +95,7 @@ impl<'a> FlockPainter<'a> {
         &mut self,
         flock: &Flock,
         levels: &[InstanceLevel],
-        camera: &Camera,
+        camera: &FlockCamera,
     ) -> Result<Picture, PictureError> {
         let frame = self.frame(flock, levels);
         self.render(&frame, camera, &camera.for_picture())
@@ -108,7 +108,7 @@ impl<'a> FlockPainter<'a> {
     pub fn render(
         &self,
         frame: &FrameMesh,
-        camera: &Camera,
+        camera: &FlockCamera,
         seen_by: &meshlod_picture::Camera,
     ) -> Result<Picture, PictureError> {
         let paint = match &self.paint {

@@ -6,7 +6,7 @@ use std::time::Instant;
 use meshlod_picture::{Picture, PictureError};
 use serde::Serialize;
 
-use crate::camera::Camera;
+use crate::camera::FlockCamera;
 use crate::draw::FlockPainter;
 use crate::evaluate::arms::Arm;
 use crate::evaluate::bootstrap::Interval;
@@ -355,7 +355,7 @@ impl Evaluation {
     }
 }
 
-impl Camera {
+impl FlockCamera {
     /// Returns the camera of the picture turned by a fraction of a pixel, to the right and up.
     pub(crate) fn shifted(&self, pixels: [f64; 2]) -> meshlod_picture::Camera {
         let [right, up, forward] = self.axes().map(|axis| axis.as_dvec3());
