@@ -82,6 +82,8 @@ impl VertexFlags {
     pub(crate) const OUTER: Self = Self(64);
     /// Edges to this vertex must not be contracted at present.
     pub(crate) const SHUT: Self = Self(Self::BARRED.0 | Self::OUTER.0);
+    /// The vertex has no valid queue entry: dead, barred, or waiting for another part.
+    pub(crate) const INACTIVE: Self = Self(Self::DEAD.0 | Self::SHUT.0);
     /// The vertex moves together with those it is tied to, or not at all.
     pub(crate) const TIED: Self = Self(16);
     /// The vertex is protected: contractions that move it cost
