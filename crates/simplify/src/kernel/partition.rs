@@ -64,7 +64,8 @@ pub(crate) struct Whole {
     pub(crate) ties: Option<Ties>,
     /// Components that may vanish once the surface is in one part, if there are any.
     pub(crate) components: Option<Components>,
-    /// Half the size of the box, centred in the frame, that all vertices stay in.
+    /// Half the size of the input's box, centred in the frame and a little larger. A metric that
+    /// preserves the volume keeps all vertices in it.
     pub(crate) room: Vec3,
 }
 
