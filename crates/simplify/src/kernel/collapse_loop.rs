@@ -30,7 +30,7 @@ use crate::kernel::contraction_log::{Logged, LoggedContraction};
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
 use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
-use crate::kernel::metric::{Metric, protection, seam_price};
+use crate::kernel::metric::{Metric, seam_price};
 use crate::kernel::schedule::batch::Batch;
 use crate::kernel::schedule::bucket_queue::{BATCH_LEN, BucketQueue, NONE, bucket, last_bucket};
 use crate::kernel::schedule::deferral::Deferral;
@@ -326,7 +326,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
             cost *= seam_price::<A::Metric>();
         }
         if VertexFlags(end0.flags.0 | end1.flags.0).any(VertexFlags::PROTECTED) {
-            cost *= protection::<A::Metric>();
+            cost *= vertices.protection;
         }
         match bucket(cost) {
             NONE => Err(refused(Refusal::Volume)),

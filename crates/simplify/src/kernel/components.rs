@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use crate::kernel::mesh::local_frame::Frame;
 use crate::kernel::mesh::one_ring::Vertices;
 use crate::kernel::mesh::vertex::VertexFlags;
-use crate::kernel::metric::{Metric, protection};
+use crate::kernel::metric::Metric;
 use crate::kernel::schedule::bucket_queue::{bucket, last_bucket};
 use crate::kernel::setup::vertex_order::is_face;
 
@@ -35,7 +35,8 @@ pub(crate) struct Component {
     size: f32,
     /// Area, in the frame's units.
     area: f32,
-    is_protected: bool,
+    /// Factor on the cost of removing it.
+    protection: f32,
     /// True if a lock or a tie holds a vertex of it.
     is_held: bool,
     faces: Range<usize>,
@@ -170,7 +171,7 @@ impl Components {
                 held |= is_held[v.index()];
             }
             let is_protected = |v: &u32| vertices.get(*v).flags.any(VertexFlags::PROTECTED);
-            let is_protected = own.iter().any(is_protected);
+            let protection = if own.iter().any(is_protected) { vertices.protection } else { 1.0 };
             let places =
                 |i: usize| mesh.faces[i].map(|v| frame.to_local(mesh.positions[v.index()]));
             let triangles: Vec<[Vec3; 3]> = faces.iter().map(|&i| places(i)).collect();
@@ -180,7 +181,7 @@ impl Components {
             components.all.push(Component {
                 size: (bounds.diagonal() / frame.unit) as f32,
                 area: triangles.iter().map(area).sum(),
-                is_protected,
+                protection,
                 is_held: held,
                 faces: components.faces.len()..components.faces.len() + faces.len(),
                 vertices: first..components.vertices.len(),
@@ -220,9 +221,8 @@ impl Components {
 
     /// Returns the bucket of the cost of removing a component that has `faces` faces left.
     pub(crate) fn bucket<M: Metric>(&self, component: u32, apart: &Apart, faces: usize) -> u16 {
-        let Component { area, is_protected, .. } = self.all[component as usize];
-        let cost = M::vanishing_cost(area, faces as f32, apart.mean);
-        let cost = if is_protected { cost * protection::<M>() } else { cost };
+        let Component { area, protection, .. } = self.all[component as usize];
+        let cost = M::vanishing_cost(area, faces as f32, apart.mean) * protection;
         bucket(cost).min(last_bucket())
     }
 

@@ -267,7 +267,7 @@ impl<A: AttributeModel> Partition<A> {
     fn loops(&mut self) -> Vec<(CollapseLoop<'_, A>, &mut Vec<u32>)> {
         let first_copy = self.store.own() as u32;
         let (error, room) = (self.error, self.whole.room);
-        let VertexStore { all, copied, split, .. } = &mut self.store;
+        let VertexStore { all, copied, split, protection, .. } = &mut self.store;
         let mut rest = &mut all[..];
         let mut loops = Vec::with_capacity(self.parts.len());
         for (part, model) in self.parts.iter_mut().zip(&mut self.models) {
@@ -275,7 +275,8 @@ impl<A: AttributeModel> Partition<A> {
             let (all, others) = rest.split_at_mut(vertices.len());
             rest = others;
             let base = vertices.start as u32;
-            let vertices = Vertices { all, base, long, copied, split, first_copy };
+            let protection = *protection;
+            let vertices = Vertices { all, base, long, copied, split, first_copy, protection };
             let mut collapse_loop =
                 CollapseLoop::new(vertices, model, queue, edge_ring, (deferral, debts), room);
             collapse_loop.error = error;

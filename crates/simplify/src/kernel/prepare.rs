@@ -161,6 +161,7 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
 
     /// Applies the locks. Returns for each vertex of the input whether it is locked.
     fn lock(&mut self, options: &Options) -> Vec<bool> {
+        self.fans.store.protection = options.protection_of_cost() as f32;
         let mut is_locked = vec![false; self.mesh.positions.len()];
         let locks = &options.locks;
         if locks.of_vertex.is_empty() && !options.lock_boundary {

@@ -87,7 +87,7 @@ impl VertexFlags {
     /// The vertex moves together with those it is tied to, or not at all.
     pub(crate) const TIED: Self = Self(16);
     /// The vertex is protected: contractions that move it cost
-    /// [more](crate::kernel::metric::protection).
+    /// [more](crate::kernel::mesh::one_ring::VertexStore::protection).
     pub(crate) const PROTECTED: Self = Self(128);
     /// The vertex has several wedges, or one in a slot other than its own id.
     pub(crate) const SEAM: Self = Self(32);

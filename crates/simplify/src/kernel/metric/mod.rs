@@ -15,7 +15,6 @@ pub(crate) mod swept_volume;
 
 use glam::{DVec3, Vec3};
 
-use crate::engine::locks;
 use crate::kernel::collapse::Collapse;
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::mesh::one_ring::Vertices;
@@ -146,12 +145,6 @@ pub(crate) const VOLUME_SHARE: f64 = 0.5;
 /// city at 10 %, in % of the diagonal: 12 .199, 5.98, .161, 4.2; 3 .078, 2.3, .150, 3.0; 1 .091,
 /// 1.9, .169, 2.3; .3 .104, 1.4, .184, 2.4.
 pub(crate) const VANISHING: f32 = 3.0;
-
-/// Returns the factor on the cost of an edge at a protected vertex, as if everything moved that
-/// many times farther.
-pub(crate) fn protection<M: Metric>() -> f32 {
-    locks::PROTECTION.powi(M::METHOD.cost_power()) as f32
-}
 
 /// Returns the factor on the cost of an edge over which a seam gives way, as if everything moved
 /// [`SEAM_PRICE`] times farther.
