@@ -10,7 +10,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::Vec3;
 use meshlod_flock::levels::{ChainOptions, LevelTable, Look, ModelAxes};
 use meshlod_flock::select::{Budget, PolicyName, Selector};
-use meshlod_flock::{Camera, Flock, School};
+use meshlod_flock::{Flock, FlockCamera, School};
 use meshlod_samples as samples;
 
 const MEMBERS: usize = 1_000_000;
@@ -41,7 +41,7 @@ fn selection(criterion: &mut Criterion) {
     let table = Arc::new(table.expect("the sample has levels"));
     let radii = Vec3::new(80.0, 55.0, 165.0);
     let flock = school(radii);
-    let camera = Camera::look_at([3.0 * radii.x, 10.0, 0.0], [0.0; 3], 0.8, [1920, 1080]);
+    let camera = FlockCamera::look_at([3.0 * radii.x, 10.0, 0.0], [0.0; 3], 0.8, [1920, 1080]);
     let camera = camera.expect("the camera sees the school");
     let budget = Budget { triangles: 60 * MEMBERS, detail: 1.0 };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");

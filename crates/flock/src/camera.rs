@@ -5,7 +5,7 @@ use thiserror::Error;
 
 /// Perspective camera with square pixels, in body lengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Camera {
+pub struct FlockCamera {
     eye: Vec3,
     right: Vec3,
     up: Vec3,
@@ -40,7 +40,7 @@ pub enum CameraError {
     Size(u32, u32),
 }
 
-impl Camera {
+impl FlockCamera {
     /// Creates a camera at `eye` that looks at `target`, with +y up in the picture.
     ///
     /// `fov_rad` is the field of view along the picture's shorter side, in radians; `size` is width
@@ -63,12 +63,12 @@ impl Camera {
     }
 
     /// Creates a camera at `eye` that looks along `forward`, a vector of any length above zero, with
-    /// +y up in the picture; the rest is as in [`Camera::look_at`].
+    /// +y up in the picture; the rest is as in [`FlockCamera::look_at`].
     ///
     /// A unit vector is kept bit for bit, so that a camera can be stored by it.
     ///
     /// # Errors
-    /// Those of [`Camera::look_at`].
+    /// Those of [`FlockCamera::look_at`].
     pub fn look_along(
         eye: [f32; 3],
         forward: [f32; 3],
@@ -185,19 +185,19 @@ mod tests {
 
     #[test]
     fn a_camera_that_sees_nothing_is_refused() {
-        let look = |eye, target, fov| Camera::look_at(eye, target, fov, [4, 3]);
+        let look = |eye, target, fov| FlockCamera::look_at(eye, target, fov, [4, 3]);
         assert!(matches!(
             look([f32::NAN, 0.0, 0.0], [0.0; 3], 1.0),
             Err(CameraError::NotFinite { .. })
         ));
         assert!(matches!(look([1.0; 3], [1.0; 3], 1.0), Err(CameraError::NoDirection(_))));
         assert!(matches!(look([1.0; 3], [0.0; 3], f32::NAN), Err(CameraError::FieldOfView(_))));
-        assert!(Camera::look_at([1.0; 3], [0.0; 3], 1.0, [0, 3]).is_err());
+        assert!(FlockCamera::look_at([1.0; 3], [0.0; 3], 1.0, [0, 3]).is_err());
     }
 
     #[test]
     fn straight_down_has_a_frame_too() {
-        let camera = Camera::look_at([0.0, 9.0, 0.0], [0.0; 3], 1.0, [40, 30]).unwrap();
+        let camera = FlockCamera::look_at([0.0, 9.0, 0.0], [0.0; 3], 1.0, [40, 30]).unwrap();
         let [right, up, forward] = camera.axes();
         assert!((right.cross(up) + forward).length() < 1e-6 && right.is_normalized());
         assert!((camera.tangents()[0] / camera.tangents()[1] - 4.0 / 3.0).abs() < 1e-6);

@@ -7,7 +7,7 @@ use meshlod_picture::{
     PictureError, Style, render,
 };
 
-use crate::camera::Camera;
+use crate::camera::FlockCamera;
 use crate::flock::Flock;
 use crate::levels::{LevelTable, Look};
 use crate::select::InstanceLevel;
@@ -20,10 +20,10 @@ pub struct FlockPainter<'a> {
     /// Layers of the table that pictures need.
     layers: Vec<&'a Layer>,
     /// Vertices and triangles of each level, for those that have been drawn.
-    shapes: Vec<Option<Shape>>,
+    shapes: Vec<Option<LevelShape>>,
     /// Lighting of members and obstacles.
     pub lighting: Lighting,
-    /// What is behind them.
+    /// Background of the pictures.
     pub background: Background,
 }
 
@@ -36,7 +36,7 @@ enum OwnedPaint {
 }
 
 /// Level with only the vertices that it uses.
-struct Shape {
+struct LevelShape {
     vertices: Vec<u32>,
     triangles: Vec<[u32; 3]>,
 }
@@ -95,7 +95,7 @@ impl<'a> FlockPainter<'a> {
         &mut self,
         flock: &Flock,
         levels: &[InstanceLevel],
-        camera: &Camera,
+        camera: &FlockCamera,
     ) -> Result<Picture, PictureError> {
         let frame = self.frame(flock, levels);
         self.render(&frame, camera, &camera.for_picture())
@@ -108,7 +108,7 @@ impl<'a> FlockPainter<'a> {
     pub fn render(
         &self,
         frame: &FrameMesh,
-        camera: &Camera,
+        camera: &FlockCamera,
         seen_by: &meshlod_picture::Camera,
     ) -> Result<Picture, PictureError> {
         let paint = match &self.paint {
@@ -134,7 +134,8 @@ impl<'a> FlockPainter<'a> {
         for (member, level) in levels.iter().enumerate() {
             let Some(level) = level.level() else { continue };
             members.push((merged.faces.len() as u32, member as u32));
-            let shape = self.shapes[level].get_or_insert_with(|| Shape::new(self.table, level));
+            let shape =
+                self.shapes[level].get_or_insert_with(|| LevelShape::new(self.table, level));
             let place = (flock.members.frame(member), flock.members.position(member));
             merged.add_member(self.table, &self.layers, shape, level, place);
         }
@@ -173,7 +174,7 @@ fn with_stone(mut materials: Materials) -> Materials {
     materials
 }
 
-impl Shape {
+impl LevelShape {
     fn new(table: &LevelTable, level: usize) -> Self {
         let mut local = vec![u32::MAX; table.positions.len()];
         let mut vertices = Vec::new();
@@ -214,7 +215,7 @@ impl Merged {
         &mut self,
         table: &LevelTable,
         layers: &[&Layer],
-        shape: &Shape,
+        shape: &LevelShape,
         level: usize,
         (frame, position): (Mat3, Vec3),
     ) {

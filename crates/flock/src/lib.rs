@@ -14,6 +14,6 @@ pub mod scene;
 pub mod select;
 pub mod simulation;
 
-pub use camera::{Camera, CameraError};
+pub use camera::{CameraError, FlockCamera};
 pub use flock::{Flock, School};
 pub use members::{Members, frame_of};

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use meshlod_flock::levels::{ChainOptions, LevelTable, Look};
 use meshlod_flock::select::{Budget, PolicyName, Selector};
-use meshlod_flock::{Camera, Flock};
+use meshlod_flock::{Flock, FlockCamera};
 
 /// Allocator that counts.
 struct Counting;
@@ -38,7 +38,8 @@ fn choosing_levels_allocates_nothing() {
     for i in 0..500 {
         flock.members.push([(i % 20) as f32, (i / 20) as f32, 0.0], [0.0, 0.0, 1.0]);
     }
-    let camera = Camera::look_at([10.0, 12.0, 40.0], [10.0, 12.0, 0.0], 0.8, [640, 360]).unwrap();
+    let camera =
+        FlockCamera::look_at([10.0, 12.0, 40.0], [10.0, 12.0, 0.0], 0.8, [640, 360]).unwrap();
     let budget = Budget { triangles: 30_000, detail: 1.0 };
     // A pool of one thread runs tasks where they are, without a queue.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();

@@ -1,12 +1,12 @@
-//! What must hold for every policy: levels exist, budgets hold, nothing depends on threads, and no
-//! input makes it panic.
+//! Every policy: levels exist, budgets hold, nothing depends on threads, and no input makes it
+//! panic.
 
 use std::sync::{Arc, OnceLock};
 
 use glam::Vec3;
 use meshlod_flock::levels::{ChainOptions, LevelTable, Look, ModelAxes};
 use meshlod_flock::select::{Budget, InstanceLevel, PolicyName, Selector};
-use meshlod_flock::{Camera, Flock, School};
+use meshlod_flock::{Flock, FlockCamera, School};
 use meshlod_samples as samples;
 use proptest::prelude::*;
 
@@ -36,8 +36,8 @@ fn school(count: usize, radii: Vec3) -> Flock {
     flock
 }
 
-fn camera(eye: [f32; 3]) -> Camera {
-    Camera::look_at(eye, [0.0; 3], 0.8, [640, 360]).unwrap()
+fn camera(eye: [f32; 3]) -> FlockCamera {
+    FlockCamera::look_at(eye, [0.0; 3], 0.8, [640, 360]).unwrap()
 }
 
 fn triangles(levels: &[InstanceLevel]) -> usize {

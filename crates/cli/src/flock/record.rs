@@ -7,7 +7,7 @@ use meshlod::flock::levels::LevelTable;
 use meshlod::flock::recording::{Recording, Selection, write_levels};
 use meshlod::flock::scene::Scenario;
 use meshlod::flock::select::InstanceLevel;
-use meshlod::flock::{Camera, Flock};
+use meshlod::flock::{Flock, FlockCamera};
 use meshlod::io::write_file;
 
 use crate::failure::Failure;
@@ -48,7 +48,7 @@ impl Recorder {
     }
 
     /// Adds a frame.
-    pub fn push(&mut self, flock: &Flock, camera: &Camera, levels: &[InstanceLevel]) {
+    pub fn push(&mut self, flock: &Flock, camera: &FlockCamera, levels: &[InstanceLevel]) {
         self.recording.push(flock, camera);
         self.selection.push(levels);
     }

@@ -1,4 +1,4 @@
-//! How much a picture of a member changes with its level.
+//! Differences between pictures of the levels of a member.
 
 use glam::{DVec3, Vec3};
 use meshlod_mesh::Mesh;
@@ -11,7 +11,7 @@ use crate::levels::build::Look;
 use crate::levels::directions::DirectionGrid;
 use crate::levels::table::TableError;
 
-/// What pictures of the levels of a model show differently from the model, by direction and size.
+/// Differences between pictures of a model and of its levels, by direction and size.
 ///
 /// A difference is an area: pixels that are half as bright as they should be count half. Details
 /// below the size of a pixel blend with what is beside them, so a small picture shows less of a

@@ -7,7 +7,7 @@ use crate::cell_index::cell_index;
 /// Directions in the frame of a member, sorted into the cells of an octahedral map.
 ///
 /// The sphere is projected on an octahedron, which is unfolded to a square of `side` by `side`
-/// cells [EKM*14].
+/// cells [CDEMMM14].
 #[derive(Clone, Debug, PartialEq)]
 pub struct DirectionGrid {
     side: usize,

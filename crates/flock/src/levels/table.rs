@@ -32,7 +32,7 @@ pub struct LevelTable {
     pub chains: [Chain; 3],
     /// Levels of the facing chains at each depth of the whole chain.
     pub facing: Vec<FacingLevels>,
-    /// What the levels of the whole chain show differently.
+    /// Differences between pictures of the model and of the levels of the whole chain.
     pub differences: Differences,
     /// Radius of the ball around the origin that holds all vertices, in body lengths.
     pub radius: f32,

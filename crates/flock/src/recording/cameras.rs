@@ -3,7 +3,7 @@
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-use crate::camera::Camera;
+use crate::camera::FlockCamera;
 use crate::recording::{RecordingError, Source, VERSION, json};
 
 /// Name of the file.
@@ -35,8 +35,8 @@ struct CameraEntry {
 const SLACK: f32 = 1e-3;
 
 /// Returns the bytes of the file.
-pub fn write(cameras: &[Camera]) -> Vec<u8> {
-    let entry = |camera: &Camera| {
+pub fn write(cameras: &[FlockCamera]) -> Vec<u8> {
+    let entry = |camera: &FlockCamera| {
         let [_, up, forward] = camera.axes();
         CameraEntry {
             eye: camera.eye().into(),
@@ -52,7 +52,7 @@ pub fn write(cameras: &[Camera]) -> Vec<u8> {
 }
 
 /// Reads the cameras of all frames.
-pub fn read(source: &mut Source<'_>, frames: usize) -> Result<Vec<Camera>, RecordingError> {
+pub fn read(source: &mut Source<'_>, frames: usize) -> Result<Vec<FlockCamera>, RecordingError> {
     let file: CamerasFile = source.json(FILE)?;
     if file.cameras.len() != frames {
         return Err(RecordingError::Shape {
@@ -68,7 +68,7 @@ pub fn read(source: &mut Source<'_>, frames: usize) -> Result<Vec<Camera>, Recor
 }
 
 impl CameraEntry {
-    fn camera(&self) -> Result<Camera, String> {
+    fn camera(&self) -> Result<FlockCamera, String> {
         let [eye, forward, up, velocity] =
             [self.eye, self.forward, self.up, self.velocity].map(Vec3::from);
         if !(forward.length() - 1.0).abs().le(&SLACK) {
@@ -77,7 +77,7 @@ impl CameraEntry {
         if eye.abs().max_element() > super::FARTHEST || !velocity.is_finite() {
             return Err("`eye` and `velocity` must be finite, and within 1e7 body lengths".into());
         }
-        let camera = Camera::look_along(self.eye, self.forward, self.fov_rad, self.size)
+        let camera = FlockCamera::look_along(self.eye, self.forward, self.fov_rad, self.size)
             .map_err(|error| error.to_string())?
             .moving(self.velocity);
         // A camera that looks straight up or down may have any other direction up.

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::Vec3;
 
-use crate::camera::Camera;
+use crate::camera::FlockCamera;
 use crate::evaluate::Footage;
 use crate::flock::{Flock, School};
 use crate::recording::{RecordedScene, RecordingError, Source, cameras, npy};
@@ -24,7 +24,7 @@ pub struct Recording {
     speeds: Vec<f32>,
     /// Position and heading of every leader in every frame.
     leaders: Vec<f32>,
-    cameras: Vec<Camera>,
+    cameras: Vec<FlockCamera>,
 }
 
 /// Greatest deviation of the length of a heading from 1.
@@ -47,7 +47,7 @@ impl Recording {
     ///
     /// # Panics
     /// If the flock has other numbers of members or schools than the scenario.
-    pub fn push(&mut self, flock: &Flock, camera: &Camera) {
+    pub fn push(&mut self, flock: &Flock, camera: &FlockCamera) {
         let counts = (flock.members.len(), flock.schools.len());
         assert_eq!(counts, (self.scene.members, self.scene.schools.len()), "members, schools");
         for member in 0..flock.members.len() {
@@ -101,7 +101,7 @@ impl Recording {
     }
 
     /// Returns the cameras of all frames.
-    pub fn cameras(&self) -> &[Camera] {
+    pub fn cameras(&self) -> &[FlockCamera] {
         &self.cameras
     }
 

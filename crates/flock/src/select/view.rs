@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::Vec3;
 use rayon::prelude::*;
 
-use crate::camera::Camera;
+use crate::camera::FlockCamera;
 use crate::flock::Flock;
 use crate::levels::LevelTable;
 use crate::select::{Budget, InstanceLevel};
@@ -16,13 +16,13 @@ pub const LANES: usize = 8;
 /// Members that one task handles; fewer are handled by the calling thread.
 const TASK: usize = 1 << 14;
 
-/// What a policy decides on: the flock, the camera, the levels and the budget of a frame.
+/// Basis of a policy's choice: the flock, the camera, the levels and the budget of a frame.
 #[derive(Clone, Copy)]
 pub struct View<'a> {
     /// Flock to draw.
     pub flock: &'a Flock,
-    /// Camera that sees it.
-    pub camera: &'a Camera,
+    /// FlockCamera that sees it.
+    pub camera: &'a FlockCamera,
     /// Levels of the members.
     pub table: &'a LevelTable,
     /// Limits of the frame.
@@ -49,7 +49,7 @@ pub struct Lanes {
 impl<'a> View<'a> {
     pub(crate) fn new(
         flock: &'a Flock,
-        camera: &'a Camera,
+        camera: &'a FlockCamera,
         table: &'a LevelTable,
         budget: &'a Budget,
         visible: Option<&'a [bool]>,

@@ -82,7 +82,8 @@ pub(crate) struct CollapseLoop<'v, A> {
     pub(crate) edge_ring: &'v mut EdgeRing,
     pub(crate) deferral: &'v mut Deferral,
     pub(crate) debts: &'v mut VolumeDebts,
-    /// Half the size of the box, centred in the frame, that all vertices stay in.
+    /// Half the size of the input's box, centred in the frame and a little larger. A metric that
+    /// preserves the volume keeps all vertices in it.
     pub(crate) room: Vec3,
 }
 

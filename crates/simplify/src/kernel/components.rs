@@ -15,6 +15,7 @@ use crate::kernel::mesh::one_ring::Vertices;
 use crate::kernel::mesh::vertex::VertexFlags;
 use crate::kernel::metric::{Metric, protection};
 use crate::kernel::schedule::bucket_queue::{bucket, last_bucket};
+use crate::kernel::setup::vertex_order::is_face;
 
 /// Largest number of faces of a component that are sampled.
 const SAMPLED_FACES: usize = 24;
@@ -96,9 +97,9 @@ impl Components {
     ) -> Option<Self> {
         let mesh = pieces.mesh;
         let mut corners = Cow::Borrowed(&mesh.faces);
-        if !faces.clone().all(is_live) {
+        if !faces.clone().all(is_face) {
             // Faces that are left out join nothing.
-            let joined = |(now, face): ([u32; 3], &[VertexId; 3])| match is_live(now) {
+            let joined = |(now, face): ([u32; 3], &[VertexId; 3])| match is_face(now) {
                 true => *face,
                 false => [face[0]; 3],
             };
@@ -138,7 +139,7 @@ impl Components {
         let mut own = vec![Vec::new(); count];
         for (i, face) in faces.enumerate() {
             let component = &mut of_face[i];
-            if is_live(face) {
+            if is_face(face) {
                 lists[*component as usize].push(i);
                 own[*component as usize].extend(face);
             } else {
@@ -284,10 +285,6 @@ impl Components {
             self.put_back(component, 0);
         }
     }
-}
-
-fn is_live([a, b, c]: [u32; 3]) -> bool {
-    a != b && b != c && c != a
 }
 
 fn area([a, b, c]: &[Vec3; 3]) -> f32 {

@@ -41,15 +41,15 @@ pub struct Ours {
     depth_of: Vec<u8>,
     /// Triangles of every level.
     triangles_of: Vec<u32>,
-    /// What is known of each member: first its froxel, then its cell.
+    /// Froxel of each member, then its cell.
     places: Vec<u32>,
     /// Size and direction of each member.
-    looks: Vec<Look>,
+    looks: Vec<Appearance>,
 }
 
 /// How a member looks to the camera.
 #[derive(Clone, Copy, Debug, Default)]
-struct Look {
+struct Appearance {
     size: u8,
     /// Direction of the facing chains in which the eye is.
     facing: u16,
@@ -95,7 +95,7 @@ impl Ours {
     fn look(&mut self, view: &View<'_>) {
         let count = view.flock.members.len();
         self.places.resize(count, NOWHERE);
-        self.looks.resize(count, Look::default());
+        self.looks.resize(count, Appearance::default());
         let (grid, directions) = (&self.grid, &self.directions);
         let focal = view.camera.pixels_at_one();
         let tasks = self.places.par_chunks_mut(TASK).zip(self.looks.par_chunks_mut(TASK));
@@ -108,7 +108,7 @@ impl Ours {
                 let facing = facing(view, directions, first, &lanes);
                 for lane in 0..places.len() {
                     let size = size_of(focal * focal / lanes.distance_squared[lane]);
-                    looks[lane] = Look { size: size as u8, facing: facing[lane] };
+                    looks[lane] = Appearance { size: size as u8, facing: facing[lane] };
                     places[lane] = if lanes.in_frustum[lane] { froxels[lane] } else { NOWHERE };
                 }
                 if let Some(visible) = view.visible {

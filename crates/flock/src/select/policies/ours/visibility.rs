@@ -1,4 +1,4 @@
-//! How much of each member others hide, estimated from the flock's own density.
+//! Visibility of members among others, estimated from the flock's own density.
 //!
 //! The view is cut into tiles and each tile into slices of depth. Every member adds the part of its
 //! tile that it covers to its slice. A ray is free up to a slice with the probability that it passes
@@ -42,7 +42,7 @@ pub(super) struct VisibilityGrid {
     /// Area that a member covers, in square body lengths, as a mean over all directions.
     silhouette: f32,
     half_extent: Vec3,
-    /// What one member of each size takes away.
+    /// Octaves that one member of each size takes away.
     of_size: [f32; SIZES],
     /// Least size of members that cover more than a tile.
     large: usize,
@@ -118,9 +118,9 @@ impl VisibilityGrid {
             if size < self.large {
                 self.octaves[froxel as usize] += self.of_size[size];
             } else {
-                let shape = self.shape(view, member, froxel);
+                let ellipse = self.ellipse(view, member, froxel);
                 let octaves = &mut self.octaves;
-                shape.tiles(|tile| octaves[tile * SLICES + shape.slice] += shape.octaves);
+                ellipse.tiles(|tile| octaves[tile * SLICES + ellipse.slice] += ellipse.octaves);
             }
         }
         for tile in self.octaves.chunks_exact_mut(SLICES) {
@@ -159,17 +159,17 @@ impl VisibilityGrid {
 
     /// Averages what is left of the light over all tiles that a member covers.
     fn over_tiles(&self, view: &View<'_>, member: usize, froxel: u32) -> f32 {
-        let shape = self.shape(view, member, froxel);
+        let ellipse = self.ellipse(view, member, froxel);
         let (mut light, mut count) = (0.0, 0.0f32);
-        shape.tiles(|tile| {
-            light += (-self.in_front(tile * SLICES + shape.slice, shape.octaves)).exp2();
+        ellipse.tiles(|tile| {
+            light += (-self.in_front(tile * SLICES + ellipse.slice, ellipse.octaves)).exp2();
             count += 1.0;
         });
         if count == 0.0 { 0.0 } else { -(light / count).max(1e-6).log2() }
     }
 
     /// Returns the ellipse that a large member covers.
-    fn shape(&self, view: &View<'_>, member: usize, froxel: u32) -> Shape {
+    fn ellipse(&self, view: &View<'_>, member: usize, froxel: u32) -> Ellipse {
         let members = &view.flock.members;
         let [right, up, forward] = view.camera.axes();
         let offset = members.position(member) - view.camera.eye();
@@ -186,21 +186,21 @@ impl VisibilityGrid {
             spread += Mat2::from_cols(v * v.x, v * v.y);
         }
         let covered = self.silhouette * scale.x * scale.y;
-        let ellipse = std::f32::consts::PI * spread.determinant().max(1e-6).sqrt();
+        let area = std::f32::consts::PI * spread.determinant().max(1e-6).sqrt();
         // At least half a tile wide, or an edge-on member would fall between the tiles.
         let spread = spread + Mat2::from_diagonal(Vec2::splat(0.25));
-        Shape {
+        Ellipse {
             middle,
             reach: Vec2::new(spread.x_axis.x, spread.y_axis.y).sqrt(),
             inverse: spread.inverse(),
-            octaves: octaves_of(covered / ellipse),
+            octaves: octaves_of(covered / area),
             slice: froxel as usize % SLICES,
         }
     }
 }
 
 /// Ellipse that a member covers, in tiles.
-struct Shape {
+struct Ellipse {
     middle: Vec2,
     reach: Vec2,
     inverse: Mat2,
@@ -208,7 +208,7 @@ struct Shape {
     slice: usize,
 }
 
-impl Shape {
+impl Ellipse {
     /// Visits the tiles whose middles are in the ellipse.
     fn tiles(&self, mut visit: impl FnMut(usize)) {
         let first = (self.middle - self.reach).floor();
