@@ -95,6 +95,7 @@ impl Flock {
         if let Some(folder) = &self.record {
             record::check(folder, self.members, self.frames)?;
         }
+        let scenario = self.scenario()?;
         let model = FlockModel::load(&self.model, session)?;
         if self.evaluate {
             session.progress.stage("building levels");
@@ -102,7 +103,7 @@ impl Flock {
             return evaluate::run(&self, &model, &table, session);
         }
         session.progress.stage("setting the scene");
-        let film = self.film()?;
+        let film = Film::new(scenario).map_err(Failure::new)?;
         session.progress.stage("building levels");
         let start = Instant::now();
         let table = Arc::new(self.table(&model)?);
@@ -122,8 +123,8 @@ impl Flock {
         Ok(Answer::new(summary.json(), summary.text()))
     }
 
-    /// Sets up the scene.
-    fn film(&self) -> Result<Film, Failure> {
+    /// Describes the scene.
+    fn scenario(&self) -> Result<Scenario, Failure> {
         let needs_terrain = self.camera == ScenarioName::Terrain;
         let terrain: Option<Mesh> = needs_terrain.then(|| samples::terrain(TERRAIN_FACES));
         let options = ScenarioOptions {
@@ -134,7 +135,7 @@ impl Flock {
             frame_s: 1.0 / self.fps,
             terrain: terrain.as_ref(),
         };
-        Scenario::named(self.camera, &options).and_then(Film::new).map_err(|error| match error {
+        Scenario::named(self.camera, &options).map_err(|error| match error {
             SceneError::Schools { .. } => Failure::usage(format_args!("--schools: {error}")),
             error => Failure::new(error),
         })

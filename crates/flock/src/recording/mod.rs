@@ -31,7 +31,7 @@
 //!     recording.push(flock, &camera);
 //! }
 //! let mut folder = BTreeMap::new();
-//! recording.write(&mut |name, bytes| -> Result<(), ()> {
+//! recording.write(|name: &str, bytes: &[u8]| -> Result<(), ()> {
 //!     folder.insert(name.to_owned(), bytes.to_vec());
 //!     Ok(())
 //! }).unwrap();
