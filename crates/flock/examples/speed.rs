@@ -37,7 +37,7 @@ fn main() {
     let camera = Camera::look_at([radii.x * 3.0, 10.0, 0.0], [0.0; 3], 0.8, [1920, 1080]).unwrap();
     for policy in PolicyName::ALL {
         let mut selector = Selector::new(policy, table.clone());
-        let budget = Budget { triangles: count * 60, detail: 1.0 };
+        let budget = Budget { triangles: count * 60, ..Budget::default() };
         selector.select(&flock, &camera, &budget);
         let mut times = Vec::new();
         for _ in 0..9 {

@@ -7,8 +7,8 @@ use meshlod_picture::{
 };
 use rayon::prelude::*;
 
-use crate::levels::build::Look;
 use crate::levels::directions::DirectionGrid;
+use crate::levels::look::Look;
 use crate::levels::table::TableError;
 
 /// What pictures of the levels of a model show differently from the model, by direction and size.
