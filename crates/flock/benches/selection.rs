@@ -43,7 +43,7 @@ fn selection(criterion: &mut Criterion) {
     let flock = school(radii);
     let camera = FlockCamera::look_at([3.0 * radii.x, 10.0, 0.0], [0.0; 3], 0.8, [1920, 1080]);
     let camera = camera.expect("the camera sees the school");
-    let budget = Budget { triangles: 60 * MEMBERS, detail: 1.0 };
+    let budget = Budget { triangles: 60 * MEMBERS, detail: 1.0, ..Budget::default() };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     let mut group = criterion.benchmark_group("selection");
     group.throughput(Throughput::Elements(MEMBERS as u64)).sample_size(20);

@@ -40,7 +40,7 @@ fn choosing_levels_allocates_nothing() {
     }
     let camera =
         FlockCamera::look_at([10.0, 12.0, 40.0], [10.0, 12.0, 0.0], 0.8, [640, 360]).unwrap();
-    let budget = Budget { triangles: 30_000, detail: 1.0 };
+    let budget = Budget { triangles: 30_000, detail: 1.0, ..Budget::default() };
     // A pool of one thread runs tasks where they are, without a queue.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     pool.install(|| {

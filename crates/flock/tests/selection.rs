@@ -54,7 +54,7 @@ fn nearer_members_are_finer() {
     let camera = camera([0.0, 0.0, 4.0]);
     for policy in PolicyName::ALL.into_iter().filter(|policy| *policy != PolicyName::None) {
         // All four are on one line, so `ours` would take the far ones for hidden.
-        let budget = Budget { triangles: 2_000, detail: 0.5 };
+        let budget = Budget { triangles: 2_000, detail: 0.5, ..Budget::default() };
         let mut selector = Selector::new(policy, table().clone());
         let levels = selector.select(&flock, &camera, &budget);
         let counts: Vec<usize> = levels.iter().map(|&level| triangles(&[level])).collect();
@@ -71,13 +71,13 @@ fn budgets_hold_from_full_detail_down_to_the_coarsest_levels() {
         let mut selector = Selector::new(policy, table().clone());
         let mut before = 0;
         for budget in [8_000, 16_000, 40_000, 100_000, 300_000, 1_000_000] {
-            let budget = Budget { triangles: budget, detail: 1.0 };
+            let budget = Budget { triangles: budget, detail: 1.0, ..Budget::default() };
             let spent = triangles(selector.select(&flock, &camera, &budget));
             assert!(spent <= budget.triangles, "{policy:?}: {spent} of {}", budget.triangles);
             assert!(spent > before || spent > 250_000, "{policy:?}: {spent} after {before}");
             before = spent;
         }
-        let none = Budget { triangles: 0, detail: 1.0 };
+        let none = Budget { triangles: 0, detail: 1.0, ..Budget::default() };
         let least = triangles(selector.select(&flock, &camera, &none));
         assert!(least > 0 && least < 300 * 40, "all stay in view, as coarse as can be: {least}");
     }
@@ -87,7 +87,7 @@ fn budgets_hold_from_full_detail_down_to_the_coarsest_levels() {
 fn ours_spends_less_on_what_is_hidden() {
     let flock = school(3_000, Vec3::splat(9.0));
     let camera = camera([0.0, 0.0, 30.0]);
-    let budget = Budget { triangles: 300_000, detail: 1.0 };
+    let budget = Budget { triangles: 300_000, detail: 1.0, ..Budget::default() };
     let mut selector = Selector::new(PolicyName::Ours, table().clone());
     let levels = selector.select(&flock, &camera, &budget);
     let mean = |near: bool| {
@@ -103,7 +103,7 @@ fn ours_spends_less_on_what_is_hidden() {
 fn a_still_picture_keeps_its_levels() {
     let flock = school(200, Vec3::new(4.0, 3.0, 8.0));
     let camera = camera([12.0, 2.0, 0.0]);
-    let budget = Budget { triangles: 60_000, detail: 1.0 };
+    let budget = Budget { triangles: 60_000, detail: 1.0, ..Budget::default() };
     for policy in PolicyName::ALL {
         let mut selector = Selector::new(policy, table().clone());
         selector.select(&flock, &camera, &budget);
@@ -116,7 +116,7 @@ fn a_still_picture_keeps_its_levels() {
 fn threads_change_nothing() {
     let flock = school(40_000, Vec3::splat(30.0));
     let camera = camera([0.0, 0.0, 50.0]);
-    let budget = Budget { triangles: 2_000_000, detail: 1.0 };
+    let budget = Budget { triangles: 2_000_000, detail: 1.0, ..Budget::default() };
     let with = |threads: usize, policy| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let mut selector = Selector::new(policy, table().clone());
@@ -194,7 +194,7 @@ proptest! {
         let camera = camera(eye);
         for policy in PolicyName::ALL {
             let mut selector = Selector::new(policy, table().clone());
-            let budget = Budget { triangles, detail };
+            let budget = Budget { triangles, detail, ..Budget::default() };
             for _ in 0..2 {
                 for level in selector.select(&flock, &camera, &budget) {
                     prop_assert!(level.level().is_none_or(|l| l < table().levels.len()));

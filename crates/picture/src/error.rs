@@ -52,6 +52,27 @@ pub enum PictureError {
         /// Number of textures that exist.
         count: usize,
     },
+    /// The cells of an atlas do not fill its picture.
+    #[error(
+        "an atlas of {width} x {height} pixels cannot have cells of {cell_px}: their side must be a \
+         power of two that divides both"
+    )]
+    Cell {
+        /// Side of a cell in pixels.
+        cell_px: u32,
+        /// Width of the picture in pixels.
+        width: u32,
+        /// Height of the picture in pixels.
+        height: u32,
+    },
+    /// A card shows a cell that its atlas does not have.
+    #[error("a card shows cell {cell}, but the atlas has only {count}")]
+    NoCell {
+        /// Cell that does not exist.
+        cell: usize,
+        /// Number of cells that exist.
+        count: usize,
+    },
     /// An image file is damaged or not of the expected type.
     #[error("{kind} image: {reason}")]
     Decode {

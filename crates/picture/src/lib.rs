@@ -20,6 +20,9 @@
 //! by numbers through a [`ColorMap`], as in a heat map of errors. [`visibility()`] finds the face
 //! that each pixel sees, without shading.
 //!
+//! A model that is far away can be a [`Card`]: a flat piece of an atlas that is seen through.
+//! [`card_layer`] draws cards behind and before a mesh, to be laid over its picture.
+//!
 //! [`image_error`] measures how different a level looks: it compares pictures from twelve sides
 //! with those of the original, perceptually ([`flip()`]) and structurally ([`ssim()`]). A
 //! [`ReferenceVisibility`] finds the pixels where a level shows what its original hides.
@@ -36,6 +39,7 @@
 mod albedo;
 mod bins;
 mod camera;
+mod cards;
 mod clip;
 mod color_map;
 mod decode;
@@ -62,6 +66,7 @@ mod trigonometry;
 mod visibility;
 
 pub use camera::{Camera, UpAxis, View};
+pub use cards::{Card, CardAtlas, CardLayer, bleed, card_layer};
 pub use color_map::ColorMap;
 pub use error::{MAX_SIDE, PictureError};
 pub use flip::{PIXELS_PER_DEGREE, flip};

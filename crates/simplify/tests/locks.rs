@@ -437,7 +437,8 @@ fn the_more_protected_a_side_is_the_finer_it_stays() {
     let locks = meshlod_mesh::Locks { of_vertex: of_vertex.collect(), ties: Vec::new() };
     for method in [Method::LindstromTurk, Method::Qem, Method::QemEndpoint] {
         let kept = |protection| {
-            let options = Options { method, protection, locks: locks.clone(), ..Options::default() };
+            let options =
+                Options { method, protection, locks: locks.clone(), ..Options::default() };
             let (level, _) = simplify(&ball, Target::Ratio(0.25), &options).unwrap();
             level.positions.iter().filter(|p| p[0] > 0.0).count() as f64
                 / level.positions.len() as f64

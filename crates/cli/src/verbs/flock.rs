@@ -110,7 +110,7 @@ impl Flock {
         let build_seconds = start.elapsed().as_secs_f64();
         let full = self.members.saturating_mul(table.triangle_count(0));
         let triangles = self.triangles.unwrap_or_else(|| (full / 10).max(1));
-        let budget = Budget { triangles, detail: self.detail as f32 };
+        let budget = Budget { triangles, detail: self.detail as f32, ..Budget::default() };
         let take = shoot::shoot(&self, &model, &table, film, &budget, session)?;
         let summary = Summary {
             options: &self,

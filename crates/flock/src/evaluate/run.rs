@@ -223,9 +223,14 @@ impl<'a> Stage<'a> {
     fn at_share(&mut self, arm: Arm, share: f64) -> ChosenLevels {
         let wanted = share * self.full_triangles;
         if arm.has_budget() {
-            return self.choose(arm, &Budget { triangles: wanted as usize, detail: 1.0 });
+            let budget = Budget { triangles: wanted as usize, ..Budget::default() };
+            return self.choose(arm, &budget);
         }
-        let budget = |log: f64| Budget { triangles: usize::MAX, detail: log.exp2() as f32 };
+        let budget = |log: f64| Budget {
+            triangles: usize::MAX,
+            detail: log.exp2() as f32,
+            ..Budget::default()
+        };
         let (mut low, mut high) = (-16.0, 16.0);
         for _ in 0..16 {
             let middle = 0.5 * (low + high);
@@ -259,15 +264,10 @@ impl<'a> Stage<'a> {
                 choice.selection_seconds += start.elapsed().as_secs_f64();
                 runs += 1;
                 if !before.is_empty() && visible.is_none() {
-                    let both = before
-                        .iter()
-                        .zip(chosen)
-                        .filter(|(a, b)| a.level().is_some() && b.level().is_some());
-                    let look = |level: &InstanceLevel| {
-                        level.level().map(|level| self.table.appearance(level))
-                    };
+                    let look = |level: &InstanceLevel| level.appearance(self.table);
+                    let both = before.iter().map(look).zip(chosen.iter().map(look));
                     let (same, other): (Vec<_>, Vec<_>) =
-                        both.partition(|(a, b)| look(a) == look(b));
+                        both.filter(|(a, b)| a.is_some() && b.is_some()).partition(|(a, b)| a == b);
                     switches += other.len();
                     member_seconds += (same.len() + other.len()) as f64 * f64::from(*frame_s);
                 }

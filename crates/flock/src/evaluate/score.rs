@@ -72,8 +72,7 @@ impl Reference {
         camera: &FlockCamera,
         picture: &Picture,
     ) -> Result<FrameScore, PictureError> {
-        let found = visibility(&frame.mesh, &camera.for_picture(), camera.size())?;
-        let shown = found.faces().map(|f| f.is_some_and(|f| f.index() < frame.member_faces));
+        let shown = frame.shows_member(camera)?;
         let compared: Vec<bool> =
             self.shows_member.iter().zip(shown).map(|(&a, b)| a || b).collect();
         let Some(window) = Window::around(&compared, camera.size()) else {

@@ -2,7 +2,6 @@
 
 use meshlod_check::{LockOptions, locks};
 use meshlod_mesh::{Labels, Lock, Locks, Mesh, VertexId};
-use meshlod_picture::{Materials, Paint};
 use meshlod_simplify::{Method, Options, Simplifier, SimplifyError, Target};
 use meshlod_spatial::Bvh;
 use rayon::prelude::*;
@@ -10,6 +9,7 @@ use rayon::prelude::*;
 use crate::levels::difference::Differences;
 use crate::levels::directions::DirectionGrid;
 use crate::levels::facing::HiddenFaces;
+use crate::levels::look::Look;
 use crate::levels::model::{ModelAxes, in_member_frame};
 use crate::levels::pool::VertexPool;
 use crate::levels::table::{Chain, ChainKind, FacingLevels, Level, LevelTable, TableError};
@@ -46,20 +46,6 @@ impl Default for ChainOptions {
             directions: 24,
             locks: None,
         }
-    }
-}
-
-/// Materials of a model, for the pictures by which levels are compared.
-#[derive(Clone, Debug, Default)]
-pub struct Look {
-    /// Materials and textures; without any, vertex colours are shown.
-    pub materials: Option<Materials>,
-}
-
-impl Look {
-    /// Returns the paint for a mesh of the model.
-    pub fn paint(&self) -> Paint<'_> {
-        self.materials.as_ref().map_or(Paint::Colors, Paint::Materials)
     }
 }
 

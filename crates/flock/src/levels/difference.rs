@@ -7,8 +7,8 @@ use meshlod_picture::{
 };
 use rayon::prelude::*;
 
-use crate::levels::build::Look;
 use crate::levels::directions::DirectionGrid;
+use crate::levels::look::Look;
 use crate::levels::table::TableError;
 
 /// Differences between pictures of a model and of its levels, by direction and size.

@@ -7,20 +7,27 @@
 //! - **facing** chains, one for each direction from which a member may be seen: levels of the whole
 //!   chain without the faces that no eye in that direction can see.
 //!
+//! At the far end a member can be an [`Impostor`]: one quad with a picture of the model.
+//!
 //! For every level and direction the table knows how much a picture changes, at several sizes.
 
 mod build;
 mod difference;
 mod directions;
 mod facing;
+mod impostor;
+mod look;
 mod model;
 mod normals;
 mod pool;
 mod table;
 
-pub use build::{ChainOptions, Look};
+pub use build::ChainOptions;
 pub use difference::Differences;
 pub use directions::DirectionGrid;
 pub use facing::NEAREST_FACING;
-pub use model::ModelAxes;
+pub use impostor::{Impostor, ImpostorOptions, ImpostorQuad};
+pub use look::Look;
+pub(crate) use look::is_color;
+pub use model::{ModelAxes, in_member_frame};
 pub use table::{Chain, ChainKind, FacingLevels, Level, LevelTable, TableError};

@@ -35,8 +35,11 @@ impl ModelAxes {
 }
 
 /// Returns the model in the frame of a member, with normals: centred in its bounding box, and
-/// scaled so that its longest side is 1.
-pub(crate) fn in_member_frame(model: &Mesh, axes: &ModelAxes) -> Result<Mesh, TableError> {
+/// scaled so that its longest side is 1. A [`LevelTable`](crate::levels::LevelTable) is built on it.
+///
+/// # Errors
+/// An invalid model or one without extent, and axes that do not span a plane.
+pub fn in_member_frame(model: &Mesh, axes: &ModelAxes) -> Result<Mesh, TableError> {
     model.validate()?;
     let rotation = axes.rotation().ok_or(TableError::Axes(*axes))?;
     let mut mesh = model.clone();

@@ -2,10 +2,12 @@
 //!
 //! A [`Selector`] holds a [`Policy`] and the level table of a model. Its answer for a frame is one
 //! [`InstanceLevel`] a member, two bytes each: what a renderer needs to sort its instances by level
-//! and draw each level once.
+//! and draw each level once. Members that are small on the screen can be impostors with any policy:
+//! see [`Budget::impostors_below_px`].
 
 mod budget;
 mod chain_levels;
+mod impostor_tier;
 mod instance_level;
 mod name;
 pub mod policies;
@@ -15,20 +17,21 @@ use std::sync::Arc;
 
 pub use budget::Budget;
 pub use chain_levels::ChainLevels;
-pub use instance_level::InstanceLevel;
+pub use instance_level::{Appearance, InstanceLevel};
 pub use name::PolicyName;
 pub use view::{LANES, Lanes, View};
 
 use crate::camera::FlockCamera;
 use crate::flock::Flock;
 use crate::levels::LevelTable;
+use crate::select::impostor_tier::ImpostorTier;
 
 /// Rule by which the members of a flock get their levels.
 pub trait Policy: Send {
     /// Chooses a level for every member of the view.
     ///
     /// `levels` has an entry for every member, with its level of the frame before, or
-    /// [`InstanceLevel::HIDDEN`] for a new member.
+    /// [`InstanceLevel::HIDDEN`] for a new member; one that was an impostor counts as new.
     fn select(&mut self, view: &View<'_>, levels: &mut [InstanceLevel]);
 }
 
@@ -58,6 +61,7 @@ pub trait Policy: Send {
 pub struct Selector {
     policy: Box<dyn Policy>,
     table: Arc<LevelTable>,
+    impostors: ImpostorTier,
     levels: Vec<InstanceLevel>,
 }
 
@@ -69,7 +73,7 @@ impl Selector {
 
     /// Creates a selector that follows any policy.
     pub fn with_policy(policy: Box<dyn Policy>, table: Arc<LevelTable>) -> Self {
-        Self { policy, table, levels: Vec::new() }
+        Self { policy, table, impostors: ImpostorTier::default(), levels: Vec::new() }
     }
 
     /// Chooses a level for every member, in the order of the members.
@@ -101,6 +105,7 @@ impl Selector {
         for (level, _) in self.levels.iter_mut().zip(visible.unwrap_or(&[])).filter(|(_, v)| !**v) {
             *level = InstanceLevel::HIDDEN;
         }
+        self.impostors.apply(&view, &mut self.levels);
         &self.levels
     }
 
@@ -111,7 +116,6 @@ impl Selector {
 
     /// Returns the number of triangles that the last choice draws.
     pub fn triangles(&self) -> usize {
-        let drawn = self.levels.iter().filter_map(|level| level.level());
-        drawn.map(|level| self.table.triangle_count(level)).sum()
+        self.levels.iter().map(|level| level.triangles(&self.table)).sum()
     }
 }

@@ -166,7 +166,7 @@ fn selection() -> Result<String> {
     let (leader, radii) = (flock.schools[0].leader.to_array(), flock.schools[0].radii);
     let eye = [leader[0] + 1.5 * radii.z, leader[1] + 0.3 * radii.z, leader[2]];
     let camera = FlockCamera::look_at(eye, leader, 0.8, [1920, 1080])?;
-    let budget = Budget { triangles: 60 * MEMBERS, detail: 1.0 };
+    let budget = Budget { triangles: 60 * MEMBERS, detail: 1.0, ..Budget::default() };
     let mut table = Table::new(["selection, policy", "ns per member"]);
     for policy in PolicyName::ALL {
         let mut selector = Selector::new(policy, levels.clone());

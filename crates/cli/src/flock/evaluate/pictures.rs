@@ -88,7 +88,7 @@ fn strip(footage: &Footage, table: &Arc<LevelTable>, look: &Look) -> Result<Pict
     let mut most = usize::MAX;
     for policy in [PolicyName::None, PolicyName::Budget, PolicyName::Ours] {
         let mut selector = Selector::new(policy, table.clone());
-        let budget = Budget { triangles: most, detail: 1.0 };
+        let budget = Budget { triangles: most, ..Budget::default() };
         let shown = (0..STRIP).map(|i| i * footage.len().saturating_sub(1) / (STRIP - 1));
         let shown: Vec<usize> = shown.collect();
         let mut least = usize::MAX;
