@@ -63,6 +63,7 @@ impl Selection {
         let array = source.array::<u16>(FILE, &[Some(frames), Some(members)])?;
         let level = |(at, bits): (usize, &u16)| match usize::from(*bits) {
             HIDDEN => Ok(InstanceLevel::HIDDEN),
+            IMPOSTOR => Ok(InstanceLevel::IMPOSTOR),
             level if level < levels => Ok(InstanceLevel::drawn(level)),
             level => {
                 let place = format!("frame {}, member {}", at / members, at % members);
@@ -74,6 +75,9 @@ impl Selection {
         Ok(Self { members, levels })
     }
 }
+
+/// Value of a member that is drawn as an impostor.
+const IMPOSTOR: usize = u16::MAX as usize - 1;
 
 /// Value of a member that is not drawn.
 const HIDDEN: usize = u16::MAX as usize;
