@@ -8,6 +8,7 @@ pub mod evaluate;
 mod flock;
 pub mod levels;
 mod members;
+pub mod nearest;
 pub mod scene;
 pub mod select;
 pub mod simulation;
