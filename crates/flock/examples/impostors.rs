@@ -58,7 +58,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "pixels of a body length:",
         SIZES_PX.map(|px| format!("{px:>8}")).concat()
     );
-    let mut errors = vec![Vec::new(); arms.len()];
+    let mut errors = vec![Vec::new(); arms.len() + 1];
     for px in SIZES_PX {
         for (arm, errors) in flips(&mut painter, &flock, &arms, px)?.into_iter().zip(&mut errors) {
             errors.push(arm);
@@ -69,6 +69,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let row: String = errors.iter().map(|flip| format!("{flip:>8.4}")).collect();
         println!("{:>14} {all:>8.0} {facing:>8.1}   {row}", arm.name);
     }
+    let floor: String = errors[arms.len()].iter().map(|flip| format!("{flip:>8.4}")).collect();
+    println!("{:>34}{floor}", "full detail, samples shifted");
     println!("triangles of a level with the error of impostors, and without those that face away:");
     let levels = || arms.iter().zip(&errors).filter(|(arm, _)| arm.impostor.is_none()).rev();
     for (arm, own) in arms.iter().zip(&errors).filter(|(arm, _)| arm.impostor.is_some()) {
@@ -117,7 +119,8 @@ fn arms(table: &LevelTable, look: &Look) -> Result<Vec<Arm>, Box<dyn Error>> {
     Ok(arms)
 }
 
-/// Returns the mean FLIP of every arm over all eyes, on the pixels that show members.
+/// Returns the mean FLIP of every arm over all eyes, on the pixels that show members; and last that
+/// of full detail whose samples are shifted by a quarter of a pixel each way.
 fn flips(
     painter: &mut FlockPainter<'_>,
     flock: &Flock,
@@ -128,11 +131,22 @@ fn flips(
     let reach = (0..flock.members.len()).map(|i| flock.members.position(i).distance(leader));
     let side = (2.0 * (reach.fold(0.0, f32::max) + 1.0) * px).ceil();
     let fov = 2.0 * (0.5 * side / (DISTANCE * px)).atan();
-    let mut sums = vec![0.0; arms.len()];
+    let mut sums = vec![0.0; arms.len() + 1];
     for eye in EYES {
         let eye = leader + Vec3::from(eye).normalize() * DISTANCE;
         let camera = FlockCamera::look_at(eye.into(), leader.into(), fov, [side as u32; 2])?;
         let reference = Reference::new(painter, flock, &camera)?;
+        let full = painter.frame(flock, &vec![InstanceLevel::drawn(0); flock.members.len()]);
+        let [right, up, _] = camera.axes();
+        let target = (leader + (right + up) * 0.25 / px).as_dvec3();
+        let shifted = meshlod_picture::Camera::look_at(
+            eye.as_dvec3().into(),
+            target.into(),
+            up.as_dvec3().into(),
+            fov.into(),
+        );
+        let picture = painter.render(&full, &camera, &shifted)?;
+        sums[arms.len()] += reference.score(&full, &camera, &picture)?.flip / EYES.len() as f64;
         for (arm, sum) in arms.iter().zip(&mut sums) {
             painter.impostor.clone_from(&arm.impostor);
             let frame = painter.frame(flock, &vec![arm.level; flock.members.len()]);

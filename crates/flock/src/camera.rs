@@ -1,7 +1,10 @@
 //! Cameras that look at a flock.
 
 use glam::{DVec3, Vec3};
+use meshlod_multires::ViewCamera;
 use thiserror::Error;
+
+use crate::members::frame_of;
 
 /// Perspective camera with square pixels, in body lengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -165,6 +168,21 @@ impl FlockCamera {
     /// Returns the camera of [`meshlod_picture`] that sees the same, for drawing.
     pub fn for_picture(&self) -> meshlod_picture::Camera {
         self.looking(self.forward.as_dvec3())
+    }
+
+    /// Returns the camera of [`meshlod_multires`] that sees the model of a member, in the frame of
+    /// the member, as this one sees the member.
+    pub fn for_member(&self, position: Vec3, heading: Vec3) -> ViewCamera {
+        let to_member = frame_of(heading).transpose();
+        let local = |v: Vec3| (to_member * v).as_dvec3();
+        let eye = local(self.eye - position);
+        ViewCamera {
+            eye: eye.into(),
+            look: (eye + local(self.forward)).into(),
+            up: local(self.up).into(),
+            fov_rad: 2.0 * f64::from(self.tangents[1]).atan(),
+            viewport: self.size,
+        }
     }
 
     /// Returns the camera of [`meshlod_picture`] at the same place that looks another way.

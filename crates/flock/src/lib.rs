@@ -9,6 +9,7 @@ pub mod evaluate;
 mod flock;
 pub mod levels;
 mod members;
+pub mod nearest;
 pub mod recording;
 pub mod scene;
 pub mod select;

@@ -14,6 +14,8 @@ pub struct FrameFigures {
     pub members_in_view: usize,
     /// Number of triangles drawn.
     pub triangles: usize,
+    /// Number of members drawn as impostors.
+    pub impostors: usize,
     /// Number of triangles of all members in view at full detail.
     pub full_triangles: usize,
     /// Number of members that look different from the frame before because their level changed.
@@ -37,6 +39,7 @@ impl FrameFigures {
             "seconds": self.seconds,
             "members_in_view": self.members_in_view,
             "triangles": self.triangles,
+            "impostors": self.impostors,
             "full_triangles": self.full_triangles,
             "switches": self.switches,
             "simulation_ms": self.simulation_ms,
@@ -78,7 +81,7 @@ impl Figures {
 
 /// Counts the members that are drawn in both frames, and differently.
 pub fn switches(table: &LevelTable, before: &[InstanceLevel], now: &[InstanceLevel]) -> usize {
-    let shown = |level: &InstanceLevel| level.level().map(|level| table.appearance(level));
+    let shown = |level: &InstanceLevel| level.appearance(table);
     let differ = |(a, b)| matches!((shown(a), shown(b)), (Some(a), Some(b)) if a != b);
     before.iter().zip(now).filter(|&pair| differ(pair)).count()
 }

@@ -38,6 +38,14 @@ pub fn detail(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Parses the value of `--impostors`.
+pub fn impostors(text: &str) -> Result<f64, String> {
+    match parse::number(text)? {
+        px if (0.1..=10_000.0).contains(&px) => Ok(px),
+        _ => Err("it must be between 0.1 and 10000".into()),
+    }
+}
+
 /// Parses the name of a scene.
 pub fn camera(text: &str) -> Result<ScenarioName, String> {
     let known = || ScenarioName::ALL.map(ScenarioName::name).join(", ");

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use meshlod::Mesh;
 use meshlod::flock::draw::FlockPainter;
-use meshlod::flock::levels::LevelTable;
+use meshlod::flock::levels::{Impostor, ImpostorOptions, LevelTable};
 use meshlod::flock::scene::Film;
 use meshlod::flock::select::{Budget, InstanceLevel, PolicyName, Selector};
 use meshlod::io::write_file;
@@ -43,6 +43,11 @@ pub fn shoot(
     let obstacles: Vec<Mesh> = film.scenario().obstacle_meshes();
     let mut painter =
         (!options.no_pictures).then(|| FlockPainter::new(table, &model.look, &obstacles));
+    if let (Some(painter), Some(_)) = (&mut painter, budget.impostors_below_px) {
+        let impostor = Impostor::draw(table, &model.look, &ImpostorOptions::default());
+        painter.impostor = Some(Arc::new(impostor.map_err(Failure::new)?));
+    }
+    let levels_only = Budget { impostors_below_px: None, ..*budget };
     let mut selector = Selector::new(options.policy, table.clone());
     let mut everything = Selector::new(PolicyName::None, table.clone());
     let mut recorder = options
@@ -56,12 +61,13 @@ pub fn shoot(
         let start = Instant::now();
         let (flock, camera) = film.next_frame().map_err(Failure::new)?;
         let simulation_ms = milliseconds(start);
-        let full = everything.select(flock, &camera, budget);
+        let full = everything.select(flock, &camera, &levels_only);
         let members_in_view = full.iter().filter(|level| level.level().is_some()).count();
         let start = Instant::now();
         let levels = selector.select(flock, &camera, budget);
         let selection_ms = milliseconds(start);
         let switches = switches(table, &before, levels);
+        let impostors = levels.iter().filter(|level| level.is_impostor()).count();
         before.clear();
         before.extend_from_slice(levels);
         if let Some(recorder) = &mut recorder {
@@ -83,6 +89,7 @@ pub fn shoot(
             seconds: frame as f64 / options.fps,
             members_in_view,
             triangles: selector.triangles(),
+            impostors,
             full_triangles: everything.triangles(),
             switches,
             simulation_ms,

@@ -45,6 +45,7 @@ impl Summary<'_> {
             "policy": options.policy.name(),
             "triangles": has_budget.then_some(budget.triangles),
             "detail": (!has_budget).then_some(options.detail),
+            "impostors_below_px": options.impostors,
             "camera": options.camera.name(),
             "members": options.members,
             "schools": options.schools,
@@ -55,6 +56,7 @@ impl Summary<'_> {
             "mean": {
                 "members_in_view": figures.mean(|frame| frame.members_in_view as f64),
                 "triangles": figures.mean(|frame| frame.triangles as f64),
+                "impostors": figures.mean(|frame| frame.impostors as f64),
                 "full_triangles": figures.mean(|frame| frame.full_triangles as f64),
                 "simulation_ms": figures.mean(|frame| frame.simulation_ms),
                 "selection_ms": figures.mean(|frame| frame.selection_ms),

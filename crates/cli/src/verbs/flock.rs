@@ -52,6 +52,10 @@ pub struct Flock {
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = names::detail,
         allow_negative_numbers = true)]
     pub detail: f64,
+    /// Draw members smaller than this as impostors: quads of two triangles with a picture of the model.
+    /// The size is that of a body length, in pixels
+    #[arg(long, value_name = "PX", value_parser = names::impostors, allow_negative_numbers = true)]
+    pub impostors: Option<f64>,
     /// Number of frames
     #[arg(long, value_name = "N", default_value_t = 60, value_parser = names::frames,
         allow_negative_numbers = true)]
@@ -75,8 +79,8 @@ pub struct Flock {
     pub record: Option<PathBuf>,
     /// Compare all policies instead, in five scenes: triangles against image error, written to OUT as
     /// a page with pictures (index.html) and as figures (evaluation.json)
-    #[arg(long, conflicts_with_all = ["policy", "camera", "triangles", "detail", "frames", "size",
-        "no_pictures", "record"])]
+    #[arg(long, conflicts_with_all = ["policy", "camera", "triangles", "detail", "impostors", "frames",
+        "size", "no_pictures", "record"])]
     pub evaluate: bool,
     /// Evaluate small pictures and few frames, within minutes
     #[arg(long, requires = "evaluate")]
@@ -110,7 +114,11 @@ impl Flock {
         let build_seconds = start.elapsed().as_secs_f64();
         let full = self.members.saturating_mul(table.triangle_count(0));
         let triangles = self.triangles.unwrap_or_else(|| (full / 10).max(1));
-        let budget = Budget { triangles, detail: self.detail as f32, ..Budget::default() };
+        let budget = Budget {
+            triangles,
+            detail: self.detail as f32,
+            impostors_below_px: self.impostors.map(|px| px as f32),
+        };
         let take = shoot::shoot(&self, &model, &table, film, &budget, session)?;
         let summary = Summary {
             options: &self,
