@@ -1,4 +1,6 @@
 //! Rounding down of many small numbers at once.
+// Loops over lanes become vector code, closures over arrays need not; and `clamp` keeps a NaN.
+#![allow(clippy::needless_range_loop, clippy::manual_clamp)]
 
 /// Returns the index of the cell that a coordinate falls into, from 0 to `last`; 0 for a NaN.
 ///

@@ -11,5 +11,6 @@ pub mod model;
 pub mod names;
 pub mod record;
 mod sample_fish;
+pub mod score;
 pub mod shoot;
 pub mod summary;

@@ -16,7 +16,7 @@ use crate::failure::Failure;
 use crate::files;
 use crate::flock::model::{FlockModel, ModelArgs};
 use crate::flock::summary::Summary;
-use crate::flock::{evaluate, names, record, shoot};
+use crate::flock::{evaluate, names, record, score, shoot};
 use crate::parse;
 use crate::session::Session;
 
@@ -85,6 +85,11 @@ pub struct Flock {
     /// Evaluate small pictures and few frames, within minutes
     #[arg(long, requires = "evaluate")]
     pub quick: bool,
+    /// Score a recording instead: draw the levels of its selection.npy, whoever chose them, and
+    /// compare them with full detail; --model names the recorded model, for its textures
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["evaluate", "policy", "camera", "triangles",
+        "detail", "impostors", "frames", "size", "no_pictures", "record"])]
+    pub score: Option<PathBuf>,
     /// Draw no pictures: only OUT/frames.jsonl is written
     #[arg(long)]
     pub no_pictures: bool,
@@ -101,6 +106,9 @@ impl Flock {
         }
         let scenario = self.scenario()?;
         let model = FlockModel::load(&self.model, session)?;
+        if let Some(folder) = &self.score {
+            return score::run(folder, &model, session);
+        }
         if self.evaluate {
             session.progress.stage("building levels");
             let table = Arc::new(self.table(&model)?);

@@ -1,4 +1,6 @@
 //! Levels of a chain by distance, as a look-up table.
+// Loops over lanes become vector code, closures over arrays need not; and `clamp` keeps a NaN.
+#![allow(clippy::needless_range_loop, clippy::manual_clamp)]
 
 use crate::levels::{Chain, LevelTable};
 use crate::select::{InstanceLevel, LANES};

@@ -89,15 +89,7 @@ pub fn run(
     session: &Session,
 ) -> Result<Answer, Failure> {
     let extent = if options.quick { QUICK } else { FULL };
-    let triangles = options.members.saturating_mul(table.triangle_count(0));
-    if triangles > MOST_TRIANGLES {
-        return Err(Failure::new(format_args!(
-            "an evaluation draws {} triangles at full detail; it can draw {}: give fewer --members \
-             or a coarser --model",
-            count(triangles),
-            count(MOST_TRIANGLES)
-        )));
-    }
+    check_extent(options.members, table)?;
     let footage = footage(options, &extent, session)?;
     let settings = EvaluationOptions {
         shares: extent.shares.to_vec(),
@@ -130,6 +122,20 @@ pub fn run(
     };
     write(&options.out, &report)?;
     Ok(Answer::new(summary::json(&report, &options.out), summary::text(&report, &options.out)))
+}
+
+/// Refuses what is too large to be drawn in full detail.
+pub fn check_extent(members: usize, table: &LevelTable) -> Result<(), Failure> {
+    let triangles = members.saturating_mul(table.triangle_count(0));
+    match triangles > MOST_TRIANGLES {
+        false => Ok(()),
+        true => Err(Failure::new(format_args!(
+            "full detail has {} triangles, and pictures are compared up to {}: take fewer members or \
+             a coarser model",
+            count(triangles),
+            count(MOST_TRIANGLES)
+        ))),
+    }
 }
 
 /// Records the five scenes.

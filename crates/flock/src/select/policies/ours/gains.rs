@@ -1,4 +1,6 @@
 //! Gains: pixels that finer levels set right per triangle, by direction and size.
+// Loops over lanes become vector code, closures over arrays need not; and `clamp` keeps a NaN.
+#![allow(clippy::needless_range_loop, clippy::manual_clamp)]
 
 use crate::levels::{FacingLevels, LevelTable};
 

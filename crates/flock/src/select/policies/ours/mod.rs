@@ -11,6 +11,8 @@
 //!    is spent [FS93].
 //! 4. A member keeps its level while it is within a band around that of its cell, and faces that it
 //!    turns away are left out by its facing chain.
+// Loops over lanes become vector code, closures over arrays need not; and `clamp` keeps a NaN.
+#![allow(clippy::needless_range_loop, clippy::manual_clamp)]
 
 mod allocation;
 mod gains;

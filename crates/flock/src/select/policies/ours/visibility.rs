@@ -4,6 +4,8 @@
 //! tile that it covers to its slice. A ray is free up to a slice with the probability that it passes
 //! all members in front, as if they were strewn at random within their tile: the product of what
 //! each leaves free. Members larger than a tile are spread over those that they cover.
+// Loops over lanes become vector code, closures over arrays need not; and `clamp` keeps a NaN.
+#![allow(clippy::needless_range_loop, clippy::manual_clamp)]
 
 use glam::{Mat2, Vec2, Vec3};
 
