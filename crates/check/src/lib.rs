@@ -18,7 +18,6 @@ mod object_octree;
 mod objects;
 mod repair;
 mod summary;
-mod union_find;
 mod unique_positions;
 mod zero_area;
 

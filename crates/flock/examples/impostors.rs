@@ -10,7 +10,7 @@ use meshlod_flock::evaluate::{Reference, triangles_for};
 use meshlod_flock::levels::{ChainOptions, Impostor, ImpostorOptions, LevelTable, Look, ModelAxes};
 use meshlod_flock::select::InstanceLevel;
 use meshlod_flock::simulation::{SchoolOptions, Simulation, SimulationOptions};
-use meshlod_flock::{Camera, Flock};
+use meshlod_flock::{Flock, FlockCamera};
 use meshlod_mesh::{Attributes, LayerKind, Mesh, VertexId, WedgeId};
 use meshlod_picture::{
     Antialiasing, Background, Lighting, Materials, Paint, PaintMaterial, Picture, Style, Texture,
@@ -134,7 +134,7 @@ fn flips(
     let mut sums = vec![0.0; arms.len() + 1];
     for eye in EYES {
         let eye = leader + Vec3::from(eye).normalize() * DISTANCE;
-        let camera = Camera::look_at(eye.into(), leader.into(), fov, [side as u32; 2])?;
+        let camera = FlockCamera::look_at(eye.into(), leader.into(), fov, [side as u32; 2])?;
         let reference = Reference::new(painter, flock, &camera)?;
         let full = painter.frame(flock, &vec![InstanceLevel::drawn(0); flock.members.len()]);
         let [right, up, _] = camera.axes();

@@ -8,7 +8,7 @@ use crate::members::frame_of;
 
 /// Perspective camera with square pixels, in body lengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Camera {
+pub struct FlockCamera {
     eye: Vec3,
     right: Vec3,
     up: Vec3,
@@ -43,7 +43,7 @@ pub enum CameraError {
     Size(u32, u32),
 }
 
-impl Camera {
+impl FlockCamera {
     /// Creates a camera at `eye` that looks at `target`, with +y up in the picture.
     ///
     /// `fov_rad` is the field of view along the picture's shorter side, in radians; `size` is width
@@ -62,7 +62,30 @@ impl Camera {
         if !(from.is_finite() && to.is_finite()) {
             return Err(CameraError::NotFinite { eye, target });
         }
-        let forward = (to - from).try_normalize().ok_or(CameraError::NoDirection(eye))?;
+        Self::look_along(eye, (to - from).into(), fov_rad, size)
+    }
+
+    /// Creates a camera at `eye` that looks along `forward`, a vector of any length above zero, with
+    /// +y up in the picture; the rest is as in [`FlockCamera::look_at`].
+    ///
+    /// A unit vector is kept bit for bit, so that a camera can be stored by it.
+    ///
+    /// # Errors
+    /// Those of [`FlockCamera::look_at`].
+    pub fn look_along(
+        eye: [f32; 3],
+        forward: [f32; 3],
+        fov_rad: f32,
+        size: [u32; 2],
+    ) -> Result<Self, CameraError> {
+        let (from, along) = (Vec3::from(eye), Vec3::from(forward));
+        if !(from.is_finite() && along.is_finite()) {
+            let target = (from + along).into();
+            return Err(CameraError::NotFinite { eye, target });
+        }
+        let is_unit = (along.length_squared() - 1.0).abs() < 1e-6;
+        let forward = if is_unit { Some(along) } else { along.try_normalize() };
+        let forward = forward.ok_or(CameraError::NoDirection(eye))?;
         if !(0.017..=2.62).contains(&fov_rad) {
             return Err(CameraError::FieldOfView(fov_rad.to_degrees()));
         }
@@ -132,6 +155,11 @@ impl Camera {
         self.tangents
     }
 
+    /// Returns the field of view along the picture's shorter side, in radians.
+    pub fn fov_rad(&self) -> f32 {
+        self.fov_rad
+    }
+
     /// Returns the number of pixels that a body length spans at distance 1.
     pub fn pixels_at_one(&self) -> f32 {
         self.size[0] as f32 / (2.0 * self.tangents[0])
@@ -175,19 +203,19 @@ mod tests {
 
     #[test]
     fn a_camera_that_sees_nothing_is_refused() {
-        let look = |eye, target, fov| Camera::look_at(eye, target, fov, [4, 3]);
+        let look = |eye, target, fov| FlockCamera::look_at(eye, target, fov, [4, 3]);
         assert!(matches!(
             look([f32::NAN, 0.0, 0.0], [0.0; 3], 1.0),
             Err(CameraError::NotFinite { .. })
         ));
         assert!(matches!(look([1.0; 3], [1.0; 3], 1.0), Err(CameraError::NoDirection(_))));
         assert!(matches!(look([1.0; 3], [0.0; 3], f32::NAN), Err(CameraError::FieldOfView(_))));
-        assert!(Camera::look_at([1.0; 3], [0.0; 3], 1.0, [0, 3]).is_err());
+        assert!(FlockCamera::look_at([1.0; 3], [0.0; 3], 1.0, [0, 3]).is_err());
     }
 
     #[test]
     fn straight_down_has_a_frame_too() {
-        let camera = Camera::look_at([0.0, 9.0, 0.0], [0.0; 3], 1.0, [40, 30]).unwrap();
+        let camera = FlockCamera::look_at([0.0, 9.0, 0.0], [0.0; 3], 1.0, [40, 30]).unwrap();
         let [right, up, forward] = camera.axes();
         assert!((right.cross(up) + forward).length() < 1e-6 && right.is_normalized());
         assert!((camera.tangents()[0] / camera.tangents()[1] - 4.0 / 3.0).abs() < 1e-6);

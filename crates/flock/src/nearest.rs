@@ -9,7 +9,7 @@
 //! use meshlod_flock::levels::{ModelAxes, in_member_frame};
 //! use meshlod_flock::nearest::{NearestCuts, NearestOptions};
 //! use meshlod_flock::select::InstanceLevel;
-//! use meshlod_flock::{Camera, Flock};
+//! use meshlod_flock::{Flock, FlockCamera};
 //! use meshlod_multires::{Forest, Model};
 //! use meshlod_simplify::Options;
 //!
@@ -21,7 +21,7 @@
 //! let mut flock = Flock::default();
 //! flock.members.push([0.0; 3], [0.0, 0.0, 1.0]);
 //! flock.members.push([0.0, 0.0, -20.0], [0.0, 0.0, 1.0]);
-//! let camera = Camera::look_at([0.5, 0.2, 1.5], [0.0; 3], 0.8, [1920, 1080])?;
+//! let camera = FlockCamera::look_at([0.5, 0.2, 1.5], [0.0; 3], 0.8, [1920, 1080])?;
 //! // As a `Selector` chose them.
 //! let levels = [InstanceLevel::drawn(0); 2];
 //!
@@ -35,7 +35,7 @@
 
 use meshlod_multires::{Focus, Level, Model, Query, QueryError, Tolerance};
 
-use crate::camera::Camera;
+use crate::camera::FlockCamera;
 use crate::flock::Flock;
 use crate::select::InstanceLevel;
 
@@ -103,7 +103,12 @@ impl NearestCuts {
     ///
     /// `levels` has an entry for every member, as a [`Selector`](crate::select::Selector) chooses
     /// them: it hides members outside the frustum. Cost: linear in the members.
-    pub fn nearest(&self, flock: &Flock, camera: &Camera, levels: &[InstanceLevel]) -> Vec<usize> {
+    pub fn nearest(
+        &self,
+        flock: &Flock,
+        camera: &FlockCamera,
+        levels: &[InstanceLevel],
+    ) -> Vec<usize> {
         let drawn = levels.iter().take(flock.members.len()).enumerate();
         let mut found: Vec<(f32, usize)> = drawn
             .filter(|(_, level)| level.level().is_some())
@@ -122,7 +127,7 @@ impl NearestCuts {
 
     /// Returns the query for a member: the camera in the frame of the member, with the tolerance and
     /// the focus of the options.
-    pub fn query(&self, flock: &Flock, camera: &Camera, member: usize) -> Query<'static> {
+    pub fn query(&self, flock: &Flock, camera: &FlockCamera, member: usize) -> Query<'static> {
         let place = (flock.members.position(member), flock.members.heading(member));
         let camera = camera.for_member(place.0, place.1);
         let focus = match self.options.focus {
@@ -143,7 +148,7 @@ impl NearestCuts {
     pub fn cuts(
         &self,
         flock: &Flock,
-        camera: &Camera,
+        camera: &FlockCamera,
         levels: &[InstanceLevel],
     ) -> Result<Vec<NearCut>, QueryError> {
         let mut extractor = self.model.extractor();
@@ -157,7 +162,7 @@ impl NearestCuts {
 }
 
 /// Returns the distance of a member's position from the eye, in body lengths.
-fn distance(flock: &Flock, camera: &Camera, member: usize) -> f32 {
+fn distance(flock: &Flock, camera: &FlockCamera, member: usize) -> f32 {
     flock.members.position(member).distance(camera.eye())
 }
 
@@ -179,8 +184,8 @@ mod tests {
         NearestCuts::new(model, NearestOptions { members, tolerance_px: 0.5, focus })
     }
 
-    fn camera(eye: Vec3, target: Vec3) -> Camera {
-        Camera::look_at(eye.into(), target.into(), 0.8, [160, 90]).unwrap()
+    fn camera(eye: Vec3, target: Vec3) -> FlockCamera {
+        FlockCamera::look_at(eye.into(), target.into(), 0.8, [160, 90]).unwrap()
     }
 
     fn flock(positions: &[Vec3], heading: Vec3) -> Flock {

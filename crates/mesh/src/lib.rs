@@ -23,6 +23,7 @@ mod ids;
 mod labels;
 mod locks;
 mod mesh;
+mod union_find;
 mod weld;
 
 pub use attributes::{Attributes, Layer, LayerKind};
@@ -39,4 +40,5 @@ pub use ids::{FaceId, VertexId, WedgeId};
 pub use labels::Labels;
 pub use locks::{Lock, Locks};
 pub use mesh::{Mesh, MeshError};
+pub use union_find::UnionFind;
 pub use weld::{first_near, merge_equal_wedges, weld};

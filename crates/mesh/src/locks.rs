@@ -26,3 +26,26 @@ pub struct Locks {
     /// No vertex is in two groups.
     pub ties: Vec<Vec<VertexId>>,
 }
+
+impl Locks {
+    /// Returns the constraint on a vertex; vertices beyond the list are free.
+    #[inline]
+    pub fn of(&self, v: VertexId) -> Lock {
+        self.of_vertex.get(v.index()).copied().unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn vertices_without_a_lock_are_free() {
+        let locks = Locks { of_vertex: vec![Lock::Free, Lock::Locked], ties: Vec::new() };
+        assert_eq!(
+            [0, 1, 2].map(|v| locks.of(VertexId(v))),
+            [Lock::Free, Lock::Locked, Lock::Free]
+        );
+        assert_eq!(Locks::default().of(VertexId(0)), Lock::Free);
+    }
+}

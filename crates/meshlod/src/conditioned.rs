@@ -155,10 +155,8 @@ impl<'m> ConditionedMesh<'m> {
         vanish_below: Option<f64>,
     ) -> Result<Simplifier<'_>, SimplifyError> {
         let first = self.start(vanish_below)?;
-        if self.borders.is_none() || self.split.get().is_some() {
-            return Ok(first);
-        }
-        if first.non_manifold_vertices() == 0 {
+        let may_split = self.borders.is_some() && self.split.get().is_none();
+        if !may_split || first.non_manifold_vertices() == 0 {
             return Ok(first);
         }
         match self.split.get_or_init(|| self.condition(Search::All)) {

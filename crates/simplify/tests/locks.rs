@@ -426,3 +426,27 @@ fn a_crowd_at_one_place_stays_there() {
     assert_eq!((report.held.tied, report.held.locked), (0, 3000));
     assert_eq!(level.positions.iter().filter(|p| **p == [0.0; 3]).count(), 3000);
 }
+
+#[test]
+fn the_more_protected_a_side_is_the_finer_it_stays() {
+    let ball = meshlod_samples::sphere(4_000);
+    let of_vertex = ball.positions.iter().map(|p| match p[0] > 0.0 {
+        true => meshlod_mesh::Lock::Protected,
+        false => meshlod_mesh::Lock::Free,
+    });
+    let locks = meshlod_mesh::Locks { of_vertex: of_vertex.collect(), ties: Vec::new() };
+    for method in [Method::LindstromTurk, Method::Qem, Method::QemEndpoint] {
+        let kept = |protection| {
+            let options =
+                Options { method, protection, locks: locks.clone(), ..Options::default() };
+            let (level, _) = simplify(&ball, Target::Ratio(0.25), &options).unwrap();
+            level.positions.iter().filter(|p| p[0] > 0.0).count() as f64
+                / level.positions.len() as f64
+        };
+        let shares = [Some(1.0), None, Some(8.0)].map(kept);
+        assert!((shares[0] - 0.5).abs() < 0.05, "{method:?}: {shares:?}");
+        assert!(shares[1] > shares[0] + 0.05 && shares[2] > shares[1], "{method:?}: {shares:?}");
+    }
+    let bad = Options { protection: Some(f64::NAN), ..Options::default() };
+    assert!(simplify(&ball, Target::Ratio(0.5), &bad).is_err());
+}

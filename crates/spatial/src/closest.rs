@@ -30,7 +30,7 @@ const SLACK: f64 = 1e-23;
 
 /// Squared distance in local coordinates below which a point touches a face. Where many faces meet
 /// at a point, the search for a closer one would visit them all.
-const TOUCHING: f64 = 1e-16;
+pub(crate) const TOUCHING: f64 = 1e-16;
 
 /// Size of the stack: three children of every node on the path may be waiting.
 const STACK: usize = 3 * MAX_DEPTH + 4;

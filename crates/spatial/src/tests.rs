@@ -5,8 +5,19 @@ use meshlod_mesh::{FaceId, Mesh, MeshError, VertexId};
 use proptest::prelude::*;
 
 use crate::bvh::INNER;
+use crate::closest::TOUCHING;
 use crate::triangle::closest_point;
-use crate::{Bvh, BvhError, ClosestPoint};
+use crate::{Bvh, BvhError, ClosestPoint, LabelledBvh};
+
+/// Returns the squared distance from the selected faces, tested one by one.
+fn naive_within(bvh: &Bvh, point: [f64; 3], is_selected: impl Fn(usize) -> bool) -> f64 {
+    let p = bvh.frame.local(point);
+    let squared = |face: usize| {
+        p.distance_squared(closest_point(p, &bvh.triangles[bvh.slots[face] as usize]))
+    };
+    let selected = (0..bvh.faces.len()).filter(|&face| is_selected(face));
+    bvh.frame.model_squared(selected.map(squared).fold(f64::INFINITY, f64::min))
+}
 
 /// Tests every face, lowest id first.
 fn naive(bvh: &Bvh, point: [f64; 3]) -> (FaceId, f64) {
@@ -86,6 +97,37 @@ proptest! {
                 prop_assert!(apart <= enough || (apart - least.sqrt()).abs() < 1e-12);
             }
             None => prop_assert!(least.sqrt() > most * (1.0 - 1e-12)),
+        }
+    }
+
+    #[test]
+    fn what_is_left_without_a_label_is_as_far_as_the_naive_search_says(
+        mesh in soup(),
+        labels in prop::collection::vec(0u32..4, 150),
+        runs in 1usize..40,
+        removed in prop::collection::vec(any::<u8>(), 60),
+        queries in prop::collection::vec(prop::array::uniform3(-3.0..3.0f64), 6),
+    ) {
+        // Neighbours in the order of the hierarchy have one label, so that whole children have.
+        let (bvh, count) = (Bvh::new(&mesh).unwrap(), mesh.faces.len());
+        let mut of_face = vec![0; count];
+        for (i, face) in bvh.faces_in_leaf_order().iter().enumerate() {
+            of_face[face.index()] = labels[i / runs];
+        }
+        let mut labelled = LabelledBvh::new(&mesh, of_face.clone()).unwrap();
+        let mut is_left = vec![true; count];
+        for removed in removed.chunks(12) {
+            for (point, label) in queries.iter().chain(&mesh.positions).zip((0..5).cycle()) {
+                let is_selected = |face: usize| is_left[face] && of_face[face] != label;
+                let least = naive_within(&bvh, *point, is_selected);
+                let found = labelled.squared_distance(*point, label);
+                let touches = found.max(least) <= bvh.frame.model_squared(TOUCHING);
+                prop_assert!(found == least || touches, "{found:e} instead of {least:e}");
+            }
+            for face in removed.iter().map(|&face| usize::from(face) % count) {
+                labelled.remove(FaceId::new(face));
+                is_left[face] = false;
+            }
         }
     }
 

@@ -6,6 +6,7 @@ mod command;
 mod compression;
 mod constriction;
 mod contacts;
+mod flock;
 mod levels;
 mod machine;
 mod memory;
@@ -24,7 +25,7 @@ use crate::project::Project;
 type Section = fn(&Project) -> Result<String>;
 
 /// Sections and their titles, in the order of the page.
-const SECTIONS: [(&str, Section); 13] = [
+const SECTIONS: [(&str, Section); 14] = [
     // First, while this process is still small: see the module.
     ("Memory and determinism", memory::section),
     ("Accuracy", accuracy::section),
@@ -38,6 +39,7 @@ const SECTIONS: [(&str, Section); 13] = [
     ("All levels", levels::section),
     ("Strips", strips::section),
     ("Compression", compression::section),
+    ("Flocks", flock::section),
     ("Reading and measuring", reading::section),
 ];
 

@@ -2,12 +2,11 @@
 
 use std::ops::ControlFlow;
 
-use meshlod_mesh::VertexId;
+use meshlod_mesh::{UnionFind, VertexId};
 
 use super::Visit;
 use super::subject::Subject;
 use crate::finding::Finding;
-use crate::union_find::UnionFind;
 
 pub fn non_manifold_vertices(subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
     let mut fans = Fans::default();

@@ -1,10 +1,9 @@
 //! Tests whether the faces left of fused components form a closed surface.
 
 use glam::{DMat3, DVec3};
-use meshlod_mesh::{Mesh, VertexId};
+use meshlod_mesh::{Mesh, UnionFind, VertexId};
 use rustc_hash::FxHashMap;
 
-use crate::union_find::UnionFind;
 use crate::unique_positions::UniquePositions;
 
 /// Groups of solid components that are connected through common vertex positions.

@@ -1,12 +1,11 @@
 //! Splits non-manifold edges and non-manifold vertices.
 
-use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId};
+use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, UnionFind, VertexId};
 
 use super::edit::own_wedges;
 use super::pair_sides::pair_sides;
 use crate::check::edges::lowest_first;
 use crate::check::faces::duplicates;
-use crate::union_find::UnionFind;
 
 /// Counts of non-manifold edges split and vertices added.
 #[derive(Debug, Default, PartialEq)]

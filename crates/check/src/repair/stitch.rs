@@ -1,11 +1,10 @@
 //! Stitches boundary edges that coincide.
 
 use meshlod_mesh::{
-    Connectivity, FaceId, Mesh, Side, Twin, VertexId, first_near, merge_equal_wedges,
+    Connectivity, FaceId, Mesh, Side, Twin, UnionFind, VertexId, first_near, merge_equal_wedges,
 };
 
 use super::edit::own_wedges;
-use crate::union_find::UnionFind;
 use crate::unique_positions::UniquePositions;
 use crate::zero_area::has_zero_area;
 

@@ -131,9 +131,8 @@ pub fn to_json(path: &Path, scene: &Scene, rows: &FileRows, lockings: &[VertexLo
 }
 
 fn mesh_json(rows: &[VertexId], VertexLocks { locks, reasons }: &VertexLocks) -> Value {
-    let lock = |v: &VertexId| locks.of_vertex.get(v.index()).copied().unwrap_or_default();
     let flag = |lock| FLAGS.iter().find(|(of, ..)| *of == lock).map_or(0, |&(_, flag, _)| flag);
-    let flags: Vec<u8> = rows.iter().map(|v| flag(lock(v))).collect();
+    let flags: Vec<u8> = rows.iter().map(|v| flag(locks.of(*v))).collect();
     let counts = FLAGS.map(|(_, flag, name)| {
         (name.to_owned(), flags.iter().filter(|&&of| of == flag).count().into())
     });

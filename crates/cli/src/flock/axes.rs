@@ -7,7 +7,7 @@ use meshlod::mesh::Bounds;
 
 /// Coordinate axis with a sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Axis {
+pub struct SignedAxis {
     /// 0 for x, 1 for y, 2 for z.
     pub index: usize,
     pub is_negative: bool,
@@ -18,13 +18,13 @@ pub struct Axis {
 pub enum Forward {
     /// To be found from the shape of the model.
     Auto,
-    Along(Axis),
+    Along(SignedAxis),
 }
 
 /// Extent along an axis over that along the other, from which on a model is surely longer that way.
 const LONGER: f64 = 1.5;
 
-impl Axis {
+impl SignedAxis {
     const fn new(index: usize, is_negative: bool) -> Self {
         Self { index, is_negative }
     }
@@ -37,20 +37,20 @@ impl Axis {
     }
 }
 
-impl fmt::Display for Axis {
+impl fmt::Display for SignedAxis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}{}", if self.is_negative { '-' } else { '+' }, ["x", "y", "z"][self.index])
     }
 }
 
 /// Parses an axis: `+z`, `-x`, `y`.
-pub fn axis(text: &str) -> Result<Axis, String> {
+pub fn axis(text: &str) -> Result<SignedAxis, String> {
     let (is_negative, name) = match text.strip_prefix('-') {
         Some(name) => (true, name),
         None => (false, text.strip_prefix('+').unwrap_or(text)),
     };
     match ["x", "y", "z"].iter().position(|known| known.eq_ignore_ascii_case(name)) {
-        Some(index) => Ok(Axis { index, is_negative }),
+        Some(index) => Ok(SignedAxis { index, is_negative }),
         None => Err("expected an axis: +x, -x, +y, -y, +z or -z".into()),
     }
 }
@@ -68,13 +68,14 @@ pub fn forward(text: &str) -> Result<Forward, String> {
 /// A model that is much longer along the other horizontal axis than along the usual one swims that
 /// way, with its bulkier end first, as fish do; all others face the usual way: +z, as in glTF, or
 /// what that becomes for a model with z up, -y.
-pub fn guess(mesh: &Mesh, up: Axis) -> Axis {
-    let usual = if up.index == 2 { Axis::new(1, !up.is_negative) } else { Axis::new(2, false) };
+pub fn guess(mesh: &Mesh, up: SignedAxis) -> SignedAxis {
+    let usual =
+        if up.index == 2 { SignedAxis::new(1, !up.is_negative) } else { SignedAxis::new(2, false) };
     let across = 3 - up.index - usual.index;
     let bounds = mesh.bounds();
     let extent = |axis: usize| bounds.max[axis] - bounds.min[axis];
     if extent(across) > LONGER * extent(usual.index) {
-        Axis::new(across, bulk(mesh, &bounds, across) < 0.0)
+        SignedAxis::new(across, bulk(mesh, &bounds, across) < 0.0)
     } else {
         usual
     }
@@ -96,7 +97,7 @@ mod tests {
 
     use super::*;
 
-    const UP: Axis = Axis::new(1, false);
+    const UP: SignedAxis = SignedAxis::new(1, false);
 
     #[test]
     fn axes_have_a_sign_or_none() {
@@ -125,6 +126,6 @@ mod tests {
     fn round_models_face_the_usual_way() {
         let ball = samples::sphere(500);
         assert_eq!(guess(&ball, UP).to_string(), "+z");
-        assert_eq!(guess(&ball, Axis::new(2, false)).to_string(), "-y");
+        assert_eq!(guess(&ball, SignedAxis::new(2, false)).to_string(), "-y");
     }
 }

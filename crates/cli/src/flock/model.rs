@@ -10,7 +10,7 @@ use meshlod::{Mesh, Method};
 use crate::args::ReadArgs;
 use crate::failure::Failure;
 use crate::files;
-use crate::flock::axes::{self, Axis, Forward};
+use crate::flock::axes::{self, Forward, SignedAxis};
 use crate::flock::sample_fish::textured_fish;
 use crate::numbers::count;
 use crate::page::style::{self, OwnedPaint};
@@ -32,7 +32,7 @@ pub struct ModelArgs {
     /// Way that is up for the model
     #[arg(long, value_name = "AXIS", default_value = "+y", value_parser = axes::axis,
         allow_hyphen_values = true)]
-    pub up: Axis,
+    pub up: SignedAxis,
     /// Simplification method of the levels
     #[arg(long, value_name = "NAME", default_value = Method::default().name(),
         value_parser = parse::method, help = parse::methods())]
@@ -52,10 +52,10 @@ pub struct FlockModel {
     pub look: Look,
     /// Number of faces in the file.
     pub faces: usize,
-    pub forward: Axis,
+    pub forward: SignedAxis,
     /// True if the forward axis was not given.
     pub is_guessed: bool,
-    pub up: Axis,
+    pub up: SignedAxis,
 }
 
 /// Greatest number of faces of a model: its levels for all directions take about a kilobyte a face.
@@ -64,6 +64,9 @@ const MAX_FACES: usize = 1_000_000;
 impl FlockModel {
     /// Reads the model, or generates the sample.
     pub fn load(args: &ModelArgs, session: &Session) -> Result<Self, Failure> {
+        if let Forward::Along(forward) = args.forward {
+            check_axes(forward, args.up)?;
+        }
         let (mesh, look) = match &args.model {
             None => textured_fish().map_err(Failure::new)?,
             Some(path) => read(path, &args.reading, session)?,
@@ -72,12 +75,6 @@ impl FlockModel {
             Forward::Along(axis) => (axis, false),
             Forward::Auto => (axes::guess(&mesh, args.up), args.model.is_some()),
         };
-        if forward.index == args.up.index {
-            return Err(Failure::usage(format_args!(
-                "--forward {forward} and --up {} must be along two axes",
-                args.up
-            )));
-        }
         Ok(Self {
             name: args.model.as_deref().map_or("fish".into(), files::name),
             file: args.model.clone(),
@@ -93,6 +90,16 @@ impl FlockModel {
     /// Returns the axes of the model.
     pub fn axes(&self) -> ModelAxes {
         ModelAxes { forward: self.forward.vector(), up: self.up.vector() }
+    }
+}
+
+/// Fails if both axes are along one line.
+fn check_axes(forward: SignedAxis, up: SignedAxis) -> Result<(), Failure> {
+    match forward.index == up.index {
+        false => Ok(()),
+        true => Err(Failure::usage(format_args!(
+            "--forward {forward} and --up {up} must be along two axes"
+        ))),
     }
 }
 

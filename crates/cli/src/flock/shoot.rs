@@ -16,7 +16,8 @@ use crate::failure::Failure;
 use crate::files;
 use crate::flock::figures::{Figures, FrameFigures, switches};
 use crate::flock::model::FlockModel;
-use crate::numbers::count;
+use crate::flock::record::Recorder;
+use crate::numbers::{count, plural};
 use crate::session::Session;
 use crate::verbs::flock::Flock;
 
@@ -49,6 +50,10 @@ pub fn shoot(
     let levels_only = Budget { impostors_below_px: None, ..*budget };
     let mut selector = Selector::new(options.policy, table.clone());
     let mut everything = Selector::new(PolicyName::None, table.clone());
+    let mut recorder = options
+        .record
+        .as_deref()
+        .map(|folder| Recorder::new(folder, film.scenario(), model.file.as_deref()));
     let mut before: Vec<InstanceLevel> = Vec::new();
     let mut figures = Figures::default();
     for frame in 0..options.frames {
@@ -65,6 +70,9 @@ pub fn shoot(
         let impostors = levels.iter().filter(|level| level.is_impostor()).count();
         before.clear();
         before.extend_from_slice(levels);
+        if let Some(recorder) = &mut recorder {
+            recorder.push(flock, &camera, levels);
+        }
         let mut draw_ms = None;
         if let Some(painter) = &mut painter {
             check_size(selector.triangles())?;
@@ -93,6 +101,9 @@ pub fn shoot(
     let lines = options.out.join("frames.jsonl");
     write_file(&lines, figures.lines().as_bytes())?;
     warn_of_others(options, session);
+    if let Some(recorder) = &recorder {
+        recorder.write(table, session)?;
+    }
     Ok(Take { figures, lines })
 }
 
@@ -127,7 +138,9 @@ fn warn_of_others(options: &Flock, session: &Session) {
     let Ok(entries) = fs::read_dir(&options.out) else { return };
     let others = entries.flatten().filter(|entry| is_other(&entry.path())).count();
     if others > 0 {
-        let reason = format_args!("{others} frames of an earlier film are still there");
+        let verb = if others == 1 { "is" } else { "are" };
+        let reason =
+            format_args!("{others} frame{} of an earlier film {verb} still there", plural(others));
         session.warn(Failure::at(&options.out, reason));
     }
 }

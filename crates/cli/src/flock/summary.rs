@@ -10,7 +10,7 @@ use crate::flock::shoot::Take;
 use crate::numbers::{count, faces, percent, plural, value};
 use crate::verbs::flock::Flock;
 
-/// What a film was made of, and its figures.
+/// Film with its model, levels and figures.
 pub struct Summary<'a> {
     pub options: &'a Flock,
     pub model: &'a FlockModel,
@@ -71,6 +71,7 @@ impl Summary<'_> {
             "switches_per_member_second": figures.switches_per_member_second(options.fps),
             "out": files::name(&options.out),
             "figures": files::name(&self.take.lines),
+            "recording": options.record.as_deref().map(files::name),
             "pictures": if options.no_pictures { 0 } else { figures.frames.len() },
         })
     }
@@ -114,7 +115,11 @@ impl Summary<'_> {
             text += &format!(", drawing: {} ms", value(rounded(draw_ms)));
         }
         text += "\n";
-        text + &format!("{}\n", files::name(&self.take.lines))
+        text += &format!("{}\n", files::name(&self.take.lines));
+        if let Some(folder) = &options.record {
+            text += &format!("{}\n", files::name(folder));
+        }
+        text
     }
 
     /// Returns the mean time for drawing a frame, if pictures were drawn.

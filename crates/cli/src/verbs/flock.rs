@@ -16,7 +16,7 @@ use crate::failure::Failure;
 use crate::files;
 use crate::flock::model::{FlockModel, ModelArgs};
 use crate::flock::summary::Summary;
-use crate::flock::{evaluate, names, shoot};
+use crate::flock::{evaluate, names, record, shoot};
 use crate::parse;
 use crate::session::Session;
 
@@ -73,10 +73,14 @@ pub struct Flock {
     /// Folder to write to; created if missing
     #[arg(long, value_name = "DIR", default_value = "flock")]
     pub out: PathBuf,
+    /// Folder for a recording of members, cameras, levels and selection, as JSON and NumPy arrays;
+    /// created if missing
+    #[arg(long, value_name = "DIR")]
+    pub record: Option<PathBuf>,
     /// Compare all policies instead, in five scenes: triangles against image error, written to OUT as
     /// a page with pictures (index.html) and as figures (evaluation.json)
     #[arg(long, conflicts_with_all = ["policy", "camera", "triangles", "detail", "impostors", "frames",
-        "size", "no_pictures"])]
+        "size", "no_pictures", "record"])]
     pub evaluate: bool,
     /// Evaluate small pictures and few frames, within minutes
     #[arg(long, requires = "evaluate")]
@@ -92,6 +96,10 @@ const TERRAIN_FACES: usize = 40_000;
 impl Flock {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         files::check_folder(&self.out)?;
+        if let Some(folder) = &self.record {
+            record::check(folder, self.members, self.frames)?;
+        }
+        let scenario = self.scenario()?;
         let model = FlockModel::load(&self.model, session)?;
         if self.evaluate {
             session.progress.stage("building levels");
@@ -99,7 +107,7 @@ impl Flock {
             return evaluate::run(&self, &model, &table, session);
         }
         session.progress.stage("setting the scene");
-        let film = self.film()?;
+        let film = Film::new(scenario).map_err(Failure::new)?;
         session.progress.stage("building levels");
         let start = Instant::now();
         let table = Arc::new(self.table(&model)?);
@@ -123,8 +131,8 @@ impl Flock {
         Ok(Answer::new(summary.json(), summary.text()))
     }
 
-    /// Sets up the scene.
-    fn film(&self) -> Result<Film, Failure> {
+    /// Describes the scene.
+    fn scenario(&self) -> Result<Scenario, Failure> {
         let needs_terrain = self.camera == ScenarioName::Terrain;
         let terrain: Option<Mesh> = needs_terrain.then(|| samples::terrain(TERRAIN_FACES));
         let options = ScenarioOptions {
@@ -135,7 +143,7 @@ impl Flock {
             frame_s: 1.0 / self.fps,
             terrain: terrain.as_ref(),
         };
-        Scenario::named(self.camera, &options).and_then(Film::new).map_err(|error| match error {
+        Scenario::named(self.camera, &options).map_err(|error| match error {
             SceneError::Schools { .. } => Failure::usage(format_args!("--schools: {error}")),
             error => Failure::new(error),
         })

@@ -4,6 +4,7 @@ mod check;
 mod compare;
 mod compress;
 mod demo;
+mod flock;
 mod hostile;
 mod levels;
 mod models;

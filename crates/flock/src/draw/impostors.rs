@@ -6,7 +6,7 @@ use glam::Vec3;
 use meshlod_mesh::Mesh;
 use meshlod_picture::{Card, CardLayer, PictureError, card_layer};
 
-use crate::camera::Camera;
+use crate::camera::FlockCamera;
 use crate::levels::{Impostor, ImpostorQuad};
 use crate::members::Members;
 
@@ -34,7 +34,7 @@ impl FrameImpostors {
     pub(super) fn layer(
         &self,
         mesh: &Mesh,
-        camera: &Camera,
+        camera: &FlockCamera,
         seen_by: &meshlod_picture::Camera,
     ) -> Result<Option<CardLayer>, PictureError> {
         let Some(impostor) = self.impostor.as_ref().filter(|_| !self.places.is_empty()) else {

@@ -7,12 +7,12 @@ use crate::draw::paint::{OwnedPaint, STONE};
 use crate::levels::LevelTable;
 
 /// Level with only the vertices that it uses.
-pub(super) struct Shape {
+pub(super) struct LevelShape {
     vertices: Vec<u32>,
     triangles: Vec<[u32; 3]>,
 }
 
-impl Shape {
+impl LevelShape {
     pub(super) fn new(table: &LevelTable, level: usize) -> Self {
         let mut local = vec![u32::MAX; table.positions.len()];
         let mut vertices = Vec::new();
@@ -53,7 +53,7 @@ impl Merged {
         &mut self,
         table: &LevelTable,
         layers: &[&Layer],
-        shape: &Shape,
+        shape: &LevelShape,
         level: usize,
         (frame, position): (Mat3, Vec3),
     ) {

@@ -11,9 +11,9 @@ use meshlod_picture::{
     Antialiasing, Background, Lighting, Normals, Picture, PictureError, Style, render, visibility,
 };
 
-use crate::camera::Camera;
+use crate::camera::FlockCamera;
 use crate::draw::impostors::FrameImpostors;
-use crate::draw::merged::{Merged, Shape};
+use crate::draw::merged::{LevelShape, Merged};
 use crate::draw::paint::OwnedPaint;
 use crate::flock::Flock;
 use crate::levels::{Impostor, LevelTable, Look, is_color};
@@ -27,10 +27,10 @@ pub struct FlockPainter<'a> {
     /// Layers of the table that pictures need.
     layers: Vec<&'a Layer>,
     /// Vertices and triangles of each level, for those that have been drawn.
-    shapes: Vec<Option<Shape>>,
+    shapes: Vec<Option<LevelShape>>,
     /// Lighting of members and obstacles.
     pub lighting: Lighting,
-    /// What is behind them.
+    /// Background of the pictures.
     pub background: Background,
     /// Impostors of the model; without them, members that are impostors are drawn with the coarsest
     /// level of the whole chain.
@@ -77,7 +77,7 @@ impl<'a> FlockPainter<'a> {
         &mut self,
         flock: &Flock,
         levels: &[InstanceLevel],
-        camera: &Camera,
+        camera: &FlockCamera,
     ) -> Result<Picture, PictureError> {
         let frame = self.frame(flock, levels);
         self.render(&frame, camera, &camera.for_picture())
@@ -90,7 +90,7 @@ impl<'a> FlockPainter<'a> {
     pub fn render(
         &self,
         frame: &FrameMesh,
-        camera: &Camera,
+        camera: &FlockCamera,
         seen_by: &meshlod_picture::Camera,
     ) -> Result<Picture, PictureError> {
         let style = Style {
@@ -122,7 +122,8 @@ impl<'a> FlockPainter<'a> {
             let coarsest = level.is_impostor().then_some(coarsest);
             let Some(level) = level.level().or(coarsest) else { continue };
             members.push((merged.faces.len() as u32, member as u32));
-            let shape = self.shapes[level].get_or_insert_with(|| Shape::new(self.table, level));
+            let shape =
+                self.shapes[level].get_or_insert_with(|| LevelShape::new(self.table, level));
             let place = (flock.members.frame(member), flock.members.position(member));
             merged.add_member(self.table, &self.layers, shape, level, place);
         }
@@ -146,7 +147,7 @@ impl FrameMesh {
 
     /// Returns for every pixel of a camera's picture whether it shows a member: at its middle, or at
     /// least half covered by impostors.
-    pub(crate) fn shows_member(&self, camera: &Camera) -> Result<Vec<bool>, PictureError> {
+    pub(crate) fn shows_member(&self, camera: &FlockCamera) -> Result<Vec<bool>, PictureError> {
         let seen_by = camera.for_picture();
         let found = visibility(&self.mesh, &seen_by, camera.size())?;
         let of_member = found.faces().map(|f| f.is_some_and(|f| f.index() < self.member_faces));

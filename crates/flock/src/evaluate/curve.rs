@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::evaluate::score::FrameScore;
 
-/// What an arm drew and showed in one scene at one share of the triangles.
+/// Triangles and image errors of an arm in one scene at one share of the triangles.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
     /// Name of the scene.

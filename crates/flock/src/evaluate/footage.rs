@@ -2,7 +2,7 @@
 
 use meshlod_mesh::Mesh;
 
-use crate::camera::Camera;
+use crate::camera::FlockCamera;
 use crate::flock::Flock;
 
 /// Recorded flock and the camera that sees it, frame by frame.
@@ -12,8 +12,8 @@ pub struct Footage {
     pub name: String,
     /// Flock in every frame.
     pub flocks: Vec<Flock>,
-    /// Camera in every frame.
-    pub cameras: Vec<Camera>,
+    /// FlockCamera in every frame.
+    pub cameras: Vec<FlockCamera>,
     /// Obstacles, in the coordinates of the flock.
     pub obstacles: Vec<Mesh>,
     /// Time from frame to frame, in seconds.

@@ -1,4 +1,4 @@
-//! What the policies cost and show: triangles against image error, at equal terms.
+//! Evaluation of policies: triangles against image error, at equal terms.
 //!
 //! [`Footage`] is a recorded flock seen by a camera. Every [`Arm`] chooses levels for the same
 //! frames; its one bias is set so that it draws a given share of the triangles of full detail. All
@@ -20,5 +20,5 @@ pub use bootstrap::Interval;
 pub use curve::{Needed, Row, triangles_for};
 pub use footage::Footage;
 pub use over_time::{Track, over_time};
-pub use run::{Evaluation, EvaluationOptions, Still, evaluate};
+pub use run::{Evaluation, EvaluationOptions, StillPicture, evaluate};
 pub use score::{FrameScore, Reference};

@@ -12,7 +12,7 @@ use crate::evaluate::score::Reference;
 use crate::levels::{LevelTable, Look};
 use crate::select::{Budget, Selector};
 
-/// What an arm draws in every frame of a scene.
+/// Triangles of an arm in every frame of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Track {
     /// Name of the arm.

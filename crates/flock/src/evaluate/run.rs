@@ -6,7 +6,7 @@ use std::time::Instant;
 use meshlod_picture::{Picture, PictureError};
 use serde::Serialize;
 
-use crate::camera::Camera;
+use crate::camera::FlockCamera;
 use crate::draw::FlockPainter;
 use crate::evaluate::arms::Arm;
 use crate::evaluate::bootstrap::Interval;
@@ -54,7 +54,7 @@ pub struct Evaluation {
 }
 
 /// Picture that a page may show.
-pub struct Still {
+pub struct StillPicture {
     /// Name of the scene.
     pub scene: String,
     /// Name of the arm; `None` for full detail.
@@ -81,7 +81,7 @@ pub fn evaluate(
     look: &Look,
     options: &EvaluationOptions,
     watch: &mut dyn FnMut(f64, &str),
-    still: &mut dyn FnMut(Still),
+    still: &mut dyn FnMut(StillPicture),
 ) -> Result<Evaluation, PictureError> {
     let mut result = Evaluation {
         rows: Vec::new(),
@@ -102,7 +102,7 @@ pub fn evaluate(
             watch((done + 1.0 + k as f64) / steps, &format!("{}: {}", footage.name, arm.name()));
             for &share in &options.shares {
                 let (row, picture) = stage.row(arm, share)?;
-                still(Still {
+                still(StillPicture {
                     scene: row.scene.clone(),
                     arm: Some(row.arm.clone()),
                     share,
@@ -129,8 +129,8 @@ struct Stage<'a> {
     full_triangles: f64,
 }
 
-/// What an arm chose with one bias.
-struct Choice {
+/// Levels that an arm chose with one bias.
+struct ChosenLevels {
     /// Levels in both frames of each pair.
     levels: Vec<[Vec<InstanceLevel>; 2]>,
     /// Triangles of the scored frames.
@@ -139,7 +139,7 @@ struct Choice {
     selection_seconds: f64,
 }
 
-impl Choice {
+impl ChosenLevels {
     fn mean_triangles(&self) -> f64 {
         mean(self.triangles.iter().map(|&count| count as f64))
     }
@@ -182,9 +182,9 @@ impl<'a> Stage<'a> {
         self.references[0][0].score(&frame, &camera, &picture)
     }
 
-    fn reference_still(&self) -> Still {
+    fn reference_still(&self) -> StillPicture {
         let picture = self.references[0][0].picture.clone();
-        Still { scene: self.footage.name.clone(), arm: None, share: 1.0, picture }
+        StillPicture { scene: self.footage.name.clone(), arm: None, share: 1.0, picture }
     }
 
     /// Draws and scores an arm at a share of the triangles.
@@ -220,7 +220,7 @@ impl<'a> Stage<'a> {
 
     /// Sets the bias of an arm so that it draws a share of the triangles: the greatest that draws
     /// no more.
-    fn at_share(&mut self, arm: Arm, share: f64) -> Choice {
+    fn at_share(&mut self, arm: Arm, share: f64) -> ChosenLevels {
         let wanted = share * self.full_triangles;
         if arm.has_budget() {
             let budget = Budget { triangles: wanted as usize, ..Budget::default() };
@@ -241,9 +241,9 @@ impl<'a> Stage<'a> {
     }
 
     /// Runs an arm over the frames of all pairs and before.
-    fn choose(&self, arm: Arm, budget: &Budget) -> Choice {
+    fn choose(&self, arm: Arm, budget: &Budget) -> ChosenLevels {
         let Footage { flocks, cameras, frame_s, .. } = self.footage;
-        let mut choice = Choice {
+        let mut choice = ChosenLevels {
             levels: Vec::new(),
             triangles: Vec::new(),
             switches_per_second: 0.0,
@@ -355,7 +355,7 @@ impl Evaluation {
     }
 }
 
-impl Camera {
+impl FlockCamera {
     /// Returns the camera of the picture turned by a fraction of a pixel, to the right and up.
     pub(crate) fn shifted(&self, pixels: [f64; 2]) -> meshlod_picture::Camera {
         let [right, up, forward] = self.axes().map(|axis| axis.as_dvec3());

@@ -3,7 +3,7 @@
 use meshlod_picture::{Picture, PictureError, flip, ssim, visibility};
 use serde::Serialize;
 
-use crate::camera::Camera;
+use crate::camera::FlockCamera;
 use crate::draw::{FlockPainter, FrameMesh};
 use crate::flock::Flock;
 use crate::select::InstanceLevel;
@@ -40,7 +40,7 @@ impl Reference {
     pub fn new(
         painter: &mut FlockPainter<'_>,
         flock: &Flock,
-        camera: &Camera,
+        camera: &FlockCamera,
     ) -> Result<Self, PictureError> {
         let levels = vec![InstanceLevel::drawn(0); flock.members.len()];
         let frame = painter.frame(flock, &levels);
@@ -69,7 +69,7 @@ impl Reference {
     pub fn score(
         &self,
         frame: &FrameMesh,
-        camera: &Camera,
+        camera: &FlockCamera,
         picture: &Picture,
     ) -> Result<FrameScore, PictureError> {
         let shown = frame.shows_member(camera)?;

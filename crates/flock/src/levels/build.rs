@@ -220,11 +220,10 @@ impl Builder {
     ) -> LevelTable {
         let Self { pool, triangles, materials, levels } = self;
         let positions: Vec<[f32; 3]> = pool.positions.iter().map(|p| p.map(|x| x as f32)).collect();
-        let length = |p: &[f32; 3]| glam::Vec3::from(*p).length();
-        let most = |axis: usize| positions.iter().map(|p| p[axis].abs()).fold(0.0, f32::max);
+        let (radius, half_extent) = LevelTable::extent_of(&positions);
         LevelTable {
-            radius: positions.iter().map(length).fold(0.0, f32::max),
-            half_extent: [0, 1, 2].map(most),
+            radius,
+            half_extent,
             positions,
             layers: pool.layers,
             triangles,

@@ -1,4 +1,4 @@
-//! How much a picture of a member changes with its level.
+//! Differences between pictures of the levels of a member.
 
 use glam::{DVec3, Vec3};
 use meshlod_mesh::Mesh;
@@ -11,7 +11,7 @@ use crate::levels::directions::DirectionGrid;
 use crate::levels::look::Look;
 use crate::levels::table::TableError;
 
-/// What pictures of the levels of a model show differently from the model, by direction and size.
+/// Differences between pictures of a model and of its levels, by direction and size.
 ///
 /// A difference is an area: pixels that are half as bright as they should be count half. Details
 /// below the size of a pixel blend with what is beside them, so a small picture shows less of a
@@ -49,7 +49,7 @@ pub(crate) const FINEST_PX: f32 = SIDE as f32 / WIDTH as f32;
 impl Differences {
     /// Draws all levels of a chain from all directions and compares them with the first.
     pub(crate) fn measure(levels: &[Mesh], look: &Look) -> Result<Self, TableError> {
-        let directions = DirectionGrid::new(DIRECTIONS);
+        let directions = Self::grid();
         let seen_from = |cell: usize| -> Result<(Vec<f32>, f32), TableError> {
             let camera = camera(directions.axis(cell));
             let model = draw(&levels[0], look, &camera)?;
@@ -78,6 +78,29 @@ impl Differences {
         let (low, part) = (octave.floor() as usize, octave.fract());
         let high = (low + 1).min(OCTAVES - 1);
         self.areas[at + low] * (1.0 - part) + self.areas[at + high] * part
+    }
+
+    /// Number of sizes at which levels are compared.
+    pub(crate) const SIZES: usize = OCTAVES;
+
+    /// Returns the sizes at which levels are compared, in pixels per body length.
+    pub(crate) fn pixels_per_body_length() -> [f32; OCTAVES] {
+        std::array::from_fn(|octave| FINEST_PX / (1 << octave) as f32)
+    }
+
+    /// Returns the grid of the directions from which levels are compared.
+    pub(crate) fn grid() -> DirectionGrid {
+        DirectionGrid::new(DIRECTIONS)
+    }
+
+    /// Returns the areas by direction, level and size, and the silhouettes by direction.
+    pub(crate) fn arrays(&self) -> (&[f32], &[f32]) {
+        (&self.areas, &self.silhouettes)
+    }
+
+    /// Creates differences from what [`Self::arrays`] has returned for `levels` levels.
+    pub(crate) fn from_arrays(levels: usize, areas: Vec<f32>, silhouettes: Vec<f32>) -> Self {
+        Self { directions: Self::grid(), levels, areas, silhouettes }
     }
 
     /// Returns the area that the model covers, in square body lengths, seen from a direction.

@@ -2,10 +2,12 @@
 
 use glam::{Vec2, Vec3};
 
+use crate::cell_index::cell_index;
+
 /// Directions in the frame of a member, sorted into the cells of an octahedral map.
 ///
 /// The sphere is projected on an octahedron, which is unfolded to a square of `side` by `side`
-/// cells [EKM*14].
+/// cells [CDEMMM14].
 #[derive(Clone, Debug, PartialEq)]
 pub struct DirectionGrid {
     side: usize,
@@ -59,14 +61,27 @@ impl DirectionGrid {
     }
 
     /// Returns the cell of a direction, a vector of any length above zero.
-    #[inline]
     pub fn cell(&self, direction: Vec3) -> usize {
-        let sum = direction.x.abs() + direction.y.abs() + direction.z.abs();
-        let (u, v) = (direction.x / sum, direction.y / sum);
-        let fold = |a: f32, b: f32| (1.0 - b.abs()).copysign(a);
-        let (u, v) = if direction.z < 0.0 { (fold(u, v), fold(v, u)) } else { (u, v) };
-        let index = |t: f32| ((0.5 * t + 0.5) * self.side as f32) as usize;
-        index(v).min(self.side - 1) * self.side + index(u).min(self.side - 1)
+        let [x, y, z] = direction.to_array();
+        let mut cells = [0];
+        self.cells([&[x], &[y], &[z]], &mut cells);
+        usize::from(cells[0])
+    }
+
+    /// Finds the cells of several directions, given by axis, without a branch.
+    #[inline(always)]
+    pub(crate) fn cells<const N: usize>(&self, [x, y, z]: [&[f32; N]; 3], cells: &mut [u16; N]) {
+        let (half, last) = (0.5 * self.side as f32, self.side as f32 - 1.0);
+        for i in 0..N {
+            let scale = (x[i].abs() + y[i].abs() + z[i].abs()).recip();
+            let (u, v) = (x[i] * scale, y[i] * scale);
+            let below = z[i] < 0.0;
+            let a = if below { (1.0 - v.abs()).copysign(u) } else { u };
+            let b = if below { (1.0 - u.abs()).copysign(v) } else { v };
+            let column = cell_index(a * half + half, last);
+            let row = cell_index(b * half + half, last);
+            cells[i] = (row * self.side as u32 + column) as u16;
+        }
     }
 }
 

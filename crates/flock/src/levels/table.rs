@@ -32,7 +32,7 @@ pub struct LevelTable {
     pub chains: [Chain; 3],
     /// Levels of the facing chains at each depth of the whole chain.
     pub facing: Vec<FacingLevels>,
-    /// What the levels of the whole chain show differently.
+    /// Differences between pictures of the model and of the levels of the whole chain.
     pub differences: Differences,
     /// Radius of the ball around the origin that holds all vertices, in body lengths.
     pub radius: f32,
@@ -137,6 +137,14 @@ impl LevelTable {
             Level { chain: ChainKind::Facing(_), depth, .. } => (ChainKind::Whole, depth),
             Level { chain, depth, .. } => (chain, depth),
         }
+    }
+
+    /// Returns the radius of the ball around the origin that holds all vertices, and half of their
+    /// extent along each axis.
+    pub(crate) fn extent_of(positions: &[[f32; 3]]) -> (f32, [f32; 3]) {
+        let length = |p: &[f32; 3]| glam::Vec3::from(*p).length();
+        let most = |axis: usize| positions.iter().map(|p| p[axis].abs()).fold(0.0, f32::max);
+        (positions.iter().map(length).fold(0.0, f32::max), [0, 1, 2].map(most))
     }
 
     /// Returns a level as a mesh of its own, with all vertices of the table.

@@ -41,5 +41,5 @@ pub enum SceneError {
     Simulation(#[from] SimulationError),
     /// The camera cannot be made.
     #[error(transparent)]
-    Camera(#[from] CameraError),
+    FlockCamera(#[from] CameraError),
 }

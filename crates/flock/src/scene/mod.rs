@@ -26,6 +26,7 @@ mod obstacle;
 mod obstacle_course;
 mod ring;
 mod scenario;
+mod setting;
 mod shot;
 mod solid;
 mod terrain;

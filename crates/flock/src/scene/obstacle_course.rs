@@ -5,7 +5,7 @@ use std::f32::consts::TAU;
 use glam::Vec3;
 
 use crate::scene::lanes::Ring;
-use crate::scene::scenario::Setting;
+use crate::scene::setting::Setting;
 use crate::scene::shot::Shot;
 use crate::scene::{SceneError, SceneObstacle};
 
@@ -20,11 +20,11 @@ const APART: f32 = 2.6;
 pub(super) fn set_up(counts: &[usize]) -> Result<Setting, SceneError> {
     let ring = Ring::of(counts[0]);
     let schools = ring.schools(counts, |_| 0.0)?;
-    let first = ring.angle_of(schools[0].speed * WARM_UP_S + 0.8 * ring.radii.z);
+    let first = ring.angle_of(schools[0].speed * WARM_UP_S + 0.8 * ring.radii.z + 1.2);
     let count = (TAU / ring.angle_of(APART * ring.radii.z)) as usize;
     let angle = |i: usize| first + i as f32 * TAU / count as f32;
     let obstacles = (0..count).flat_map(|i| at(&ring, angle(i), i)).collect();
-    let shot = Shot::Beside { outside: 1.2 * ring.radii.x + 1.3 * ring.radii.z + 2.5 };
+    let shot = Shot::Beside { outside: 0.8 * ring.radii.x + 1.2 * ring.radii.z + 2.7 };
     Ok(Setting { schools, obstacles, shot, warm_up_s: WARM_UP_S })
 }
 

@@ -2,7 +2,7 @@
 
 use crate::scene::SceneError;
 use crate::scene::lanes::Ring;
-use crate::scene::scenario::Setting;
+use crate::scene::setting::Setting;
 use crate::scene::shot::Shot;
 
 /// Tilt of the leaders' ring, as a slope.

@@ -4,11 +4,11 @@ use std::f32::consts::FRAC_PI_4;
 
 use meshlod_mesh::Mesh;
 
-use crate::evaluate::Footage;
 use crate::scene::lanes::{Ring, shares};
+use crate::scene::setting::Setting;
 use crate::scene::shot::Shot;
-use crate::scene::{Film, ScenarioName, SceneError, SceneObstacle, obstacle_course, ring, terrain};
-use crate::simulation::{SchoolOptions, SimulationOptions};
+use crate::scene::{ScenarioName, SceneError, SceneObstacle, obstacle_course, ring, terrain};
+use crate::simulation::SimulationOptions;
 
 /// Options of a scenario.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,18 +61,10 @@ pub struct Scenario {
     pub(super) shot: Shot,
 }
 
-/// What is different in every scenario.
-pub(super) struct Setting {
-    pub schools: Vec<SchoolOptions>,
-    pub obstacles: Vec<SceneObstacle>,
-    pub shot: Shot,
-    pub warm_up_s: f32,
-}
-
 impl Scenario {
     /// Sets up one of the scenarios of this crate.
     ///
-    /// Everything scales with the half axes that [`SchoolOptions::of`] gives the largest school.
+    /// Everything scales with the half axes that [`SchoolOptions::of`](crate::simulation::SchoolOptions::of) gives the largest school.
     /// The camera is outside all obstacles in every frame.
     ///
     /// # Errors
@@ -91,7 +83,7 @@ impl Scenario {
         let setting = match name {
             ScenarioName::Ring => ring::set_up(&counts, circle([1.4, 3.4], 3.0))?,
             ScenarioName::Inside => ring::set_up(&counts, Shot::Inside)?,
-            ScenarioName::Far => ring::set_up(&counts, circle([8.0, 11.0], 12.0))?,
+            ScenarioName::Far => ring::set_up(&counts, circle([5.0, 9.0], 8.0))?,
             ScenarioName::Obstacles => obstacle_course::set_up(&counts)?,
             ScenarioName::Terrain => {
                 terrain::set_up(&counts, options.terrain.ok_or(SceneError::NoTerrain)?)?
@@ -120,26 +112,5 @@ impl Scenario {
     /// Returns the meshes of all obstacles, for drawing.
     pub fn obstacle_meshes(&self) -> Vec<Mesh> {
         self.obstacles.iter().map(SceneObstacle::mesh).collect()
-    }
-
-    /// Runs the scenario and keeps all frames. Takes 28 bytes a member and frame.
-    ///
-    /// # Errors
-    /// What the simulation and the camera refuse.
-    pub fn footage(self, frames: usize) -> Result<Footage, SceneError> {
-        let mut footage = Footage {
-            name: self.name.name().into(),
-            flocks: Vec::new(),
-            cameras: Vec::new(),
-            obstacles: self.obstacle_meshes(),
-            frame_s: self.frame_s as f32,
-        };
-        let mut film = Film::new(self)?;
-        for _ in 0..frames {
-            let (flock, camera) = film.next_frame()?;
-            footage.flocks.push(flock.clone());
-            footage.cameras.push(camera);
-        }
-        Ok(footage)
     }
 }

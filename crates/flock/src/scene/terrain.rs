@@ -4,7 +4,7 @@ use meshlod_mesh::Mesh;
 
 use crate::scene::ground::{CircleHeights, Ground};
 use crate::scene::lanes::Ring;
-use crate::scene::scenario::Setting;
+use crate::scene::setting::Setting;
 use crate::scene::shot::Shot;
 use crate::scene::{SceneError, SceneObstacle};
 
@@ -23,11 +23,11 @@ pub(super) fn set_up(counts: &[usize], terrain: &Mesh) -> Result<Setting, SceneE
     };
     let way = CircleHeights::above(least, smooth);
     // The camera circles farther out and behind, above both the ground and the school.
-    let outside = Ring { radius: ring.radius + 0.8 * radii.z + 1.5, ..ring };
-    let behind = ring.angle_of(1.6 * radii.z + 3.0);
+    let outside = Ring { radius: ring.radius + 0.7 * radii.z + 1.5, ..ring };
+    let behind = ring.angle_of(1.4 * radii.z + 2.0);
     let least = |angle: f32| {
         let free = ground.highest(outside.point(angle, |_| 0.0), 2.0) + 1.5;
-        free.max(way.at(angle + behind) + 0.9 * radii.z + 1.0)
+        free.max(way.at(angle + behind) + 0.55 * radii.z + 1.0)
     };
     let heights = CircleHeights::above(least, smooth);
     let schools = ring.schools(counts, |angle| way.at(angle))?;

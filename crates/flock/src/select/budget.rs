@@ -1,4 +1,4 @@
-//! What a frame may cost, and how fine it should be.
+//! Limits of a frame: its cost and its fineness.
 
 /// Limits for the choice of levels.
 #[derive(Clone, Copy, Debug, PartialEq)]

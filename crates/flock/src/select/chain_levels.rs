@@ -1,7 +1,7 @@
 //! Levels of a chain by distance, as a look-up table.
 
 use crate::levels::{Chain, LevelTable};
-use crate::select::InstanceLevel;
+use crate::select::{InstanceLevel, LANES};
 
 /// Level of a chain for every distance, looked up by the bits of the distance's square.
 ///
@@ -48,15 +48,30 @@ impl ChainLevels {
     }
 
     /// Returns the level for the square of a distance; zero for one that is not a number.
-    #[inline]
+    #[inline(always)]
     pub fn at_squared(&self, distance_squared: f32) -> InstanceLevel {
         self.entries[self.entry(distance_squared)]
     }
 
+    /// Sets the levels for the squares of eight distances.
+    ///
+    /// A loop, since closures over arrays are not always inlined.
+    #[inline(always)]
+    pub fn look_up(&self, squares: &[f32; LANES], levels: &mut [InstanceLevel; LANES]) {
+        let mut entries = [0; LANES];
+        #[expect(clippy::manual_clamp, reason = "`max` also replaces a NaN")]
+        for lane in 0..LANES {
+            entries[lane] = squares[lane].max(LEAST).min(MOST).to_bits() >> DROPPED_BITS;
+        }
+        for lane in 0..LANES {
+            levels[lane] = self.entries[(entries[lane] - FIRST) as usize];
+        }
+    }
+
     /// Returns the number of the entry for the square of a distance.
-    #[inline]
+    #[inline(always)]
+    #[expect(clippy::manual_clamp, reason = "`max` also replaces a NaN")]
     pub(crate) fn entry(&self, distance_squared: f32) -> usize {
-        // `max` also replaces a NaN.
         let bits = distance_squared.max(LEAST).min(MOST).to_bits() >> DROPPED_BITS;
         (bits - FIRST) as usize
     }

@@ -45,7 +45,7 @@ impl ImpostorTier {
 mod tests {
     use std::sync::Arc;
 
-    use crate::camera::Camera;
+    use crate::camera::FlockCamera;
     use crate::flock::Flock;
     use crate::levels::{ChainOptions, LevelTable, Look};
     use crate::select::{Budget, InstanceLevel, PolicyName, Selector};
@@ -56,10 +56,10 @@ mod tests {
         Arc::new(LevelTable::new(&ball, &Look::default(), &options).unwrap())
     }
 
-    /// Camera that sees a body length at this distance from the origin as 1000 / distance pixels.
-    fn camera(distance: f32) -> Camera {
+    /// FlockCamera that sees a body length at this distance from the origin as 1000 / distance pixels.
+    fn camera(distance: f32) -> FlockCamera {
         let fov = 2.0 * 0.05f32.atan();
-        Camera::look_at([0.0, 0.0, distance], [0.0; 3], fov, [100, 100]).unwrap()
+        FlockCamera::look_at([0.0, 0.0, distance], [0.0; 3], fov, [100, 100]).unwrap()
     }
 
     #[test]

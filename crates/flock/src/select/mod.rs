@@ -21,7 +21,7 @@ pub use instance_level::{Appearance, InstanceLevel};
 pub use name::PolicyName;
 pub use view::{LANES, Lanes, View};
 
-use crate::camera::Camera;
+use crate::camera::FlockCamera;
 use crate::flock::Flock;
 use crate::levels::LevelTable;
 use crate::select::impostor_tier::ImpostorTier;
@@ -41,7 +41,7 @@ pub trait Policy: Send {
 /// use std::sync::Arc;
 /// use meshlod_flock::levels::{ChainOptions, LevelTable, Look, ModelAxes};
 /// use meshlod_flock::select::{Budget, PolicyName, Selector};
-/// use meshlod_flock::{Camera, Flock, School};
+/// use meshlod_flock::{FlockCamera, Flock, School};
 ///
 /// let options = ChainOptions { axes: ModelAxes::FISH, ..ChainOptions::default() };
 /// let table = LevelTable::new(&meshlod_samples::fish(2_000), &Look::default(), &options)?;
@@ -51,7 +51,7 @@ pub trait Policy: Send {
 ///
 /// let table = Arc::new(table);
 /// let mut selector = Selector::new(PolicyName::ScreenError, table.clone());
-/// let camera = Camera::look_at([0.0, 0.0, 5.0], [0.0; 3], 0.8, [1920, 1080])?;
+/// let camera = FlockCamera::look_at([0.0, 0.0, 5.0], [0.0; 3], 0.8, [1920, 1080])?;
 /// let levels = selector.select(&flock, &camera, &Budget::default());
 ///
 /// let triangles = |i: usize| levels[i].level().map_or(0, |level| table.triangle_count(level));
@@ -80,7 +80,12 @@ impl Selector {
     ///
     /// Allocates only where the flock has grown since the frame before. Cost: linear in the
     /// members.
-    pub fn select(&mut self, flock: &Flock, camera: &Camera, budget: &Budget) -> &[InstanceLevel] {
+    pub fn select(
+        &mut self,
+        flock: &Flock,
+        camera: &FlockCamera,
+        budget: &Budget,
+    ) -> &[InstanceLevel] {
         self.select_visible(flock, camera, budget, None)
     }
 
@@ -90,7 +95,7 @@ impl Selector {
     pub fn select_visible(
         &mut self,
         flock: &Flock,
-        camera: &Camera,
+        camera: &FlockCamera,
         budget: &Budget,
         visible: Option<&[bool]>,
     ) -> &[InstanceLevel] {

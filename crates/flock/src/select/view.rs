@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::Vec3;
 use rayon::prelude::*;
 
-use crate::camera::Camera;
+use crate::camera::FlockCamera;
 use crate::flock::Flock;
 use crate::levels::LevelTable;
 use crate::select::{Budget, InstanceLevel};
@@ -16,13 +16,13 @@ pub const LANES: usize = 8;
 /// Members that one task handles; fewer are handled by the calling thread.
 const TASK: usize = 1 << 14;
 
-/// What a policy decides on: the flock, the camera, the levels and the budget of a frame.
+/// Basis of a policy's choice: the flock, the camera, the levels and the budget of a frame.
 #[derive(Clone, Copy)]
 pub struct View<'a> {
     /// Flock to draw.
     pub flock: &'a Flock,
-    /// Camera that sees it.
-    pub camera: &'a Camera,
+    /// FlockCamera that sees it.
+    pub camera: &'a FlockCamera,
     /// Levels of the members.
     pub table: &'a LevelTable,
     /// Limits of the frame.
@@ -49,7 +49,7 @@ pub struct Lanes {
 impl<'a> View<'a> {
     pub(crate) fn new(
         flock: &'a Flock,
-        camera: &'a Camera,
+        camera: &'a FlockCamera,
         table: &'a LevelTable,
         budget: &'a Budget,
         visible: Option<&'a [bool]>,
@@ -64,16 +64,14 @@ impl<'a> View<'a> {
     }
 
     /// Returns the next eight members from `first` on, as the camera sees them.
-    #[inline]
+    #[inline(always)]
     pub fn lanes(&self, first: usize) -> Lanes {
-        let position = &self.flock.members.position;
         let eye = self.camera.eye().to_array();
         let mut lanes = Lanes::default();
-        for axis in 0..3 {
-            let values = &position[axis][first..];
-            for lane in 0..LANES {
-                let value = values.get(lane).copied().unwrap_or(values[values.len() - 1]);
-                lanes.offset[axis][lane] = value - eye[axis];
+        for (axis, eye) in eye.into_iter().enumerate() {
+            let values = load(&self.flock.members.position[axis], first);
+            for (offset, value) in lanes.offset[axis].iter_mut().zip(values) {
+                *offset = value - eye;
             }
         }
         lanes.look(self.camera.axes(), self.camera.tangents(), self.margins, self.table.radius);
@@ -124,6 +122,20 @@ impl<'a> View<'a> {
             tasks.for_each(|(i, levels)| task(begin + i * TASK, levels));
         }
     }
+}
+
+/// Returns the next eight values from `first` on; the last one is repeated at the end.
+#[inline(always)]
+pub(crate) fn load(values: &[f32], first: usize) -> [f32; LANES] {
+    match values.get(first..first + LANES) {
+        Some(eight) => eight.try_into().expect("there are eight"),
+        None => padded(values, first),
+    }
+}
+
+#[cold]
+fn padded(values: &[f32], first: usize) -> [f32; LANES] {
+    std::array::from_fn(|lane| values[(first + lane).min(values.len() - 1)])
 }
 
 impl Lanes {

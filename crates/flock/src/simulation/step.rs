@@ -11,7 +11,7 @@ use super::neighbours::{Candidates, Neighbours};
 use super::options::{Behaviour, SteerEvery};
 use super::swarm::{Axes, Kept, Motion, Swarm, at};
 
-/// What all members share in a step.
+/// State that all members share in a step.
 pub struct Moment<'a> {
     pub grid: &'a Grid,
     pub behaviour: &'a Behaviour,
@@ -119,7 +119,7 @@ impl Looks {
     }
 }
 
-/// What a step does not change.
+/// State of a member that a step does not change.
 struct Still<'a> {
     from: &'a Motion,
     id: &'a [u32],

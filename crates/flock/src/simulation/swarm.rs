@@ -22,12 +22,12 @@ pub struct Swarm {
     pub from: Motion,
     /// Motion at the end of the last step.
     pub to: Motion,
-    /// What a member is and keeps from step to step.
+    /// State of each member that it keeps from step to step.
     pub kept: Kept,
     spare: Kept,
 }
 
-/// What a member is and keeps from step to step.
+/// State of each member that it keeps from step to step.
 #[derive(Clone, Debug, Default)]
 pub struct Kept {
     /// Number of the member.

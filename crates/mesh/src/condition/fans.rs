@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::condition::links::Links;
 use crate::condition::suspects::Around;
-use crate::{Connectivity, FaceId, Side, Twin, VertexId};
+use crate::{Connectivity, FaceId, Side, Twin, UnionFind, VertexId};
 
 /// The vertices of the conditioned mesh.
 pub(super) struct FanVertices {
@@ -29,15 +29,15 @@ impl FanVertices {
     /// Vertices that are no suspects keep their ids.
     pub(super) fn new(around: &Around, links: &Links) -> Self {
         let Around { mesh, is_suspect, .. } = around;
-        let mut joined = Joined::new(mesh.faces.len() * 3);
+        let mut joined = UnionFind::new(mesh.faces.len() * 3);
         for [a, b] in links.pairs() {
-            joined.join(corner(a, 0), corner(b, 1));
-            joined.join(corner(a, 1), corner(b, 0));
+            joined.union(corner(a, 0) as u32, corner(b, 1) as u32);
+            joined.union(corner(a, 1) as u32, corner(b, 0) as u32);
         }
         let corners = mesh.faces.as_flattened();
         let mut lowest = corners.to_vec();
         for (i, &v) in corners.iter().enumerate() {
-            let root = joined.root(i);
+            let root = joined.find(i as u32) as usize;
             lowest[root] = lowest[root].min(v);
         }
         let inputs = mesh.positions.len();
@@ -52,7 +52,7 @@ impl FanVertices {
                 continue;
             }
             // The root is the first corner of its vertex.
-            let root = joined.root(i);
+            let root = joined.find(i as u32) as usize;
             this.of_corner[i] =
                 if root == i { this.number(lowest[i]) } else { this.of_corner[root] };
         }
@@ -108,33 +108,5 @@ impl FanVertices {
         };
         let sides = (0..faces.len()).flat_map(|f| (0..3).map(move |k| (f, k)));
         sides.map(|(f, k)| Side::new(FaceId::new(f), k)).filter(is_odd).collect()
-    }
-}
-
-/// Returns true if a face has three different vertices.
-pub(super) fn is_whole([a, b, c]: [VertexId; 3]) -> bool {
-    a != b && b != c && c != a
-}
-
-/// Sets of indices that are joined two by two; the root of a set is its lowest index.
-pub(super) struct Joined(Vec<u32>);
-
-impl Joined {
-    pub(super) fn new(count: usize) -> Self {
-        Self((0..count as u32).collect())
-    }
-
-    pub(super) fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b)] = a.min(b) as u32;
-    }
-
-    pub(super) fn root(&mut self, mut i: usize) -> usize {
-        while self.0[i] as usize != i {
-            // Halving the path keeps later walks short.
-            self.0[i] = self.0[self.0[i] as usize];
-            i = self.0[i] as usize;
-        }
-        i
     }
 }

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use crate::condition::carry::Change;
-use crate::condition::fans::{Joined, is_whole};
-use crate::{Mesh, VertexId, merge_equal_wedges};
+use crate::condition::suspects::is_whole;
+use crate::{Mesh, UnionFind, VertexId, merge_equal_wedges};
 
 /// Bits of a position; -0 counts as 0.
 type Key = [u64; 3];
@@ -35,9 +35,9 @@ impl Joints {
         if this.joints.is_empty() {
             return this;
         }
-        let mut joined = Joined::new(mesh.positions.len());
+        let mut joined = UnionFind::new(mesh.positions.len());
         for [before, now] in &change.parted {
-            joined.join(before.index(), now.index());
+            joined.union(before.0, now.0);
         }
         let mut is_used = vec![false; mesh.positions.len()];
         for face in mesh.faces.iter().filter(|face| is_whole(**face)) {
@@ -45,7 +45,7 @@ impl Joints {
         }
         for (v, position) in mesh.positions.iter().enumerate().filter(|&(v, _)| is_used[v]) {
             if let Some(&place) = this.index.get(&key(*position)) {
-                this.joints[place as usize].push(joined.root(v) as u32);
+                this.joints[place as usize].push(joined.find(v as u32));
             }
         }
         this

@@ -2,7 +2,7 @@
 
 use crate::condition::links::Links;
 use crate::condition::pairing::{self, normal};
-use crate::{Lock, Locks, Mesh, Side, VertexId, first_near};
+use crate::{Locks, Mesh, Side, VertexId, first_near};
 
 /// Cosine of the angle between the normals of two faces that lie on each other, as the two sides
 /// of a leaf do. They are not sewn to a bag without volume.
@@ -17,9 +17,8 @@ pub(super) fn sew(
 ) -> Vec<[Side; 2]> {
     let places = Places::new(mesh, border, 0.0);
     let ties = tied(locks);
-    let lock = |v: VertexId| locks.of_vertex.get(v.index()).copied().unwrap_or(Lock::Free);
     let may_merge = |v: VertexId, w: VertexId| {
-        v == w || (lock(v) == lock(w) && !is_tied(&ties, v) && !is_tied(&ties, w))
+        v == w || (locks.of(v) == locks.of(w) && !is_tied(&ties, v) && !is_tied(&ties, w))
     };
     let may_meet = |a: Side, b: Side| {
         let ([v0, v1], [w0, w1]) = (a.ends(&mesh.faces), b.ends(&mesh.faces));

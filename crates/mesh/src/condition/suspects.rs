@@ -1,6 +1,6 @@
 //! Vertices that may need conditioning, and the part of the mesh around them.
 
-use crate::{Connectivity, FaceId, Labels, Lock, Locks, Mesh, Side, Twin, VertexId};
+use crate::{Connectivity, FaceId, Labels, Locks, Mesh, Side, Twin, VertexId};
 
 /// Marks the vertices at which edges do not leave as often as they arrive: the ends of boundary
 /// edges, of edges with an odd number of faces, and of those whose faces do not agree.
@@ -13,10 +13,7 @@ pub(super) fn unbalanced(mesh: &Mesh) -> Vec<bool> {
         mixed ^ mixed >> 29
     };
     let mut sums = vec![0_u64; mesh.positions.len()];
-    for &[a, b, c] in &mesh.faces {
-        if a == b || b == c || c == a {
-            continue;
-        }
+    for &[a, b, c] in mesh.faces.iter().filter(|face| is_whole(**face)) {
         let [x, y, z] = [a, b, c].map(hash);
         for (v, next, previous) in [(a, y, z), (b, z, x), (c, x, y)] {
             let sum = &mut sums[v.index()];
@@ -24,6 +21,11 @@ pub(super) fn unbalanced(mesh: &Mesh) -> Vec<bool> {
         }
     }
     sums.into_iter().map(|sum| sum != 0).collect()
+}
+
+/// Returns true if a face has three different vertices.
+pub(super) fn is_whole([a, b, c]: [VertexId; 3]) -> bool {
+    a != b && b != c && c != a
 }
 
 /// Marks the vertices on the boundary, those that are not manifold, and those of a front with its
@@ -68,8 +70,8 @@ pub(super) struct Around {
 impl Around {
     pub(super) fn new(whole: &Mesh, suspects: &[bool]) -> Self {
         let near = |&f: &u32| {
-            let [a, b, c] = whole.faces[f as usize];
-            a != b && b != c && c != a && [a, b, c].iter().any(|v| suspects[v.index()])
+            let face = whole.faces[f as usize];
+            is_whole(face) && face.iter().any(|v| suspects[v.index()])
         };
         let faces: Vec<u32> = (0..whole.faces.len() as u32).filter(near).collect();
         let at = |&f: &u32| whole.faces[f as usize];
@@ -113,7 +115,7 @@ impl Around {
 
     /// Returns the locks of the vertices; ties with others only as ties of their own.
     pub(super) fn locks(&self, whole: &Locks) -> Locks {
-        let lock = |v: &VertexId| whole.of_vertex.get(v.index()).copied().unwrap_or(Lock::Free);
+        let lock = |&v: &VertexId| whole.of(v);
         let own = |v: &VertexId| Some(VertexId::new(self.vertices.binary_search(v).ok()?));
         let ties = whole.ties.iter().map(|tie| tie.iter().filter_map(own).collect());
         Locks { of_vertex: self.vertices.iter().map(lock).collect(), ties: ties.collect() }

@@ -294,7 +294,7 @@ proptest! {
             prop_assert!(odd <= connect(&soup).non_manifold_edges(), "{odd} edges");
             // A level has no faces that repeat a vertex.
             let mut all = found.mesh.clone();
-            all.faces.retain(|face| fans::is_whole(*face));
+            all.faces.retain(|face| suspects::is_whole(*face));
             let mut level = all.clone();
             level.compact();
             found.rejoin(&mut level);
@@ -305,7 +305,7 @@ proptest! {
             }
             if found.counts.stitched_edges == 0 && found.counts.duplicate_faces == 0 {
                 let mut input = soup.clone();
-                input.faces.retain(|face| fans::is_whole(*face));
+                input.faces.retain(|face| suspects::is_whole(*face));
                 input.compact();
                 prop_assert_eq!(level, input);
             }

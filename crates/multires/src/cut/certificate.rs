@@ -61,6 +61,10 @@ pub enum Flaw {
     /// The update may be applied after a neighbour of its vertex has been split.
     #[error("a neighbour of its vertex is split by an update of a higher level")]
     NeighbourEarlier,
+    /// The update may be applied too early: its vertex may have a neighbour that no face follows,
+    /// for which only updates marked as open wait.
+    #[error("its vertex is on a boundary, and it is not marked as open")]
+    NotMarkedOpen,
     /// The update is fused with the one that follows it, which cannot be applied.
     #[error("it is fused with a split that cannot follow it")]
     FusedBlocked,
@@ -144,14 +148,20 @@ impl<'m> Proof<'m> {
         if mt.non_fan_split(update).is_some() || !coarse.find_open() {
             coarse.find_odd(up);
             fine.find_odd(up);
+            if !mt.is_open(update) && !coarse.is_balanced(node) {
+                return Err(Flaw::NotMarkedOpen);
+            }
             return if coarse.edges == fine.edges { Ok(false) } else { Err(Flaw::Crack) };
+        }
+        let is_open = coarse.edges.iter().any(|edge| edge.ends().contains(&node));
+        if is_open && !mt.is_open(update) {
+            return Err(Flaw::NotMarkedOpen);
         }
         if !fine.find_open() {
             return Err(Flaw::BadEdge);
         }
         // Both sides must have the same surrounding edges, and the same open ends at the vertex,
         // between which only the edge of the children may be new.
-        let is_open = coarse.edges.iter().any(|edge| edge.ends().contains(&node));
         let all = fine.edges.len();
         fine.edges.retain_mut(|edge| {
             let [from, to] = edge.ends();
@@ -238,6 +248,7 @@ impl Side {
         while let [edge, rest @ ..] = all {
             all = match rest {
                 [next, ..] if next == edge => return false,
+                [next, third, ..] if edge.is_beside(*next) && next == third => return false,
                 [next, rest @ ..] if edge.is_beside(*next) => rest,
                 _ => {
                     self.edges.extend((!edge.is_loop()).then_some(*edge));
@@ -257,6 +268,17 @@ impl Side {
         self.edges.extend(odd.map(|same| same[0].undirected()).filter(|edge| !edge.is_loop()));
     }
 
+    /// Returns true if at a node as many faces enter each edge as leave it, in a sorted side.
+    ///
+    /// That stays so when other nodes are merged, and then each neighbour has a face after it.
+    fn is_balanced(&self, node: u32) -> bool {
+        let edges = self.all.chunk_by(|a, b| a.is_beside(*b));
+        edges.filter(|same| same[0].ends().contains(&node)).all(|same| {
+            let leaving = same.iter().filter(|edge| edge.ends()[0] == node).count();
+            2 * leaving == same.len()
+        })
+    }
+
     fn sort(&mut self, up: impl Fn(u32) -> u32) {
         self.all.clear();
         for &[a, b, c] in &self.triangles {
@@ -269,7 +291,7 @@ impl Side {
 
 /// A directed edge in one number: its lesser node, its greater node, and whether it starts at the
 /// greater one.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Edge(u64);
 
 impl Edge {
@@ -299,5 +321,23 @@ impl Edge {
     fn is_loop(self) -> bool {
         let [from, to] = self.ends();
         from == to
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_with_a_face_on_either_side_have_no_third() {
+        let side =
+            |triangles: &[[u32; 3]]| Side { triangles: triangles.to_vec(), ..Side::default() };
+        let mut fan = side(&[[0, 1, 2], [0, 2, 3]]);
+        assert!(fan.find_open());
+        let open = [[0, 1], [3, 0], [1, 2], [2, 3]].map(|[from, to]| Edge::new(from, to));
+        assert_eq!(fan.edges, open);
+        for third in [[0, 2, 4], [2, 0, 4]] {
+            assert!(!side(&[[0, 1, 2], [0, 2, 3], third]).find_open(), "{third:?}");
+        }
     }
 }

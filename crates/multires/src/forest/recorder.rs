@@ -233,15 +233,17 @@ impl Observe for Recorder {
 }
 
 /// Returns the ring index of the node that no face follows, at which the fan is open, or an inner
-/// `None` for a closed fan. Returns an outer `None` if the remaining faces are no fan, or too many.
+/// `None` for a closed fan. Returns an outer `None` if the remaining faces are no fan, or too many:
+/// where two of them follow one node or precede it.
 fn open_end(hood: &Neighbourhood) -> Option<Option<usize>> {
     let around = hood.ring().len();
     if around > MAX_RANKED || around > hood.spokes().len() + 1 {
         return None;
     }
-    let mut followed = [false; MAX_RANKED];
+    let (mut followed, mut preceded) = ([false; MAX_RANKED], [false; MAX_RANKED]);
     for spoke in hood.spokes() {
-        if std::mem::replace(&mut followed[spoke.a as usize], true) {
+        let (a, b) = (&mut followed[spoke.a as usize], &mut preceded[spoke.b as usize]);
+        if std::mem::replace(a, true) || std::mem::replace(b, true) {
             return None;
         }
     }

@@ -340,12 +340,7 @@ impl Implicit {
 impl Implicit {
     /// Returns copies in which one field of an update is changed.
     pub(crate) fn corrupted(&self, update: u32) -> Vec<Self> {
-        let corrupt = |change: &dyn Fn(&mut Local)| {
-            let mut wrong = self.clone();
-            let Splits::Full(splits) = &mut wrong.splits else { unreachable!("never compacted") };
-            change(&mut splits[update as usize].local);
-            wrong
-        };
+        let corrupt = |change: &dyn Fn(&mut Local)| self.with(update, change);
         vec![
             corrupt(&|split| split.level = 0),
             corrupt(&|split| split.level = (split.level - 1).min(split.level)),
@@ -355,7 +350,27 @@ impl Implicit {
             corrupt(&|split| split.wings.reverse()),
             corrupt(&|split| split.wings[0] = NO_WING),
             corrupt(&|split| split.wings[1] = 0),
+            corrupt(&|split| split.wings[0] = split.wings[1]),
+            corrupt(&|split| split.wings = [LAST_WING; 2]),
         ]
+    }
+
+    /// Returns copies in which both wings of an update are one vertex, by its rank or as the last.
+    pub(crate) fn with_both_wings_at_one_vertex(&self, update: u32) -> Vec<Self> {
+        let both = (0..12).chain([LAST_WING]);
+        both.map(|wing| self.with(update, &|split| split.wings = [wing; 2])).collect()
+    }
+
+    /// Returns a copy in which an update is not marked as open.
+    pub(crate) fn without_open_mark(&self, update: u32) -> Self {
+        self.with(update, &|split| split.level &= !OPEN)
+    }
+
+    fn with(&self, update: u32, change: &dyn Fn(&mut Local)) -> Self {
+        let mut changed = self.clone();
+        let Splits::Full(splits) = &mut changed.splits else { unreachable!("never compacted") };
+        change(&mut splits[update as usize].local);
+        changed
     }
 
     /// Returns copies in which a non-fan split creates a wrong face: a child's corner is moved to a

@@ -70,7 +70,7 @@ pub(crate) fn apply(options: &Options, connectivity: &Connectivity, surface: &mu
     let mut held = Held::default();
     for v in (0..surface.vertex_count()).map(VertexId::new) {
         let on_boundary = *lock_boundary && connectivity.marks(v).boundary();
-        let lock = locks.of_vertex.get(v.index()).copied().unwrap_or_default();
+        let lock = locks.of(v);
         match if on_boundary { Lock::Locked } else { lock } {
             Lock::Free => {}
             Lock::Protected => {

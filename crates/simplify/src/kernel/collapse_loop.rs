@@ -30,7 +30,7 @@ use crate::kernel::contraction_log::{Logged, LoggedContraction};
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
 use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
-use crate::kernel::metric::{Metric, protection, seam_price};
+use crate::kernel::metric::{Metric, seam_price};
 use crate::kernel::schedule::batch::Batch;
 use crate::kernel::schedule::bucket_queue::{BATCH_LEN, BucketQueue, NONE, bucket, last_bucket};
 use crate::kernel::schedule::deferral::Deferral;
@@ -82,7 +82,8 @@ pub(crate) struct CollapseLoop<'v, A> {
     pub(crate) edge_ring: &'v mut EdgeRing,
     pub(crate) deferral: &'v mut Deferral,
     pub(crate) debts: &'v mut VolumeDebts,
-    /// Half the size of the box, centred in the frame, that all vertices stay in.
+    /// Half the size of the input's box, centred in the frame and a little larger. A metric that
+    /// preserves the volume keeps all vertices in it.
     pub(crate) room: Vec3,
 }
 
@@ -325,7 +326,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
             cost *= seam_price::<A::Metric>();
         }
         if VertexFlags(end0.flags.0 | end1.flags.0).any(VertexFlags::PROTECTED) {
-            cost *= protection::<A::Metric>();
+            cost *= vertices.protection;
         }
         match bucket(cost) {
             NONE => Err(refused(Refusal::Volume)),

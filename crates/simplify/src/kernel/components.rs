@@ -13,8 +13,9 @@ use rayon::prelude::*;
 use crate::kernel::mesh::local_frame::Frame;
 use crate::kernel::mesh::one_ring::Vertices;
 use crate::kernel::mesh::vertex::VertexFlags;
-use crate::kernel::metric::{Metric, protection};
+use crate::kernel::metric::Metric;
 use crate::kernel::schedule::bucket_queue::{bucket, last_bucket};
+use crate::kernel::setup::vertex_order::is_face;
 
 /// Largest number of faces of a component that are sampled.
 const SAMPLED_FACES: usize = 24;
@@ -34,7 +35,8 @@ pub(crate) struct Component {
     size: f32,
     /// Area, in the frame's units.
     area: f32,
-    is_protected: bool,
+    /// Factor on the cost of removing it.
+    protection: f32,
     /// True if a lock or a tie holds a vertex of it.
     is_held: bool,
     faces: Range<usize>,
@@ -96,9 +98,9 @@ impl Components {
     ) -> Option<Self> {
         let mesh = pieces.mesh;
         let mut corners = Cow::Borrowed(&mesh.faces);
-        if !faces.clone().all(is_live) {
+        if !faces.clone().all(is_face) {
             // Faces that are left out join nothing.
-            let joined = |(now, face): ([u32; 3], &[VertexId; 3])| match is_live(now) {
+            let joined = |(now, face): ([u32; 3], &[VertexId; 3])| match is_face(now) {
                 true => *face,
                 false => [face[0]; 3],
             };
@@ -138,7 +140,7 @@ impl Components {
         let mut own = vec![Vec::new(); count];
         for (i, face) in faces.enumerate() {
             let component = &mut of_face[i];
-            if is_live(face) {
+            if is_face(face) {
                 lists[*component as usize].push(i);
                 own[*component as usize].extend(face);
             } else {
@@ -169,7 +171,7 @@ impl Components {
                 held |= is_held[v.index()];
             }
             let is_protected = |v: &u32| vertices.get(*v).flags.any(VertexFlags::PROTECTED);
-            let is_protected = own.iter().any(is_protected);
+            let protection = if own.iter().any(is_protected) { vertices.protection } else { 1.0 };
             let places =
                 |i: usize| mesh.faces[i].map(|v| frame.to_local(mesh.positions[v.index()]));
             let triangles: Vec<[Vec3; 3]> = faces.iter().map(|&i| places(i)).collect();
@@ -179,7 +181,7 @@ impl Components {
             components.all.push(Component {
                 size: (bounds.diagonal() / frame.unit) as f32,
                 area: triangles.iter().map(area).sum(),
-                is_protected,
+                protection,
                 is_held: held,
                 faces: components.faces.len()..components.faces.len() + faces.len(),
                 vertices: first..components.vertices.len(),
@@ -219,9 +221,8 @@ impl Components {
 
     /// Returns the bucket of the cost of removing a component that has `faces` faces left.
     pub(crate) fn bucket<M: Metric>(&self, component: u32, apart: &Apart, faces: usize) -> u16 {
-        let Component { area, is_protected, .. } = self.all[component as usize];
-        let cost = M::vanishing_cost(area, faces as f32, apart.mean);
-        let cost = if is_protected { cost * protection::<M>() } else { cost };
+        let Component { area, protection, .. } = self.all[component as usize];
+        let cost = M::vanishing_cost(area, faces as f32, apart.mean) * protection;
         bucket(cost).min(last_bucket())
     }
 
@@ -284,10 +285,6 @@ impl Components {
             self.put_back(component, 0);
         }
     }
-}
-
-fn is_live([a, b, c]: [u32; 3]) -> bool {
-    a != b && b != c && c != a
 }
 
 fn area([a, b, c]: &[Vec3; 3]) -> f32 {

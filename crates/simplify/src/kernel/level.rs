@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::kernel::attributes::AttributeModel;
 use crate::kernel::contraction_log::InputNames;
-use crate::kernel::setup::vertex_order::numbers;
+use crate::kernel::setup::vertex_order::{is_face, numbers};
 
 /// Returns the faces that are left with the vertices they use, in the input's order. `split` are
 /// the faces with copies of vertices, if there are any.
@@ -75,6 +75,5 @@ fn live_faces(
         let [a, b, c] = face(i);
         (i as u32, [heir(a), heir(b), heir(c)])
     };
-    let is_left = |(_, [a, b, c]): &(u32, [u32; 3])| a != b && b != c && c != a;
-    (0..count).into_par_iter().map(now).filter(is_left).collect()
+    (0..count).into_par_iter().map(now).filter(|(_, face)| is_face(*face)).collect()
 }

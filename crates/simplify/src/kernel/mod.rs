@@ -18,7 +18,7 @@
 //! | `bound` | a bound on the distance to the input |
 //! | `schedule` | edge costs, the bucket queue, deferral |
 //! | `collapse_loop` | the loop: start reading here; `tied` and `vanish` are its rarer steps |
-//! | `components`, `volume` | the components that may vanish, and the volume lost so far |
+//! | `components`, `volume` | the components that may vanish, and the volume lost and owed |
 //! | `partition` | parts that coarsen side by side |
 //! | `run`, `level`, `contraction_log` | the face to `Simplifier`: runs, levels, observers |
 //!

@@ -60,10 +60,12 @@ const FACES_PER_REPORT: usize = 8192;
 
 /// Constraints of the whole surface.
 pub(crate) struct Whole {
+    /// Ties, if there are any. They need the surface in one part.
     pub(crate) ties: Option<Ties>,
-    /// Components that may vanish.
+    /// Components that may vanish once the surface is in one part, if there are any.
     pub(crate) components: Option<Components>,
-    /// Half the size of the box, centred in the frame, that all vertices stay in.
+    /// Half the size of the input's box, centred in the frame and a little larger. A metric that
+    /// preserves the volume keeps all vertices in it.
     pub(crate) room: Vec3,
 }
 
@@ -83,12 +85,7 @@ pub(crate) struct Partition<A> {
     pub(crate) error: f64,
     pub(crate) refusals: Refusals,
     pub(crate) volume: VolumeTally,
-    /// Ties, if there are any. They need the surface in one part.
-    ties: Option<Ties>,
-    /// Components that may vanish once the surface is in one part, if there are any.
-    pub(crate) components: Option<Components>,
-    /// Half the size of the box that all vertices stay in.
-    room: Vec3,
+    pub(crate) whole: Whole,
     /// Long rings of copies, which are in no part until all vertices are in one.
     long_of_copies: Vec<LongRing>,
     /// Steps done so far, if an observer wants them.
@@ -111,10 +108,9 @@ struct PartState {
 
 impl<A: AttributeModel> Partition<A> {
     pub(crate) fn new(store: VertexStore, model: A, live_faces: usize, whole: Whole) -> Self {
-        let Whole { ties, components, room } = whole;
-        let are_many = components.as_ref().is_some_and(|all| all.are_many(live_faces));
-        let part = if ties.is_some() || are_many { usize::MAX } else { MAX_PART };
-        Self { ties, components, room, ..Self::of_at_most(part, store, model, live_faces) }
+        let are_many = whole.components.as_ref().is_some_and(|all| all.are_many(live_faces));
+        let part = if whole.ties.is_some() || are_many { usize::MAX } else { MAX_PART };
+        Self { whole, ..Self::of_at_most(part, store, model, live_faces) }
     }
 
     /// Splits the surface into parts of at most `part` vertices.
@@ -132,9 +128,7 @@ impl<A: AttributeModel> Partition<A> {
             error: 0.0,
             refusals: Refusals::default(),
             volume: VolumeTally::default(),
-            ties: None,
-            components: None,
-            room: Vec3::INFINITY,
+            whole: Whole::default(),
             long_of_copies: Vec::new(),
             log: None,
         };
@@ -272,8 +266,8 @@ impl<A: AttributeModel> Partition<A> {
     /// Returns a loop for each part, with the part's waiting vertices.
     fn loops(&mut self) -> Vec<(CollapseLoop<'_, A>, &mut Vec<u32>)> {
         let first_copy = self.store.own() as u32;
-        let room = self.room;
-        let VertexStore { all, copied, split, .. } = &mut self.store;
+        let (error, room) = (self.error, self.whole.room);
+        let VertexStore { all, copied, split, protection, .. } = &mut self.store;
         let mut rest = &mut all[..];
         let mut loops = Vec::with_capacity(self.parts.len());
         for (part, model) in self.parts.iter_mut().zip(&mut self.models) {
@@ -281,17 +275,16 @@ impl<A: AttributeModel> Partition<A> {
             let (all, others) = rest.split_at_mut(vertices.len());
             rest = others;
             let base = vertices.start as u32;
-            let vertices = Vertices { all, base, long, copied, split, first_copy };
-            let collapse_loop =
+            let protection = *protection;
+            let vertices = Vertices { all, base, long, copied, split, first_copy, protection };
+            let mut collapse_loop =
                 CollapseLoop::new(vertices, model, queue, edge_ring, (deferral, debts), room);
+            collapse_loop.error = error;
             loops.push((collapse_loop, waiting));
         }
-        for (collapse_loop, _) in &mut loops {
-            collapse_loop.error = self.error;
-        }
         if let [(collapse_loop, _)] = &mut loops[..] {
-            collapse_loop.ties = self.ties.as_mut();
-            collapse_loop.components = self.components.as_mut();
+            collapse_loop.ties = self.whole.ties.as_mut();
+            collapse_loop.components = self.whole.components.as_mut();
         }
         loops
     }
@@ -430,7 +423,7 @@ mod tests {
     use crate::kernel::metric::swept_volume::SweptVolume;
     use crate::kernel::schedule::bucket_queue::NONE;
     use crate::kernel::setup::build_rings::Fans;
-    use crate::kernel::setup::vertex_order::Order;
+    use crate::kernel::setup::vertex_order::{Order, is_face};
 
     struct Test {
         mesh: Mesh,
@@ -458,7 +451,7 @@ mod tests {
             let face =
                 |face: &[VertexId; 3]| self.order.face(face).map(|v| live_vertices[v as usize]);
             let faces = self.mesh.faces.iter().map(face);
-            let mut left = faces.filter(|[a, b, c]| a != b && b != c && c != a).collect::<Vec<_>>();
+            let mut left = faces.filter(|&face| is_face(face)).collect::<Vec<_>>();
             assert_eq!(left.len(), self.partition.live_faces);
             left.iter_mut().for_each(|face| {
                 let least = (0..3).min_by_key(|&i| face[i]).unwrap();

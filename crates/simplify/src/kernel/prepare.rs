@@ -161,9 +161,10 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
 
     /// Applies the locks. Returns for each vertex of the input whether it is locked.
     fn lock(&mut self, options: &Options) -> Vec<bool> {
+        self.fans.store.protection = options.protection_of_cost() as f32;
         let mut is_locked = vec![false; self.mesh.positions.len()];
-        let locks = &options.locks.of_vertex;
-        if locks.is_empty() && !options.lock_boundary {
+        let locks = &options.locks;
+        if locks.of_vertex.is_empty() && !options.lock_boundary {
             return is_locked;
         }
         // Where a fan of copies ends, the surface may go on.
@@ -173,7 +174,7 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
         let mut vertices = self.fans.store.whole();
         for v in 0..own {
             let input = VertexId(self.order.input(v));
-            let lock = locks.get(input.index()).copied().unwrap_or_default();
+            let lock = locks.of(input);
             let on_boundary = options.lock_boundary
                 && match &connectivity {
                     Some(connectivity) => connectivity.marks(input).boundary(),

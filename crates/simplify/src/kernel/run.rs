@@ -101,7 +101,7 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
         match (self.partition.log.take(), self.surface.take()) {
             (Some(log), Some(mut surface)) => {
                 let values = self.partition.models[0].recorded();
-                let components = self.partition.components.as_ref();
+                let components = self.partition.whole.components.as_ref();
                 replay((&log, &values), components, self.names(), &mut surface, observer);
                 self.surface = surface.into();
             }
@@ -172,7 +172,12 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
 
     fn tally(&self) -> Tally {
         Tally {
-            vanished: self.partition.components.as_ref().map_or(0, |all| all.vanished().len()),
+            vanished: self
+                .partition
+                .whole
+                .components
+                .as_ref()
+                .map_or(0, |all| all.vanished().len()),
             refusals: self.partition.refusals,
             error_estimate: self.partition.error.sqrt() * self.source.frame.unit,
             volume: self.partition.volume.loss(&self.source.frame),

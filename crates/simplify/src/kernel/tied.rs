@@ -13,7 +13,7 @@ use crate::kernel::collapse_loop::{
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
 use crate::kernel::mesh::vertex::VertexFlags;
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
-use crate::kernel::metric::{Metric, protection, seam_price};
+use crate::kernel::metric::{Metric, seam_price};
 use crate::kernel::schedule::bucket_queue::{NONE, bucket, last_bucket};
 use crate::refusal::Refusal;
 use crate::surface::contracted::Freedom;
@@ -203,7 +203,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
             cost *= seam_price::<A::Metric>();
         }
         if flags.any(VertexFlags::PROTECTED) {
-            cost *= protection::<A::Metric>();
+            cost *= self.vertices.protection;
         }
         let reaches =
             |edge: &TiedEdge| from_middle.length_squared() <= f64::from(edge.ring.reach());

@@ -23,15 +23,16 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
     pub(crate) fn vanish_up_to(&mut self, last: u16) {
         while let Some(component) = self.components.as_mut().and_then(|all| all.take_up_to(last)) {
             let faces = self.faces_of(component);
+            if faces.is_empty() {
+                continue;
+            }
             let Some(components) = &mut self.components else { return };
             let apart = components.apart(component);
             let cost = components.bucket::<A::Metric>(component, &apart, faces.len());
             let loss = components.loss(component, &apart);
             let bucket = self.deferral.delay(loss, cost).unwrap_or(cost);
             let max_error = self.within.as_ref().map_or(f32::INFINITY, |bound| bound.max_error());
-            if faces.is_empty() {
-                continue;
-            } else if bucket > last {
+            if bucket > last {
                 components.put_back(component, bucket);
             } else if faces.len() >= self.live_faces {
                 self.refusals.add(Refusal::LastFaces);

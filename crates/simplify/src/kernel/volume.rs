@@ -167,4 +167,32 @@ mod tests {
         assert_eq!([loss.open.contractions, loss.held.contractions], [1, 1]);
         assert_eq!(loss.held.bounds.min, frame.to_model(Vec3::ONE));
     }
+
+    #[test]
+    fn debts_are_those_of_both_ends_and_none_beyond_the_last_vertex() {
+        let (mut debts, plane) = (VolumeDebts::default(), (DVec3::X, DVec3::X));
+        assert_eq!(debts.owed([0, 7]), 0.0);
+        debts.settle((1, 3), (0.0, 0.5 * NO_DEBT), plane);
+        assert!(debts.0.is_empty(), "rounding is no debt");
+        debts.settle((1, 3), (0.0, 0.5), plane);
+        debts.settle((2, 3), (0.0, -0.125), plane);
+        assert_eq!(
+            [[1, 2], [0, 2], [1, 3], [3, 4]].map(|v| debts.owed(v)),
+            [0.375, -0.125, 0.5, 0.0]
+        );
+        debts.settle((1, 3), (0.375, -0.375), plane);
+        assert_eq!(debts.owed([0, 1]), 0.0, "a debt that is repaid is gone");
+    }
+
+    #[test]
+    fn debts_of_parts_follow_each_other() {
+        let mut debts = VolumeDebts::default();
+        debts.append(0, VolumeDebts::default(), 2);
+        debts.append(2, VolumeDebts::default(), 1);
+        assert!(debts.0.is_empty(), "no part owes anything");
+        debts.append(3, VolumeDebts(vec![1.0, 2.0]), 2);
+        debts.append(5, VolumeDebts::default(), 1);
+        debts.append(6, VolumeDebts(vec![3.0]), 1);
+        assert_eq!(debts.0, [0.0, 0.0, 0.0, 1.0, 2.0, 0.0, 3.0]);
+    }
 }

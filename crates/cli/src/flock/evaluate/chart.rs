@@ -2,8 +2,8 @@
 
 use maud::{Markup, html};
 
-/// Chart of a few curves.
-pub struct Chart<'a> {
+/// CurveChart of a few curves.
+pub struct CurveChart<'a> {
     pub alt: &'a str,
     pub caption: String,
     pub curves: Vec<Curve>,
@@ -24,7 +24,7 @@ const SIZE: [f64; 2] = [440.0, 330.0];
 const PLOT: [f64; 4] = [64.0, 428.0, 12.0, 288.0];
 
 /// Draws the curves; their colours repeat after nine.
-pub fn chart(chart: &Chart<'_>) -> Markup {
+pub fn chart(chart: &CurveChart<'_>) -> Markup {
     let ranges = [0, 1].map(|axis| range(chart, axis));
     let x = |value: f64| place(ranges[0], chart.logarithmic[0], value, [PLOT[0], PLOT[1]]);
     let y = |value: f64| place(ranges[1], chart.logarithmic[1], value, [PLOT[3], PLOT[2]]);
@@ -69,7 +69,7 @@ pub fn chart(chart: &Chart<'_>) -> Markup {
 }
 
 /// Returns the least and greatest value of an axis, as logarithms if it is logarithmic.
-fn range(chart: &Chart<'_>, axis: usize) -> [f64; 2] {
+fn range(chart: &CurveChart<'_>, axis: usize) -> [f64; 2] {
     let is_logarithmic = chart.logarithmic[axis];
     let values = chart.curves.iter().flat_map(|curve| &curve.points).map(|point| point[axis]);
     let values = values.filter(|value| value.is_finite() && (*value > 0.0 || !is_logarithmic));

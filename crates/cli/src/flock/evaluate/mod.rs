@@ -26,7 +26,7 @@ use crate::flock::model::FlockModel;
 use crate::session::Session;
 use crate::verbs::flock::Flock;
 
-/// How much is drawn.
+/// Extent of an evaluation.
 struct Extent {
     size: [u32; 2],
     frames: usize,
@@ -40,15 +40,15 @@ const QUICK: Extent = Extent {
     size: [640, 360],
     frames: 45,
     pairs: 1,
-    shares: &[0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.6],
+    shares: &[0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7],
     step: 15,
 };
 
 const FULL: Extent = Extent {
-    size: [1920, 1080],
+    size: [1280, 720],
     frames: 240,
-    pairs: 4,
-    shares: &[0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8],
+    pairs: 3,
+    shares: &[0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8],
     step: 10,
 };
 

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use crate::flock::evaluate::chart::{Chart, Curve, chart};
+use crate::flock::evaluate::chart::{Curve, CurveChart, chart};
 use crate::flock::evaluate::pictures::Pictures;
 use crate::flock::evaluate::summary::{PAIRS, arms, needed_share, ratio_text, share_text};
 use crate::flock::evaluate::{
@@ -152,14 +152,14 @@ fn over_time(report: &Report<'_>) -> Markup {
             p { "The experiment of the paper: the camera follows and circles one school, and all arms "
                 "have the same parameters. Their image errors differ, as the second chart shows." }
             div.charts {
-                (chart(&Chart {
+                (chart(&CurveChart {
                     alt: "Triangles drawn over time",
                     caption: "Triangles drawn in each frame.".into(),
                     curves: triangles.collect(),
                     axes: ["seconds", "triangles"],
                     logarithmic: [false, false],
                 }))
-                (chart(&Chart {
+                (chart(&CurveChart {
                     alt: "Image error over time",
                     caption: "Mean FLIP against full detail.".into(),
                     curves: flips.collect(),
@@ -186,7 +186,7 @@ fn section(report: &Report<'_>, scene: &str) -> Markup {
     html! {
         section id=(scene) {
             h2 { (scene) }
-            (chart(&Chart {
+            (chart(&CurveChart {
                 alt: "FLIP against triangles",
                 caption: format!("FLIP against triangles; both axes are logarithmic. Full detail with \
                     its samples shifted by a quarter of a pixel differs by {floor:.3} from itself."),

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use meshlod::flock::draw::FlockPainter;
-use meshlod::flock::evaluate::{Footage, Still};
+use meshlod::flock::evaluate::{Footage, StillPicture};
 use meshlod::flock::levels::{LevelTable, Look};
 use meshlod::flock::select::{Budget, PolicyName, Selector};
 use meshlod::picture::{Picture, grid};
@@ -31,8 +31,8 @@ const STRIP: usize = 6;
 
 impl Pictures {
     /// Keeps a picture if it is to be shown.
-    pub fn keep(&mut self, still: Still) {
-        let Still { scene, arm, share, picture } = still;
+    pub fn keep(&mut self, still: StillPicture) {
+        let StillPicture { scene, arm, share, picture } = still;
         match arm {
             None => self.stills.push((scene, FULL.into(), picture)),
             Some(arm) if share == SHOWN_SHARE && SHOWN.contains(&arm.as_str()) => {

@@ -4,7 +4,7 @@ use glam::Vec3;
 use meshlod_picture::{Background, Picture};
 
 use super::*;
-use crate::camera::Camera;
+use crate::camera::FlockCamera;
 use crate::draw::FlockPainter;
 use crate::flock::Flock;
 use crate::levels::{ChainOptions, ModelAxes};
@@ -60,7 +60,7 @@ fn an_impostor_looks_like_the_model_from_its_views() {
     flock.members.push([0.0; 3], [0.6, 0.0, -0.8]);
     let mut draw = |eye: Vec3, level: InstanceLevel, impostor: Option<Arc<Impostor>>| {
         painter.impostor = impostor;
-        let camera = Camera::look_at(eye.into(), [0.0; 3], 0.05, [40, 40]).unwrap();
+        let camera = FlockCamera::look_at(eye.into(), [0.0; 3], 0.05, [40, 40]).unwrap();
         painter.draw(&flock, &[level], &camera).unwrap()
     };
     for cell in (0..impostor.directions.len()).step_by(7) {

@@ -24,7 +24,7 @@ impl Policy for Direction {
         each_school(view, levels, self.chains.whole(), |school, levels| {
             let by_distance = self.chains.of(view, school);
             view.assign_range(school.members.clone(), levels, |_, lanes, chosen| {
-                *chosen = lanes.distance_squared.map(|square| by_distance.at_squared(square));
+                by_distance.look_up(&lanes.distance_squared, chosen);
             });
         });
     }

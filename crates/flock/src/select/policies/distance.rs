@@ -22,7 +22,7 @@ impl Policy for Distance {
         fill_by_distance(&mut self.levels, view, &view.table.chains[0]);
         let by_distance = &self.levels;
         view.assign(levels, |_, lanes, chosen| {
-            *chosen = lanes.distance_squared.map(|square| by_distance.at_squared(square));
+            by_distance.look_up(&lanes.distance_squared, chosen);
         });
     }
 }

@@ -31,10 +31,9 @@ impl Policy for Layer {
         each_school(view, levels, by_distance, |school, levels| {
             let shells = Shells::new(view, school);
             view.assign_range(school.members.clone(), levels, |_, lanes, chosen| {
-                let factors = shells.squared_factors(lanes);
-                *chosen = std::array::from_fn(|i| {
-                    by_distance.at_squared(lanes.distance_squared[i] * factors[i])
-                });
+                let mut squares = lanes.distance_squared;
+                shells.scale(lanes, &mut squares);
+                by_distance.look_up(&squares, chosen);
             });
         });
     }
@@ -53,20 +52,24 @@ impl Shells {
         Self { to_unit_ball, leader: to_unit_ball * (school.leader - view.camera.eye()) }
     }
 
-    /// Returns the squares of the factors on the distances of eight members.
+    /// Multiplies the squares of the distances of eight members by the squares of their factors.
     #[inline(always)]
-    pub(crate) fn squared_factors(&self, lanes: &Lanes) -> [f32; LANES] {
+    pub(crate) fn scale(&self, lanes: &Lanes, squares: &mut [f32; LANES]) {
         let [x, y, z] = &lanes.offset;
-        let Mat3 { x_axis, y_axis, z_axis } = self.to_unit_ball;
-        std::array::from_fn(|i| {
-            let p = x_axis * x[i] + y_axis * y[i] + z_axis * z[i] - self.leader;
-            let depth = p.x * p.x + p.y * p.y + p.z * p.z;
+        let Mat3 { x_axis: a, y_axis: b, z_axis: c } = self.to_unit_ball;
+        let leader = self.leader;
+        for i in 0..LANES {
+            let u = x[i] * a.x + y[i] * b.x + z[i] * c.x - leader.x;
+            let v = x[i] * a.y + y[i] * b.y + z[i] * c.y - leader.y;
+            let w = x[i] * a.z + y[i] * b.z + z[i] * c.z - leader.z;
+            let depth = u * u + v * v + w * w;
             // Shell k reaches from k/4 to (k+1)/4 of the radius.
-            let shell = usize::from(depth >= 0.0625)
-                + usize::from(depth >= 0.25)
-                + usize::from(depth >= 0.5625)
-                + usize::from(depth >= 1.0);
-            SHELLS[shell] * SHELLS[shell]
-        })
+            let mut factor = SHELLS[0] * SHELLS[0];
+            for (shell, from) in [0.0625, 0.25, 0.5625, 1.0].into_iter().enumerate() {
+                let next = SHELLS[shell + 1] * SHELLS[shell + 1];
+                factor = if depth >= from { next } else { factor };
+            }
+            squares[i] *= factor;
+        }
     }
 }

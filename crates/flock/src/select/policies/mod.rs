@@ -54,7 +54,7 @@ fn each_school(
     let mut next = 0;
     let alone = |range: std::ops::Range<usize>, levels: &mut [InstanceLevel]| {
         view.assign_range(range, levels, |_, lanes, chosen| {
-            *chosen = lanes.distance_squared.map(|square| by_distance.at_squared(square));
+            by_distance.look_up(&lanes.distance_squared, chosen);
         });
     };
     for school in &view.flock.schools {

@@ -50,14 +50,13 @@ impl Policy for Paper {
             let range = school.members.clone();
             if self.factors == Factors::WithoutLayer {
                 view.assign_range(range, levels, |_, lanes, chosen| {
-                    *chosen = distance.squares(lanes).map(|square| by_distance.at_squared(square));
+                    by_distance.look_up(&distance.squares(lanes), chosen);
                 });
             } else {
                 view.assign_range(range, levels, |_, lanes, chosen| {
-                    let (squares, factors) =
-                        (distance.squares(lanes), shells.squared_factors(lanes));
-                    *chosen =
-                        std::array::from_fn(|i| by_distance.at_squared(squares[i] * factors[i]));
+                    let mut squares = distance.squares(lanes);
+                    shells.scale(lanes, &mut squares);
+                    by_distance.look_up(&squares, chosen);
                 });
             }
         });

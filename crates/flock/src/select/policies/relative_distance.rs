@@ -42,7 +42,7 @@ impl Policy for RelativeDistance {
         each_school(view, levels, by_distance, |school, levels| {
             let distance = RelativeTo::new(view, school, self.along);
             view.assign_range(school.members.clone(), levels, |_, lanes, chosen| {
-                *chosen = distance.squares(lanes).map(|square| by_distance.at_squared(square));
+                by_distance.look_up(&distance.squares(lanes), chosen);
             });
         });
     }
@@ -72,10 +72,11 @@ impl RelativeTo {
     pub(crate) fn squares(&self, lanes: &Lanes) -> [f32; LANES] {
         let [x, y, z] = &lanes.offset;
         let v = self.direction;
-        std::array::from_fn(|i| {
-            let distance = x[i] * v.x + y[i] * v.y + z[i] * v.z + self.offset;
-            let distance = distance.max(0.0);
-            distance * distance
-        })
+        let mut squares = [0.0; LANES];
+        for i in 0..LANES {
+            let distance = (x[i] * v.x + y[i] * v.y + z[i] * v.z + self.offset).max(0.0);
+            squares[i] = distance * distance;
+        }
+        squares
     }
 }

@@ -27,7 +27,7 @@ impl Policy for ScreenError {
         });
         let by_distance = &self.levels;
         view.assign(levels, |_, lanes, chosen| {
-            *chosen = lanes.distance_squared.map(|square| by_distance.at_squared(square));
+            by_distance.look_up(&lanes.distance_squared, chosen);
         });
     }
 }

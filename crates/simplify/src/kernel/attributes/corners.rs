@@ -6,6 +6,7 @@ use meshlod_mesh::{Layer, Mesh, WedgeId};
 use rustc_hash::FxHashMap;
 
 use crate::kernel::mesh::vertex::NO_VERTEX;
+use crate::kernel::setup::vertex_order::is_face;
 use crate::surface::wedges::labels;
 
 /// Wedges at the corners of a mesh, split where the material or the object changes.
@@ -164,9 +165,4 @@ impl<'m> Corners<'m> {
             _ => wedge,
         }
     }
-}
-
-/// Returns true if the three vertices of a face are different.
-pub(crate) fn is_face([a, b, c]: [u32; 3]) -> bool {
-    a != b && b != c && c != a
 }

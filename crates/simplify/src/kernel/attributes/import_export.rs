@@ -6,7 +6,7 @@ use meshlod_mesh::{Attributes, WedgeId};
 
 use crate::kernel::attributes::RecordedValues;
 use crate::kernel::attributes::attribute_quadric::AttributeQuadric;
-use crate::kernel::attributes::corners::{Corners, is_face};
+use crate::kernel::attributes::corners::Corners;
 use crate::kernel::attributes::layers::{AttributeLayers, SurvivingWedge};
 use crate::kernel::attributes::scratch::Scratch;
 use crate::kernel::attributes::seam_release::SeamRelease;
@@ -15,6 +15,7 @@ use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
 use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
 use crate::kernel::metric::Metric;
+use crate::kernel::setup::vertex_order::is_face;
 
 impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
     /// Builds the quadrics of a mesh whose rings are made. Flags the vertices on seams, and adds

@@ -35,9 +35,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     fn cheapest_over_seams(&self, vertices: &Vertices) -> u16 {
         let mut least = f32::INFINITY;
         let (mut us, mut vs, mut len) = ([0; LANES], [0; LANES], 0);
-        let shut = |v: u32| {
-            vertices.get(v).flags.any(VertexFlags(VertexFlags::DEAD.0 | VertexFlags::SHUT.0))
-        };
+        let shut = |v: u32| vertices.get(v).flags.any(VertexFlags::INACTIVE);
         let mut cost_all = |us: [u32; LANES], vs: [u32; LANES]| {
             let edges = (EdgeSide::Each(us), &vs);
             let costs = widest(CostsAtSeams { wedges: self, vertices, edges });

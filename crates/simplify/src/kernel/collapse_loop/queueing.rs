@@ -9,9 +9,6 @@ use crate::kernel::schedule::bucket_queue::last_bucket;
 use crate::kernel::schedule::edge_costs::{Cheapest, Rank, cheapest};
 use crate::kernel::simd::{SimdTask, widest};
 
-/// Flags of vertices without a valid queue entry: dead, barred, or waiting for another part.
-const INACTIVE: VertexFlags = VertexFlags(VertexFlags::DEAD.0 | VertexFlags::SHUT.0);
-
 impl<A: AttributeModel> CollapseLoop<'_, A> {
     /// Costs and queues all vertices for the first time, except those that wait for another part.
     pub(crate) fn cost_all_vertices(&mut self) {
@@ -74,7 +71,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
     #[inline(always)]
     pub(super) fn is_due(&self, v: u32, bucket: u16) -> bool {
         let vertex = self.vertices.get(v);
-        vertex.bucket == bucket && !vertex.flags.any(INACTIVE)
+        vertex.bucket == bucket && !vertex.flags.any(VertexFlags::INACTIVE)
     }
 
     /// Costs all edges of a vertex and queues it by the cheapest, at the front or behind it.
@@ -109,7 +106,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
     /// Requeues a vertex whose edges were refused: it may have other edges now.
     pub(crate) fn wake(&mut self, v: u32, front: u16) {
         let vertex = self.vertices.get_mut(v);
-        if vertex.floor > 0 && !vertex.flags.any(INACTIVE) {
+        if vertex.floor > 0 && !vertex.flags.any(VertexFlags::INACTIVE) {
             self.queue.wake(vertex, v, front);
         }
     }
@@ -120,7 +117,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         self.queue.put_back();
         for v in self.vertices.ids() {
             let vertex = self.vertices.get(v);
-            if vertex.floor > 0 && !vertex.flags.any(INACTIVE) {
+            if vertex.floor > 0 && !vertex.flags.any(VertexFlags::INACTIVE) {
                 self.put_first(v);
             }
         }
@@ -137,7 +134,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         self.queue.put_back();
         for v in self.vertices.ids() {
             let flags = self.vertices.get(v).flags;
-            if flags.any(VertexFlags::SEAM) && !flags.any(INACTIVE) {
+            if flags.any(VertexFlags::SEAM) && !flags.any(VertexFlags::INACTIVE) {
                 self.put_first(v);
             }
         }

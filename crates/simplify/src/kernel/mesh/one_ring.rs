@@ -46,6 +46,8 @@ pub(crate) struct VertexStore {
     pub(crate) split: Vec<u32>,
     /// Weight of boundary edges.
     pub(crate) boundary_weight: f32,
+    /// Factor on the cost of an edge at a protected vertex.
+    pub(crate) protection: f32,
 }
 
 /// A ring in a list. Its vertex may have a ring elsewhere by now.
@@ -64,6 +66,8 @@ pub(crate) struct Vertices<'v> {
     pub(crate) copied: &'v [u32],
     pub(crate) split: &'v [u32],
     pub(crate) first_copy: u32,
+    /// Factor on the cost of an edge at a protected vertex.
+    pub(crate) protection: f32,
 }
 
 impl VertexStore {
@@ -79,14 +83,14 @@ impl VertexStore {
         let mut split = copied.clone();
         split.sort_unstable();
         split.dedup();
-        Self { all, long, copied, split, boundary_weight }
+        Self { all, long, copied, split, boundary_weight, protection: 1.0 }
     }
 
     /// Borrows the whole surface: all vertices.
     pub(crate) fn whole(&mut self) -> Vertices<'_> {
         let first_copy = self.own() as u32;
-        let Self { all, long, copied, split, .. } = self;
-        Vertices { all, base: 0, long, copied, split, first_copy }
+        let Self { all, long, copied, split, protection, .. } = self;
+        Vertices { all, base: 0, long, copied, split, first_copy, protection: *protection }
     }
 
     /// Returns the number of vertices of the input, without copies.
@@ -123,7 +127,7 @@ impl VertexStore {
 impl<'v> Vertices<'v> {
     /// Borrows vertices none of which is a copy.
     pub(crate) fn new(all: &'v mut [Vertex], base: u32, long: &'v mut Vec<LongRing>) -> Self {
-        Self { all, base, long, copied: &[], split: &[], first_copy: GHOST }
+        Self { all, base, long, copied: &[], split: &[], first_copy: GHOST, protection: 1.0 }
     }
 
     /// Returns the range of vertex ids.

@@ -82,10 +82,12 @@ impl VertexFlags {
     pub(crate) const OUTER: Self = Self(64);
     /// Edges to this vertex must not be contracted at present.
     pub(crate) const SHUT: Self = Self(Self::BARRED.0 | Self::OUTER.0);
+    /// The vertex has no valid queue entry: dead, barred, or waiting for another part.
+    pub(crate) const INACTIVE: Self = Self(Self::DEAD.0 | Self::SHUT.0);
     /// The vertex moves together with those it is tied to, or not at all.
     pub(crate) const TIED: Self = Self(16);
     /// The vertex is protected: contractions that move it cost
-    /// [more](crate::kernel::metric::protection).
+    /// [more](crate::kernel::mesh::one_ring::VertexStore::protection).
     pub(crate) const PROTECTED: Self = Self(128);
     /// The vertex has several wedges, or one in a slot other than its own id.
     pub(crate) const SEAM: Self = Self(32);
@@ -140,9 +142,9 @@ impl Bf16 {
 ///
 /// Squared volumes [LT98] weigh an area by its square, so what is small goes early, however far it
 /// sticks out. Plane distances weigh it once, and lose in the mean. Geometric means over four
-/// levels of nineteen models, relative to this weight: squared volumes as they are 1.01 in the
-/// mean, 1.22 in the maximum; one over the power .3 of twice the area 1.01, 1.08; .4 1.00, 1.02;
-/// .65 1.02, 1.05.
+/// levels of nineteen models, relative to this weight: squared volumes as they are .99 in the mean,
+/// 1.07 in the maximum (with a limit of 5 and the former floor in `deferral.rs`); one over the power
+/// .3 of twice the area 1.01, 1.08; .4 1.00, 1.02; .65 1.02, 1.05.
 #[inline(always)]
 pub(crate) fn per_square(squared: f32) -> f32 {
     (squared + TINY).sqrt().sqrt().recip()

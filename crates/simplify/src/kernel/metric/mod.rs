@@ -15,7 +15,6 @@ pub(crate) mod swept_volume;
 
 use glam::{DVec3, Vec3};
 
-use crate::engine::locks;
 use crate::kernel::collapse::Collapse;
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::mesh::one_ring::Vertices;
@@ -28,8 +27,9 @@ use crate::options::Method;
 /// Factor on distances that decides how long seams hold.
 ///
 /// FLIP as in `docs/notes/image-error.md`, at 256 pixels, with seams that may give way from the
-/// start on: the flight helmet at 10, 5 and 2 %, the
-/// milk truck at 5 %, the city at 75 and 50 %, pirate at 5 %.
+/// start on: the flight helmet at 10, 5 and 2 %, the milk truck at 5 %, the city at 75 and 50 %,
+/// pirate at 5 %. Measured when costs were squared volumes, so that the price was the factor's
+/// sixth power; now it is the fifth.
 ///
 /// | | helmet | truck | city | pirate |
 /// |---|---|---|---|---|
@@ -135,21 +135,16 @@ pub(crate) trait Metric: Copy + Send + Sync {
 
 /// Part of the usual square distance, or of the step's own, that preserving the volume may add.
 ///
-/// Geometric means over four levels of nineteen models, and contractions of scans at 10 and 1 %
-/// that do not preserve the volume: no limit 1.00 in the mean, 1.00 in the maximum; 1 .993, .996,
-/// none; .5 none but two of armadillo-52k's; .2 .994, .961, a volume of 1e-4 lost there.
+/// Part of its volume that armadillo-52k loses at 1 %: no limit 1.5e-8; .5 1.6e-8; .2 1.4e-4.
+/// Geometric means over four levels of nineteen models, relative to no limit: 1 .993 in the mean,
+/// .996 in the maximum; .2 .994, .961. These were measured with squared volumes, and before only
+/// places more than half an edge away were limited.
 pub(crate) const VOLUME_SHARE: f64 = 0.5;
 
 /// Factor on the cost of a component that vanishes. Mean and maximum of skyscraper at 25 %, and of
 /// city at 10 %, in % of the diagonal: 12 .199, 5.98, .161, 4.2; 3 .078, 2.3, .150, 3.0; 1 .091,
 /// 1.9, .169, 2.3; .3 .104, 1.4, .184, 2.4.
 pub(crate) const VANISHING: f32 = 3.0;
-
-/// Returns the factor on the cost of an edge at a protected vertex, as if everything moved that
-/// many times farther.
-pub(crate) fn protection<M: Metric>() -> f32 {
-    locks::PROTECTION.powi(M::METHOD.cost_power()) as f32
-}
 
 /// Returns the factor on the cost of an edge over which a seam gives way, as if everything moved
 /// [`SEAM_PRICE`] times farther.

@@ -8,16 +8,17 @@ use crate::kernel::metric::VOLUME_SHARE;
 use crate::kernel::schedule::bucket_queue::{bucket, last_bucket, min_cost_in};
 
 /// Multiple of the usual squared distance that is too far. Geometric means over four levels of
-/// nineteen models, relative to 4: 3 1.03 in the mean, .99 in the maximum; 5 1.01, 1.12. Greatest
-/// distances of horse-97k and igea at 10 %: 4 .095, .068; 5 .120, .063; 6 .145, .085.
+/// nineteen models, relative to 4: 3 1.02 in the mean, .95 in the maximum (both with a
+/// [`NEGLIGIBLE`] of 1e-4); 5 1.01, 1.12. Greatest distances of horse-97k and igea at 10 %: 3 .101,
+/// .062; 4 .111, .069; 5 .098, .062; 6 .123, .067.
 const FAR: f32 = 4.0;
 
 /// Approximate number of contractions that the running mean remembers.
 const MEMORY: f32 = 64.0;
 
 /// Squared distance, in the frame, that is always usual: rounding errors, and what is invisible. On
-/// small models the mean must not have to grow from nothing. Geometric means as for [`FAR`]: 1e-8
-/// 1.03, 1.02; 1e-6 1.02, 1.04; 1e-4 1.01, 1.04.
+/// small models the mean must not have to grow from nothing. Geometric means as for [`FAR`],
+/// relative to 1e-5: 1e-8 1.03, 1.00 (with a limit of 5); 1e-6 1.02, 1.04; 1e-4 1.01, 1.04.
 const NEGLIGIBLE: f32 = 1e-5;
 
 /// Minimum delay in buckets: one octave.

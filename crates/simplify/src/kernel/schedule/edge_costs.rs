@@ -9,7 +9,7 @@ use crate::kernel::attributes::AttributeModel;
 use crate::kernel::mesh::one_ring::{LONG, MAX_RING, Vertices};
 use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
 use crate::kernel::metric::edge_quadric::{Costs, EdgeSide, SymmetricMatrix, VertexQuadrics};
-use crate::kernel::metric::{Metric, edges_between, least_costs, protection};
+use crate::kernel::metric::{Metric, edges_between, least_costs};
 use crate::kernel::schedule::bucket_queue::{NONE, bucket};
 use crate::kernel::simd::{LANES, Row, select_max};
 
@@ -156,7 +156,7 @@ fn correct<A: AttributeModel>(
             };
         }
         if flags.any(VertexFlags::PROTECTED) {
-            *cost *= protection::<A::Metric>();
+            *cost *= vertices.protection;
         }
         if floor > 0 && bucket(*cost) <= floor {
             *cost = f32::INFINITY;

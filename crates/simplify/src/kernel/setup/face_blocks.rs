@@ -3,6 +3,8 @@
 
 use rayon::prelude::*;
 
+use crate::kernel::setup::vertex_order::is_face;
+
 /// Number of vertices in a cell: 128 kB of records.
 pub(crate) const CELL: usize = 1 << 10;
 
@@ -54,8 +56,7 @@ impl CellFaces {
 
 impl Block {
     fn new(cells: usize, range: std::ops::Range<usize>, face: &impl Fn(usize) -> [u32; 3]) -> Self {
-        let faces: Vec<[u32; 3]> =
-            range.map(face).filter(|&[a, b, c]| a != b && b != c && c != a).collect();
+        let faces: Vec<[u32; 3]> = range.map(face).filter(|&face| is_face(face)).collect();
         let mut slots = vec![0; cells];
         for &face in &faces {
             for_cells(face, |cell| slots[cell] += 1);

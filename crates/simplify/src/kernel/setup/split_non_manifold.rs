@@ -3,6 +3,8 @@
 
 use rustc_hash::FxHashMap;
 
+use crate::kernel::setup::vertex_order::is_face;
+
 /// The other two corners of a face, in its orientation.
 pub(crate) type Pair = [u32; 2];
 
@@ -42,10 +44,7 @@ pub(crate) fn split(faces: &mut [[u32; 3]], irregular: &[u32], vertices: usize) 
 fn stars(faces: &[[u32; 3]], of: &[u32]) -> Vec<Vec<Corner>> {
     let place: FxHashMap<u32, usize> = of.iter().enumerate().map(|(i, &v)| (v, i)).collect();
     let mut stars = vec![Vec::new(); of.len()];
-    for (f, &[a, b, c]) in faces.iter().enumerate() {
-        if a == b || b == c || c == a {
-            continue;
-        }
+    for (f, &[a, b, c]) in faces.iter().enumerate().filter(|(_, face)| is_face(**face)) {
         for (corner, (v, pair)) in [(a, [b, c]), (b, [c, a]), (c, [a, b])].into_iter().enumerate() {
             if let Some(&i) = place.get(&v) {
                 stars[i].push(Corner { face: f as u32, corner, pair });
@@ -66,7 +65,7 @@ pub(crate) fn drop_duplicates(faces: &mut [[u32; 3]], irregular: &[u32]) -> usiz
         }
         let [a, b, c] = *face;
         let turned = [[a, b, c], [b, c, a], [c, a, b]].into_iter().min();
-        if a != b && b != c && c != a && seen.insert(turned, ()).is_some() {
+        if is_face(*face) && seen.insert(turned, ()).is_some() {
             *face = [0; 3];
             count += 1;
         }

@@ -57,6 +57,12 @@ impl Order {
     }
 }
 
+/// Returns true if the three vertices of a face are different.
+#[inline(always)]
+pub(crate) fn is_face([a, b, c]: [u32; 3]) -> bool {
+    a != b && b != c && c != a
+}
+
 /// Returns the faces of a mesh in the kernel's ids, or those with copies of vertices if there are
 /// any.
 pub(crate) fn numbers<'a>(

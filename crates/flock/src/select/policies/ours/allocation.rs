@@ -6,7 +6,7 @@ use crate::select::policies::ours::visibility::{VISIBILITIES, log_visibility};
 /// Number of members in each cell, and the levels chosen for them.
 pub(super) struct Allocation {
     counts: Vec<u32>,
-    choices: Vec<Choice>,
+    choices: Vec<CellLevels>,
     /// Cells with members.
     occupied: Vec<u32>,
     /// Triangles that steps of each gain would add, by the logarithm of the gain.
@@ -15,7 +15,7 @@ pub(super) struct Allocation {
 
 /// Depths of the levels for the members of a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Choice {
+pub(super) struct CellLevels {
     pub best: u8,
     /// Finest and coarsest that a member may keep.
     pub finest: u8,
@@ -35,7 +35,7 @@ impl Allocation {
     pub(super) fn new(cells: usize) -> Self {
         Self {
             counts: vec![0; cells],
-            choices: vec![Choice::default(); cells],
+            choices: vec![CellLevels::default(); cells],
             occupied: Vec::with_capacity(cells),
             wanted: vec![0; (2.0 * OCTAVES * BUCKETS) as usize + 1],
         }
@@ -57,7 +57,7 @@ impl Allocation {
     }
 
     #[inline]
-    pub(super) fn choice(&self, cell: usize) -> Choice {
+    pub(super) fn choice(&self, cell: usize) -> CellLevels {
         self.choices[cell]
     }
 
@@ -88,7 +88,7 @@ impl Allocation {
                 let last = gains.steps(look).iter().take_while(worth).last();
                 last.map_or(gains.coarsest(look).0, |step| step.depth)
             };
-            choices[cell as usize] = Choice {
+            choices[cell as usize] = CellLevels {
                 best: depth(least),
                 finest: depth(least.saturating_sub(band)),
                 coarsest: depth(least + band),

@@ -1,4 +1,4 @@
-//! What finer levels add to the picture per triangle, by direction and size.
+//! Gains: pixels that finer levels set right per triangle, by direction and size.
 
 use crate::levels::{FacingLevels, LevelTable};
 

@@ -23,6 +23,7 @@ use crate::levels::{DirectionGrid, LevelTable, NEAREST_FACING};
 use crate::select::policies::ours::allocation::Allocation;
 use crate::select::policies::ours::gains::{Gains, SIZES, size_of};
 use crate::select::policies::ours::visibility::{NOWHERE, VISIBILITIES, VisibilityGrid};
+use crate::select::view::load;
 use crate::select::{InstanceLevel, LANES, Lanes, Policy, View};
 
 /// Shares a budget of triangles out so that the picture of the whole flock changes least.
@@ -40,15 +41,15 @@ pub struct Ours {
     depth_of: Vec<u8>,
     /// Triangles of every level.
     triangles_of: Vec<u32>,
-    /// What is known of each member: first its froxel, then its cell.
+    /// Froxel of each member, then its cell.
     places: Vec<u32>,
     /// Size and direction of each member.
-    looks: Vec<Look>,
+    looks: Vec<Appearance>,
 }
 
 /// How a member looks to the camera.
 #[derive(Clone, Copy, Debug, Default)]
-struct Look {
+struct Appearance {
     size: u8,
     /// Direction of the facing chains in which the eye is.
     facing: u16,
@@ -94,7 +95,7 @@ impl Ours {
     fn look(&mut self, view: &View<'_>) {
         let count = view.flock.members.len();
         self.places.resize(count, NOWHERE);
-        self.looks.resize(count, Look::default());
+        self.looks.resize(count, Appearance::default());
         let (grid, directions) = (&self.grid, &self.directions);
         let focal = view.camera.pixels_at_one();
         let tasks = self.places.par_chunks_mut(TASK).zip(self.looks.par_chunks_mut(TASK));
@@ -106,11 +107,15 @@ impl Ours {
                 let froxels = grid.froxels(&lanes);
                 let facing = facing(view, directions, first, &lanes);
                 for lane in 0..places.len() {
-                    let hidden = view.visible.is_some_and(|visible| !visible[first + lane]);
-                    let drawn = lanes.in_frustum[lane] & !hidden;
-                    places[lane] = if drawn { froxels[lane] } else { NOWHERE };
                     let size = size_of(focal * focal / lanes.distance_squared[lane]);
-                    looks[lane] = Look { size: size as u8, facing: facing[lane] };
+                    looks[lane] = Appearance { size: size as u8, facing: facing[lane] };
+                    places[lane] = if lanes.in_frustum[lane] { froxels[lane] } else { NOWHERE };
+                }
+                if let Some(visible) = view.visible {
+                    for (place, _) in places.iter_mut().zip(&visible[first..]).filter(|(_, v)| !**v)
+                    {
+                        *place = NOWHERE;
+                    }
                 }
             }
         });
@@ -210,26 +215,20 @@ fn facing(
     lanes: &Lanes,
 ) -> [u16; LANES] {
     let heading = &view.flock.members.heading;
-    let mut h = [[0.0; LANES]; 3];
-    for axis in 0..3 {
-        let values = &heading[axis][first..];
-        for lane in 0..LANES {
-            h[axis][lane] = values.get(lane).copied().unwrap_or(values[values.len() - 1]);
-        }
-    }
+    let [hx, hy, hz] = heading;
+    let (hx, hy, hz) = (load(hx, first), load(hy, first), load(hz, first));
     let [x, y, z] = &lanes.offset;
-    let mut local = [[0.0; LANES]; 3];
+    let (mut left, mut up, mut ahead) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
     for i in 0..LANES {
-        // Left is (h.z, 0, -h.x) made unit, up is heading × left; the eye is at minus the offset.
-        let flat = h[2][i] * h[2][i] + h[0][i] * h[0][i];
-        let scale = flat.max(1e-12).sqrt().recip();
-        let (lx, lz) = (h[2][i] * scale, -h[0][i] * scale);
-        local[0][i] = -(x[i] * lx + z[i] * lz);
-        let (ux, uy, uz) = (h[1][i] * lz, h[2][i] * lx - h[0][i] * lz, -h[1][i] * lx);
-        local[1][i] = -(x[i] * ux + y[i] * uy + z[i] * uz);
-        local[2][i] = -(x[i] * h[0][i] + y[i] * h[1][i] + z[i] * h[2][i]);
+        // Left is (hz, 0, -hx) made unit, up is heading × left; the eye is at minus the offset.
+        let scale = (hz[i] * hz[i] + hx[i] * hx[i]).max(1e-12).sqrt().recip();
+        let (lx, lz) = (hz[i] * scale, -hx[i] * scale);
+        let (ux, uy, uz) = (hy[i] * lz, hz[i] * lx - hx[i] * lz, -hy[i] * lx);
+        left[i] = -(x[i] * lx + z[i] * lz);
+        up[i] = -(x[i] * ux + y[i] * uy + z[i] * uz);
+        ahead[i] = -(x[i] * hx[i] + y[i] * hy[i] + z[i] * hz[i]);
     }
-    std::array::from_fn(|i| {
-        directions.cell(Vec3::new(local[0][i], local[1][i], local[2][i])) as u16
-    })
+    let mut cells = [0; LANES];
+    directions.cells([&left, &up, &ahead], &mut cells);
+    cells
 }

@@ -1,4 +1,4 @@
-//! How much of each member others hide, estimated from the flock's own density.
+//! Visibility of members among others, estimated from the flock's own density.
 //!
 //! The view is cut into tiles and each tile into slices of depth. Every member adds the part of its
 //! tile that it covers to its slice. A ray is free up to a slice with the probability that it passes
@@ -7,6 +7,7 @@
 
 use glam::{Mat2, Vec2, Vec3};
 
+use crate::cell_index::cell_index;
 use crate::levels::LevelTable;
 use crate::select::policies::ours::gains::{SIZES, pixels_of};
 use crate::select::{LANES, Lanes, View};
@@ -14,6 +15,9 @@ use crate::select::{LANES, Lanes, View};
 /// Number of tiles across and down, and of slices.
 const TILES: [usize; 2] = [64, 36];
 const SLICES: usize = 64;
+
+/// Last tile across and down, and last slice.
+const LAST: [f32; 3] = [TILES[0] as f32 - 1.0, TILES[1] as f32 - 1.0, SLICES as f32 - 1.0];
 
 /// Number of visibilities that are told apart: two to the octave.
 pub(super) const VISIBILITIES: usize = 16;
@@ -33,14 +37,12 @@ pub(super) fn log_visibility(visibility: usize) -> f32 {
 /// Grid of tiles and slices with the octaves of light that the members of each take away.
 pub(super) struct VisibilityGrid {
     /// Slice by slice within a tile, tiles row by row. While members are splatted, what they take
-    /// away in the slice; then, also all in front.
+    /// away in the slice; then half of that and all in front.
     octaves: Vec<f32>,
-    /// What is taken away in the slice itself.
-    own: Vec<f32>,
     /// Area that a member covers, in square body lengths, as a mean over all directions.
     silhouette: f32,
     half_extent: Vec3,
-    /// What one member of each size takes away.
+    /// Octaves that one member of each size takes away.
     of_size: [f32; SIZES],
     /// Least size of members that cover more than a tile.
     large: usize,
@@ -57,7 +59,6 @@ impl VisibilityGrid {
         let sum: f32 = (0..views).map(|view| table.differences.silhouette(view)).sum();
         Self {
             octaves: vec![0.0; count],
-            own: vec![0.0; count],
             silhouette: sum / views as f32,
             half_extent: table.half_extent.into(),
             of_size: [0.0; SIZES],
@@ -91,18 +92,18 @@ impl VisibilityGrid {
     #[inline(always)]
     pub(super) fn froxels(&self, lanes: &Lanes) -> [u32; LANES] {
         let [right, up, depth] = &lanes.seen;
-        std::array::from_fn(|i| {
+        let [across, down] = self.scale;
+        let [nearest, per_length] = self.depths;
+        let mut froxels = [0; LANES];
+        for i in 0..LANES {
             let scale = depth[i].max(1e-3).recip();
-            let x = right[i] * scale * self.scale[0] + 0.5 * TILES[0] as f32;
-            let y = up[i] * scale * self.scale[1] + 0.5 * TILES[1] as f32;
-            let tile = cell(y, TILES[1]) * TILES[0] as u32 + cell(x, TILES[0]);
-            tile * SLICES as u32 + self.slice(depth[i])
-        })
-    }
-
-    #[inline(always)]
-    fn slice(&self, depth: f32) -> u32 {
-        cell((depth - self.depths[0]) * self.depths[1], SLICES)
+            let x = right[i] * scale * across + 0.5 * TILES[0] as f32;
+            let y = up[i] * scale * down + 0.5 * TILES[1] as f32;
+            let (column, row) = (cell_index(x, LAST[0]), cell_index(y, LAST[1]));
+            let slice = cell_index((depth[i] - nearest) * per_length, LAST[2]);
+            froxels[i] = (row * TILES[0] as u32 + column) * SLICES as u32 + slice;
+        }
+        froxels
     }
 
     /// Adds all members to the grid, and then sums up along the depths.
@@ -117,17 +118,17 @@ impl VisibilityGrid {
             if size < self.large {
                 self.octaves[froxel as usize] += self.of_size[size];
             } else {
-                let shape = self.shape(view, member, froxel);
+                let ellipse = self.ellipse(view, member, froxel);
                 let octaves = &mut self.octaves;
-                shape.tiles(|tile| octaves[tile * SLICES + shape.slice] += shape.octaves);
+                ellipse.tiles(|tile| octaves[tile * SLICES + ellipse.slice] += ellipse.octaves);
             }
         }
-        self.own.copy_from_slice(&self.octaves);
         for tile in self.octaves.chunks_exact_mut(SLICES) {
             let mut sum = 0.0;
             for slice in tile {
-                sum += *slice;
-                *slice = sum;
+                let own = *slice;
+                *slice = sum + 0.5 * own;
+                sum += own;
             }
         }
     }
@@ -146,31 +147,29 @@ impl VisibilityGrid {
         } else {
             self.over_tiles(view, member, froxel)
         };
-        ((2.0 * octaves) as usize).min(VISIBILITIES - 1)
+        cell_index(2.0 * octaves, VISIBILITIES as f32 - 1.0) as usize
     }
 
     /// Returns the octaves of light that members in front of a member take away, among them half of
-    /// those in its slice.
+    /// the others in its slice.
     #[inline]
     fn in_front(&self, froxel: usize, of_member: f32) -> f32 {
-        let own = self.own[froxel];
-        let others = (own - of_member).max(0.0);
-        (self.octaves[froxel] - own).max(0.0) + 0.5 * others
+        (self.octaves[froxel] - 0.5 * of_member).max(0.0)
     }
 
     /// Averages what is left of the light over all tiles that a member covers.
     fn over_tiles(&self, view: &View<'_>, member: usize, froxel: u32) -> f32 {
-        let shape = self.shape(view, member, froxel);
+        let ellipse = self.ellipse(view, member, froxel);
         let (mut light, mut count) = (0.0, 0.0f32);
-        shape.tiles(|tile| {
-            light += (-self.in_front(tile * SLICES + shape.slice, shape.octaves)).exp2();
+        ellipse.tiles(|tile| {
+            light += (-self.in_front(tile * SLICES + ellipse.slice, ellipse.octaves)).exp2();
             count += 1.0;
         });
         if count == 0.0 { 0.0 } else { -(light / count).max(1e-6).log2() }
     }
 
     /// Returns the ellipse that a large member covers.
-    fn shape(&self, view: &View<'_>, member: usize, froxel: u32) -> Shape {
+    fn ellipse(&self, view: &View<'_>, member: usize, froxel: u32) -> Ellipse {
         let members = &view.flock.members;
         let [right, up, forward] = view.camera.axes();
         let offset = members.position(member) - view.camera.eye();
@@ -187,21 +186,21 @@ impl VisibilityGrid {
             spread += Mat2::from_cols(v * v.x, v * v.y);
         }
         let covered = self.silhouette * scale.x * scale.y;
-        let ellipse = std::f32::consts::PI * spread.determinant().max(1e-6).sqrt();
+        let area = std::f32::consts::PI * spread.determinant().max(1e-6).sqrt();
         // At least half a tile wide, or an edge-on member would fall between the tiles.
         let spread = spread + Mat2::from_diagonal(Vec2::splat(0.25));
-        Shape {
+        Ellipse {
             middle,
             reach: Vec2::new(spread.x_axis.x, spread.y_axis.y).sqrt(),
             inverse: spread.inverse(),
-            octaves: octaves_of(covered / ellipse),
+            octaves: octaves_of(covered / area),
             slice: froxel as usize % SLICES,
         }
     }
 }
 
 /// Ellipse that a member covers, in tiles.
-struct Shape {
+struct Ellipse {
     middle: Vec2,
     reach: Vec2,
     inverse: Mat2,
@@ -209,7 +208,7 @@ struct Shape {
     slice: usize,
 }
 
-impl Shape {
+impl Ellipse {
     /// Visits the tiles whose middles are in the ellipse.
     fn tiles(&self, mut visit: impl FnMut(usize)) {
         let first = (self.middle - self.reach).floor();
@@ -231,12 +230,6 @@ impl Shape {
 /// Returns the octaves of light taken away by what covers this part of a tile.
 fn octaves_of(part: f32) -> f32 {
     -(1.0 - part.clamp(0.0, MOST_HIDDEN)).log2()
-}
-
-/// Returns the index of a coordinate among `count` cells; 0 for a NaN.
-#[inline(always)]
-fn cell(x: f32, count: usize) -> u32 {
-    x.max(0.0).min(count as f32 - 1.0) as u32
 }
 
 /// Members that are looked at for the range of depths.
