@@ -11,7 +11,8 @@ use crate::members::{Members, frame_of};
 pub struct Flock {
     /// Positions and headings of all members of all schools, in body lengths.
     pub members: Members,
-    /// Schools, each a range of consecutive members.
+    /// Schools, each a range of consecutive members, in ascending order; members between them
+    /// belong to no school.
     pub schools: Vec<School>,
 }
 

@@ -9,7 +9,7 @@
 //! use meshlod_flock::levels::{ModelAxes, in_member_frame};
 //! use meshlod_flock::nearest::{NearestCuts, NearestOptions};
 //! use meshlod_flock::select::InstanceLevel;
-//! use meshlod_flock::{Flock, FlockCamera};
+//! use meshlod_flock::{FlockCamera, Flock};
 //! use meshlod_multires::{Forest, Model};
 //! use meshlod_simplify::Options;
 //!

@@ -189,7 +189,7 @@ pub struct Options {
     /// vertices without edges to move along together stay in place.
     pub locks: Locks,
     /// Factor on the distance that a [protected](meshlod_mesh::Lock::Protected) vertex moves, `None`
-    /// for 2, which was chosen for contacts between objects.
+    /// for 2, which was chosen for contacts between objects; between 1 and 1,000.
     ///
     /// From about 5 on, nearly all that is not protected is contracted first.
     pub protection: Option<f64>,
@@ -210,8 +210,10 @@ impl Options {
     /// Checks that all weights are finite and not negative.
     pub(crate) fn validate(&self) -> Result<(), SimplifyError> {
         self.weights.validate()?;
-        let weights = [self.boundary_weight, self.protection].into_iter().flatten();
-        match weights.into_iter().find(|weight| !weight.is_finite() || *weight < 0.0) {
+        if let Some(bad) = self.protection.filter(|factor| !(1.0..=1000.0).contains(factor)) {
+            return Err(SimplifyError::BadProtection(bad));
+        }
+        match self.boundary_weight.filter(|weight| !weight.is_finite() || *weight < 0.0) {
             Some(weight) => Err(SimplifyError::BadWeight(weight)),
             None => Ok(()),
         }
@@ -322,6 +324,9 @@ pub enum SimplifyError {
     /// The weight of an attribute or of boundaries is negative or not finite.
     #[error("the weight must be a number of at least 0, not {0}")]
     BadWeight(f64),
+    /// The factor on the distance that a protected vertex moves is below 1, above 1,000 or NaN.
+    #[error("the protection must be a factor between 1 and 1000, not {0}")]
+    BadProtection(f64),
     /// The size below which components may be removed is negative or NaN.
     #[error("the size below which components may vanish must be at least 0, not {0}")]
     BadSize(f64),

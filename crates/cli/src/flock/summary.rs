@@ -106,7 +106,7 @@ impl Summary<'_> {
             mean(figures.mean(|frame| frame.members_in_view as f64))
         );
         text += &format!(
-            "level switches: {} a second and member in view\n",
+            "level switches: {} per member in view per second\n",
             value(rounded(figures.switches_per_member_second(options.fps)))
         );
         let selection = value(rounded(figures.mean(|frame| frame.selection_ms)));

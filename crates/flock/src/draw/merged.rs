@@ -36,16 +36,19 @@ pub(super) struct Merged {
     pub(super) faces: Vec<[VertexId; 3]>,
     layers: Vec<Layer>,
     labels: Vec<u32>,
+    /// True if the model has the materials that its faces name.
+    has_materials: bool,
 }
 
 impl Merged {
-    pub(super) fn new(layers: &[&Layer]) -> Self {
+    pub(super) fn new(layers: &[&Layer], has_materials: bool) -> Self {
         let empty = |layer: &&Layer| Layer { values: Vec::new(), ..(*layer).clone() };
         Self {
             positions: Vec::new(),
             faces: Vec::new(),
             layers: layers.iter().map(empty).collect(),
             labels: Vec::new(),
+            has_materials,
         }
     }
 
@@ -75,7 +78,8 @@ impl Merged {
         }
         self.faces.extend(shape.triangles.iter().map(|t| t.map(|v| VertexId(first + v))));
         let range = table.levels[level].triangles.clone();
-        match &table.materials {
+        // Without materials of the model, all its faces look alike.
+        match table.materials.as_ref().filter(|_| self.has_materials) {
             Some(materials) => self.labels.extend_from_slice(&materials.of_face[range]),
             None => self.labels.resize(self.faces.len(), 0),
         }
@@ -109,7 +113,7 @@ impl Merged {
     }
 
     pub(super) fn into_mesh(self, paint: &OwnedPaint) -> Mesh {
-        let Self { positions, faces, layers, labels } = self;
+        let Self { positions, faces, layers, labels, .. } = self;
         let corners = faces.iter().map(|face| face.map(|v| WedgeId(v.0))).collect();
         let attributes = Attributes { corners, wedge_count: positions.len(), layers };
         let materials = match paint {

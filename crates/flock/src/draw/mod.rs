@@ -24,6 +24,7 @@ pub struct FlockPainter<'a> {
     table: &'a LevelTable,
     obstacles: &'a [Mesh],
     paint: OwnedPaint,
+    has_materials: bool,
     /// Layers of the table that pictures need.
     layers: Vec<&'a Layer>,
     /// Vertices and triangles of each level, for those that have been drawn.
@@ -64,7 +65,17 @@ impl<'a> FlockPainter<'a> {
         let layers = table.layers.iter().filter(needed).collect();
         let shapes = table.levels.iter().map(|_| None).collect();
         let (lighting, background) = (Lighting::Headlight, WATER);
-        Self { table, obstacles, paint, layers, shapes, lighting, background, impostor: None }
+        Self {
+            table,
+            obstacles,
+            paint,
+            has_materials: look.materials.is_some(),
+            layers,
+            shapes,
+            lighting,
+            background,
+            impostor: None,
+        }
     }
 
     /// Draws a frame: `levels` has an entry for every member of the flock.
@@ -114,7 +125,7 @@ impl<'a> FlockPainter<'a> {
         let mut members = Vec::new();
         let mut impostors = FrameImpostors::new(self.impostor.clone());
         let coarsest = self.table.chains[0].levels.end - 1;
-        let mut merged = Merged::new(&self.layers);
+        let mut merged = Merged::new(&self.layers, self.has_materials);
         for (member, level) in levels.iter().enumerate() {
             if level.is_impostor() && impostors.add(&flock.members, member) {
                 continue;

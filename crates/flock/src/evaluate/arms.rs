@@ -1,6 +1,6 @@
 //! Arms of the comparison: policies, what engines do, and controls.
 
-use crate::evaluate::controls::{RandomLevels, ShuffledLayer};
+use crate::evaluate::controls::{RandomLevels, ScreenErrorFacing, ShuffledLayer};
 use crate::levels::LevelTable;
 use crate::select::policies::{Along, Factors, Paper, RelativeDistance};
 use crate::select::{Policy, PolicyName};
@@ -12,8 +12,13 @@ pub enum Arm {
     Policy(PolicyName),
     /// Policy by its name; members without a visible pixel in full detail are skipped.
     VisibleOnly(PolicyName),
+    /// Control: levels by their error in pixels, without the faces that members turn away, as
+    /// `ours` leaves them out.
+    ScreenErrorFacing,
     /// Paper's policy without one of its factors.
     Paper(Factors),
+    /// Paper's policy without one of its factors; members without a visible pixel are skipped.
+    VisiblePaper(Factors),
     /// Relative distance along the view axis, as printed.
     RelativeDistanceAsPrinted,
     /// Control: levels at random.
@@ -28,10 +33,13 @@ impl Arm {
         let policies = PolicyName::ALL.into_iter().filter(|policy| *policy != PolicyName::None);
         let visible =
             [PolicyName::ScreenError, PolicyName::Budget, PolicyName::Paper, PolicyName::Ours];
+        let factors = [Factors::WithoutDirection, Factors::WithoutLayer];
         policies
             .map(Self::Policy)
             .chain(visible.map(Self::VisibleOnly))
-            .chain([Self::Paper(Factors::WithoutDirection), Self::Paper(Factors::WithoutLayer)])
+            .chain(factors.map(Self::Paper))
+            .chain(factors.map(Self::VisiblePaper))
+            .chain([Self::ScreenErrorFacing])
             .chain([Self::RelativeDistanceAsPrinted, Self::Random, Self::ShuffledLayer])
             .collect()
     }
@@ -41,9 +49,9 @@ impl Arm {
         match self {
             Self::Policy(policy) => policy.name().into(),
             Self::VisibleOnly(policy) => format!("{}, occluded skipped", policy.name()),
-            Self::Paper(Factors::All) => "paper".into(),
-            Self::Paper(Factors::WithoutDirection) => "paper without direction".into(),
-            Self::Paper(Factors::WithoutLayer) => "paper without layer".into(),
+            Self::ScreenErrorFacing => "screen-error, facing chains".into(),
+            Self::Paper(factors) => paper(factors).into(),
+            Self::VisiblePaper(factors) => format!("{}, occluded skipped", paper(factors)),
             Self::RelativeDistanceAsPrinted => "relative-distance as printed".into(),
             Self::Random => "control: random".into(),
             Self::ShuffledLayer => "control: shuffled layers".into(),
@@ -53,7 +61,10 @@ impl Arm {
     pub(super) fn policy(self, table: &LevelTable) -> Box<dyn Policy> {
         match self {
             Self::Policy(policy) | Self::VisibleOnly(policy) => policy.policy(table),
-            Self::Paper(factors) => Box::new(Paper::new(table).with(factors)),
+            Self::ScreenErrorFacing => Box::new(ScreenErrorFacing::new(table)),
+            Self::Paper(factors) | Self::VisiblePaper(factors) => {
+                Box::new(Paper::new(table).with(factors))
+            }
             Self::RelativeDistanceAsPrinted => {
                 Box::new(RelativeDistance::new(table).along(Along::View))
             }
@@ -68,6 +79,14 @@ impl Arm {
     }
 
     pub(super) fn skips_occluded(self) -> bool {
-        matches!(self, Self::VisibleOnly(_))
+        matches!(self, Self::VisibleOnly(_) | Self::VisiblePaper(_))
+    }
+}
+
+fn paper(factors: Factors) -> &'static str {
+    match factors {
+        Factors::All => "paper",
+        Factors::WithoutDirection => "paper without direction",
+        Factors::WithoutLayer => "paper without layer",
     }
 }

@@ -1,7 +1,7 @@
 //! Policies that know nothing, against which the others are held.
 
-use crate::levels::LevelTable;
-use crate::select::policies::{Along, RelativeTo, SHELLS, SidedLevels};
+use crate::levels::{LevelTable, NEAREST_FACING};
+use crate::select::policies::{Along, RelativeTo, SHELLS, ScreenError, SidedLevels, each_school};
 use crate::select::{ChainLevels, InstanceLevel, Policy, View};
 
 /// Gives every member a level at random, the same in all frames.
@@ -12,6 +12,11 @@ pub(super) struct RandomLevels {
 /// Paper's policy with the layer of another member in place of its own.
 pub(super) struct ShuffledLayer {
     chains: SidedLevels,
+}
+
+/// Levels by their error in pixels, from the facing chains.
+pub(super) struct ScreenErrorFacing {
+    whole: ScreenError,
 }
 
 /// Octaves over which random levels are spread.
@@ -46,18 +51,42 @@ impl ShuffledLayer {
 impl Policy for ShuffledLayer {
     fn select(&mut self, view: &View<'_>, levels: &mut [InstanceLevel]) {
         self.chains.fill(view);
-        for school in &view.flock.schools {
+        each_school(view, levels, self.chains.whole(), |school, levels| {
             let by_distance = self.chains.of(view, school);
             let distance = RelativeTo::new(view, school, Along::Leader);
-            view.assign_range(school.members.clone(), levels, |first, lanes, chosen| {
+            let (to_ball, range) = (school.to_unit_ball(), school.members.clone());
+            view.assign_range(range.clone(), levels, |first, lanes, chosen| {
                 let squares = distance.squares(lanes);
-                for (lane, level) in chosen.iter_mut().enumerate() {
-                    // Radius of a point strewn at random in a ball.
-                    let radius = random(first + lane).cbrt();
-                    let factor = SHELLS[(4.0 * radius) as usize];
-                    *level = by_distance.at_squared(squares[lane] * factor * factor);
+                for (lane, level) in chosen.iter_mut().enumerate().take(range.end - first) {
+                    // Half the school away, which is another place in the ellipsoid.
+                    let other =
+                        range.start + (first + lane - range.start + range.len() / 2) % range.len();
+                    let place = to_ball * (view.flock.members.position(other) - school.leader);
+                    let shell = ((4.0 * place.length()) as usize).min(4);
+                    *level = by_distance.at_squared(squares[lane] * SHELLS[shell].powi(2));
                 }
             });
+        });
+    }
+}
+
+impl ScreenErrorFacing {
+    pub(super) fn new(table: &LevelTable) -> Self {
+        Self { whole: ScreenError::new(table) }
+    }
+}
+
+impl Policy for ScreenErrorFacing {
+    fn select(&mut self, view: &View<'_>, levels: &mut [InstanceLevel]) {
+        self.whole.select(view, levels);
+        for (member, level) in levels.iter_mut().enumerate() {
+            let Some(depth) = level.level() else { continue };
+            let members = &view.flock.members;
+            let to_eye = view.camera.eye() - members.position(member);
+            if to_eye.length() > NEAREST_FACING {
+                let direction = members.frame(member).transpose() * to_eye;
+                *level = InstanceLevel::drawn(view.table.facing_level(depth, direction));
+            }
         }
     }
 }

@@ -60,6 +60,9 @@ pub(super) fn mean(values: impl Iterator<Item = f64>) -> f64 {
     if count == 0 { 0.0 } else { sum / f64::from(count) }
 }
 
+/// Error below which two pictures count as equal, so that one without any error has a logarithm.
+const LEAST_ERROR: f64 = 1e-3;
+
 /// Returns the least number of triangles at which a curve reaches an error, interpolated between
 /// the logarithms of both; `None` if it does not.
 ///
@@ -68,7 +71,7 @@ pub(super) fn mean(values: impl Iterator<Item = f64>) -> f64 {
 pub fn triangles_for(points: &[[f64; 2]], error: f64) -> Option<f64> {
     let first = points.iter().position(|point| point[1] <= error)?;
     let Some(before) = first.checked_sub(1) else { return Some(points[0][0]) };
-    let log = |x: f64| x.max(1e-9).ln();
+    let log = |x: f64| x.max(LEAST_ERROR).ln();
     let [coarse, fine] = [points[before], points[first]].map(|p| p.map(log));
     let part = (log(error) - coarse[1]) / (fine[1] - coarse[1]);
     Some((coarse[0] + (fine[0] - coarse[0]) * part.clamp(0.0, 1.0)).exp())

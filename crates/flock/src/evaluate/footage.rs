@@ -12,7 +12,7 @@ pub struct Footage {
     pub name: String,
     /// Flock in every frame.
     pub flocks: Vec<Flock>,
-    /// FlockCamera in every frame.
+    /// Camera in every frame.
     pub cameras: Vec<FlockCamera>,
     /// Obstacles, in the coordinates of the flock.
     pub obstacles: Vec<Mesh>,

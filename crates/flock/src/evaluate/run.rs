@@ -12,7 +12,7 @@ use crate::evaluate::arms::Arm;
 use crate::evaluate::bootstrap::Interval;
 use crate::evaluate::curve::{Needed, Row, mean, triangles_for};
 use crate::evaluate::footage::Footage;
-use crate::evaluate::score::{FrameScore, Reference, temporal_error};
+use crate::evaluate::score::{FrameScore, Reference, temporal_error, visible_members};
 use crate::levels::{LevelTable, Look};
 use crate::select::{Budget, InstanceLevel, Selector};
 
@@ -125,6 +125,8 @@ struct Stage<'a> {
     pairs: Vec<usize>,
     /// References of both frames of each pair.
     references: Vec<[Reference; 2]>,
+    /// Members that are visible in the frames before each pair and in the pair.
+    visible: Vec<Vec<Vec<bool>>>,
     /// Mean triangles of full detail in view.
     full_triangles: f64,
 }
@@ -155,9 +157,8 @@ impl<'a> Stage<'a> {
         let mut painter = FlockPainter::new(table, look, &footage.obstacles);
         painter.background = meshlod_picture::Background::Plain([128; 3]);
         let last = footage.len().saturating_sub(2);
-        let pairs: Vec<usize> = (0..pairs.max(1))
-            .map(|i| (RUN_UP.min(last) + i * last / pairs.max(1)).min(last))
-            .collect();
+        let count = pairs.max(1);
+        let pairs: Vec<usize> = (0..count).map(|i| (2 * i + 1) * last / (2 * count)).collect();
         let mut references = Vec::new();
         for &first in &pairs {
             let mut reference = |frame: usize| {
@@ -166,7 +167,19 @@ impl<'a> Stage<'a> {
             };
             references.push([reference(first)?, reference(first + 1)?]);
         }
-        let mut stage = Self { footage, table, painter, pairs, references, full_triangles: 0.0 };
+        let mut visible = Vec::new();
+        for (&first, [one, other]) in pairs.iter().zip(&references) {
+            let mut seen = Vec::new();
+            for frame in first.saturating_sub(RUN_UP)..first {
+                let (flock, camera) = (&footage.flocks[frame], &footage.cameras[frame]);
+                seen.push(visible_members(&mut painter, flock, camera)?);
+            }
+            seen.extend([one.visible.clone(), other.visible.clone()]);
+            visible.push(seen);
+        }
+        let full_triangles = 0.0;
+        let mut stage =
+            Self { footage, table, painter, pairs, references, visible, full_triangles };
         let full = Arm::Policy(crate::select::PolicyName::None);
         stage.full_triangles = stage.choose(full, &Budget::default()).mean_triangles();
         Ok(stage)
@@ -218,18 +231,17 @@ impl<'a> Stage<'a> {
         Ok((row, shown.expect("there is at least one pair")))
     }
 
-    /// Sets the bias of an arm so that it draws a share of the triangles: the greatest that draws
-    /// no more.
+    /// Sets the bias of an arm so that it draws a share of the triangles, as a mean over the frames
+    /// and by bisection: the greatest that draws no more, where there is one.
     fn at_share(&mut self, arm: Arm, share: f64) -> ChosenLevels {
         let wanted = share * self.full_triangles;
-        if arm.has_budget() {
-            let budget = Budget { triangles: wanted as usize, ..Budget::default() };
-            return self.choose(arm, &budget);
-        }
-        let budget = |log: f64| Budget {
-            triangles: usize::MAX,
-            detail: log.exp2() as f32,
-            ..Budget::default()
+        let budget = |log: f64| match arm.has_budget() {
+            true => {
+                Budget { triangles: (wanted * (log / 8.0).exp2()) as usize, ..Budget::default() }
+            }
+            false => {
+                Budget { triangles: usize::MAX, detail: log.exp2() as f32, ..Budget::default() }
+            }
         };
         let (mut low, mut high) = (-16.0, 16.0);
         for _ in 0..16 {
@@ -256,14 +268,14 @@ impl<'a> Stage<'a> {
             let mut before: Vec<InstanceLevel> = Vec::new();
             let last = (first + 1).min(flocks.len() - 1);
             for frame in first.saturating_sub(RUN_UP)..=last {
-                let visible = (arm.skips_occluded() && frame >= first)
-                    .then(|| &self.references[pair][frame - first].visible[..]);
+                let run = frame - first.saturating_sub(RUN_UP);
+                let visible = arm.skips_occluded().then(|| &self.visible[pair][run][..]);
                 let start = Instant::now();
                 let chosen =
                     selector.select_visible(&flocks[frame], &cameras[frame], budget, visible);
                 choice.selection_seconds += start.elapsed().as_secs_f64();
                 runs += 1;
-                if !before.is_empty() && visible.is_none() {
+                if !before.is_empty() {
                     let look = |level: &InstanceLevel| level.appearance(self.table);
                     let both = before.iter().map(look).zip(chosen.iter().map(look));
                     let (same, other): (Vec<_>, Vec<_>) =
@@ -330,27 +342,40 @@ impl Evaluation {
     }
 
     /// Returns the triangles that an arm needs over those of another for an image error, as a
-    /// geometric mean over the scenes in which both reach it, with a bootstrap interval.
+    /// geometric mean over the scenes, with a bootstrap interval.
     ///
-    /// `None` if there is no such scene.
+    /// `None` if one of them does not reach the error in every scene.
     pub fn ratio(&self, arm: &str, other: &str, flip: f64) -> Option<Interval> {
         let scenes: Vec<&String> = self.full_triangles.iter().map(|(scene, _)| scene).collect();
-        let frames = self.rows.first().map_or(0, |row| row.frames.len());
-        Interval::of(scenes.len(), frames, |drawn| {
-            let log = |(scene, frames): &(usize, Vec<usize>)| {
-                let points = |arm| self.points(scenes[*scene], arm, Some(frames));
+        // Both frames of a pair are drawn together: they are nearly alike.
+        let pairs = self.rows.first().map_or(0, |row| row.frames.len() / 2);
+        Interval::of(scenes.len(), pairs, |drawn| {
+            let log = |(scene, pairs): &(usize, Vec<usize>)| {
+                let frames: Vec<usize> = pairs.iter().flat_map(|p| [2 * p, 2 * p + 1]).collect();
+                let points = |arm| self.points(scenes[*scene], arm, Some(&frames));
                 let needs = |arm| triangles_for(&points(arm), flip);
                 Some((needs(arm)? / needs(other)?).ln())
             };
-            let logs: Vec<f64> = drawn.iter().filter_map(log).collect();
-            (!logs.is_empty()).then(|| mean(logs.into_iter()).exp())
+            let logs: Option<Vec<f64>> = drawn.iter().map(log).collect();
+            logs.filter(|logs| !logs.is_empty()).map(|logs| mean(logs.into_iter()).exp())
         })
     }
 
-    /// Returns the mean over all scenes of a figure of an arm at a share of the triangles.
+    /// Returns the mean over all scenes of a figure of an arm at a share of the triangles; `None` if
+    /// the arm is off by more than a tenth of the share in one of them.
     pub fn mean(&self, arm: &str, share: f64, figure: impl Fn(&Row) -> f64) -> Option<f64> {
         let rows = self.rows.iter().filter(|row| row.arm == arm && row.share == share);
-        let values: Vec<f64> = rows.map(figure).collect();
+        // Some arms cannot draw so little, or so much.
+        let is_near = |row: &Row| {
+            let full = self.full_triangles.iter().find(|(scene, _)| *scene == row.scene);
+            let full = full.map_or(0.0, |(_, full)| *full);
+            (row.mean_triangles() / full / share - 1.0).abs() < 0.1
+        };
+        let rows: Vec<&Row> = rows.collect();
+        if !rows.iter().all(|row| is_near(row)) {
+            return None;
+        }
+        let values: Vec<f64> = rows.into_iter().map(figure).collect();
         (!values.is_empty()).then(|| mean(values.into_iter()))
     }
 }

@@ -30,7 +30,7 @@ pub struct FrameScore {
 }
 
 /// Pixels around the flock that are compared with it, since the filters of FLIP reach that far.
-const MARGIN: usize = 8;
+const MARGIN: usize = 10;
 
 impl Reference {
     /// Draws a frame in full detail.
@@ -88,6 +88,40 @@ impl Reference {
         let (flip, ssim) = (mean(flip(&reference, &test)?), mean(ssim(&reference, &test)?));
         Ok(FrameScore { flip, ssim, pixels })
     }
+}
+
+/// Returns for every member of a flock whether any of it is visible in full detail.
+pub(super) fn visible_members(
+    painter: &mut FlockPainter<'_>,
+    flock: &Flock,
+    camera: &FlockCamera,
+) -> Result<Vec<bool>, PictureError> {
+    let frame = full_detail(painter, flock);
+    Ok(seen(&frame, camera, flock.members.len())?.1)
+}
+
+fn full_detail(painter: &mut FlockPainter<'_>, flock: &Flock) -> FrameMesh {
+    painter.frame(flock, &vec![InstanceLevel::drawn(0); flock.members.len()])
+}
+
+/// Returns for every pixel whether it shows a member, and for every member whether it is visible,
+/// with four samples a pixel as in pictures.
+fn seen(
+    frame: &FrameMesh,
+    camera: &FlockCamera,
+    members: usize,
+) -> Result<(Vec<bool>, Vec<bool>), PictureError> {
+    let [width, height] = camera.size();
+    let found = visibility(&frame.mesh, &camera.for_picture(), [2 * width, 2 * height])?;
+    let mut visible = vec![false; members];
+    let mut shows_member = vec![false; width as usize * height as usize];
+    for (i, face) in found.faces().enumerate() {
+        let Some(member) = face.and_then(|face| frame.member_of(face.index())) else { continue };
+        visible[member] = true;
+        let (x, y) = (i % (2 * width as usize) / 2, i / (2 * width as usize) / 2);
+        shows_member[y * width as usize + x] = true;
+    }
+    Ok((shows_member, visible))
 }
 
 /// Returns how much the error of a picture changes from a frame to the next: the mean difference of

@@ -7,7 +7,7 @@ use meshlod_spatial::Bvh;
 use rayon::prelude::*;
 
 use crate::levels::difference::Differences;
-use crate::levels::directions::DirectionGrid;
+use crate::levels::directions::{DirectionGrid, MAX_SIDE};
 use crate::levels::facing::HiddenFaces;
 use crate::levels::look::Look;
 use crate::levels::model::{ModelAxes, in_member_frame};
@@ -29,7 +29,7 @@ pub struct ChainOptions {
     /// Number of triangles at which a chain ends, at least 1.
     pub coarsest: usize,
     /// Number of cells along the side of the grid of directions of coarse levels, 2 to 32. Finer
-    /// levels have a half, a third, a quarter or a sixth of that.
+    /// levels have a half, a third, a quarter or a sixth of that, where it is a whole number.
     pub directions: usize,
     /// Vertices to keep in place or to protect; `None` for those that [`meshlod_check::locks`]
     /// finds where parts of the model meet.
@@ -57,8 +57,8 @@ impl LevelTable {
     /// Builds the chains of a model: simplifies it as a whole and side by side, and finds what each
     /// level shows and hides from every direction.
     ///
-    /// Cost: O(n log n) for each of the three simplified chains, n = faces, and about five pictures
-    /// of 128 by 128 pixels for each level and direction.
+    /// Cost: O(n log n) for each of the three simplified chains, n = faces, and a picture of 128 by
+    /// 128 pixels for each level of the whole chain and each of 36 directions.
     ///
     /// # Errors
     /// An invalid model or one without extent, an option out of range, and errors of the
@@ -68,6 +68,13 @@ impl LevelTable {
             let message = format!("the step must be between 0.1 and 0.9, not {}", options.step);
             return Err(TableError::Option(message));
         }
+        if !(2..=MAX_SIDE).contains(&options.directions) {
+            let message = format!(
+                "the directions must be between 2 and {MAX_SIDE}, not {}",
+                options.directions
+            );
+            return Err(TableError::Option(message));
+        }
         let model = in_member_frame(model, &options.axes)?;
         let own_locks =
             || locks(&model, &LockOptions { contacts: true, ..Default::default() }).locks;
@@ -75,9 +82,10 @@ impl LevelTable {
         let kinds = [ChainKind::Whole, ChainKind::LeftCoarsened, ChainKind::RightCoarsened];
         let chains: Result<Vec<_>, _> =
             kinds.into_par_iter().map(|kind| simplified(&model, kind, &locks, options)).collect();
-        let [mut whole, left, right]: [Vec<Mesh>; 3] =
-            chains?.try_into().expect("three chains are simplified");
-        whole.insert(0, model);
+        let mut chains = chains?;
+        chains.iter_mut().for_each(|chain| chain.insert(0, model.clone()));
+        let [whole, left, right]: [Vec<Mesh>; 3] =
+            chains.try_into().expect("three chains are simplified");
         let differences = Differences::measure(&whole, look)?;
         let mut table = Builder::default();
         let chains = [
@@ -170,9 +178,11 @@ impl Builder {
     fn facing(&mut self, whole: &[Mesh], side: usize) -> Vec<FacingLevels> {
         let at_depth = |(depth, mesh): (usize, &Mesh)| {
             let hidden = HiddenFaces::new(mesh);
-            let sides = [side, side / 2, side / 3, side / 4, side / 6];
+            // Cells must lie within those of coarser grids.
+            let sides = [1, 2, 3, 4, 6].into_iter().filter(|part| side.is_multiple_of(*part));
+            let mut sides = sides.map(|part| side / part);
             let fits = |side: &usize| side * side * mesh.faces.len() * 6 / 10 <= MOST_FACING;
-            let side = sides.into_iter().filter(|side| *side >= 2).find(fits);
+            let side = sides.find(|side| *side >= 2 && fits(side));
             let directions = DirectionGrid::new(side.unwrap_or(2));
             let cells = if side.is_some() { 0..directions.len() } else { 0..0 };
             let seen: Vec<Vec<usize>> =

@@ -50,6 +50,11 @@ impl DirectionGrid {
         self.axes.is_empty()
     }
 
+    /// Returns true if every cell lies within a single cell of another grid.
+    pub(crate) fn is_within(&self, other: &Self) -> bool {
+        self.side.is_multiple_of(other.side)
+    }
+
     /// Returns the direction in the middle of a cell, a unit vector.
     pub fn axis(&self, cell: usize) -> Vec3 {
         self.axes[cell]

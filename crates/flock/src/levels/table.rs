@@ -24,7 +24,7 @@ pub struct LevelTable {
     pub layers: Vec<Layer>,
     /// Vertices of each triangle, level after level, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// Material of each triangle, if the model has materials; within a level they are sorted.
+    /// Material of each triangle, if the model has materials.
     pub materials: Option<Labels>,
     /// Levels of all chains, chain after chain, then those of the facing chains, depth after depth.
     pub levels: Vec<Level>,
@@ -58,8 +58,7 @@ pub struct Level {
 pub struct Chain {
     /// How the levels of the chain are coarsened.
     pub kind: ChainKind,
-    /// Levels of the chain, a range of [`LevelTable::levels`]. The first is the model itself in the
-    /// whole chain, and coarser than the model in the others.
+    /// Levels of the chain, a range of [`LevelTable::levels`]. The first is the model itself.
     pub levels: Range<usize>,
 }
 

@@ -55,6 +55,9 @@ pub fn read_levels(source: &mut Source<'_>) -> Result<LevelTable, RecordingError
     })
 }
 
+/// Most levels of a chain: policies count them in a byte.
+const MOST_DEPTHS: usize = 255;
+
 /// Returns the simplified chains, whose levels must be the first, without gaps.
 fn chains(file: &LevelsFile) -> Result<[Chain; 3], RecordingError> {
     let words = [ChainWord::Whole, ChainWord::LeftCoarsened, ChainWord::RightCoarsened];
@@ -69,9 +72,12 @@ fn chains(file: &LevelsFile) -> Result<[Chain; 3], RecordingError> {
         let first = [entry.first_level, entry.levels];
         chain.levels = range(file, &mut next, first, || format!("chain {i}"))?;
     }
-    match chains[0].levels.is_empty() {
-        false => Ok(chains),
-        true => Err(RecordingError::value(FILE, "chain 0", "it must have levels")),
+    match chains[0].levels.len() {
+        1..=MOST_DEPTHS => Ok(chains),
+        _ => {
+            let reason = format!("it must have 1 to {MOST_DEPTHS} levels");
+            Err(RecordingError::value(FILE, "chain 0", reason))
+        }
     }
 }
 

@@ -76,8 +76,8 @@ impl Selection {
     }
 }
 
+/// Value of a member that is drawn as an impostor.
+const IMPOSTOR: usize = u16::MAX as usize - 1;
+
 /// Value of a member that is not drawn.
 const HIDDEN: usize = u16::MAX as usize;
-
-/// Value of a member that is an impostor.
-const IMPOSTOR: usize = HIDDEN - 1;

@@ -41,5 +41,5 @@ pub enum SceneError {
     Simulation(#[from] SimulationError),
     /// The camera cannot be made.
     #[error(transparent)]
-    FlockCamera(#[from] CameraError),
+    Camera(#[from] CameraError),
 }

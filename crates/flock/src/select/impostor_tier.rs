@@ -56,7 +56,7 @@ mod tests {
         Arc::new(LevelTable::new(&ball, &Look::default(), &options).unwrap())
     }
 
-    /// FlockCamera that sees a body length at this distance from the origin as 1000 / distance pixels.
+    /// Camera that sees a body length at this distance from the origin as 1000 / distance pixels.
     fn camera(distance: f32) -> FlockCamera {
         let fov = 2.0 * 0.05f32.atan();
         FlockCamera::look_at([0.0, 0.0, distance], [0.0; 3], fov, [100, 100]).unwrap()

@@ -78,8 +78,8 @@ impl Selector {
 
     /// Chooses a level for every member, in the order of the members.
     ///
-    /// Allocates only where the flock has grown since the frame before. Cost: linear in the
-    /// members.
+    /// Allocates only where the flock has grown since the frame before; with more than 16,384
+    /// members, the pool of threads may allocate a little on its own. Cost: linear in the members.
     pub fn select(
         &mut self,
         flock: &Flock,
@@ -92,6 +92,9 @@ impl Selector {
     /// Chooses a level for every member that may be visible; the others are hidden.
     ///
     /// `visible` has an entry for every member, as from an occlusion test.
+    ///
+    /// # Panics
+    /// If `visible` has fewer entries than the flock has members.
     pub fn select_visible(
         &mut self,
         flock: &Flock,

@@ -21,7 +21,7 @@ const TASK: usize = 1 << 14;
 pub struct View<'a> {
     /// Flock to draw.
     pub flock: &'a Flock,
-    /// FlockCamera that sees it.
+    /// Camera that sees it.
     pub camera: &'a FlockCamera,
     /// Levels of the members.
     pub table: &'a LevelTable,

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-/// CurveChart of a few curves.
+/// Chart of a few curves.
 pub struct CurveChart<'a> {
     pub alt: &'a str,
     pub caption: String,

@@ -23,6 +23,7 @@ use crate::failure::Failure;
 use crate::files;
 use crate::flock::evaluate::pictures::Pictures;
 use crate::flock::model::FlockModel;
+use crate::numbers::count;
 use crate::session::Session;
 use crate::verbs::flock::Flock;
 
@@ -38,19 +39,22 @@ struct Extent {
 
 const QUICK: Extent = Extent {
     size: [640, 360],
-    frames: 45,
-    pairs: 1,
+    frames: 300,
+    pairs: 2,
     shares: &[0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7],
-    step: 15,
+    step: 30,
 };
 
 const FULL: Extent = Extent {
     size: [1280, 720],
-    frames: 240,
-    pairs: 3,
+    frames: 600,
+    pairs: 4,
     shares: &[0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8],
-    step: 10,
+    step: 20,
 };
+
+/// Greatest number of triangles of a frame in full detail.
+const MOST_TRIANGLES: usize = 10_000_000;
 
 /// Image errors for which the triangles needed are found.
 pub const FLIPS: [f64; 3] = [0.01, 0.02, 0.05];
@@ -85,6 +89,15 @@ pub fn run(
     session: &Session,
 ) -> Result<Answer, Failure> {
     let extent = if options.quick { QUICK } else { FULL };
+    let triangles = options.members.saturating_mul(table.triangle_count(0));
+    if triangles > MOST_TRIANGLES {
+        return Err(Failure::new(format_args!(
+            "an evaluation draws {} triangles at full detail; it can draw {}: give fewer --members \
+             or a coarser --model",
+            count(triangles),
+            count(MOST_TRIANGLES)
+        )));
+    }
     let footage = footage(options, &extent, session)?;
     let settings = EvaluationOptions {
         shares: extent.shares.to_vec(),

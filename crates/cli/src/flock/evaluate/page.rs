@@ -45,7 +45,7 @@ fn header(report: &Report<'_>) -> Markup {
             "FLIP at 67 pixels per degree (0 is equal) and SSIM (1 is equal)."
         }
         @if report.is_quick {
-            p { "This is the quick version: one pair of frames a scene, small pictures. Without "
+            p { "This is the quick version: two pairs of frames a scene, small pictures. Without "
                 code { "--quick" } " it is " code { "meshlod flock --evaluate --out DIR" } "." }
         }
     }

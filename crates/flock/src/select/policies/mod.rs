@@ -45,7 +45,7 @@ fn fill_by_distance(levels: &mut ChainLevels, view: &View<'_>, chain: &Chain) {
 }
 
 /// Runs `choose` for every school. Members of no school get levels by their own distance.
-fn each_school(
+pub(crate) fn each_school(
     view: &View<'_>,
     levels: &mut [InstanceLevel],
     by_distance: &ChainLevels,
@@ -57,10 +57,14 @@ fn each_school(
             by_distance.look_up(&lanes.distance_squared, chosen);
         });
     };
+    let count = levels.len();
     for school in &view.flock.schools {
-        alone(next..school.members.start.max(next), levels);
-        choose(school, levels);
-        next = school.members.end;
+        // Schools overlap or reach beyond the members only by mistake.
+        let start = school.members.start.clamp(next, count);
+        let end = school.members.end.clamp(start, count);
+        alone(next..start, levels);
+        choose(&School { members: start..end, ..school.clone() }, levels);
+        next = end;
     }
-    alone(next..levels.len(), levels);
+    alone(next..count, levels);
 }

@@ -59,7 +59,7 @@ struct Appearance {
 const TASK: usize = 1 << 14;
 
 /// Times that the budget is shared out anew where the levels cost more than expected.
-const ATTEMPTS: usize = 4;
+const ATTEMPTS: usize = 6;
 
 /// Number of a cell for members that are not drawn.
 const NO_CELL: u32 = u32::MAX;
@@ -75,7 +75,10 @@ impl Ours {
         let directions = finest.cloned().unwrap_or_else(|| DirectionGrid::new(2));
         let views = table.differences.directions();
         let axes = (0..directions.len()).map(|cell| directions.axis(cell));
-        let level = |(axis, depth): (Vec3, usize)| table.facing_level(depth, axis) as u16;
+        let level = |(axis, depth): (Vec3, usize)| {
+            let fits = directions.is_within(&table.facing[depth].directions);
+            if fits { table.facing_level(depth, axis) as u16 } else { depth as u16 }
+        };
         let of_axis = |axis: Vec3| (0..table.depth()).map(move |depth| (axis, depth));
         Self {
             gains: Gains::new(table),
@@ -83,7 +86,7 @@ impl Ours {
             allocation: Allocation::new(views.len() * SIZES * VISIBILITIES),
             view_of_facing: axes.clone().map(|axis| views.cell(axis) as u8).collect(),
             facing: axes.flat_map(of_axis).map(level).collect(),
-            directions,
+            directions: directions.clone(),
             depth_of: table.levels.iter().map(|level| level.depth as u8).collect(),
             triangles_of: table.levels.iter().map(|level| level.triangles.len() as u32).collect(),
             places: Vec::new(),
@@ -156,8 +159,10 @@ impl Ours {
                 let of_cell = self.allocation.choice((place & !NEAR) as usize);
                 let finest = if band == Band::Full { of_cell.finest } else { of_cell.best };
                 let depth = match level.level() {
-                    Some(before) => self.depth_of[before].clamp(finest, of_cell.coarsest),
-                    None => of_cell.best,
+                    Some(before) if band != Band::None => {
+                        self.depth_of[before].clamp(finest, of_cell.coarsest)
+                    }
+                    _ => of_cell.best,
                 };
                 let depth = usize::from(depth);
                 let drawn = match place & NEAR {
@@ -179,8 +184,10 @@ impl Ours {
 enum Band {
     /// Finer and coarser ones than that of its cell.
     Full,
-    /// Only coarser ones, so that the budget holds.
+    /// Only coarser ones.
     Coarser,
+    /// Only that of its cell.
+    None,
 }
 
 impl Policy for Ours {
@@ -191,18 +198,19 @@ impl Policy for Ours {
         self.sort_into_cells(view);
         let budget = view.budget.triangles;
         let mut target = budget;
-        for _ in 0..ATTEMPTS {
+        for attempt in 0..ATTEMPTS {
             self.allocation.share_out(&self.gains, target);
-            if self.assign(view, levels, Band::Full) <= budget {
-                return;
-            }
-            let spent = self.assign(view, levels, Band::Coarser);
+            // The last attempts give up finer levels that members would keep.
+            let band = if attempt < ATTEMPTS / 2 { Band::Full } else { Band::Coarser };
+            let spent = self.assign(view, levels, band);
             if spent <= budget {
                 return;
             }
-            // Cells know the mean cost of their levels only.
-            target = (target as f64 * 0.98 * budget as f64 / spent as f64) as usize;
+            // Cells know neither what their members keep nor the cost of each direction.
+            target = (target as f64 * 0.99 * budget as f64 / spent as f64) as usize;
         }
+        self.allocation.share_out(&self.gains, 0);
+        self.assign(view, levels, Band::None);
     }
 }
 
@@ -221,8 +229,11 @@ fn facing(
     let (mut left, mut up, mut ahead) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
     for i in 0..LANES {
         // Left is (hz, 0, -hx) made unit, up is heading × left; the eye is at minus the offset.
-        let scale = (hz[i] * hz[i] + hx[i] * hx[i]).max(1e-12).sqrt().recip();
-        let (lx, lz) = (hz[i] * scale, -hx[i] * scale);
+        // A vertical heading has its left along +x, as in `frame_of`.
+        let flat = (hz[i] * hz[i] + hx[i] * hx[i]).sqrt();
+        let scale = flat.max(1e-6).recip();
+        let lx = if flat > 1e-6 { hz[i] * scale } else { 1.0 };
+        let lz = if flat > 1e-6 { -hx[i] * scale } else { 0.0 };
         let (ux, uy, uz) = (hy[i] * lz, hz[i] * lx - hx[i] * lz, -hy[i] * lx);
         left[i] = -(x[i] * lx + z[i] * lz);
         up[i] = -(x[i] * ux + y[i] * uy + z[i] * uz);
