@@ -104,7 +104,7 @@ fn facing(file: &LevelsFile) -> Result<Vec<FacingLevels>, RecordingError> {
         depths.push(FacingLevels { directions, levels });
     }
     if next != file.levels.len() || next > InstanceLevel::MOST {
-        let reason = "there must be at most 65535, each in a chain";
+        let reason = "there must be at most 65534, each in a chain";
         return Err(RecordingError::value(FILE, "levels", reason));
     }
     Ok(depths)

@@ -13,7 +13,7 @@
 //! | `cameras.json` | eye, axes, field of view and picture size of every frame |
 //! | `levels.json` | levels and chains of the model; layers of its vertices |
 //! | `vertices.npy`, `triangles.npy` | `f4 [vertices, 3]` and `u4 [triangles, 3]` of all levels |
-//! | `selection.npy` | `u2 [frames, members]`: levels that somebody chose; 65535 is hidden |
+//! | `selection.npy` | `u2 [frames, members]`: levels chosen; 65535 is hidden, 65534 an impostor |
 //!
 //! The format is described in full in `docs/notes/flock-recordings.md`. This module touches no
 //! files: what writes gives bytes by file name to a closure, and what reads asks one for them.

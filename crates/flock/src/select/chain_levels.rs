@@ -61,6 +61,7 @@ impl ChainLevels {
     #[inline(always)]
     pub fn look_up(&self, squares: &[f32; LANES], levels: &mut [InstanceLevel; LANES]) {
         let mut entries = [0; LANES];
+        #[expect(clippy::manual_clamp, reason = "`max` also replaces a NaN")]
         for lane in 0..LANES {
             entries[lane] = squares[lane].max(LEAST).min(MOST).to_bits() >> DROPPED_BITS;
         }
@@ -71,8 +72,8 @@ impl ChainLevels {
 
     /// Returns the number of the entry for the square of a distance.
     #[inline(always)]
+    #[expect(clippy::manual_clamp, reason = "`max` also replaces a NaN")]
     pub(crate) fn entry(&self, distance_squared: f32) -> usize {
-        // `max` also replaces a NaN.
         let bits = distance_squared.max(LEAST).min(MOST).to_bits() >> DROPPED_BITS;
         (bits - FIRST) as usize
     }

@@ -70,10 +70,10 @@ impl<'a> View<'a> {
     pub fn lanes(&self, first: usize) -> Lanes {
         let eye = self.camera.eye().to_array();
         let mut lanes = Lanes::default();
-        for axis in 0..3 {
+        for (axis, eye) in eye.into_iter().enumerate() {
             let values = load(&self.flock.members.position[axis], first);
-            for lane in 0..LANES {
-                lanes.offset[axis][lane] = values[lane] - eye[axis];
+            for (offset, value) in lanes.offset[axis].iter_mut().zip(values) {
+                *offset = value - eye;
             }
         }
         lanes.look(self.camera.axes(), self.camera.tangents(), self.margins, self.table.radius);
