@@ -159,7 +159,8 @@ impl VisibilityGrid {
         (self.octaves[froxel] - 0.5 * of_member).max(0.0)
     }
 
-    /// Averages what is left of the light over all tiles that a member covers.
+    /// Averages what is left of the light over all tiles that a member covers, in the picture or
+    /// beside it.
     fn over_tiles(&self, view: &View<'_>, member: usize, froxel: u32) -> f32 {
         let ellipse = self.ellipse(view, member, froxel);
         let (mut light, mut count) = (0.0, 0.0f32);
@@ -167,7 +168,8 @@ impl VisibilityGrid {
             light += (-self.in_front(tile * SLICES + ellipse.slice, ellipse.octaves)).exp2();
             count += 1.0;
         });
-        if count == 0.0 { 0.0 } else { -(light / count).max(1e-6).log2() }
+        // What is outside the picture is not seen either.
+        -(light / count.max(ellipse.area)).max(1e-6).log2()
     }
 
     /// Returns the ellipse that a large member covers.
@@ -195,6 +197,7 @@ impl VisibilityGrid {
             middle,
             reach: Vec2::new(spread.x_axis.x, spread.y_axis.y).sqrt(),
             inverse: spread.inverse(),
+            area: std::f32::consts::PI * spread.determinant().max(0.0).sqrt(),
             octaves: octaves_of(covered / area),
             slice: froxel as usize % SLICES,
         }
@@ -206,6 +209,8 @@ struct Ellipse {
     middle: Vec2,
     reach: Vec2,
     inverse: Mat2,
+    /// Number of tiles.
+    area: f32,
     octaves: f32,
     slice: usize,
 }
