@@ -60,7 +60,7 @@ pub struct NearestOptions {
 /// Part of a member that its cut makes fine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CutFocus {
-    /// What is in the view frustum; the rest is as coarse as possible. A shadow of the member may
+    /// The part in the view frustum; the rest is as coarse as possible. A shadow of the member may
     /// show that.
     #[default]
     Frustum,

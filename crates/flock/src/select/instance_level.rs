@@ -8,7 +8,7 @@ use crate::levels::{ChainKind, LevelTable};
 #[repr(transparent)]
 pub struct InstanceLevel(u16);
 
-/// What decides how a member looks in the picture.
+/// Look of a member in the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Appearance {
     /// Chain and depth of its level; a facing level looks like that of the whole chain.

@@ -14,12 +14,12 @@ pub struct CardAtlas {
     cell_px: u32,
     /// Cells across and down.
     cells: [u32; 2],
-    levels: Vec<Level>,
+    levels: Vec<CardLevel>,
 }
 
 /// Mip level: linear light times alpha, and alpha.
 #[derive(Clone, Debug, PartialEq)]
-struct Level {
+struct CardLevel {
     /// Side of a cell in texels.
     side: u32,
     /// Width of the atlas in texels.
@@ -43,8 +43,8 @@ impl CardAtlas {
             (decode([p[0], p[1], p[2]]) * alpha).extend(alpha)
         };
         let texels = picture.rgba().chunks_exact(4).map(texel).collect();
-        let mut levels = vec![Level { side: cell_px, width, texels }];
-        while let Some(half) = levels.last().and_then(Level::half) {
+        let mut levels = vec![CardLevel { side: cell_px, width, texels }];
+        while let Some(half) = levels.last().and_then(CardLevel::half) {
             levels.push(half);
         }
         Ok(Self { cell_px, cells: [width / cell_px, height / cell_px], levels })
@@ -79,7 +79,7 @@ impl CardAtlas {
     }
 }
 
-impl Level {
+impl CardLevel {
     /// Computes the next mip level; `None` if cells are single texels.
     fn half(&self) -> Option<Self> {
         if self.side == 1 {

@@ -46,12 +46,12 @@ pub struct Ours {
     /// Froxel of each member, then its cell.
     places: Vec<u32>,
     /// Size and direction of each member.
-    looks: Vec<Appearance>,
+    looks: Vec<MemberLook>,
 }
 
 /// How a member looks to the camera.
 #[derive(Clone, Copy, Debug, Default)]
-struct Appearance {
+struct MemberLook {
     size: u8,
     /// Direction of the facing chains in which the eye is.
     facing: u16,
@@ -100,7 +100,7 @@ impl Ours {
     fn look(&mut self, view: &View<'_>) {
         let count = view.flock.members.len();
         self.places.resize(count, NOWHERE);
-        self.looks.resize(count, Appearance::default());
+        self.looks.resize(count, MemberLook::default());
         let (grid, directions) = (&self.grid, &self.directions);
         let focal = view.camera.pixels_at_one();
         let tasks = self.places.par_chunks_mut(TASK).zip(self.looks.par_chunks_mut(TASK));
@@ -113,7 +113,7 @@ impl Ours {
                 let facing = facing(view, directions, first, &lanes);
                 for lane in 0..places.len() {
                     let size = size_of(focal * focal / lanes.distance_squared[lane]);
-                    looks[lane] = Appearance { size: size as u8, facing: facing[lane] };
+                    looks[lane] = MemberLook { size: size as u8, facing: facing[lane] };
                     places[lane] = if lanes.in_frustum[lane] { froxels[lane] } else { NOWHERE };
                 }
                 if let Some(visible) = view.visible {
