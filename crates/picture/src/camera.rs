@@ -136,6 +136,16 @@ impl Camera {
         self.forward.into()
     }
 
+    /// Returns unit vectors to the right, up and into the picture.
+    pub fn axes(&self) -> [[f64; 3]; 3] {
+        [self.right, self.up, self.forward].map(DVec3::into)
+    }
+
+    /// Returns the tangent of half the field of view along the picture's shorter side.
+    pub fn tan_half_fov(&self) -> f64 {
+        self.tan_half_fov
+    }
+
     /// Returns the distance of the near plane from the eye, along [`Camera::forward`], in model
     /// units.
     pub fn near(&self) -> f64 {

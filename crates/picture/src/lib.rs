@@ -71,6 +71,7 @@ pub use color_map::ColorMap;
 pub use error::{MAX_SIDE, PictureError};
 pub use flip::{PIXELS_PER_DEGREE, flip};
 pub use image_error::{ImageError, ReferenceImages, ViewError, image_error};
+pub use normals::corner_normals;
 pub use picture::{Picture, grid, side_by_side};
 pub use render::render;
 pub use see_through::{

@@ -68,6 +68,21 @@ impl<'a> CornerNormals<'a> {
     }
 }
 
+/// Computes the unit normals with which [`render`](crate::render()) shades the corners of every face,
+/// on the side from which the corners run counter-clockwise.
+///
+/// A face without area has the normal +z.
+///
+/// Cost: O(n), n = faces; with creases, times the faces around a vertex.
+pub fn corner_normals(mesh: &Mesh, normals: Normals) -> Vec<[[f32; 3]; 3]> {
+    let corners = CornerNormals::new(mesh, normals);
+    let of = |(face, vertices): (usize, &[VertexId; 3])| {
+        let flat = face_normal(mesh.triangle(*vertices)).unwrap_or(DVec3::Z).as_vec3();
+        corners.of(mesh, face, flat).map(Vec3::into)
+    };
+    mesh.faces.par_iter().enumerate().map(of).collect()
+}
+
 /// Returns the unit normal of a face, or `None` if it has no area.
 pub(crate) fn face_normal(corners: [DVec3; 3]) -> Option<DVec3> {
     let [a, b, c] = corners;
@@ -158,8 +173,7 @@ mod tests {
     use crate::scenes::{roof, sheet};
 
     fn corner_normals(mesh: &Mesh, normals: Normals, face: usize) -> [Vec3; 3] {
-        let flat = face_normal(mesh.triangle(mesh.faces[face])).unwrap().as_vec3();
-        CornerNormals::new(mesh, normals).of(mesh, face, flat)
+        super::corner_normals(mesh, normals)[face].map(Vec3::from)
     }
 
     #[test]

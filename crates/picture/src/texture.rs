@@ -60,6 +60,12 @@ impl Texture {
         Self::new(SIDE, SIDE, &rgba).expect("the size is right")
     }
 
+    /// Returns the width, height and RGBA texels of the image and of all its mipmaps, row after row
+    /// from the top.
+    pub fn levels(&self) -> impl Iterator<Item = (u32, u32, &[[u8; 4]])> {
+        self.levels.iter().map(|level| (level.width, level.height, &level.texels[..]))
+    }
+
     /// Samples the texture at `uv`, in linear light, averaged over a footprint: the change of uv
     /// per pixel to the right and per pixel down.
     pub(crate) fn sample(&self, uv: Vec2, footprint: [Vec2; 2]) -> Vec3 {

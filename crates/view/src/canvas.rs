@@ -1,0 +1,131 @@
+//! Target without a window, whose pixels can be read.
+
+use meshlod::picture::Picture;
+use wgpu::{
+    BufferDescriptor, BufferUsages, Color, CommandEncoder, Extent3d, LoadOp, MapMode, Operations,
+    RenderPass, StoreOp, Texture, TextureUsages, TextureView,
+};
+
+use crate::texture::texture_2d;
+use crate::{Gpu, TargetFormat, ViewError};
+
+/// Target in memory: antialiased, with depth, and readable as a [`Picture`].
+#[derive(Debug)]
+pub struct Canvas {
+    gpu: Gpu,
+    size: [u32; 2],
+    samples: TextureView,
+    resolved: Texture,
+    resolved_view: TextureView,
+    depth: TextureView,
+    /// Linear colour to which it is cleared, with alpha.
+    pub clear: [f64; 4],
+}
+
+impl Canvas {
+    /// Creates a transparent canvas of a width and height in pixels.
+    ///
+    /// # Errors
+    /// A side of zero, or beyond the limit of the GPU.
+    pub fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, ViewError> {
+        let limit = gpu.device.limits().max_texture_dimension_2d;
+        if size.iter().any(|&side| side == 0 || side > limit) {
+            let [width, height] = size;
+            let why = format!(
+                "a picture of {width} x {height} pixels: sides must be between 1 and {limit}"
+            );
+            return Err(ViewError::Failed(why));
+        }
+        let format = TargetFormat::CANVAS;
+        let attachment = TextureUsages::RENDER_ATTACHMENT;
+        let samples = texture_2d(gpu, size, format.color, format.samples, attachment);
+        let depth = texture_2d(gpu, size, format.depth, format.samples, attachment);
+        let readable = attachment | TextureUsages::COPY_SRC | TextureUsages::TEXTURE_BINDING;
+        let resolved = texture_2d(gpu, size, format.color, 1, readable);
+        Ok(Self {
+            gpu: gpu.clone(),
+            size,
+            samples: samples.create_view(&Default::default()),
+            resolved_view: resolved.create_view(&Default::default()),
+            resolved,
+            depth: depth.create_view(&Default::default()),
+            clear: [0.0; 4],
+        })
+    }
+
+    /// Returns the width and height in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Clears the canvas and draws on it, and submits that to the GPU.
+    pub fn draw(&self, draw: impl FnOnce(&mut RenderPass<'_>)) {
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        draw(&mut self.pass(&mut encoder));
+        self.gpu.queue.submit([encoder.finish()]);
+    }
+
+    /// Begins a pass that clears the canvas.
+    pub fn pass<'e>(&self, encoder: &'e mut CommandEncoder) -> RenderPass<'e> {
+        let [r, g, b, a] = self.clear;
+        encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("canvas"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &self.samples,
+                depth_slice: None,
+                resolve_target: Some(&self.resolved_view),
+                ops: Operations {
+                    load: LoadOp::Clear(Color { r, g, b, a }),
+                    store: StoreOp::Discard,
+                },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &self.depth,
+                depth_ops: Some(Operations { load: LoadOp::Clear(0.0), store: StoreOp::Discard }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        })
+    }
+
+    /// Reads the pixels, after everything submitted so far.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn read(&self) -> Result<Picture, ViewError> {
+        let [width, height] = self.size;
+        let row = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let buffer = self.gpu.device.create_buffer(&BufferDescriptor {
+            label: Some("pixels"),
+            size: u64::from(row) * u64::from(height),
+            usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(row),
+            rows_per_image: None,
+        };
+        encoder.copy_texture_to_buffer(
+            self.resolved.as_image_copy(),
+            wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
+            Extent3d { width, height, depth_or_array_layers: 1 },
+        );
+        self.gpu.queue.submit([encoder.finish()]);
+        let (send, receive) = std::sync::mpsc::channel();
+        buffer.map_async(MapMode::Read, .., move |done| {
+            let _ = send.send(done);
+        });
+        self.gpu.wait()?;
+        let failed = |why: String| ViewError::Failed(why);
+        receive
+            .recv()
+            .map_err(|error| failed(error.to_string()))?
+            .map_err(|error| failed(error.to_string()))?;
+        let bytes = buffer.get_mapped_range(..).map_err(|error| failed(error.to_string()))?;
+        let rows = bytes.chunks_exact(row as usize);
+        let rgba = rows.flat_map(|bytes| &bytes[..4 * width as usize]).copied().collect();
+        Ok(Picture::new(width, height, rgba)?)
+    }
+}

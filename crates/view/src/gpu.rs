@@ -1,0 +1,80 @@
+//! The GPU: a device and its queue.
+
+use wgpu::{Adapter, Device, Features, Instance, InstanceDescriptor, PowerPreference, Queue};
+
+use crate::ViewError;
+
+/// GPU, or the software that stands in for one; a handle that is cheap to clone.
+#[derive(Clone, Debug)]
+pub struct Gpu {
+    /// Device that makes buffers, textures and pipelines.
+    pub device: Device,
+    /// Queue that takes uploads and commands.
+    pub queue: Queue,
+    name: String,
+}
+
+/// Features that are used where the GPU has them.
+const WANTED: Features = Features::INDIRECT_FIRST_INSTANCE
+    .union(Features::MULTI_DRAW_INDIRECT_COUNT)
+    .union(Features::TIMESTAMP_QUERY);
+
+impl Gpu {
+    /// Opens the fastest GPU without a window.
+    ///
+    /// The environment may choose another: `WGPU_BACKEND`, `WGPU_ADAPTER_NAME`.
+    ///
+    /// # Errors
+    /// No GPU is there, or it does not open.
+    pub fn headless() -> Result<Self, ViewError> {
+        let instance = Instance::new(InstanceDescriptor::new_without_display_handle_from_env());
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: PowerPreference::HighPerformance,
+            force_fallback_adapter: false,
+            compatible_surface: None,
+            apply_limit_buckets: false,
+        };
+        let adapter = pollster::block_on(instance.request_adapter(&options));
+        let adapter = adapter.map_err(|_| ViewError::NoGpu)?;
+        let opened = pollster::block_on(adapter.request_device(&Self::descriptor(&adapter)));
+        let (device, queue) = opened.map_err(|error| ViewError::Failed(error.to_string()))?;
+        Ok(Self::new(&adapter, device, queue))
+    }
+
+    /// Takes a device that was opened elsewhere, such as by a window.
+    pub fn new(adapter: &Adapter, device: Device, queue: Queue) -> Self {
+        let info = adapter.get_info();
+        Self { device, queue, name: format!("{} ({})", info.name, info.backend) }
+    }
+
+    /// Returns a description of the device to open on an adapter: with all of its limits, and the
+    /// features that are used where they are there.
+    pub fn descriptor(adapter: &Adapter) -> wgpu::DeviceDescriptor<'static> {
+        wgpu::DeviceDescriptor {
+            label: Some("meshlod"),
+            required_features: adapter.features() & WANTED,
+            required_limits: adapter.limits(),
+            ..Default::default()
+        }
+    }
+
+    /// Returns the name of the GPU and of the interface to it.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Waits until everything submitted so far is done.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn wait(&self) -> Result<(), ViewError> {
+        let done = self.device.poll(wgpu::PollType::wait_indefinitely());
+        done.map(|_| ()).map_err(|error| ViewError::Failed(error.to_string()))
+    }
+
+    /// Fails if a buffer of this size would be beyond the limits of the GPU.
+    pub(crate) fn check_buffer(&self, what: &'static str, needed: u64) -> Result<(), ViewError> {
+        let limit = self.device.limits().max_buffer_size;
+        if needed <= limit { Ok(()) } else { Err(ViewError::TooLarge { what, needed, limit }) }
+    }
+}

@@ -1,0 +1,108 @@
+//! Colours of a surface, as the GPU takes them.
+
+use std::borrow::Cow;
+
+use meshlod::Mesh;
+use meshlod::mesh::LayerKind;
+use meshlod::picture::{ColorMap, Paint, PictureError, Texture, Values};
+
+/// Colours of a mesh: of its materials, its vertices and its faces. They are multiplied.
+pub(crate) struct Surface<'a> {
+    pub materials: Vec<SurfaceMaterial<'a>>,
+    pub vertex_colors: VertexColors,
+    pub face_colors: Option<Cow<'a, [[u8; 3]]>>,
+}
+
+/// Linear colour and texture.
+pub(crate) struct SurfaceMaterial<'a> {
+    pub base_color: [f32; 3],
+    pub texture: Option<Cow<'a, Texture>>,
+}
+
+/// sRGB colours of vertices.
+pub(crate) enum VertexColors {
+    White,
+    /// First vertex colours of the mesh.
+    Wedges,
+    Vertices(Vec<[u8; 3]>),
+}
+
+/// Colour of what has none that the paint asks for, and of values that are not a number.
+const BARE: [u8; 3] = [205; 3];
+
+impl<'a> Surface<'a> {
+    pub(crate) fn new(mesh: &'a Mesh, paint: &Paint<'a>) -> Result<Self, PictureError> {
+        let plain = |color: [u8; 3]| Self {
+            materials: vec![SurfaceMaterial {
+                base_color: crate::placement::linear(color),
+                texture: None,
+            }],
+            vertex_colors: VertexColors::White,
+            face_colors: None,
+        };
+        let white = || plain([255; 3]);
+        let layer = |kind| mesh.attributes.as_ref().and_then(|all| all.layer(kind));
+        Ok(match *paint {
+            Paint::Plain(color) => plain(color),
+            Paint::FaceColors(colors) => {
+                check("colours of faces", colors.len(), mesh.faces.len())?;
+                Self { face_colors: Some(Cow::Borrowed(colors)), ..white() }
+            }
+            Paint::FaceValues(values) => {
+                check("values of faces", values.values.len(), mesh.faces.len())?;
+                Self { face_colors: Some(mapped(&values).into()), ..white() }
+            }
+            Paint::VertexValues(values) => {
+                check("values of vertices", values.values.len(), mesh.positions.len())?;
+                Self { vertex_colors: VertexColors::Vertices(mapped(&values)), ..white() }
+            }
+            Paint::Colors => match layer(LayerKind::Color(0)).filter(|layer| layer.width >= 3) {
+                Some(_) => Self { vertex_colors: VertexColors::Wedges, ..white() },
+                None => plain(BARE),
+            },
+            Paint::Checker { squares } => match layer(LayerKind::Uv(0)) {
+                Some(_) => Self {
+                    materials: vec![SurfaceMaterial {
+                        base_color: [1.0; 3],
+                        texture: Some(Cow::Owned(Texture::checker(squares))),
+                    }],
+                    ..white()
+                },
+                None => plain(BARE),
+            },
+            Paint::Materials(all) => {
+                let expected = mesh.materials.as_ref().map_or(1, |labels| labels.names.len());
+                check("materials", all.materials.len(), expected)?;
+                let has_uv = layer(LayerKind::Uv(0)).is_some();
+                let texture = |index: usize| {
+                    let found = all.textures.get(index).map(Cow::Borrowed);
+                    let count = all.textures.len();
+                    found.ok_or(PictureError::NoTexture { material: 0, texture: index, count })
+                };
+                let material = |material: &meshlod::picture::PaintMaterial| {
+                    let texture = material.texture.filter(|_| has_uv).map(texture).transpose()?;
+                    Ok(SurfaceMaterial { base_color: material.base_color, texture })
+                };
+                let materials =
+                    all.materials.iter().map(material).collect::<Result<_, PictureError>>()?;
+                Self { materials, ..white() }
+            }
+        })
+    }
+}
+
+/// Returns the colours of values.
+fn mapped(values: &Values<'_>) -> Vec<[u8; 3]> {
+    let Values { values, map, range: [low, high] } = *values;
+    let color = |&value: &f32| color_of(map, (value - low) / (high - low));
+    values.iter().map(color).collect()
+}
+
+fn color_of(map: ColorMap, t: f32) -> [u8; 3] {
+    if t.is_nan() { BARE } else { map.color(t) }
+}
+
+fn check(what: &'static str, found: usize, expected: usize) -> Result<(), PictureError> {
+    let is_enough = if what == "materials" { found >= expected } else { found == expected };
+    if is_enough { Ok(()) } else { Err(PictureError::Length { what, found, expected }) }
+}

@@ -1,0 +1,187 @@
+//! Meshes with materials on the GPU.
+
+mod build;
+mod colors;
+mod pipelines;
+
+use std::ops::Range;
+
+use meshlod::Mesh;
+use meshlod::picture::{Normals, Paint, PictureError};
+use wgpu::{BindGroup, Buffer, BufferUsages, IndexFormat, RenderPass};
+
+use self::build::{CornerVertices, face_order};
+use self::colors::Surface;
+pub(crate) use self::pipelines::{MaterialBinding, MeshPipelines};
+use crate::placement::Placement;
+use crate::renderer::{Renderer, bind_group, buffer_of};
+use crate::{Gpu, ViewError};
+
+/// Mesh on the GPU: wedges with normals, texture coordinates and colours; and its materials.
+#[derive(Debug)]
+pub struct GpuMesh {
+    origin: [f64; 3],
+    positions: Buffer,
+    attributes: Buffer,
+    indices: Buffer,
+    /// Faces of each material, in the order of the index buffer.
+    ranges: Vec<(Range<u32>, usize)>,
+    materials: Vec<MaterialBinding>,
+    faces: u32,
+    bytes: u64,
+    /// Bindings for drawing face by face, if the buffers are small enough for that.
+    storage: Option<BindGroup>,
+}
+
+/// Attributes of a vertex, as buffers have them: 20 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct VertexAttributes {
+    /// Normal as 16-bit fractions; the fourth is padding.
+    pub normal: [i16; 4],
+    /// sRGB colour.
+    pub color: [u8; 4],
+    pub uv: [f32; 2],
+}
+
+impl GpuMesh {
+    /// Uploads a mesh with the colours that [`meshlod::picture::render`] would give it.
+    ///
+    /// Without normals of its own, corners get those of `normals`; with [`Normals::Flat`] vertices are
+    /// shared and faces are shaded flat. Materials are drawn one after the other.
+    ///
+    /// # Errors
+    /// A mesh that breaks [`Mesh::validate`], a paint that does not match it, or a mesh beyond the
+    /// limits of the GPU.
+    pub fn new(
+        renderer: &Renderer,
+        mesh: &Mesh,
+        paint: &Paint<'_>,
+        normals: Normals,
+    ) -> Result<Self, ViewError> {
+        mesh.validate().map_err(PictureError::from)?;
+        let gpu = renderer.gpu();
+        let surface = Surface::new(mesh, paint)?;
+        let origin = middle(mesh);
+        let (order, ranges) = face_order(mesh, surface.materials.len());
+        let vertices = CornerVertices::new(mesh, &surface, normals, origin);
+        let position_bytes = 12 * vertices.positions.len() as u64;
+        let attribute_bytes = 20 * vertices.attributes.len() as u64;
+        let index_bytes = 12 * order.len() as u64;
+        gpu.check_buffer("the mesh's positions", position_bytes)?;
+        gpu.check_buffer("the mesh's attributes", attribute_bytes)?;
+        gpu.check_buffer("the mesh's faces", index_bytes)?;
+        let triangles: Vec<[u32; 3]> =
+            order.iter().map(|&face| vertices.triangles[face as usize]).collect();
+        let fetched = BufferUsages::VERTEX | BufferUsages::STORAGE;
+        let positions =
+            buffer_of(gpu, "positions", bytemuck::cast_slice(&vertices.positions), fetched);
+        let attributes =
+            buffer_of(gpu, "attributes", bytemuck::cast_slice(&vertices.attributes), fetched);
+        let usage = BufferUsages::INDEX | BufferUsages::STORAGE;
+        let indices = buffer_of(gpu, "faces", bytemuck::cast_slice(&triangles), usage);
+        let colors: Vec<u32> = match &surface.face_colors {
+            Some(colors) => order.iter().map(|&face| pack(colors[face as usize])).collect(),
+            None => vec![u32::MAX],
+        };
+        let mut this = Self {
+            origin,
+            positions,
+            attributes,
+            indices,
+            ranges,
+            materials: surface
+                .materials
+                .iter()
+                .map(|m| MaterialBinding::new(renderer, m))
+                .collect(),
+            faces: order.len() as u32,
+            bytes: position_bytes + attribute_bytes + index_bytes,
+            storage: None,
+        };
+        this.storage = this.bind_storage(renderer, &colors);
+        Ok(this)
+    }
+
+    /// Returns the point of the world that positions are relative to, for
+    /// [`Placement::set`](crate::Placement::set).
+    pub fn origin(&self) -> [f64; 3] {
+        self.origin
+    }
+
+    /// Returns the number of faces.
+    pub fn faces(&self) -> usize {
+        self.faces as usize
+    }
+
+    /// Returns the size of vertices and faces on the GPU, in bytes.
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// Returns true if the mesh can be drawn face by face, as wireframes and colours of faces need
+    /// it; some GPUs allow that only up to a size.
+    pub fn has_faces_apart(&self) -> bool {
+        self.storage.is_some()
+    }
+
+    /// Draws the mesh.
+    pub fn draw(&self, renderer: &Renderer, pass: &mut RenderPass<'_>, placement: &Placement) {
+        let pipelines = renderer.meshes();
+        pass.set_pipeline(&pipelines.fetched);
+        pass.set_bind_group(0, &placement.bind_group, &[]);
+        pass.set_vertex_buffer(0, self.positions.slice(..));
+        pass.set_vertex_buffer(1, self.attributes.slice(..));
+        pass.set_index_buffer(self.indices.slice(..), IndexFormat::Uint32);
+        for (faces, material) in &self.ranges {
+            pass.set_bind_group(1, &self.materials[*material].bind_group, &[]);
+            pass.draw_indexed(3 * faces.start..3 * faces.end, 0, 0..1);
+        }
+    }
+
+    /// Draws the mesh face by face, so that a [`Shade`](crate::Shade) with a wireframe or with colours
+    /// of faces shows. A mesh that is too large for that is drawn without them.
+    pub fn draw_faces(
+        &self,
+        renderer: &Renderer,
+        pass: &mut RenderPass<'_>,
+        placement: &Placement,
+    ) {
+        let Some(storage) = &self.storage else { return self.draw(renderer, pass, placement) };
+        pass.set_pipeline(&renderer.meshes().pulled);
+        pass.set_bind_group(0, &placement.bind_group, &[]);
+        pass.set_bind_group(2, storage, &[]);
+        for (faces, material) in &self.ranges {
+            pass.set_bind_group(1, &self.materials[*material].bind_group, &[]);
+            pass.draw(3 * faces.start..3 * faces.end, 0..1);
+        }
+    }
+
+    fn bind_storage(&self, renderer: &Renderer, colors: &[u32]) -> Option<BindGroup> {
+        let gpu: &Gpu = renderer.gpu();
+        let limit = gpu.device.limits().max_storage_buffer_binding_size;
+        let buffers = [&self.positions, &self.attributes, &self.indices];
+        if buffers.iter().any(|buffer| buffer.size() > limit) {
+            return None;
+        }
+        let colors = buffer_of(gpu, "colours", bytemuck::cast_slice(colors), BufferUsages::STORAGE);
+        let [a, b, c] = buffers.map(Buffer::as_entire_binding);
+        let all = [a, b, c, colors.as_entire_binding()];
+        Some(bind_group(&gpu.device, &renderer.meshes().storage_layout, all))
+    }
+}
+
+/// Returns the middle of the box of all positions that faces use.
+pub(crate) fn middle(mesh: &Mesh) -> [f64; 3] {
+    let used = mesh.faces.iter().flatten().map(|v| &mesh.positions[v.index()]);
+    let bounds = meshlod::mesh::Bounds::of(used);
+    if bounds.is_empty() {
+        return [0.0; 3];
+    }
+    [0, 1, 2].map(|axis| bounds.min[axis] / 2.0 + bounds.max[axis] / 2.0)
+}
+
+/// Packs a colour as shaders unpack it.
+fn pack([r, g, b]: [u8; 3]) -> u32 {
+    u32::from_le_bytes([r, g, b, 255])
+}

@@ -1,0 +1,66 @@
+//! Textures on the GPU.
+
+use meshlod::picture::Texture as Image;
+use wgpu::{Extent3d, Texture, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
+
+use crate::Gpu;
+
+/// Creates a texture of one level.
+pub(crate) fn texture_2d(
+    gpu: &Gpu,
+    [width, height]: [u32; 2],
+    format: TextureFormat,
+    samples: u32,
+    usage: TextureUsages,
+) -> Texture {
+    gpu.device.create_texture(&TextureDescriptor {
+        label: None,
+        size: Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: samples,
+        dimension: TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    })
+}
+
+/// Uploads an image with its mipmaps. Levels beyond the limit of the GPU are left out.
+pub(crate) fn upload(gpu: &Gpu, image: &Image) -> Texture {
+    let limit = gpu.device.limits().max_texture_dimension_2d;
+    let fits = |&(width, height, _): &(u32, u32, &[[u8; 4]])| width.max(height) <= limit;
+    let levels: Vec<_> = image.levels().filter(fits).collect();
+    let (width, height, _) = levels[0];
+    let texture = gpu.device.create_texture(&TextureDescriptor {
+        label: Some("image"),
+        size: Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: levels.len() as u32,
+        sample_count: 1,
+        dimension: TextureDimension::D2,
+        format: TextureFormat::Rgba8UnormSrgb,
+        usage: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    for (level, &(width, height, texels)) in levels.iter().enumerate() {
+        let to = wgpu::TexelCopyTextureInfo { mip_level: level as u32, ..texture.as_image_copy() };
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(4 * width),
+            rows_per_image: None,
+        };
+        let size = Extent3d { width, height, depth_or_array_layers: 1 };
+        gpu.queue.write_texture(to, texels.as_flattened(), layout, size);
+    }
+    texture
+}
+
+/// Creates a texture of one white texel.
+pub(crate) fn white(gpu: &Gpu) -> Texture {
+    let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+    let texture = texture_2d(gpu, [1, 1], TextureFormat::Rgba8UnormSrgb, 1, usage);
+    let layout =
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4), rows_per_image: None };
+    let size = Extent3d { width: 1, height: 1, depth_or_array_layers: 1 };
+    gpu.queue.write_texture(texture.as_image_copy(), &[255; 4], layout, size);
+    texture
+}
