@@ -31,6 +31,7 @@
 #![forbid(unsafe_code)]
 
 mod canvas;
+mod cut;
 mod error;
 mod gpu;
 mod mesh;
@@ -40,6 +41,7 @@ mod target;
 mod texture;
 
 pub use canvas::Canvas;
+pub use cut::{CutFollower, CutQuery, CutStep, CutTolerance, CutVertices, GpuCut, Transition};
 pub use error::ViewError;
 pub use gpu::Gpu;
 pub use mesh::GpuMesh;

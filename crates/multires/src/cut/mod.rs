@@ -178,6 +178,11 @@ impl<'m> Cut<'m> {
         self.front.triangles.iter()
     }
 
+    /// Returns the three nodes of the triangle in a slot, or `None` if the slot is empty.
+    pub fn triangle(&self, slot: u32) -> Option<[u32; 3]> {
+        self.front.triangles.real(slot)
+    }
+
     /// Iterates over the triangle slots that the last update changed, in no particular order.
     pub fn patches(&self) -> impl Iterator<Item = Patch> + '_ {
         self.front.triangles.changes().map(|(slot, old, new)| Patch { slot, old, new })

@@ -59,6 +59,11 @@ impl Triangles {
         self.all[t as usize].nodes
     }
 
+    /// Returns the nodes of a triangle; `None` for an empty slot or one that does not exist.
+    pub(super) fn real(&self, t: u32) -> Option<[u32; 3]> {
+        self.all.get(t as usize).map(|triangle| triangle.nodes).filter(|nodes| *nodes != HOLE)
+    }
+
     /// Iterates over the triangles by slot and nodes.
     pub(super) fn iter(&self) -> impl Iterator<Item = (u32, [u32; 3])> + '_ {
         let all = self.all.iter().enumerate().map(|(t, triangle)| (t as u32, triangle.nodes));

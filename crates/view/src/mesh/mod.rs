@@ -10,6 +10,7 @@ use meshlod::Mesh;
 use meshlod::picture::{Normals, Paint, PictureError};
 use wgpu::{BindGroup, Buffer, BufferUsages, IndexFormat, RenderPass};
 
+pub(crate) use self::build::fractions;
 use self::build::{CornerVertices, face_order};
 use self::colors::Surface;
 pub(crate) use self::pipelines::{MaterialBinding, MeshPipelines};

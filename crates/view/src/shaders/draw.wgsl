@@ -9,7 +9,7 @@ struct Draw {
     to_key: vec3f,
     flags: u32,
     up: vec3f,
-    // Share of the pixels that are drawn, for transitions.
+    // Share of the pixels that are drawn, for transitions; below 0 the others are drawn.
     shown: f32,
     // Linear colours; alpha is the opacity of the wireframe, and the width of its lines.
     wire: vec4f,
@@ -84,11 +84,12 @@ fn decode_srgb(color: vec3f) -> vec3f {
 
 // Leaves out a share of the pixels, in a pattern that looks even.
 fn dissolve(pixel: vec4f) {
-    if draw.shown < 1.0 {
-        let at = pixel.xy + draw.seed;
-        let noise = fract(52.9829189 * fract(dot(at, vec2f(0.06711056, 0.00583715))));
-        if noise >= draw.shown {
-            discard;
-        }
+    if draw.shown >= 1.0 {
+        return;
+    }
+    let at = floor(pixel.xy) + draw.seed;
+    let noise = fract(52.9829189 * fract(dot(at, vec2f(0.06711056, 0.00583715))));
+    if select(noise >= draw.shown, noise < -draw.shown, draw.shown < 0.0) {
+        discard;
     }
 }
