@@ -58,6 +58,11 @@ impl Canvas {
         self.size
     }
 
+    /// Returns the texture that shows what was drawn.
+    pub fn resolved(&self) -> &Texture {
+        &self.resolved
+    }
+
     /// Clears the canvas and draws on it, and submits that to the GPU.
     pub fn draw(&self, draw: impl FnOnce(&mut RenderPass<'_>)) {
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());

@@ -31,7 +31,7 @@ pub struct Shade {
     pub wireframe: Option<Wireframe>,
     /// Use the colours of faces in place of the mesh's own.
     pub face_colors: bool,
-    /// Share of the pixels that are drawn, 0 to 1, for dithered transitions. With -t exactly the
+    /// Share of the pixels that are drawn, 0 to 1, for dithered transitions. With t - 1 exactly those
     /// pixels are drawn that t leaves out.
     pub shown: f32,
     /// sRGB colour that multiplies that of the surface.

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{difference, draw, gpu};
+use common::{difference, gpu};
 use meshlod::Mesh;
 use meshlod::picture::{
     BackFaces, Background, Camera, ColorMap, Lighting, Materials, Normals, Paint, PaintMaterial,
@@ -17,7 +17,7 @@ fn assert_like_picture(name: &str, mesh: &Mesh, style: &Style<'_>) {
     let style = Style { size: [320, 240], ..style.clone() };
     let view = View { aspect: 4.0 / 3.0, ..View::default() };
     let camera = Camera::fit_mesh(mesh, &view);
-    let drawn = draw(gpu, mesh, &camera, &style);
+    let drawn = meshlod_view::render(gpu, mesh, &camera, &style).unwrap();
     let expected = render(mesh, &camera, &style).unwrap();
     let (far, mean) = difference(&drawn, &expected, 24);
     if let Some(folder) = std::env::var_os("MESHLOD_PICTURES") {
@@ -119,4 +119,72 @@ fn coordinates_in_the_millions_lose_nothing() {
         *position = [position[0] + 4.5e6, position[1] - 3.2e6, position[2] + 1e6];
     }
     assert_like_picture("far", &knot, &Style::default());
+}
+
+#[test]
+fn strips_draw_the_faces_that_they_came_from() {
+    use meshlod::strip::{StripOptions, stripify};
+    use meshlod_view::{Canvas, GpuStrips, Renderer, Shade, TargetFormat};
+    let Some(gpu) = gpu() else { return };
+    let mut knot = samples::knot(8_000);
+    knot.attributes = None;
+    let strips = stripify(&knot.faces, &StripOptions::default());
+    let renderer = Renderer::new(gpu, TargetFormat::CANVAS);
+    let drawn = GpuStrips::new(&renderer, &knot, &strips).unwrap();
+    assert!(drawn.entries() < 2 * knot.faces.len());
+    let style = Style { size: [320, 240], ..Style::default() };
+    let camera = Camera::fit_mesh(&knot, &View { aspect: 4.0 / 3.0, ..View::default() });
+    let canvas = Canvas::new(gpu, style.size).unwrap();
+    let placement = renderer.placement();
+    placement.set(&camera, style.size, drawn.origin(), &Shade::default());
+    let backdrop = renderer.backdrop(style.background).unwrap();
+    canvas.draw(|pass| {
+        drawn.draw(&renderer, pass, &placement);
+        renderer.draw_backdrop(pass, &backdrop);
+    });
+    let (far, mean) =
+        difference(&canvas.read().unwrap(), &render(&knot, &camera, &style).unwrap(), 24);
+    assert!(far < 0.015 && mean < 2.0, "{far} {mean}");
+}
+
+#[test]
+fn a_shadow_lies_under_the_thing_and_fades_outwards() {
+    use meshlod::mesh::Bounds;
+    use meshlod::picture::UpAxis;
+    use meshlod_view::{Canvas, GpuMesh, Ground, Renderer, Shade, TargetFormat};
+    let Some(gpu) = gpu() else { return };
+    let knot = samples::knot(8_000);
+    let renderer = Renderer::new(gpu, TargetFormat::CANVAS);
+    let drawn = GpuMesh::new(&renderer, &knot, &Paint::default(), Normals::Smooth).unwrap();
+    let bounds = Bounds::of(&knot.positions);
+    let ground = Ground::new(&renderer, &bounds, UpAxis::Y, drawn.origin(), |pass, placement| {
+        drawn.draw(&renderer, pass, placement);
+    })
+    .unwrap();
+    let size = [480, 360];
+    let camera = Camera::fit_mesh(&knot, &View { aspect: 4.0 / 3.0, fill: 0.6, ..View::default() });
+    let canvas = Canvas::new(gpu, size).unwrap();
+    let placement = renderer.placement();
+    placement.set(&camera, size, drawn.origin(), &Shade::default());
+    let backdrop = renderer.backdrop(Background::default()).unwrap();
+    let picture = |is_shown: bool| {
+        canvas.draw(|pass| {
+            drawn.draw(&renderer, pass, &placement);
+            renderer.draw_backdrop(pass, &backdrop);
+            if is_shown {
+                ground.draw(&renderer, pass, &camera, size);
+            }
+        });
+        canvas.read().unwrap()
+    };
+    let [with, without] = [true, false].map(picture);
+    if let Some(folder) = std::env::var_os("MESHLOD_PICTURES") {
+        std::fs::write(std::path::PathBuf::from(folder).join("ground.png"), with.png()).unwrap();
+    }
+    let darker = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
+    let darker: Vec<_> = darker
+        .filter(|&(x, y)| with.pixel(x, y)[1].saturating_add(8) < without.pixel(x, y)[1])
+        .collect();
+    assert!(darker.len() > 2_000, "{}", darker.len());
+    assert!(darker.iter().all(|&(x, y)| y > 80 && x > 3 && x < 476), "not at the rims");
 }

@@ -173,8 +173,8 @@ impl GpuCut {
     }
 
     /// Draws the triangles that go and those that come. The placements differ in
-    /// [`Shade::shown`](crate::Shade::shown): -t for those that go, t for those that come, where t
-    /// rises from 0 to 1.
+    /// [`Shade::shown`](crate::Shade::shown): t - 1 for those that go, t for those that come, where
+    /// t rises from 0 to 1.
     pub fn draw_fade(
         &self,
         renderer: &Renderer,

@@ -9,7 +9,8 @@ struct Draw {
     to_key: vec3f,
     flags: u32,
     up: vec3f,
-    // Share of the pixels that are drawn, for transitions; below 0 the others are drawn.
+    // Share of the pixels that are drawn, for transitions. Below 0 the share is 1 less: t - 1 draws
+    // exactly the pixels that t leaves out.
     shown: f32,
     // Linear colours; alpha is the opacity of the wireframe, and the width of its lines.
     wire: vec4f,
@@ -89,7 +90,7 @@ fn dissolve(pixel: vec4f) {
     }
     let at = floor(pixel.xy) + draw.seed;
     let noise = fract(52.9829189 * fract(dot(at, vec2f(0.06711056, 0.00583715))));
-    if select(noise >= draw.shown, noise < -draw.shown, draw.shown < 0.0) {
+    if select(noise >= draw.shown, noise < draw.shown + 1.0, draw.shown < 0.0) {
         discard;
     }
 }

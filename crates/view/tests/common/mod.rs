@@ -4,8 +4,8 @@
 use std::sync::OnceLock;
 
 use meshlod::Mesh;
-use meshlod::picture::{Camera, Picture, Style};
-use meshlod_view::{Canvas, Gpu, GpuMesh, Renderer, Shade, TargetFormat};
+use meshlod::picture::Picture;
+use meshlod_view::Gpu;
 
 /// Opens the GPU, once; `None`, and a line that says so, if there is none.
 ///
@@ -26,37 +26,6 @@ pub fn gpu() -> Option<&'static Gpu> {
     gpu.as_ref()
 }
 
-/// Draws a mesh on the GPU in a style of `picture`.
-pub fn draw(gpu: &Gpu, mesh: &Mesh, camera: &Camera, style: &Style<'_>) -> Picture {
-    let renderer = Renderer::new(gpu, TargetFormat::CANVAS);
-    let drawn = GpuMesh::new(&renderer, mesh, &style.paint, style.normals).unwrap();
-    let canvas = Canvas::new(gpu, style.size).unwrap();
-    let placement = renderer.placement();
-    let shade = Shade {
-        lighting: style.lighting,
-        back_faces: style.back_faces,
-        wireframe: style.wireframe,
-        face_colors: matches!(
-            style.paint,
-            meshlod::picture::Paint::FaceColors(_) | meshlod::picture::Paint::FaceValues(_)
-        ),
-        ..Shade::default()
-    };
-    placement.set(camera, style.size, drawn.origin(), &shade);
-    let backdrop = renderer.backdrop(style.background);
-    canvas.draw(|pass| {
-        if shade.wireframe.is_some() || shade.face_colors {
-            drawn.draw_faces(&renderer, pass, &placement);
-        } else {
-            drawn.draw(&renderer, pass, &placement);
-        }
-        if let Some(backdrop) = &backdrop {
-            renderer.draw_backdrop(pass, backdrop);
-        }
-    });
-    canvas.read().unwrap()
-}
-
 /// Share of the pixels whose colours differ by more than `levels` of 255 in a channel, and the mean
 /// difference.
 pub fn difference(a: &Picture, b: &Picture, levels: u8) -> (f64, f64) {
@@ -69,4 +38,52 @@ pub fn difference(a: &Picture, b: &Picture, levels: u8) -> (f64, f64) {
     }
     let count = (a.rgba().len() / 4) as f64;
     (far as f64 / count, sum as f64 / count)
+}
+
+/// Closed mesh whose picture has no holes from any side: seen from the origin, it is a ball with
+/// bumps.
+pub fn bumpy(faces: usize) -> Mesh {
+    let mut ball = meshlod::samples::sphere(faces);
+    for p in &mut ball.positions {
+        let [x, y, z] = *p;
+        let bump = 1.0 + 0.12 * (9.0 * x).sin() * (7.0 * y + 1.0).sin() * (8.0 * z + 2.0).sin();
+        *p = [x * bump, y * bump, z * bump];
+    }
+    ball.attributes = None;
+    ball
+}
+
+/// Counts background pixels inside the silhouette: those that cannot be reached from the rim of the
+/// picture over background pixels. The background must be transparent.
+pub fn cracks(picture: &Picture) -> usize {
+    let [width, height] = [picture.width() as usize, picture.height() as usize];
+    let is_background = |at: usize| picture.rgba()[4 * at + 3] == 0;
+    let mut reached = vec![false; width * height];
+    let is_rim = |at: usize| {
+        let (x, y) = (at % width, at / width);
+        x == 0 || y == 0 || x + 1 == width || y + 1 == height
+    };
+    let mut stack: Vec<usize> =
+        (0..width * height).filter(|&at| is_rim(at) && is_background(at)).collect();
+    stack.iter().for_each(|&at| reached[at] = true);
+    while let Some(at) = stack.pop() {
+        if is_rim(at) {
+            // Rims are all in the stack from the start; only look inwards from there.
+            let inwards = [at.wrapping_sub(1), at + 1, at.wrapping_sub(width), at + width];
+            for next in inwards.into_iter().filter(|&next| next < width * height) {
+                if !is_rim(next) && !reached[next] && is_background(next) {
+                    reached[next] = true;
+                    stack.push(next);
+                }
+            }
+            continue;
+        }
+        for next in [at - 1, at + 1, at - width, at + width] {
+            if !reached[next] && is_background(next) {
+                reached[next] = true;
+                stack.push(next);
+            }
+        }
+    }
+    (0..width * height).filter(|&at| is_background(at) && !reached[at]).count()
 }
