@@ -1,6 +1,6 @@
 //! The GPU: a device and its queue.
 
-use wgpu::{Adapter, Device, Features, Instance, InstanceDescriptor, PowerPreference, Queue};
+use wgpu::{Adapter, Backends, Device, Features, Instance, InstanceDescriptor, PowerPreference, Queue};
 
 use crate::ViewError;
 
@@ -27,15 +27,12 @@ impl Gpu {
     /// # Errors
     /// No GPU is there, or it does not open.
     pub fn headless() -> Result<Self, ViewError> {
-        let instance = Instance::new(InstanceDescriptor::new_without_display_handle_from_env());
-        let options = wgpu::RequestAdapterOptions {
-            power_preference: PowerPreference::HighPerformance,
-            force_fallback_adapter: false,
-            compatible_surface: None,
-            apply_limit_buckets: false,
-        };
-        let adapter = pollster::block_on(instance.request_adapter(&options));
-        let adapter = adapter.map_err(|_| ViewError::NoGpu)?;
+        let all = InstanceDescriptor::new_without_display_handle_from_env();
+        // OpenGL comes last: looking for it makes some drivers print to the terminal.
+        let backends = all.backends & Backends::PRIMARY;
+        let first = InstanceDescriptor::new_without_display_handle_from_env();
+        let first = InstanceDescriptor { backends, ..first };
+        let adapter = [first, all].into_iter().find_map(adapter).ok_or(ViewError::NoGpu)?;
         let opened = pollster::block_on(adapter.request_device(&Self::descriptor(&adapter)));
         let (device, queue) = opened.map_err(|error| ViewError::Failed(error.to_string()))?;
         Ok(Self::new(&adapter, device, queue))
@@ -77,4 +74,15 @@ impl Gpu {
         let limit = self.device.limits().max_buffer_size;
         if needed <= limit { Ok(()) } else { Err(ViewError::TooLarge { what, needed, limit }) }
     }
+}
+
+/// Returns the fastest adapter of an instance.
+fn adapter(descriptor: InstanceDescriptor) -> Option<Adapter> {
+    let options = wgpu::RequestAdapterOptions {
+        power_preference: PowerPreference::HighPerformance,
+        force_fallback_adapter: false,
+        compatible_surface: None,
+        apply_limit_buckets: false,
+    };
+    pollster::block_on(Instance::new(descriptor).request_adapter(&options)).ok()
 }

@@ -4,7 +4,8 @@ mod common;
 
 use std::sync::Arc;
 
-use common::{bumpy, cracks, gpu};
+use common::cracks::cracks;
+use common::{bumpy, gpu};
 use meshlod::Mesh;
 use meshlod::multires::{Focus, Forest, Implicit, Model, ViewCamera};
 use meshlod::picture::{Camera, Picture, View};

@@ -1,6 +1,8 @@
 //! Helpers of the tests on the GPU.
 #![allow(dead_code)]
 
+pub mod cracks;
+
 use std::sync::OnceLock;
 
 use meshlod::Mesh;
@@ -51,39 +53,4 @@ pub fn bumpy(faces: usize) -> Mesh {
     }
     ball.attributes = None;
     ball
-}
-
-/// Counts background pixels inside the silhouette: those that cannot be reached from the rim of the
-/// picture over background pixels. The background must be transparent.
-pub fn cracks(picture: &Picture) -> usize {
-    let [width, height] = [picture.width() as usize, picture.height() as usize];
-    let is_background = |at: usize| picture.rgba()[4 * at + 3] == 0;
-    let mut reached = vec![false; width * height];
-    let is_rim = |at: usize| {
-        let (x, y) = (at % width, at / width);
-        x == 0 || y == 0 || x + 1 == width || y + 1 == height
-    };
-    let mut stack: Vec<usize> =
-        (0..width * height).filter(|&at| is_rim(at) && is_background(at)).collect();
-    stack.iter().for_each(|&at| reached[at] = true);
-    while let Some(at) = stack.pop() {
-        if is_rim(at) {
-            // Rims are all in the stack from the start; only look inwards from there.
-            let inwards = [at.wrapping_sub(1), at + 1, at.wrapping_sub(width), at + width];
-            for next in inwards.into_iter().filter(|&next| next < width * height) {
-                if !is_rim(next) && !reached[next] && is_background(next) {
-                    reached[next] = true;
-                    stack.push(next);
-                }
-            }
-            continue;
-        }
-        for next in [at - 1, at + 1, at - width, at + width] {
-            if !reached[next] && is_background(next) {
-                reached[next] = true;
-                stack.push(next);
-            }
-        }
-    }
-    (0..width * height).filter(|&at| is_background(at) && !reached[at]).count()
 }

@@ -1,0 +1,123 @@
+//! Measures what a cut sends to the GPU while a camera orbits, and looks for cracks in it.
+//!
+//! `cargo run --release -p meshlod-view --example cut_cost -- MODEL.mlod [VIEWS]`
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use meshlod::mesh::Bounds;
+use meshlod::multires::{Archive, Focus, Implicit, ViewCamera};
+use meshlod::picture::Camera;
+use meshlod_view::{
+    Canvas, CutFollower, CutQuery, CutTolerance, CutVertices, Gpu, GpuCut, Renderer, Shade,
+    TargetFormat, Transition,
+};
+
+#[path = "../tests/common/cracks.rs"]
+mod cracks;
+
+const SIZE: [u32; 2] = [1920, 1080];
+const CRACK_SIZE: [u32; 2] = [2048, 2048];
+const FOV_RAD: f64 = 0.8;
+
+struct Orbit {
+    middle: [f64; 3],
+    radius: f64,
+}
+
+impl Orbit {
+    fn eye(&self, degrees: f64, height: f64) -> [f64; 3] {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let [x, y, z] = self.middle;
+        [x + self.radius * sin, y + height * self.radius, z + self.radius * cos]
+    }
+
+    fn camera(&self, eye: [f64; 3]) -> Camera {
+        Camera::look_at(eye, self.middle, [0.0, 1.0, 0.0], FOV_RAD)
+    }
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let path = arguments.next().ok_or("name a .mlod file")?;
+    let views: u32 = arguments.next().map_or(Ok(0), |views| views.parse())?;
+    let model: Arc<Implicit> = Arc::new(Archive::open(std::fs::read(path)?)?.read()?.0);
+    let gpu = Gpu::headless()?;
+    println!("{}", gpu.name());
+    let renderer = Renderer::new(&gpu, TargetFormat::CANVAS);
+    let start = Instant::now();
+    let vertices = CutVertices::new(&model)?;
+    println!("vertices of all levels: {:.0} ms", start.elapsed().as_secs_f64() * 1e3);
+    let mut cut = GpuCut::new(&renderer, &model, &vertices)?;
+    let follower = CutFollower::start(model, None);
+    let bounds = vertices.bounds();
+    let orbit = Orbit { middle: bounds.center(), radius: 1.1 * bounds.diagonal() };
+
+    let canvas = Canvas::new(&gpu, SIZE)?;
+    let placement = renderer.placement();
+    let mut figures = Vec::new();
+    for frame in 0..=100 {
+        let eye = orbit.eye(0.1 * f64::from(frame), 0.2);
+        let (look, up) = (orbit.middle, [0.0, 1.0, 0.0]);
+        let camera = ViewCamera { eye, look, up, fov_rad: FOV_RAD, viewport: SIZE };
+        let tolerance = CutTolerance::Pixels { camera, pixels: 1.0 };
+        follower.ask(CutQuery { focus: Focus::Everything, tolerance });
+        let step = follower.wait().ok_or("the thread has ended")??;
+        let start = Instant::now();
+        cut.apply(&step, Transition::Immediate);
+        let sent = cut.take_uploaded() as f64 / cut.index_bytes() as f64;
+        placement.set(&orbit.camera(eye), SIZE, cut.origin(), &Shade::default());
+        canvas.draw(|pass| cut.draw(&renderer, pass, &placement));
+        gpu.wait()?;
+        if frame > 0 {
+            figures.push((sent, step.milliseconds, start.elapsed().as_secs_f64() * 1e3));
+        }
+    }
+    let median = |of: fn(&(f64, f64, f64)) -> f64| {
+        let mut all: Vec<f64> = figures.iter().map(of).collect();
+        all.sort_by(f64::total_cmp);
+        (all[all.len() / 2], all[all.len() - 1])
+    };
+    let (sent, most) = median(|figure| 100.0 * figure.0);
+    println!("{} faces at 1 px, 1920 x 1080, orbit of .1 degrees a frame", cut.faces());
+    println!("sent: {sent:.3} % of the index buffer, at most {most:.3} %");
+    println!("cut: {:.2} ms; draw: {:.1} ms (medians)", median(|f| f.1).0, median(|f| f.2).0);
+    look_for_cracks(&gpu, &renderer, &mut cut, &follower, &orbit, &bounds, views)
+}
+
+/// Draws cuts of many kinds from many sides, and counts background pixels inside the silhouette that
+/// the finest level covers.
+fn look_for_cracks(
+    gpu: &Gpu,
+    renderer: &Renderer,
+    cut: &mut GpuCut,
+    follower: &CutFollower,
+    orbit: &Orbit,
+    bounds: &Bounds,
+    views: u32,
+) -> Result<(), Box<dyn std::error::Error>> {
+    let canvas = Canvas::new(gpu, CRACK_SIZE)?;
+    let placement = renderer.placement();
+    let (mut found, mut kinds) = (0, 0);
+    for view in 0..views {
+        let turn = f64::from(view) * 137.5;
+        let camera = orbit.camera(orbit.eye(turn, (turn * 0.7).sin() * 0.8));
+        placement.set(&camera, CRACK_SIZE, cut.origin(), &Shade::default());
+        let error = bounds.diagonal() * 10f64.powf(-2.0 - f64::from(view % 5) / 2.0);
+        let focus = match view % 3 {
+            0 => Focus::Everything,
+            1 => Focus::Sphere { center: bounds.max, radius: 0.4 * bounds.diagonal() },
+            _ => Focus::Box([bounds.min, orbit.middle]),
+        };
+        follower.ask(CutQuery { focus, tolerance: CutTolerance::Uniform(error) });
+        let step = follower.wait().ok_or("the thread has ended")??;
+        cut.apply(&step, Transition::Immediate);
+        canvas.draw(|pass| cut.draw(renderer, pass, &placement));
+        kinds += 1;
+        found += cracks::pinholes(&canvas.read()?);
+    }
+    if kinds > 0 {
+        println!("{kinds} cuts at 2048 x 2048: {found} background pixels in the middle of others");
+    }
+    Ok(())
+}
