@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     for frame in 0..30 {
         let angle = f64::from(frame).to_radians();
-        let eye = [6.0 * angle.sin(), 2.0, 6.0 * angle.cos()];
+        let eye = [3.5 * angle.sin(), 1.0, 3.5 * angle.cos()];
         let (look, up, fov_rad) = ([0.0; 3], [0.0, 1.0, 0.0], 0.7);
 
         // What the camera needs within one pixel, as far as the frame's share of changes goes.

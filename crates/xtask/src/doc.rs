@@ -18,6 +18,7 @@ pub fn run(project: &Project) -> Result<()> {
     let keys = keys_of(&references);
     let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .args(["doc", "--release", "--no-deps", "--workspace", "--quiet", "--message-format=json"])
+        .args(["--features", "meshlod-cli/view,meshlod-view/viewer"])
         .env("RUSTDOCFLAGS", "-Wrustdoc::broken_intra_doc_links")
         .current_dir(project.root())
         .stderr(Stdio::inherit())
