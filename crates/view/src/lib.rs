@@ -36,8 +36,10 @@ mod gpu;
 mod mesh;
 mod placement;
 mod renderer;
+pub mod stage;
 mod target;
 mod texture;
+mod upload;
 
 pub use canvas::Canvas;
 pub use error::ViewError;
