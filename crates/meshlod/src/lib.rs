@@ -215,6 +215,7 @@
 //! - Files are written whole or not at all.
 #![forbid(unsafe_code)]
 
+mod appearance;
 mod check_report;
 mod compressed;
 mod conditioned;
@@ -242,6 +243,7 @@ pub use meshlod_simplify as simplify;
 pub use meshlod_spatial as spatial;
 pub use meshlod_strip as strip;
 
+pub use appearance::{OwnedPaint, normals_of};
 pub use check_report::{CheckReport, check_report};
 pub use compressed::{
     CompressOptions, CompressReport, CompressedFileError, compress, decompress, decompress_bytes,

@@ -1,6 +1,8 @@
 //! The GPU: a device and its queue.
 
-use wgpu::{Adapter, Backends, Device, Features, Instance, InstanceDescriptor, PowerPreference, Queue};
+use wgpu::{
+    Adapter, Backends, Device, Features, Instance, InstanceDescriptor, PowerPreference, Queue,
+};
 
 use crate::ViewError;
 

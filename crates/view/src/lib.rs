@@ -39,9 +39,12 @@ mod mesh;
 mod placement;
 mod render;
 mod renderer;
+pub mod script;
+pub mod stage;
 mod strips;
 mod target;
 mod texture;
+mod upload;
 
 pub use canvas::Canvas;
 pub use cut::{CutFollower, CutQuery, CutStep, CutTolerance, CutVertices, GpuCut, Transition};

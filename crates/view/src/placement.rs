@@ -31,6 +31,10 @@ pub struct Shade {
     pub wireframe: Option<Wireframe>,
     /// Use the colours of faces in place of the mesh's own.
     pub face_colors: bool,
+    /// Use the colours of materials, textures and vertices, not only the tint.
+    pub own_colors: bool,
+    /// Draw a checkerboard in texture coordinates in place of textures.
+    pub checker: bool,
     /// Share of the pixels that are drawn, 0 to 1, for dithered transitions. With t - 1 exactly those
     /// pixels are drawn that t leaves out.
     pub shown: f32,
@@ -46,6 +50,8 @@ impl Default for Shade {
             is_flat: false,
             wireframe: None,
             face_colors: false,
+            own_colors: true,
+            checker: false,
             shown: 1.0,
             tint: [255; 3],
         }
@@ -94,6 +100,8 @@ impl DrawUniforms {
             shade.back_faces != BackFaces::Same,
             shade.wireframe.is_some(),
             shade.face_colors,
+            !shade.own_colors,
+            shade.checker,
         ];
         Self {
             clip_from_local: clip_from_local(camera, size, origin).to_cols_array_2d(),

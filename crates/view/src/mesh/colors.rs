@@ -102,7 +102,7 @@ fn color_of(map: ColorMap, t: f32) -> [u8; 3] {
     if t.is_nan() { BARE } else { map.color(t) }
 }
 
-fn check(what: &'static str, found: usize, expected: usize) -> Result<(), PictureError> {
+pub(super) fn check(what: &'static str, found: usize, expected: usize) -> Result<(), PictureError> {
     let is_enough = if what == "materials" { found >= expected } else { found == expected };
     if is_enough { Ok(()) } else { Err(PictureError::Length { what, found, expected }) }
 }

@@ -15,7 +15,8 @@ use self::build::{CornerVertices, face_order};
 use self::colors::Surface;
 pub(crate) use self::pipelines::{MaterialBinding, MeshPipelines};
 use crate::placement::Placement;
-use crate::renderer::{Renderer, bind_group, buffer_of};
+use crate::renderer::{Renderer, bind_group};
+use crate::upload::upload_sliced;
 use crate::{Gpu, ViewError};
 
 /// Mesh on the GPU: wedges with normals, texture coordinates and colours; and its materials.
@@ -28,6 +29,8 @@ pub struct GpuMesh {
     /// Faces of each material, in the order of the index buffer.
     ranges: Vec<(Range<u32>, usize)>,
     materials: Vec<MaterialBinding>,
+    /// Faces of the mesh in the order of the index buffer; `None` if that is their own.
+    order: Option<Vec<u32>>,
     faces: u32,
     bytes: u64,
     /// Bindings for drawing face by face, if the buffers are small enough for that.
@@ -76,15 +79,16 @@ impl GpuMesh {
             order.iter().map(|&face| vertices.triangles[face as usize]).collect();
         let fetched = BufferUsages::VERTEX | BufferUsages::STORAGE;
         let positions =
-            buffer_of(gpu, "positions", bytemuck::cast_slice(&vertices.positions), fetched);
+            upload_sliced(gpu, "positions", bytemuck::cast_slice(&vertices.positions), fetched);
         let attributes =
-            buffer_of(gpu, "attributes", bytemuck::cast_slice(&vertices.attributes), fetched);
+            upload_sliced(gpu, "attributes", bytemuck::cast_slice(&vertices.attributes), fetched);
         let usage = BufferUsages::INDEX | BufferUsages::STORAGE;
-        let indices = buffer_of(gpu, "faces", bytemuck::cast_slice(&triangles), usage);
+        let indices = upload_sliced(gpu, "faces", bytemuck::cast_slice(&triangles), usage);
         let colors: Vec<u32> = match &surface.face_colors {
             Some(colors) => order.iter().map(|&face| pack(colors[face as usize])).collect(),
             None => vec![u32::MAX],
         };
+        let ranges_len = ranges.len();
         let mut this = Self {
             origin,
             positions,
@@ -97,6 +101,7 @@ impl GpuMesh {
                 .map(|m| MaterialBinding::new(renderer, m))
                 .collect(),
             faces: order.len() as u32,
+            order: (ranges_len > 1).then_some(order),
             bytes: position_bytes + attribute_bytes + index_bytes,
             storage: None,
         };
@@ -124,6 +129,32 @@ impl GpuMesh {
     /// it; some GPUs allow that only up to a size.
     pub fn has_faces_apart(&self) -> bool {
         self.storage.is_some()
+    }
+
+    /// Gives the faces colours, sRGB in the order of the mesh's faces, for a
+    /// [`Shade`](crate::Shade) with colours of faces.
+    ///
+    /// # Errors
+    /// Another number of colours than faces, or a mesh that is too large to be drawn face by face.
+    pub fn set_face_colors(
+        &mut self,
+        renderer: &Renderer,
+        colors: &[[u8; 3]],
+    ) -> Result<(), ViewError> {
+        self::colors::check("colours of faces", colors.len(), self.faces())?;
+        let packed: Vec<u32> = match &self.order {
+            Some(order) => order.iter().map(|&face| pack(colors[face as usize])).collect(),
+            None => colors.iter().map(|&color| pack(color)).collect(),
+        };
+        let limit = renderer.gpu().device.limits().max_storage_buffer_binding_size;
+        let refused = || ViewError::TooLarge {
+            what: "drawing the mesh face by face",
+            needed: 12 * u64::from(self.faces),
+            limit,
+        };
+        let bound = self.bind_storage(renderer, &packed).ok_or_else(refused)?;
+        self.storage = Some(bound);
+        Ok(())
     }
 
     /// Draws the mesh.
@@ -165,7 +196,8 @@ impl GpuMesh {
         if buffers.iter().any(|buffer| buffer.size() > limit) {
             return None;
         }
-        let colors = buffer_of(gpu, "colours", bytemuck::cast_slice(colors), BufferUsages::STORAGE);
+        let colors =
+            upload_sliced(gpu, "colours", bytemuck::cast_slice(colors), BufferUsages::STORAGE);
         let [a, b, c] = buffers.map(Buffer::as_entire_binding);
         let all = [a, b, c, colors.as_entire_binding()];
         Some(bind_group(&gpu.device, &renderer.meshes().storage_layout, all))

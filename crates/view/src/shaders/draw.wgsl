@@ -31,6 +31,8 @@ const FLAT = 1u;
 const TINT_BACK = 2u;
 const WIREFRAME = 4u;
 const FACE_COLORS = 8u;
+const TINT_ONLY = 16u;
+const CHECKER = 32u;
 
 fn has(flag: u32) -> bool {
     return (draw.flags & flag) != 0u;

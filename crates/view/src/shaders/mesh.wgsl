@@ -57,9 +57,15 @@ fn shaded(in: Fragment, @builtin(front_facing) front: bool) -> @location(0) vec4
     dissolve(in.clip);
     let to_eye = normalize(draw.eye - in.place);
     let normal = seen_normal(in.normal, in.place, to_eye, front);
-    var color = material.base_color.rgb * draw.tint * decode_srgb(in.color.rgb);
+    let color_of_corner = decode_srgb(in.color.rgb);
+    var color = material.base_color.rgb * draw.tint * color_of_corner;
     if material.has_texture != 0u {
         color *= textureSample(image, image_sampler, vec2f(in.uv.x, 1.0 - in.uv.y)).rgb;
+    }
+    let squares = checker(in.uv);
+    if has(TINT_ONLY) {
+        color = draw.tint * select(vec3f(1.0), color_of_corner, has(FACE_COLORS));
+        color *= select(vec3f(1.0), squares, has(CHECKER));
     }
     if has(TINT_BACK) && !front {
         color = draw.back;
@@ -70,6 +76,18 @@ fn shaded(in: Fragment, @builtin(front_facing) front: bool) -> @location(0) vec4
         return vec4f(mix(min(light, vec3f(1.0)), draw.wire.rgb, line * draw.wire.a), 1.0);
     }
     return vec4f(light, 1.0);
+}
+
+// Checkerboard in texture coordinates, light and dark, with hues that tell u from v; squares smaller
+// than a pixel blend to grey.
+fn checker(uv: vec2f) -> vec3f {
+    let at = uv * 16.0;
+    let wave = abs(fract(at * 0.5) - 0.5) * 4.0 - 1.0;
+    let width = max(fwidth(at), vec2f(1e-6));
+    let edge = clamp(wave / (2.0 * width), vec2f(-1.0), vec2f(1.0));
+    let light = mix(0.19, 0.83, 0.5 + 0.5 * edge.x * edge.y);
+    let place = fract(uv);
+    return light * vec3f(0.6 + 0.4 * place.x, 0.6 + 0.4 * place.y, 0.78);
 }
 
 // How much of a fragment the lines along the edges cover. Lines that would hide most of their face

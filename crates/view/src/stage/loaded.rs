@@ -1,0 +1,189 @@
+//! Files read into memory, on any thread.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use meshlod::codec::{Compressed, Malformed};
+use meshlod::mesh::Bounds;
+use meshlod::multires::{Cut, FileError, Implicit, ModelFile, Query, Rtin};
+use meshlod::picture::Normals;
+use meshlod::{IoError, Mesh, OwnedPaint, ReadOptions, decompress_bytes, materials_of, normals_of};
+use thiserror::Error;
+
+/// File in memory, ready to be shown: a mesh with its appearance, and what the file holds beside it.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// Path of the file.
+    pub path: PathBuf,
+    /// Size of the file in bytes.
+    pub file_bytes: u64,
+    /// Surface in world space; the finest level of a multiresolution file.
+    pub mesh: Arc<Mesh>,
+    /// Colours of the surface.
+    pub paint: Arc<OwnedPaint>,
+    /// Normals with which the surface is shaded.
+    pub normals: Normals,
+    /// Box around all faces.
+    pub bounds: Bounds,
+    /// Contents of the file.
+    pub content: LoadedContent,
+    /// Time that reading and decoding took.
+    pub time: Duration,
+    /// Lines about what the file refers to and could not be read.
+    pub warnings: Vec<String>,
+}
+
+/// Contents of a file, beside its surface.
+#[derive(Clone, Debug)]
+pub enum LoadedContent {
+    /// A mesh file.
+    Mesh,
+    /// Levels of detail: a `.mlod` file built from a mesh.
+    Levels(Arc<Implicit>),
+    /// Levels of detail of a height field.
+    HeightField(Arc<Rtin>),
+    /// Compressed geometry that can be drawn from directly: `.mlq`.
+    Compressed(Arc<Compressed>),
+    /// Compressed geometry to be sent: `.mlz`.
+    Transport,
+}
+
+/// Reason why a file cannot be shown.
+#[derive(Debug, Error)]
+pub enum LoadError {
+    /// The file cannot be read.
+    #[error(transparent)]
+    Read(#[from] IoError),
+    /// A compressed file is damaged.
+    #[error("{}: {source}", path.display())]
+    Compressed {
+        /// Path of the file.
+        path: PathBuf,
+        /// Description of the defect.
+        source: Malformed,
+    },
+    /// A multiresolution file is damaged.
+    #[error("{}: {source}", path.display())]
+    Levels {
+        /// Path of the file.
+        path: PathBuf,
+        /// Description of the defect.
+        source: FileError,
+    },
+    /// The file holds no faces.
+    #[error("{}: the mesh has no faces", .0.display())]
+    Empty(PathBuf),
+}
+
+impl LoadedContent {
+    /// Returns the kind of file, as a title names it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Mesh => "Mesh",
+            Self::Levels(_) => "Levels of detail",
+            Self::HeightField(_) => "Height field",
+            Self::Compressed(_) => "Compressed mesh",
+            Self::Transport => "Compressed mesh, for transport",
+        }
+    }
+}
+
+impl Loaded {
+    /// Reads a file: a mesh of any format, or `.mlod`, `.mlq`, `.mlz`.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is damaged, and one without faces.
+    pub fn read(path: &Path, options: &ReadOptions) -> Result<Self, LoadError> {
+        let start = Instant::now();
+        let suffix = path.extension().map(|suffix| suffix.to_string_lossy().to_lowercase());
+        let loaded = match suffix.as_deref() {
+            Some("mlod") => levels(path),
+            Some("mlq" | "mlz") => compressed(path),
+            _ => mesh_file(path, options),
+        }?;
+        match loaded.mesh.faces.is_empty() {
+            true => Err(LoadError::Empty(path.to_owned())),
+            false => Ok(Self { time: start.elapsed(), ..loaded }),
+        }
+    }
+
+    /// Wraps a mesh that is in memory already, such as a level; `paint` must match it.
+    pub fn from_mesh(name: impl Into<PathBuf>, mesh: Mesh, paint: Arc<OwnedPaint>) -> Self {
+        let used = mesh.faces.iter().flatten().map(|v| &mesh.positions[v.index()]);
+        Self {
+            path: name.into(),
+            file_bytes: 0,
+            bounds: Bounds::of(used),
+            normals: normals_of(&mesh),
+            mesh: Arc::new(mesh),
+            paint,
+            content: LoadedContent::Mesh,
+            time: Duration::ZERO,
+            warnings: Vec::new(),
+        }
+    }
+
+    /// Returns the file name without its folder.
+    pub fn name(&self) -> String {
+        let name = self.path.file_name().unwrap_or(self.path.as_os_str());
+        name.to_string_lossy().into_owned()
+    }
+
+    fn of(path: &Path, mesh: Mesh, paint: OwnedPaint, content: LoadedContent) -> Self {
+        let file_bytes = std::fs::metadata(path).map_or(0, |file| file.len());
+        Self { file_bytes, content, ..Self::from_mesh(path, mesh, Arc::new(paint)) }
+    }
+}
+
+fn mesh_file(path: &Path, options: &ReadOptions) -> Result<Loaded, LoadError> {
+    let scene = meshlod::read(path, options)?;
+    let (materials, unread) = materials_of(&scene);
+    let paint = OwnedPaint::of(&scene, materials);
+    let warning = |image: meshlod::UnreadImage| format!("image {}: {}", image.name, image.reason);
+    let warnings = unread.into_iter().map(warning).collect();
+    Ok(Loaded { warnings, ..Loaded::of(path, scene.into_mesh(), paint, LoadedContent::Mesh) })
+}
+
+fn compressed(path: &Path) -> Result<Loaded, LoadError> {
+    let damaged = |source| LoadError::Compressed { path: path.to_owned(), source };
+    let bytes = std::fs::read(path).map_err(|error| IoError::system(path, error))?;
+    let (mesh, content) = if bytes.starts_with(&Compressed::MAGIC) {
+        let compressed = Compressed::from_bytes(&bytes).map_err(damaged)?;
+        let mesh = compressed.decode().map_err(damaged)?;
+        (mesh, LoadedContent::Compressed(Arc::new(compressed)))
+    } else {
+        (decompress_bytes(&bytes).map_err(damaged)?, LoadedContent::Transport)
+    };
+    let paint = paint_of_bare(&mesh);
+    Ok(Loaded::of(path, mesh, paint, content))
+}
+
+fn levels(path: &Path) -> Result<Loaded, LoadError> {
+    let damaged = |source| LoadError::Levels { path: path.to_owned(), source };
+    let file = File::open(path).map_err(|error| IoError::system(path, error))?;
+    let finest = Query::uniform(0.0);
+    let (mesh, content) = match ModelFile::open(file).map_err(damaged)? {
+        ModelFile::Contractions(archive) => {
+            let (model, _) = archive.read().map_err(damaged)?;
+            let cut = Cut::at(&model, &finest).map_err(|error| damaged(error.into()))?;
+            (cut.level().mesh(), LoadedContent::Levels(Arc::new(model)))
+        }
+        ModelFile::HeightField(field) => {
+            let model = Rtin::new(&field);
+            let level = model.level(&finest).map_err(|error| damaged(error.into()))?;
+            (level.mesh(), LoadedContent::HeightField(Arc::new(model)))
+        }
+    };
+    Ok(Loaded::of(path, mesh, OwnedPaint::CLAY, content))
+}
+
+/// Returns the colouring of a mesh without materials.
+fn paint_of_bare(mesh: &Mesh) -> OwnedPaint {
+    let color = meshlod::mesh::LayerKind::Color(0);
+    match mesh.attributes.as_ref().is_some_and(|all| all.layer(color).is_some()) {
+        true => OwnedPaint::Colors,
+        false => OwnedPaint::CLAY,
+    }
+}

@@ -1,0 +1,20 @@
+//! Model of the viewer, without a window: what is loaded, what is on the GPU, how it is shown and
+//! from where. Scripts without a window use it as the viewer does.
+//!
+//! A file is [`Loaded`] on any thread and uploaded as a [`Subject`] on any thread; a [`Stage`]
+//! shows subjects in slots side by side, all seen by one [`CameraRig`] and in one [`Display`].
+
+mod display;
+mod levels;
+mod loaded;
+mod palette;
+mod rig;
+mod scene;
+mod subject;
+
+pub use display::{Coloring, Display, Shading};
+pub use levels::LevelsSubject;
+pub use loaded::{LoadError, Loaded, LoadedContent};
+pub use rig::{CameraRig, RigPose, Side};
+pub use scene::{Stage, SubjectId};
+pub use subject::{MeshSubject, Subject};

@@ -1,0 +1,220 @@
+//! What a stage shows, on the GPU.
+
+use meshlod::Mesh;
+use meshlod::check::{Objects, ObjectsBy};
+use meshlod::mesh::{Bounds, LayerKind};
+use meshlod::picture::{ColorMap, Normals, Paint, Values};
+use wgpu::RenderPass;
+
+use super::palette::color_of;
+use super::{Coloring, Display, LevelsSubject, Loaded, LoadedContent};
+use crate::{GpuMesh, Placement, Renderer, ViewError};
+
+/// Thing on the GPU that a stage shows.
+#[derive(Debug)]
+pub enum Subject {
+    /// A mesh of one level.
+    Mesh(Box<MeshSubject>),
+    /// Levels of detail, and a cut of them that follows a query.
+    Levels(Box<LevelsSubject>),
+    // Compressed geometry drawn as it is comes here. A variant needs an arm in each method of
+    // `Subject`, and nothing else.
+}
+
+/// Mesh on the GPU, with what its colourings need.
+#[derive(Debug)]
+pub struct MeshSubject {
+    mesh: GpuMesh,
+    /// The same surface in the colours of its distance from another.
+    heat: Option<GpuMesh>,
+    bounds: Bounds,
+    vertices: usize,
+    /// Colouring whose colours of faces are on the GPU.
+    by_face: Option<Coloring>,
+    has_uv: bool,
+}
+
+impl Subject {
+    /// Uploads a file, from any thread: in slices, so that frames drawn meanwhile go on.
+    ///
+    /// # Errors
+    /// A mesh beyond the limits of the GPU.
+    pub fn new(renderer: &Renderer, loaded: &Loaded) -> Result<Self, ViewError> {
+        Ok(match &loaded.content {
+            LoadedContent::Levels(model) => {
+                Self::Levels(Box::new(LevelsSubject::new(renderer, model)?))
+            }
+            _ => Self::Mesh(Box::new(MeshSubject::new(renderer, loaded)?)),
+        })
+    }
+
+    /// Returns the box around the surface.
+    pub fn bounds(&self) -> Bounds {
+        match self {
+            Self::Mesh(mesh) => mesh.bounds,
+            Self::Levels(levels) => levels.bounds(),
+        }
+    }
+
+    /// Returns the number of faces that are drawn.
+    pub fn faces(&self) -> usize {
+        match self {
+            Self::Mesh(mesh) => mesh.mesh.faces(),
+            Self::Levels(levels) => levels.cut().faces(),
+        }
+    }
+
+    /// Returns the number of vertices of the surface.
+    pub fn vertices(&self) -> usize {
+        match self {
+            Self::Mesh(mesh) => mesh.vertices,
+            Self::Levels(levels) => levels.last_step().vertices,
+        }
+    }
+
+    /// Returns the size of vertices and faces on the GPU, in bytes.
+    pub fn bytes(&self) -> u64 {
+        match self {
+            Self::Mesh(mesh) => mesh.mesh.bytes() + mesh.heat.as_ref().map_or(0, GpuMesh::bytes),
+            Self::Levels(levels) => levels.cut().bytes(),
+        }
+    }
+
+    /// Returns the point of the world that the placement must be set to.
+    pub fn origin(&self) -> [f64; 3] {
+        match self {
+            Self::Mesh(mesh) => mesh.mesh.origin(),
+            Self::Levels(levels) => levels.cut().origin(),
+        }
+    }
+
+    /// Returns true if the subject can be shown in a colouring.
+    pub fn has(&self, coloring: Coloring) -> bool {
+        match self {
+            Self::Mesh(mesh) => match coloring {
+                Coloring::Own | Coloring::Clay => true,
+                Coloring::Checker => mesh.has_uv,
+                Coloring::Heat => mesh.heat.is_some(),
+                Coloring::Objects | Coloring::Materials => mesh.by_face == Some(coloring),
+            },
+            Self::Levels(_) => matches!(coloring, Coloring::Own | Coloring::Clay),
+        }
+    }
+
+    /// Returns the display in which the subject is drawn: the one wanted, with the colours of the
+    /// file where it lacks others.
+    pub fn display(&self, wanted: &Display) -> Display {
+        let coloring = if self.has(wanted.coloring) { wanted.coloring } else { Coloring::Own };
+        Display { coloring, ..*wanted }
+    }
+
+    /// Sets the placements of what dissolves in the subject, by a way to set one with a share of
+    /// its pixels.
+    pub(super) fn place_fade(&self, set: impl Fn(&Placement, f32)) {
+        if let Self::Levels(levels) = self {
+            levels.place_fade(set);
+        }
+    }
+
+    /// Draws the subject; the placement must be set to [`Subject::origin`] and to the shade of
+    /// [`Subject::display`].
+    pub fn draw(
+        &self,
+        renderer: &Renderer,
+        pass: &mut RenderPass<'_>,
+        placement: &Placement,
+        display: &Display,
+    ) {
+        match self {
+            Self::Mesh(mesh) => mesh.draw(renderer, pass, placement, &self.display(display)),
+            Self::Levels(levels) => levels.draw(renderer, pass, placement, display),
+        }
+    }
+}
+
+impl MeshSubject {
+    fn new(renderer: &Renderer, loaded: &Loaded) -> Result<Self, ViewError> {
+        let mesh = &*loaded.mesh;
+        let has_uv =
+            mesh.attributes.as_ref().is_some_and(|all| all.layer(LayerKind::Uv(0)).is_some());
+        Ok(Self {
+            mesh: GpuMesh::new(renderer, mesh, &loaded.paint.as_paint(), loaded.normals)?,
+            heat: None,
+            bounds: loaded.bounds,
+            vertices: mesh.positions.len(),
+            by_face: None,
+            has_uv,
+        })
+    }
+
+    /// Uploads distances of the vertices of a mesh from another, to be shown by
+    /// [`Coloring::Heat`]; `most` is the distance of the darkest colour. `mesh` must be the one that
+    /// the subject was made of.
+    ///
+    /// # Errors
+    /// Distances that do not match the mesh, or a mesh beyond the limits of the GPU.
+    pub fn set_heat(
+        &mut self,
+        renderer: &Renderer,
+        mesh: &Mesh,
+        normals: Normals,
+        distances: &[f32],
+        most: f32,
+    ) -> Result<(), ViewError> {
+        let range = [0.0, if most > 0.0 { most } else { 1.0 }];
+        let values = Values { values: distances, map: ColorMap::Heat, range };
+        self.heat = Some(GpuMesh::new(renderer, mesh, &Paint::VertexValues(values), normals)?);
+        Ok(())
+    }
+
+    /// Uploads the colours of faces that a colouring needs; does nothing for one that needs none.
+    /// `mesh` must be the one that the subject was made of.
+    ///
+    /// # Errors
+    /// A mesh that is too large to be drawn face by face.
+    pub fn color_faces(
+        &mut self,
+        renderer: &Renderer,
+        mesh: &Mesh,
+        coloring: Coloring,
+    ) -> Result<(), ViewError> {
+        if !coloring.is_by_face() || self.by_face == Some(coloring) {
+            return Ok(());
+        }
+        self.mesh.set_face_colors(renderer, &face_colors(mesh, coloring))?;
+        self.by_face = Some(coloring);
+        Ok(())
+    }
+
+    fn draw(
+        &self,
+        renderer: &Renderer,
+        pass: &mut RenderPass<'_>,
+        placement: &Placement,
+        display: &Display,
+    ) {
+        let mesh = match (&self.heat, display.coloring) {
+            (Some(heat), Coloring::Heat) => heat,
+            _ => &self.mesh,
+        };
+        if display.wireframe || display.coloring.is_by_face() {
+            mesh.draw_faces(renderer, pass, placement);
+        } else {
+            mesh.draw(renderer, pass, placement);
+        }
+    }
+}
+
+/// Returns the colour of each face by its object or material.
+fn face_colors(mesh: &Mesh, coloring: Coloring) -> Vec<[u8; 3]> {
+    match (coloring, &mesh.materials) {
+        (Coloring::Materials, Some(labels)) => {
+            labels.of_face.iter().map(|&label| color_of(label)).collect()
+        }
+        (Coloring::Materials, None) => vec![color_of(0); mesh.faces.len()],
+        _ => {
+            let objects = Objects::of(mesh, ObjectsBy::Auto);
+            objects.of_face.iter().map(|object| color_of(object.0)).collect()
+        }
+    }
+}
