@@ -30,6 +30,7 @@ mod simplify_run;
 mod table;
 mod topology;
 mod verbs;
+mod view;
 mod volume;
 
 use std::process::{ExitCode, exit};

@@ -64,6 +64,11 @@ impl Bits {
         Ok(Self { words: reader.take(len.div_ceil(8))?.chunks(8).map(word).collect(), len })
     }
 
+    /// Returns the words, filled from their lowest bits on.
+    pub(crate) fn words(&self) -> &[u64] {
+        &self.words
+    }
+
     /// Returns the number of bits.
     pub(crate) fn len(&self) -> usize {
         self.len

@@ -45,13 +45,15 @@ mod resident;
 mod transport;
 
 pub use attributes::{AttributeBounds, LayerReport};
-pub use blocks::{Accuracy, BlocksError, BlocksReport, SurfaceChange, VertexBlocks};
+pub use blocks::{
+    Accuracy, BlocksError, BlocksReport, StoredBlock, StoredBlocks, SurfaceChange, VertexBlocks,
+};
 pub use bytes::Malformed;
-pub use lattice::{Lattice, LatticeBlocks, LatticeError};
-pub use parts::{Part, Partitioner, Parts, PartsError, Reconstruction};
+pub use lattice::{Lattice, LatticeBlocks, LatticeError, StoredLattice, StoredShear};
+pub use parts::{Part, Partitioner, Parts, PartsError, Reconstruction, StoredPart, StoredParts};
 pub use resident::{
-    CompressError, Compressed, CompressedSizes, Compression, CompressionTarget, Scheme, compress,
-    parts_for,
+    CompressError, Compressed, CompressedSizes, Compression, CompressionTarget, Scheme, StoredMesh,
+    StoredPositions, compress, parts_for,
 };
 pub use transport::{
     LeftOut, Transport, TransportBlock, TransportError, TransportFile, TransportOptions,

@@ -25,6 +25,9 @@ pub enum ViewError {
         /// Limit of the GPU, in bytes.
         limit: u64,
     },
+    /// The compressed mesh is damaged, which its checksums did not catch.
+    #[error("the compressed mesh is damaged: {0}")]
+    Damaged(#[from] meshlod::codec::Malformed),
     /// The mesh, its paint or the size of the picture is invalid.
     #[error(transparent)]
     Picture(#[from] PictureError),

@@ -128,6 +128,11 @@ impl DrawUniforms {
 /// Returns the matrix from coordinates relative to `origin` to clip space: depth is 1 at the near
 /// plane and 0 at infinity.
 pub(crate) fn clip_from_local(camera: &Camera, size: [u32; 2], origin: [f64; 3]) -> Mat4 {
+    clip_from_world(camera, size, origin).as_mat4()
+}
+
+/// Returns [`clip_from_local`] before it is rounded.
+pub(crate) fn clip_from_world(camera: &Camera, size: [u32; 2], origin: [f64; 3]) -> DMat4 {
     let [right, up, forward] = camera.axes().map(DVec3::from);
     let offset = DVec3::from(origin) - DVec3::from(camera.eye());
     let shorter = f64::from(size[0].min(size[1]).max(1));
@@ -139,7 +144,7 @@ pub(crate) fn clip_from_local(camera: &Camera, size: [u32; 2], origin: [f64; 3])
         DVec4::new(0.0, 0.0, 0.0, camera.near()),
         row(forward, 1.0),
     ];
-    DMat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose().as_mat4()
+    DMat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose()
 }
 
 /// Converts an sRGB colour to linear light.

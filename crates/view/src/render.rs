@@ -1,6 +1,7 @@
 //! One picture, as `meshlod::picture` draws it, on the GPU.
 
 use meshlod::Mesh;
+use meshlod::multires::ViewCamera;
 use meshlod::picture::{Camera, Paint, Picture, Style};
 
 use crate::{Canvas, Gpu, GpuMesh, Renderer, Shade, TargetFormat, ViewError};
@@ -49,5 +50,22 @@ impl Shade {
             face_colors: matches!(style.paint, Paint::FaceColors(_) | Paint::FaceValues(_)),
             ..Self::default()
         }
+    }
+}
+
+/// Returns the camera of [`meshlod::multires`] queries that sees what a camera of pictures does, in a
+/// picture of a width and height in pixels.
+pub fn view_camera(camera: &Camera, size: [u32; 2]) -> ViewCamera {
+    let [_, up, forward] = camera.axes();
+    let eye = camera.eye();
+    let [width, height] = size.map(f64::from);
+    // The field of view is that of the shorter side; queries want the vertical one.
+    let tangent = camera.tan_half_fov() * height / width.min(height);
+    ViewCamera {
+        eye,
+        look: [0, 1, 2].map(|k| eye[k] + forward[k]),
+        up,
+        fov_rad: 2.0 * tangent.atan(),
+        viewport: size,
     }
 }

@@ -17,6 +17,7 @@ use wgpu::{
 
 use crate::mesh::MeshPipelines;
 use crate::placement::{DrawUniforms, Placement};
+use crate::quantized::SchemePipelines;
 use crate::{Gpu, TargetFormat};
 
 /// Pipelines that draw into render passes of one format.
@@ -30,6 +31,7 @@ pub struct Renderer {
     pub(crate) material_layout: BindGroupLayout,
     pub(crate) sampler: Sampler,
     pub(crate) meshes: OnceLock<MeshPipelines>,
+    pub(crate) schemes: OnceLock<SchemePipelines>,
     background: OnceLock<RenderPipeline>,
 }
 
@@ -69,6 +71,7 @@ impl Renderer {
                 ..Default::default()
             }),
             meshes: OnceLock::new(),
+            schemes: OnceLock::new(),
             background: OnceLock::new(),
         }
     }

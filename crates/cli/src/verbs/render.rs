@@ -6,7 +6,7 @@ use clap::Args;
 use meshlod::Mesh;
 use meshlod::measure::vertex_errors;
 use meshlod::picture::{
-    Camera, ColorMap, Lighting, Normals, Paint, Style, Values, View, Wireframe, render,
+    Camera, ColorMap, Lighting, Normals, Paint, Picture, Style, Values, View, Wireframe, render,
 };
 use serde_json::json;
 
@@ -15,10 +15,14 @@ use crate::args::{ReadArgs, ViewArgs};
 use crate::distance;
 use crate::failure::Failure;
 use crate::files;
+#[cfg(feature = "view")]
+use crate::numbers::count;
 use crate::numbers::{percent, value};
 use crate::page::style::{self, OwnedPaint, normals_of};
 use crate::parse;
 use crate::session::Session;
+#[cfg(feature = "view")]
+use crate::view::still;
 
 /// Render a picture of a mesh
 #[derive(Args)]
@@ -46,6 +50,10 @@ pub struct Render {
     /// Colour every vertex by its distance from this mesh
     #[arg(long, value_name = "B")]
     heat_against: Option<PathBuf>,
+    /// Draw on the GPU, as the viewer does; also draws .mlod and .mlq files as they are stored. Needs a
+    /// meshlod built with the feature view
+    #[arg(long)]
+    gpu: bool,
     #[command(flatten)]
     reading: ReadArgs,
 }
@@ -63,6 +71,14 @@ struct Heat {
 impl Render {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         files::check_picture(&self.output, session)?;
+        #[cfg(not(feature = "view"))]
+        if self.gpu {
+            return Err(Failure::new(crate::view::MISSING));
+        }
+        #[cfg(feature = "view")]
+        if self.gpu && still::is_stored(&self.input) {
+            return self.draw_stored(session);
+        }
         let scene = files::read(&self.input, &self.reading, session)?;
         let paint = OwnedPaint::of(&scene, style::materials(&scene, &self.input, session));
         let mesh = scene.into_mesh();
@@ -72,8 +88,7 @@ impl Render {
         let heat = self.heat(&mesh, session)?;
         session.progress.stage("drawing");
         let style = self.style(&mesh, &paint, heat.as_ref());
-        let picture = render(&mesh, &self.camera(&mesh), &style)
-            .map_err(|error| Failure::at(&self.input, error))?;
+        let picture = self.draw(&mesh, &style)?;
         files::write_picture(&self.output, &picture.png())?;
 
         let [width, height] = self.size;
@@ -92,6 +107,40 @@ impl Render {
             let (max, part) = (value(max), percent(max_percent));
             text += &format!("heat map: darkest at a distance of {max} ({part} of the diagonal)\n");
         }
+        Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
+    }
+
+    fn draw(&self, mesh: &Mesh, style: &Style<'_>) -> Result<Picture, Failure> {
+        #[cfg(feature = "view")]
+        if self.gpu {
+            return still::mesh(mesh, &self.camera(mesh), style);
+        }
+        render(mesh, &self.camera(mesh), style).map_err(|error| Failure::at(&self.input, error))
+    }
+
+    /// Draws a file of our own formats from what it stores.
+    #[cfg(feature = "view")]
+    fn draw_stored(&self, session: &Session) -> Result<Answer, Failure> {
+        use meshlod_view::stage::{Display, Shading};
+        if self.checker || self.heat_against.is_some() {
+            let reason = "cannot be combined with --checker or --heat-against in this format";
+            return Err(Failure::usage(format_args!("--gpu {reason}")));
+        }
+        session.progress.stage("drawing");
+        let display = Display {
+            shading: if self.flat { Shading::Flat } else { Shading::Smooth },
+            wireframe: self.wireframe,
+            ..Display::default()
+        };
+        let [width, height] = self.size.map(f64::from);
+        let view = View { aspect: width / height, ..self.viewpoint.view() };
+        let still::Stored { picture, faces } =
+            still::stored(&self.input, self.size, &view, &display)?;
+        files::write_picture(&self.output, &picture.png())?;
+        let [width, height] = self.size;
+        let file = files::name(&self.output);
+        let json = json!({ "file": file, "width": width, "height": height, "faces": faces });
+        let text = format!("{file}: {width} x {height}, {} faces\n", count(faces));
         Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
     }
 

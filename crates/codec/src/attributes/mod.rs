@@ -136,6 +136,10 @@ impl PackedLayer {
         Layer { kind: self.kind, name: self.name.clone(), width: self.width, values }
     }
 
+    pub(crate) fn kind(&self) -> LayerKind {
+        self.kind
+    }
+
     /// Returns the number of values per node.
     pub(crate) fn width(&self) -> usize {
         self.width

@@ -8,6 +8,7 @@ mod header;
 mod layout;
 mod original;
 mod reference;
+mod stored;
 #[cfg(test)]
 mod tests;
 
@@ -17,6 +18,7 @@ use thiserror::Error;
 
 use self::header::{BlockHeader, numbers};
 use self::layout::BlockLayout;
+pub use self::stored::{StoredBlock, StoredBlocks};
 use crate::bits::Bits;
 use crate::bytes::{Malformed, Reader, reduction};
 use crate::kd::{BLOCK, blocks_of};

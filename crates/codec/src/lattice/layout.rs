@@ -114,6 +114,26 @@ impl LatticeLayout {
         (self.transform(&group, block % GROUP), group.at + headers + before.sum::<usize>())
     }
 
+    /// Returns the transform of each block, and the bit at which its numbers start.
+    pub(super) fn transforms(&self) -> Vec<(ShearTransform, usize)> {
+        let mut blocks = Vec::with_capacity(self.blocks());
+        for (number, first) in (0..self.blocks()).step_by(GROUP).enumerate() {
+            let group = self.group(number);
+            let count = GROUP.min(self.blocks() - first);
+            let mut start = group.at + count * Self::header_bits(&group);
+            for block in 0..count {
+                let transform = self.transform(&group, block);
+                blocks.push((transform, start));
+                start += transform.bits(BLOCK);
+            }
+        }
+        blocks
+    }
+
+    pub(super) fn words(&self) -> &[u64] {
+        self.bits.words()
+    }
+
     fn group(&self, number: usize) -> GroupHeader {
         let mut at = self.starts[number] as usize * WORD;
         let mut next = |width: u32| {

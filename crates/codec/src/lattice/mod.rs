@@ -3,12 +3,14 @@
 mod layout;
 mod search;
 mod shear;
+mod stored;
 
 use meshlod_mesh::{Bounds, Mesh, VertexId};
 use thiserror::Error;
 
 use self::layout::LatticeLayout;
 use self::shear::MAX_CELLS;
+pub use self::stored::{StoredLattice, StoredShear};
 use crate::bytes::{Malformed, Reader, reduction};
 use crate::kd::blocks_of;
 

@@ -6,6 +6,7 @@ mod lloyd;
 mod merge;
 mod packed;
 mod partitioner;
+mod stored;
 #[cfg(test)]
 mod tests;
 
@@ -16,6 +17,7 @@ pub use self::grid::Reconstruction;
 use self::grid::SharedGrid;
 pub(crate) use self::packed::PackedParts;
 pub use self::partitioner::Partitioner;
+pub use self::stored::{StoredPart, StoredParts};
 use crate::bytes::reduction;
 
 /// Mesh partitioned into parts, with vertex positions in 8 bits per axis.

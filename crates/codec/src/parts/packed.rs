@@ -3,6 +3,7 @@
 use meshlod_mesh::VertexId;
 
 use super::grid::{MAX_OFFSET, Reconstruction, SharedGrid};
+use super::stored::{StoredPart, StoredParts};
 use super::{HEADER, Part, Parts, part_header};
 use crate::bytes::{Malformed, Reader};
 use crate::patch::Rows;
@@ -62,6 +63,20 @@ impl PackedParts {
     pub(crate) fn position(&self, node: usize) -> [f64; 3] {
         let (part, _) = self.rows.place(node as u32);
         self.grid.place(self.offsets[part], self.positions[node])
+    }
+
+    /// Returns the parts as they are stored.
+    pub(crate) fn stored(&self) -> StoredParts<'_> {
+        let part = |(row, &offset): (usize, &[i32; 3])| {
+            let nodes = self.rows.range(row);
+            StoredPart { offset, nodes: nodes.start as u32..nodes.end as u32 }
+        };
+        StoredParts {
+            cell: self.grid.cell(),
+            within: if self.grid.is_centred() { 0.5 } else { 0.0 },
+            parts: self.offsets.iter().enumerate().map(part).collect(),
+            positions: &self.positions,
+        }
     }
 
     fn each<T>(&self, of: impl Fn([i32; 3], [u8; 3]) -> T) -> Vec<T> {

@@ -7,6 +7,7 @@ mod error;
 mod file;
 mod nodes;
 mod positions;
+mod stored;
 mod target;
 #[cfg(test)]
 mod tests;
@@ -15,6 +16,7 @@ mod weld_parts;
 
 pub use self::error::CompressError;
 use self::positions::Positions;
+pub use self::stored::{StoredMesh, StoredPositions};
 pub use self::target::{Compression, CompressionTarget, Scheme, compress, parts_for};
 use self::wedge_vertices::WedgeVertices;
 use crate::attributes::{LayerReport, PackedLayer};

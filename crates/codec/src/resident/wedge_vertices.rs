@@ -64,19 +64,22 @@ impl WedgeVertices {
                 }
                 Ok((vertex_of, kept))
             }
-            (Self::Extra(numbers), _) => {
-                let mut vertex_of = Vec::with_capacity(rows.nodes());
-                let mut numbers = numbers.all().into_iter();
-                for block in 0..rows.len() / 2 {
-                    let own = block_vertices(block, rows);
-                    vertex_of.extend(own.clone());
-                    let extra = numbers.by_ref().take(rows.range(2 * block + 1).len());
-                    vertex_of.extend(extra.map(|number| vertex_in(&own, number)));
-                }
-                Ok((vertex_of, positions.all()))
-            }
-            _ => Ok(((0..rows.nodes() as u32).collect(), positions.all())),
+            _ => Ok((self.position_of(rows), positions.all())),
         }
+    }
+
+    /// Returns the stored position of each node. Parts store one for each.
+    pub(super) fn position_of(&self, rows: &Rows) -> Vec<u32> {
+        let Self::Extra(numbers) = self else { return (0..rows.nodes() as u32).collect() };
+        let mut position_of = Vec::with_capacity(rows.nodes());
+        let mut numbers = numbers.all().into_iter();
+        for block in 0..rows.len() / 2 {
+            let own = block_vertices(block, rows);
+            position_of.extend(own.clone());
+            let extra = numbers.by_ref().take(rows.range(2 * block + 1).len());
+            position_of.extend(extra.map(|number| vertex_in(&own, number)));
+        }
+        position_of
     }
 
     pub(super) fn bytes(&self) -> usize {

@@ -3,13 +3,13 @@
 use std::time::Instant;
 
 use meshlod::mesh::Bounds;
-use meshlod::multires::{Focus, ViewCamera};
-use meshlod::picture::{Camera, Picture};
+use meshlod::multires::Focus;
+use meshlod::picture::Picture;
 
 use super::Script;
 use super::key::Pose;
 use crate::stage::{CameraRig, LevelsSubject, Loaded, RigPose, Stage, Subject, SubjectId};
-use crate::{Canvas, CutQuery, CutTolerance, Gpu, Renderer, TargetFormat, ViewError};
+use crate::{Canvas, CutQuery, CutTolerance, Gpu, Renderer, TargetFormat, ViewError, view_camera};
 
 /// Film of a file, drawn frame by frame without a window.
 #[derive(Debug)]
@@ -121,20 +121,4 @@ fn follow(levels: &mut LevelsSubject, query: CutQuery) -> Result<f64, ViewError>
     levels.ask(query);
     levels.finish().map_err(|error| ViewError::Failed(error.to_string()))?;
     Ok(start.elapsed().as_secs_f64() * 1e3)
-}
-
-/// Returns the camera of queries that sees what a camera of pictures does.
-pub(crate) fn view_camera(camera: &Camera, size: [u32; 2]) -> ViewCamera {
-    let [_, up, forward] = camera.axes();
-    let eye = camera.eye();
-    let [width, height] = size.map(f64::from);
-    // The field of view is that of the shorter side; queries want the vertical one.
-    let tangent = camera.tan_half_fov() * height / width.min(height);
-    ViewCamera {
-        eye,
-        look: [0, 1, 2].map(|k| eye[k] + forward[k]),
-        up,
-        fov_rad: 2.0 * tangent.atan(),
-        viewport: size,
-    }
 }

@@ -49,12 +49,21 @@ pub enum Coloring {
     Materials,
     /// Distance from the original, for subjects that were compared with it.
     Heat,
+    /// One colour for each part or block of compressed geometry.
+    Parts,
 }
 
 impl Coloring {
     /// All colourings, in the order in which menus list them.
-    pub const ALL: [Self; 6] =
-        [Self::Own, Self::Clay, Self::Checker, Self::Objects, Self::Materials, Self::Heat];
+    pub const ALL: [Self; 7] = [
+        Self::Own,
+        Self::Clay,
+        Self::Checker,
+        Self::Objects,
+        Self::Materials,
+        Self::Heat,
+        Self::Parts,
+    ];
 
     /// Returns the name that menus show.
     pub fn name(self) -> &'static str {
@@ -65,12 +74,13 @@ impl Coloring {
             Self::Objects => "Objects",
             Self::Materials => "Materials",
             Self::Heat => "Distance",
+            Self::Parts => "Parts",
         }
     }
 
     /// Returns true if each face has a colour of its own.
     pub(crate) fn is_by_face(self) -> bool {
-        matches!(self, Self::Objects | Self::Materials)
+        matches!(self, Self::Objects | Self::Materials | Self::Parts)
     }
 }
 

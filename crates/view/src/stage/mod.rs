@@ -4,6 +4,7 @@
 //! A file is [`Loaded`] on any thread and uploaded as a [`Subject`] on any thread; a [`Stage`]
 //! shows subjects in slots side by side, all seen by one [`CameraRig`] and in one [`Display`].
 
+mod compressed;
 mod display;
 mod levels;
 mod loaded;
@@ -12,6 +13,7 @@ mod rig;
 mod scene;
 mod subject;
 
+pub use compressed::CompressedSubject;
 pub use display::{Coloring, Display, Shading};
 pub use levels::LevelsSubject;
 pub use loaded::{LoadError, Loaded, LoadedContent};

@@ -1,13 +1,13 @@
 //! What a stage shows, on the GPU.
 
-use meshlod::Mesh;
 use meshlod::check::{Objects, ObjectsBy};
 use meshlod::mesh::{Bounds, LayerKind};
 use meshlod::picture::{ColorMap, Normals, Paint, Values};
+use meshlod::{Mesh, OwnedPaint};
 use wgpu::RenderPass;
 
 use super::palette::color_of;
-use super::{Coloring, Display, LevelsSubject, Loaded, LoadedContent};
+use super::{Coloring, CompressedSubject, Display, LevelsSubject, Loaded, LoadedContent};
 use crate::{GpuMesh, Placement, Renderer, ViewError};
 
 /// Thing on the GPU that a stage shows.
@@ -17,8 +17,8 @@ pub enum Subject {
     Mesh(Box<MeshSubject>),
     /// Levels of detail, and a cut of them that follows a query.
     Levels(Box<LevelsSubject>),
-    // Compressed geometry drawn as it is comes here. A variant needs an arm in each method of
-    // `Subject`, and nothing else.
+    /// Compressed mesh, drawn from its stored bits.
+    Compressed(Box<CompressedSubject>),
 }
 
 /// Mesh on the GPU, with what its colourings need.
@@ -44,6 +44,13 @@ impl Subject {
             LoadedContent::Levels(model) => {
                 Self::Levels(Box::new(LevelsSubject::new(renderer, model)?))
             }
+            // Colours of vertices are decoded.
+            LoadedContent::Compressed(compressed)
+                if matches!(*loaded.paint, OwnedPaint::Plain(_)) =>
+            {
+                let subject = CompressedSubject::new(renderer, compressed, loaded.bounds)?;
+                Self::Compressed(Box::new(subject))
+            }
             _ => Self::Mesh(Box::new(MeshSubject::new(renderer, loaded)?)),
         })
     }
@@ -53,6 +60,7 @@ impl Subject {
         match self {
             Self::Mesh(mesh) => mesh.bounds,
             Self::Levels(levels) => levels.bounds(),
+            Self::Compressed(compressed) => compressed.bounds,
         }
     }
 
@@ -61,6 +69,7 @@ impl Subject {
         match self {
             Self::Mesh(mesh) => mesh.mesh.faces(),
             Self::Levels(levels) => levels.cut().faces(),
+            Self::Compressed(compressed) => compressed.mesh().faces(),
         }
     }
 
@@ -69,6 +78,7 @@ impl Subject {
         match self {
             Self::Mesh(mesh) => mesh.vertices,
             Self::Levels(levels) => levels.last_step().vertices,
+            Self::Compressed(compressed) => compressed.vertices,
         }
     }
 
@@ -77,6 +87,7 @@ impl Subject {
         match self {
             Self::Mesh(mesh) => mesh.mesh.bytes() + mesh.heat.as_ref().map_or(0, GpuMesh::bytes),
             Self::Levels(levels) => levels.cut().bytes(),
+            Self::Compressed(compressed) => compressed.mesh().bytes(),
         }
     }
 
@@ -85,6 +96,7 @@ impl Subject {
         match self {
             Self::Mesh(mesh) => mesh.mesh.origin(),
             Self::Levels(levels) => levels.cut().origin(),
+            Self::Compressed(compressed) => compressed.mesh().origin(),
         }
     }
 
@@ -96,8 +108,12 @@ impl Subject {
                 Coloring::Checker => mesh.has_uv,
                 Coloring::Heat => mesh.heat.is_some(),
                 Coloring::Objects | Coloring::Materials => mesh.by_face == Some(coloring),
+                Coloring::Parts => false,
             },
             Self::Levels(_) => matches!(coloring, Coloring::Own | Coloring::Clay),
+            Self::Compressed(_) => {
+                matches!(coloring, Coloring::Own | Coloring::Clay | Coloring::Parts)
+            }
         }
     }
 
@@ -128,6 +144,7 @@ impl Subject {
         match self {
             Self::Mesh(mesh) => mesh.draw(renderer, pass, placement, &self.display(display)),
             Self::Levels(levels) => levels.draw(renderer, pass, placement, display),
+            Self::Compressed(compressed) => compressed.draw(renderer, pass, placement),
         }
     }
 }

@@ -1,0 +1,251 @@
+//! Compressed geometry, drawn as it is stored: positions are decoded in the vertex shader.
+
+mod blocks;
+mod lattice;
+mod normals;
+mod part_matrices;
+mod parts;
+mod pipelines;
+mod plain;
+#[cfg(test)]
+mod tests;
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use bytemuck::{Pod, Zeroable};
+use meshlod::Mesh;
+use meshlod::codec::{Compressed, StoredPositions};
+use meshlod::mesh::LayerKind;
+use meshlod::picture::PictureError;
+use wgpu::{BindGroup, Buffer, BufferUsages, IndexFormat, RenderPass};
+
+pub use self::part_matrices::PartMatrices;
+pub(crate) use self::pipelines::SchemePipelines;
+use self::pipelines::{SchemeEntry, SchemeShader};
+use crate::placement::Placement;
+use crate::renderer::{Renderer, bind_group, buffer_of};
+use crate::{Gpu, ViewError};
+
+/// Compressed mesh on the GPU, its positions in the bits of their `.mlq` file.
+///
+/// It has one colour, or with [`Shade::face_colors`](crate::Shade::face_colors) one for each part or
+/// block. Where the file has normals, they are used; otherwise faces are shaded flat.
+///
+/// A vertex that several parts store is at the same bits in all of them, so no background shows
+/// through between parts, nor between blocks.
+#[derive(Debug)]
+pub struct GpuCompressed {
+    origin: [f64; 3],
+    shader: SchemeShader,
+    bind_group: BindGroup,
+    /// What vertices are fetched from: bytes of parts, or positions of nodes with normals.
+    vertices: Option<Buffer>,
+    normals: Option<Buffer>,
+    indices: Buffer,
+    /// Faces of each instance.
+    runs: Vec<Range<u32>>,
+    faces: u32,
+    vertex_bytes: u64,
+    index_bytes: u64,
+    /// Offset of each part from the origin in cells, and the sides of a cell.
+    parts: Option<(Vec<[i32; 4]>, [f64; 3])>,
+}
+
+/// Ways of drawing compressed geometry that few need.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CompressedOptions<'a> {
+    /// Leave out faces that are seen from behind. A crack in a closed mesh shows background then.
+    pub culls_back_faces: bool,
+    /// Place parts by a matrix each, folded into the camera's [LCL10], in place of adding integers:
+    /// common vertices of two parts may then be rounded apart. It is ignored without parts, and draws
+    /// without normals.
+    pub part_matrices: Option<&'a PartMatrices>,
+}
+
+/// `Scheme` of compressed.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct SchemeUniforms {
+    scale: [f32; 3],
+    padding: u32,
+}
+
+/// Positions of a scheme, as the GPU takes them.
+struct SchemeData<'a> {
+    origin: [f64; 3],
+    /// Sides of a cell.
+    scale: [f64; 3],
+    shader: SchemeShader,
+    /// Bytes that vertices are fetched from; `None` if shaders read their bits.
+    fetched: Option<Cow<'a, [u8]>>,
+    /// Stored words, and headers of parts or blocks.
+    storages: [Cow<'a, [u8]>; 2],
+    /// Faces of each instance.
+    runs: Vec<Range<u32>>,
+    parts: Option<(Vec<[i32; 4]>, [f64; 3])>,
+}
+
+impl GpuCompressed {
+    /// Uploads a compressed mesh: stored bits, headers as matrices, and decoded faces.
+    ///
+    /// # Errors
+    /// Damaged data that the checksums did not catch, or more than the GPU can bind at once.
+    pub fn new(renderer: &Renderer, compressed: &Compressed) -> Result<Self, ViewError> {
+        let stored = compressed.stored()?;
+        let data = match &stored.positions {
+            StoredPositions::Parts(parts) => parts::data(parts, &stored)?,
+            StoredPositions::Blocks(blocks) => blocks::data(blocks, stored.faces.len()),
+            StoredPositions::Lattice(lattice) => lattice::data(lattice, stored.faces.len()),
+        };
+        let normals = compressed.node_values(LayerKind::Normal).map(|layer| normals::fold(&layer));
+        // With normals, corners are nodes; without, they are positions.
+        let position = |node: u32| stored.position_of[node as usize];
+        let faces = match &normals {
+            Some(_) => stored.faces.clone(),
+            None => stored.faces.iter().map(|face| face.map(position)).collect(),
+        };
+        let of_nodes = normals.is_some().then(|| bytemuck::cast_slice(&stored.position_of).into());
+        let data = SchemeData { fetched: data.fetched.or(of_nodes), ..data };
+        Self::upload(renderer, data, normals.as_deref(), &faces)
+    }
+
+    /// Uploads the positions of a mesh as three `f32`, undivided and shaded flat: the yardstick of
+    /// what decoding costs.
+    ///
+    /// # Errors
+    /// A mesh that breaks [`Mesh::validate`], or is beyond the limits of the GPU.
+    pub fn uncompressed(renderer: &Renderer, mesh: &Mesh) -> Result<Self, ViewError> {
+        mesh.validate().map_err(PictureError::from)?;
+        let faces: Vec<_> = mesh.faces.iter().map(|face| face.map(|v| v.0)).collect();
+        Self::upload(renderer, plain::data(mesh), None, &faces)
+    }
+
+    /// Returns the point of the world that positions are relative to, for
+    /// [`Placement::set`](crate::Placement::set).
+    pub fn origin(&self) -> [f64; 3] {
+        self.origin
+    }
+
+    /// Returns the number of faces.
+    pub fn faces(&self) -> usize {
+        self.faces as usize
+    }
+
+    /// Returns the size of everything on the GPU, in bytes: vertices, headers and indices.
+    pub fn bytes(&self) -> u64 {
+        self.vertex_bytes + self.index_bytes
+    }
+
+    /// Returns the size of vertices and of headers of parts or blocks on the GPU, in bytes.
+    pub fn vertex_bytes(&self) -> u64 {
+        self.vertex_bytes
+    }
+
+    /// Draws the mesh.
+    pub fn draw(&self, renderer: &Renderer, pass: &mut RenderPass<'_>, placement: &Placement) {
+        self.draw_with(renderer, pass, placement, &CompressedOptions::default());
+    }
+
+    /// Draws the mesh with options.
+    pub fn draw_with(
+        &self,
+        renderer: &Renderer,
+        pass: &mut RenderPass<'_>,
+        placement: &Placement,
+        options: &CompressedOptions<'_>,
+    ) {
+        if self.faces == 0 {
+            return;
+        }
+        let matrices = options.part_matrices.filter(|_| self.shader == SchemeShader::Parts);
+        let entry = match (matrices, &self.normals) {
+            (Some(_), _) => SchemeEntry::ByMatrix,
+            (None, Some(_)) => SchemeEntry::WithNormals,
+            (None, None) => SchemeEntry::Bare,
+        };
+        let pipelines = renderer.schemes();
+        pass.set_pipeline(&pipelines.get(renderer, self.shader, entry, options.culls_back_faces));
+        pass.set_bind_group(0, &placement.bind_group, &[]);
+        pass.set_bind_group(1, &self.bind_group, &[]);
+        if let Some(matrices) = matrices {
+            pass.set_bind_group(2, matrices.bind_group(), &[]);
+        }
+        let fetched =
+            self.vertices.iter().chain(self.normals.iter().filter(|_| matrices.is_none()));
+        for (slot, buffer) in (0..).zip(fetched) {
+            pass.set_vertex_buffer(slot, buffer.slice(..));
+        }
+        pass.set_index_buffer(self.indices.slice(..), IndexFormat::Uint32);
+        for (run, faces) in (0..).zip(&self.runs) {
+            pass.draw_indexed(3 * faces.start..3 * faces.end, 0, run..run + 1);
+        }
+    }
+
+    /// Creates matrices for [`CompressedOptions::part_matrices`]; `None` unless it has parts.
+    pub fn part_matrices(&self, renderer: &Renderer) -> Option<PartMatrices> {
+        let (offsets, cell) = self.parts.as_ref()?;
+        Some(PartMatrices::new(renderer, self.origin, offsets, *cell))
+    }
+
+    fn upload(
+        renderer: &Renderer,
+        data: SchemeData<'_>,
+        normals: Option<&[[i16; 2]]>,
+        faces: &[[u32; 3]],
+    ) -> Result<Self, ViewError> {
+        let gpu = renderer.gpu();
+        let normals: &[u8] = normals.map_or(&[], bytemuck::cast_slice);
+        let fetched = data.fetched.as_deref();
+        let index_bytes = size_of_val(faces) as u64;
+        gpu.check_buffer("the compressed vertices", fetched.map_or(0, <[u8]>::len) as u64)?;
+        gpu.check_buffer("the compressed mesh's normals", normals.len() as u64)?;
+        gpu.check_buffer("the compressed mesh's faces", index_bytes)?;
+        let [words, headers] = &data.storages;
+        check_storage(gpu, "the bits of compressed positions", words.len() as u64)?;
+        check_storage(gpu, "the headers of compressed positions", headers.len() as u64)?;
+        let uniforms = SchemeUniforms { scale: data.scale.map(|x| x as f32), padding: 0 };
+        let uniforms =
+            buffer_of(gpu, "scheme", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM);
+        let storage = |bytes: &[u8]| storage_of(gpu, bytes, BufferUsages::empty());
+        let storages = [storage(words), storage(headers)];
+        let bindings = [&uniforms, &storages[0], &storages[1]].map(Buffer::as_entire_binding);
+        let vertex = |bytes: &[u8]| buffer_of(gpu, "vertices", bytes, BufferUsages::VERTEX);
+        let fetched_bytes = fetched.map_or(0, <[u8]>::len) + normals.len();
+        Ok(Self {
+            origin: data.origin,
+            shader: data.shader,
+            bind_group: bind_group(&gpu.device, &renderer.schemes().layout, bindings),
+            vertices: fetched.map(vertex),
+            normals: (!normals.is_empty()).then(|| vertex(normals)),
+            indices: buffer_of(gpu, "faces", bytemuck::cast_slice(faces), BufferUsages::INDEX),
+            runs: data.runs,
+            faces: faces.len() as u32,
+            vertex_bytes: (fetched_bytes + words.len() + headers.len()) as u64,
+            index_bytes,
+            parts: data.parts,
+        })
+    }
+}
+
+/// Creates a storage buffer that is large enough for a binding of any of the shaders.
+fn storage_of(gpu: &Gpu, bytes: &[u8], usage: BufferUsages) -> Buffer {
+    const LEAST: usize = 64;
+    let mut padded = Cow::Borrowed(bytes);
+    if bytes.len() < LEAST {
+        padded.to_mut().resize(LEAST, 0);
+    }
+    buffer_of(gpu, "compressed positions", &padded, BufferUsages::STORAGE | usage)
+}
+
+/// Fails if a binding of this size would be beyond the limits of the GPU.
+fn check_storage(gpu: &Gpu, what: &'static str, needed: u64) -> Result<(), ViewError> {
+    gpu.check_buffer(what, needed)?;
+    let limit = gpu.device.limits().max_storage_buffer_binding_size;
+    if needed <= limit { Ok(()) } else { Err(ViewError::TooLarge { what, needed, limit }) }
+}
+
+/// Returns the range of all faces, as one instance.
+fn one_run(faces: usize) -> Vec<Range<u32>> {
+    std::iter::once(0..faces as u32).collect()
+}

@@ -1,0 +1,145 @@
+//! Pipelines of the schemes, compiled when they are first needed.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use wgpu::{
+    BindGroupLayout, RenderPipeline, ShaderStages, VertexBufferLayout, VertexFormat,
+    VertexStepMode, vertex_attr_array,
+};
+
+use crate::renderer::{PipelineBuild, Renderer, layout, storage, uniform};
+
+/// Shader of a scheme. The short paths decode what is common, the wide ones everything.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum SchemeShader {
+    Plain,
+    Parts,
+    Blocks {
+        is_wide: bool,
+    },
+    Lattice {
+        /// Numbers of more than 64 bits.
+        has_three_words: bool,
+    },
+    WideLattice,
+}
+
+/// Entry point for vertices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum SchemeEntry {
+    Bare,
+    WithNormals,
+    ByMatrix,
+}
+
+type Key = (SchemeShader, SchemeEntry, bool);
+
+/// Pipelines of compressed geometry, and the layouts of what they bind.
+#[derive(Debug)]
+pub(crate) struct SchemePipelines {
+    /// Uniforms, words, headers.
+    pub layout: BindGroupLayout,
+    pub matrix_layout: BindGroupLayout,
+    compiled: Mutex<BTreeMap<Key, Arc<RenderPipeline>>>,
+}
+
+const DRAW: &str = include_str!("../shaders/draw.wgsl");
+const COMMON: &str = include_str!("shaders/compressed.wgsl");
+const BITS: &str = include_str!("shaders/bits.wgsl");
+
+impl Renderer {
+    /// Returns the pipelines of compressed geometry.
+    pub(crate) fn schemes(&self) -> &SchemePipelines {
+        self.schemes.get_or_init(|| {
+            let device = &self.gpu().device;
+            let vertex = ShaderStages::VERTEX;
+            let bindings = [(vertex, uniform()), (vertex, storage()), (vertex, storage())];
+            SchemePipelines {
+                layout: layout(device, &bindings),
+                matrix_layout: layout(device, &[(vertex, storage())]),
+                compiled: Mutex::default(),
+            }
+        })
+    }
+}
+
+impl SchemePipelines {
+    /// Returns a pipeline, after compiling it if it is the first of its kind.
+    pub(super) fn get(
+        &self,
+        renderer: &Renderer,
+        shader: SchemeShader,
+        entry: SchemeEntry,
+        culls: bool,
+    ) -> Arc<RenderPipeline> {
+        let mut compiled = self.compiled.lock().unwrap_or_else(PoisonError::into_inner);
+        let made = || Arc::new(self.compile(renderer, shader, entry, culls));
+        compiled.entry((shader, entry, culls)).or_insert_with(made).clone()
+    }
+
+    fn compile(
+        &self,
+        renderer: &Renderer,
+        shader: SchemeShader,
+        entry: SchemeEntry,
+        culls: bool,
+    ) -> RenderPipeline {
+        let module = renderer.shader("compressed", shader.source());
+        let layouts = [&renderer.draw_layout, &self.layout, &self.matrix_layout];
+        let count = if entry == SchemeEntry::ByMatrix { 3 } else { 2 };
+        let position = match shader {
+            SchemeShader::Plain => Some(VertexFormat::Float32x3),
+            SchemeShader::Parts => Some(VertexFormat::Uint8x4),
+            _ if entry == SchemeEntry::WithNormals => Some(VertexFormat::Uint32),
+            _ => None,
+        };
+        let attribute = position
+            .map(|format| [wgpu::VertexAttribute { format, offset: 0, shader_location: 0 }]);
+        let positions = attribute.iter().map(|attributes| buffer(attributes));
+        let normal = vertex_attr_array![1 => Snorm16x2];
+        let normals = (entry == SchemeEntry::WithNormals).then(|| buffer(&normal));
+        let buffers: Vec<_> = positions.chain(normals).collect();
+        let name = match entry {
+            SchemeEntry::Bare => "bare",
+            SchemeEntry::WithNormals => "with_normals",
+            SchemeEntry::ByMatrix => "by_matrix",
+        };
+        renderer.pipeline(&PipelineBuild {
+            entries: [name, "shaded"],
+            layouts: &layouts[..count],
+            buffers: &buffers,
+            cull: culls.then_some(wgpu::Face::Back),
+            ..PipelineBuild::new("compressed", &module)
+        })
+    }
+}
+
+impl SchemeShader {
+    /// Returns the source of the shader, with constants for the path that it takes.
+    pub(super) fn source(self) -> String {
+        let (is_wide, has_three_words) = match self {
+            Self::Plain | Self::Parts => (false, false),
+            Self::Blocks { is_wide } => (is_wide, false),
+            Self::Lattice { has_three_words } => (false, has_three_words),
+            Self::WideLattice => (true, true),
+        };
+        let parts: &[&str] = match self {
+            Self::Plain => &[include_str!("shaders/plain.wgsl")],
+            Self::Parts => &[include_str!("shaders/parts.wgsl")],
+            Self::Blocks { .. } => &[BITS, include_str!("shaders/blocks.wgsl")],
+            Self::Lattice { .. } | Self::WideLattice => {
+                &[BITS, include_str!("shaders/lattice.wgsl")]
+            }
+        };
+        let path =
+            format!("const IS_WIDE = {is_wide};\nconst HAS_THREE_WORDS = {has_three_words};\n");
+        [&path, DRAW, COMMON].iter().chain(parts).copied().collect()
+    }
+}
+
+/// Returns the layout of one attribute.
+fn buffer(attributes: &[wgpu::VertexAttribute; 1]) -> VertexBufferLayout<'_> {
+    let array_stride = attributes[0].format.size();
+    VertexBufferLayout { array_stride, step_mode: VertexStepMode::Vertex, attributes }
+}
