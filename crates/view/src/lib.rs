@@ -32,15 +32,18 @@
 
 mod canvas;
 mod error;
+mod flock;
 mod gpu;
 mod mesh;
 mod placement;
+mod read;
 mod renderer;
 mod target;
 mod texture;
 
 pub use canvas::Canvas;
 pub use error::ViewError;
+pub use flock::{GpuFlock, GpuObstacles, GpuSelection, HiZ};
 pub use gpu::Gpu;
 pub use mesh::GpuMesh;
 pub use placement::{Placement, Shade};

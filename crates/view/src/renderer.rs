@@ -15,6 +15,7 @@ use wgpu::{
     VertexBufferLayout,
 };
 
+use crate::flock::FlockPipelines;
 use crate::mesh::MeshPipelines;
 use crate::placement::{DrawUniforms, Placement};
 use crate::{Gpu, TargetFormat};
@@ -30,6 +31,7 @@ pub struct Renderer {
     pub(crate) material_layout: BindGroupLayout,
     pub(crate) sampler: Sampler,
     pub(crate) meshes: OnceLock<MeshPipelines>,
+    pub(crate) flocks: OnceLock<FlockPipelines>,
     background: OnceLock<RenderPipeline>,
 }
 
@@ -69,6 +71,7 @@ impl Renderer {
                 ..Default::default()
             }),
             meshes: OnceLock::new(),
+            flocks: OnceLock::new(),
             background: OnceLock::new(),
         }
     }

@@ -10,9 +10,10 @@ use meshlod::Mesh;
 use meshlod::picture::{Normals, Paint, PictureError};
 use wgpu::{BindGroup, Buffer, BufferUsages, IndexFormat, RenderPass};
 
+pub(crate) use self::build::fractions;
 use self::build::{CornerVertices, face_order};
-use self::colors::Surface;
-pub(crate) use self::pipelines::{MaterialBinding, MeshPipelines};
+pub(crate) use self::colors::{Surface, VertexColors};
+pub(crate) use self::pipelines::{MaterialBinding, MeshPipelines, VERTEX_BUFFERS};
 use crate::placement::Placement;
 use crate::renderer::{Renderer, bind_group, buffer_of};
 use crate::{Gpu, ViewError};
