@@ -8,8 +8,9 @@ use meshlod::flock::select::InstanceLevel;
 use meshlod::flock::{Flock, FlockCamera};
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, IndexFormat, RenderPass};
 
+use super::atlas::AtlasBinding;
 use super::instances::{Instance, Slots, SortedInstances};
-use super::model::{AtlasBinding, FlockModel};
+use super::model::FlockModel;
 use crate::placement::Placement;
 use crate::renderer::Renderer;
 use crate::{Gpu, ViewError};

@@ -3,6 +3,7 @@
 //! A [`GpuFlock`] draws what a `Selector` chose on the CPU. A [`GpuSelection`] chooses on the GPU
 //! itself, with the rule of the policy `screen-error`, and leaves out what a [`HiZ`] says is hidden.
 
+mod atlas;
 mod drawn;
 mod hiz;
 mod instances;

@@ -2,17 +2,14 @@
 
 use std::ops::Range;
 
-use bytemuck::{Pod, Zeroable};
-use meshlod::flock::levels::{Impostor, LevelTable, Look};
+use meshlod::flock::levels::{LevelTable, Look};
 use meshlod::mesh::{Layer, LayerKind, WedgeId};
-use meshlod::picture::{Paint, Texture};
-use wgpu::{
-    AddressMode, BindGroup, BindingResource, Buffer, BufferUsages, FilterMode, SamplerDescriptor,
-};
+use meshlod::picture::Paint;
+use wgpu::{Buffer, BufferUsages};
 
+use crate::ViewError;
 use crate::mesh::{MaterialBinding, Surface, VertexAttributes, VertexColors, fractions};
-use crate::renderer::{Renderer, bind_group, buffer_of};
-use crate::{Gpu, ViewError, texture};
+use crate::renderer::{Renderer, buffer_of};
 
 /// All levels of a table in one vertex and one index buffer, with the materials of the model.
 #[derive(Debug)]
@@ -35,22 +32,6 @@ pub(super) struct LevelDraw {
     pub level: usize,
     pub material: usize,
     pub indices: Range<u32>,
-}
-
-/// Atlas of impostors on the GPU.
-#[derive(Debug)]
-pub(super) struct AtlasBinding {
-    pub bind_group: BindGroup,
-}
-
-/// `Atlas` of flock_impostors.wgsl.
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct AtlasUniforms {
-    half_width: f32,
-    views: f32,
-    side_px: f32,
-    padding: f32,
 }
 
 impl FlockModel {
@@ -141,46 +122,4 @@ fn by_material(table: &LevelTable, materials: usize) -> (Vec<[u32; 3]>, Vec<Leve
     }
     draws.sort_by_key(|draw| draw.material);
     (triangles, draws)
-}
-
-impl AtlasBinding {
-    /// Uploads the views of an impostor with mipmaps.
-    pub fn new(renderer: &Renderer, impostor: &Impostor) -> Result<Self, ViewError> {
-        let gpu: &Gpu = renderer.gpu();
-        let atlas = &impostor.atlas;
-        let limit = u64::from(gpu.device.limits().max_texture_dimension_2d);
-        let needed = u64::from(atlas.width().max(atlas.height()));
-        if needed > limit {
-            let [needed, limit] = [needed, limit].map(|side| 4 * side * side);
-            return Err(ViewError::TooLarge { what: "the impostor's atlas", needed, limit });
-        }
-        let image = Texture::new(atlas.width(), atlas.height(), atlas.rgba())?;
-        let view = texture::upload(gpu, &image).create_view(&Default::default());
-        let uniforms = AtlasUniforms {
-            half_width: impostor.half_width,
-            views: (atlas.width() / impostor.side_px) as f32,
-            side_px: impostor.side_px as f32,
-            padding: 0.0,
-        };
-        let contents = bytemuck::bytes_of(&uniforms);
-        let buffer = buffer_of(gpu, "atlas", contents, BufferUsages::UNIFORM);
-        let sampler = gpu.device.create_sampler(&SamplerDescriptor {
-            address_mode_u: AddressMode::ClampToEdge,
-            address_mode_v: AddressMode::ClampToEdge,
-            mag_filter: FilterMode::Linear,
-            min_filter: FilterMode::Linear,
-            mipmap_filter: wgpu::MipmapFilterMode::Linear,
-            ..Default::default()
-        });
-        let bind_group = bind_group(
-            &gpu.device,
-            &renderer.flocks().atlas_layout,
-            [
-                buffer.as_entire_binding(),
-                BindingResource::TextureView(&view),
-                BindingResource::Sampler(&sampler),
-            ],
-        );
-        Ok(Self { bind_group })
-    }
 }

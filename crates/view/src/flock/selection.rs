@@ -11,10 +11,11 @@ use wgpu::{
     CommandEncoder, ComputePipeline, Features, RenderPass, ShaderStages,
 };
 
+use super::atlas::AtlasBinding;
 use super::drawn::{GpuFlock, bind, bind_impostors};
 use super::hiz::{self, HiZ};
 use super::instances::Instance;
-use super::model::{AtlasBinding, FlockModel};
+use super::model::FlockModel;
 use super::pipelines::{SHARED, compute_pipeline};
 use crate::placement::Placement;
 use crate::read::read_buffer;
