@@ -24,9 +24,9 @@ const SIZE: [u32; 2] = [960, 540];
 /// Greatest mean FLIP against full detail.
 const FLIP: f64 = 0.02;
 /// Frames of full detail that take longer are not compared with.
-const LONGEST_MS: f64 = 60_000.0;
+const LONGEST_MS: f64 = 120_000.0;
 /// Rounds in which all ways are timed by turns.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 5;
 
 /// Way of choosing levels, with its fineness: detail, or triangles of the budget.
 #[derive(Clone, Copy)]
@@ -131,22 +131,33 @@ impl<'a> Stage<'a> {
         Ok(errors.iter().map(|&e| f64::from(e)).sum::<f64>() / errors.len() as f64)
     }
 
-    /// Finds the coarsest fineness whose picture is near enough to full detail; `None` if no
-    /// fineness within the range is.
-    fn coarsest(
-        &mut self,
-        arm: Arm,
-        range: [f64; 2],
-        full: &Picture,
-    ) -> Result<Option<Arm>, ViewError> {
-        let [mut low, mut high] = range;
-        if self.error(&Arm { fineness: high, ..arm }, full)? > FLIP {
-            return Ok(None);
+    /// Finds the coarsest fineness whose picture is near enough to full detail, from where the arm
+    /// stands; `None` if even much finer ones are not.
+    fn coarsest(&mut self, arm: Arm, full: &Picture) -> Result<Option<Arm>, ViewError> {
+        let mut is_near =
+            |fineness: f64| Ok::<_, ViewError>(self.error(&Arm { fineness, ..arm }, full)? <= FLIP);
+        let [mut low, mut high] = [arm.fineness; 2];
+        if is_near(high)? {
+            while {
+                low /= 2.0;
+                is_near(low)?
+            } {
+                high = low;
+            }
+        } else {
+            while {
+                high *= 2.0;
+                !is_near(high)?
+            } {
+                low = high;
+                if high > 64.0 * arm.fineness {
+                    return Ok(None);
+                }
+            }
         }
-        while high / low > 1.06 {
+        while high / low > 1.1 {
             let fineness = (low * high).sqrt();
-            let is_near = self.error(&Arm { fineness, ..arm }, full)? <= FLIP;
-            if is_near { high = fineness } else { low = fineness }
+            if is_near(fineness)? { high = fineness } else { low = fineness }
         }
         Ok(Some(Arm { fineness: high, ..arm }))
     }
@@ -183,30 +194,30 @@ fn compare(gpu: &Gpu, school: &SampleSchool, members: usize) -> Result<(), ViewE
     let picture = stage.canvas.read()?;
     let all = cost.triangles as f64;
     eprintln!("{members} members: {all} triangles in {:.0} ms", cost.all_ms);
+    let is_slow = cost.all_ms > 10_000.0;
     if cost.all_ms > LONGEST_MS {
         println!("| {members} | none | | {all} | | | {:.0} | |", cost.all_ms);
         return Ok(());
     }
     let mut arms = vec![full];
-    let limits = [None, Some(6.0), Some(12.0)];
-    for px in limits {
-        let by_budget = Arm::of(PolicyName::Ours, px);
-        arms.extend(stage.coarsest(by_budget, [all / 4_000.0, all], &picture)?);
-        let by_error = Arm::of(PolicyName::ScreenError, px);
-        let found = stage.coarsest(by_error, [0.01, 8.0], &picture)?;
+    let limits = if is_slow { &[None, Some(12.0)][..] } else { &[None, Some(6.0), Some(12.0)] };
+    for &px in limits {
+        let by_budget = Arm { fineness: all / 64.0, ..Arm::of(PolicyName::Ours, px) };
+        arms.extend(stage.coarsest(by_budget, &picture)?);
+        let by_error = Arm { fineness: 0.5, ..Arm::of(PolicyName::ScreenError, px) };
+        let found = stage.coarsest(by_error, &picture)?;
         arms.extend(found);
-        let on_gpu = found.map(|arm| Arm { on_gpu: true, ..arm });
-        arms.extend(on_gpu.filter(|arm| arm.impostors_below_px.is_none()));
-        let hides = on_gpu.map(|arm| Arm { hides: true, ..arm });
-        arms.extend(hides.filter(|arm| arm.impostors_below_px.is_none()));
+        let on_gpu = found.filter(|_| px.is_none()).map(|arm| Arm { on_gpu: true, ..arm });
+        arms.extend(on_gpu);
+        arms.extend(on_gpu.map(|arm| Arm { hides: true, ..arm }));
     }
-    let mut errors = Vec::new();
-    for arm in &arms {
+    let mut errors = vec![0.0];
+    for arm in &arms[1..] {
         errors.push(stage.error(arm, &picture)?);
     }
     let mut costs: Vec<Vec<Cost>> = arms.iter().map(|_| Vec::new()).collect();
     let mut selectors: Vec<_> = arms.iter().map(|arm| stage.selector(arm)).collect();
-    for _ in 0..ROUNDS {
+    for _ in 0..if is_slow { 2 } else { ROUNDS } {
         for ((arm, costs), selector) in arms.iter().zip(&mut costs).zip(&mut selectors) {
             // The first frame after another arm fills caches that all frames of a run share.
             costs.push(stage.draw(arm, selector)?);

@@ -38,6 +38,7 @@ mod mesh;
 mod placement;
 mod read;
 mod renderer;
+mod school;
 mod target;
 mod texture;
 
@@ -48,4 +49,5 @@ pub use gpu::Gpu;
 pub use mesh::GpuMesh;
 pub use placement::{Placement, Shade};
 pub use renderer::{Backdrop, Renderer};
+pub use school::{SchoolFrame, SchoolHistory, SchoolShow};
 pub use target::TargetFormat;
