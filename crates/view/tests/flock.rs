@@ -121,6 +121,33 @@ fn impostors_look_as_the_painter_draws_them() {
 }
 
 #[test]
+fn impostors_of_a_pixel_do_not_vanish() {
+    let Some(gpu) = gpu() else { return };
+    let SampleSchool { table, look, impostor } = sample();
+    let mut flock = Flock::default();
+    for i in 0..2_000 {
+        let (x, y) = ((i % 50) as f32, (i / 50) as f32);
+        flock.members.push([2.0 * x - 50.0, 2.0 * y - 40.0, 0.0], [1.0, 0.0, 0.0]);
+    }
+    let camera = FlockCamera::look_at([0.0, 0.0, 270.0], [0.0; 3], 0.5, SIZE).unwrap();
+    let renderer = Renderer::new(gpu, TargetFormat::CANVAS);
+    let drawn = GpuFlock::new(&renderer, table, look).unwrap();
+    let mut drawn = drawn.with_impostor(&renderer, impostor).unwrap();
+    let mut painter = FlockPainter::new(table, look, &[]);
+    painter.impostor = Some(impostor.clone());
+    let levels = vec![InstanceLevel::IMPOSTOR; 2_000];
+    drawn.set(&flock, &levels, &camera).unwrap();
+    let found = picture_of(&renderer, &drawn, &[], &camera);
+    let expected = painter.draw(&flock, &levels, &camera).unwrap();
+    let water = painter.draw(&Flock::default(), &[], &camera).unwrap();
+    keep("pixels", [&found, &expected]);
+    let [(_, mean), (_, shown)] =
+        [&expected, &water].map(|other| difference(&soft(&found), &soft(other), 24));
+    println!("mean {mean:.3} of {shown:.3}");
+    assert!(4.0 * mean < shown, "{mean} of {shown}");
+}
+
+#[test]
 fn every_face_has_its_material() {
     let Some(gpu) = gpu() else { return };
     let mut ball = meshlod::samples::sphere(800);

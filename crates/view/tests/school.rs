@@ -37,15 +37,13 @@ fn a_school_is_shown_with_levels_beside_full_detail() {
     show.set_policy(PolicyName::None);
     let in_full = picture(&mut show);
     let half = |a: &Picture, b: &Picture, columns: std::ops::Range<u32>| {
-        let differs = |&(x, y): &(u32, u32)| {
-            // Scissors may change a last bit.
-            a.pixel(x, y).iter().zip(b.pixel(x, y)).any(|(a, b)| a.abs_diff(b) > 8)
-        };
+        let differs = |&(x, y): &(u32, u32)| a.pixel(x, y) != b.pixel(x, y);
         (0..SIZE[1]).flat_map(|y| columns.clone().map(move |x| (x, y))).filter(differs).count()
     };
+    // Drivers differ in the samples that a scissor cuts at its rim.
     let middle = SIZE[0] / 2;
-    assert_eq!(half(&split, &with_levels, 0..middle), 0, "levels on the left");
-    assert_eq!(half(&split, &in_full, middle..SIZE[0]), 0, "full detail on the right");
+    assert_eq!(half(&split, &with_levels, 0..middle - 2), 0, "levels on the left");
+    assert_eq!(half(&split, &in_full, middle + 2..SIZE[0]), 0, "full detail on the right");
     assert!(half(&split, &with_levels, middle..SIZE[0]) > 100);
 
     let frames: Vec<_> = show.history().frames().copied().collect();

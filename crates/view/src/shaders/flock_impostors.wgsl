@@ -16,8 +16,8 @@ struct Atlas {
 
 struct Card {
     @builtin(position) clip: vec4f,
-    // Column and row of the view.
-    @location(0) @interpolate(flat) cell: vec2f,
+    // Column and row of the view, and which sample is covered first from afar.
+    @location(0) @interpolate(flat) cell: vec3f,
     // Place in the view, (0, 0) at the upper left.
     @location(1) at: vec2f,
 }
@@ -25,6 +25,7 @@ struct Card {
 @vertex
 fn corner(
     @builtin(vertex_index) i: u32,
+    @builtin(instance_index) member: u32,
     @location(0) position: vec3f,
     @location(1) heading: vec3f,
 ) -> Card {
@@ -38,7 +39,8 @@ fn corner(
     let x = select(-1.0, 1.0, i == 2u || i >= 4u);
     let y = select(-1.0, 1.0, i == 0u || i == 3u || i == 5u);
     let place = position + frame * (right * x + up * y) * atlas.half_width;
-    return Card(draw.clip_from_local * vec4f(place, 1.0), cell, vec2f(0.5 + 0.5 * x, 0.5 - 0.5 * y));
+    let clip = draw.clip_from_local * vec4f(place, 1.0);
+    return Card(clip, vec3f(cell, f32(member & 3u)), vec2f(0.5 + 0.5 * x, 0.5 - 0.5 * y));
 }
 
 struct Covered {
@@ -55,7 +57,8 @@ const PLACES = array(
 );
 
 // Every sample takes its own quarter of the pixel and is covered where the view is at least half
-// opaque, as a surface would cover it; so nothing needs to be sorted.
+// opaque, as a surface would cover it; so nothing needs to be sorted. Where a view has but a few
+// texels, which are nowhere half opaque, as many samples are covered as it is opaque.
 @fragment
 fn card(in: Card) -> Covered {
     let dx = dpdx(in.at);
@@ -65,14 +68,17 @@ fn card(in: Card) -> Covered {
     let level = clamp(log2(footprint), 0.0, log2(atlas.side_px));
     // Half a texel of the coarser of two mipmaps, so that filters keep within the view.
     let rim = 0.5 * exp2(ceil(level)) / atlas.side_px;
+    let few = clamp(level - log2(atlas.side_px) + 3.0, 0.0, 1.0);
     var sum = vec4f(0.0);
     var mask = 0u;
     for (var i = 0u; i < SAMPLES; i++) {
         let place = select(vec2f(0.0), PLACES[i & 3u], SAMPLES == 4u);
         let at = clamp(in.at + place.x * dx + place.y * dy, vec2f(rim), vec2f(1.0 - rim));
-        let texel = textureSampleLevel(image, image_sampler, (in.cell + at) / atlas.views, level);
+        let texel = textureSampleLevel(image, image_sampler, (in.cell.xy + at) / atlas.views, level);
         sum += vec4f(texel.rgb * texel.a, texel.a);
-        mask |= select(0u, 1u << i, texel.a >= 0.5);
+        let order = f32((i + u32(in.cell.z)) % SAMPLES);
+        let least = mix(0.5, (order + 0.5) / f32(SAMPLES), few);
+        mask |= select(0u, 1u << i, texel.a >= least);
     }
     if mask == 0u {
         discard;
