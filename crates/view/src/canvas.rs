@@ -20,6 +20,8 @@ pub struct Canvas {
     depth: TextureView,
     /// Linear colour to which it is cleared, with alpha.
     pub clear: [f64; 4],
+    /// Keep the depths of what is drawn, for [`Canvas::depth`].
+    pub keeps_depth: bool,
 }
 
 impl Canvas {
@@ -39,8 +41,9 @@ impl Canvas {
         let format = TargetFormat::CANVAS;
         let attachment = TextureUsages::RENDER_ATTACHMENT;
         let samples = texture_2d(gpu, size, format.color, format.samples, attachment);
-        let depth = texture_2d(gpu, size, format.depth, format.samples, attachment);
-        let readable = attachment | TextureUsages::COPY_SRC | TextureUsages::TEXTURE_BINDING;
+        let bound = attachment | TextureUsages::TEXTURE_BINDING;
+        let depth = texture_2d(gpu, size, format.depth, format.samples, bound);
+        let readable = bound | TextureUsages::COPY_SRC;
         let resolved = texture_2d(gpu, size, format.color, 1, readable);
         Ok(Self {
             gpu: gpu.clone(),
@@ -50,6 +53,7 @@ impl Canvas {
             resolved,
             depth: depth.create_view(&Default::default()),
             clear: [0.0; 4],
+            keeps_depth: false,
         })
     }
 
@@ -63,6 +67,11 @@ impl Canvas {
         &self.resolved
     }
 
+    /// Returns the depths of all samples, as they were drawn last with `keeps_depth`.
+    pub fn depth(&self) -> &TextureView {
+        &self.depth
+    }
+
     /// Clears the canvas and draws on it, and submits that to the GPU.
     pub fn draw(&self, draw: impl FnOnce(&mut RenderPass<'_>)) {
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
@@ -73,6 +82,7 @@ impl Canvas {
     /// Begins a pass that clears the canvas.
     pub fn pass<'e>(&self, encoder: &'e mut CommandEncoder) -> RenderPass<'e> {
         let [r, g, b, a] = self.clear;
+        let keep = if self.keeps_depth { StoreOp::Store } else { StoreOp::Discard };
         encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("canvas"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -86,7 +96,7 @@ impl Canvas {
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &self.depth,
-                depth_ops: Some(Operations { load: LoadOp::Clear(0.0), store: StoreOp::Discard }),
+                depth_ops: Some(Operations { load: LoadOp::Clear(0.0), store: keep }),
                 stencil_ops: None,
             }),
             ..Default::default()

@@ -1,5 +1,6 @@
 //! Errors of drawing on a GPU.
 
+use meshlod::flock::scene::SceneError;
 use meshlod::picture::PictureError;
 use thiserror::Error;
 
@@ -31,4 +32,7 @@ pub enum ViewError {
     /// The mesh, its paint or the size of the picture is invalid.
     #[error(transparent)]
     Picture(#[from] PictureError),
+    /// The scene of a flock cannot be set up or go on.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
 }

@@ -71,6 +71,15 @@ impl Gpu {
         done.map(|_| ()).map_err(|error| ViewError::Failed(error.to_string()))
     }
 
+    /// Fails if a shader could not bind a buffer of this size as storage.
+    pub(crate) fn check_storage(&self, what: &'static str, needed: u64) -> Result<(), ViewError> {
+        let limit = self.device.limits().max_storage_buffer_binding_size;
+        if needed > limit {
+            return Err(ViewError::TooLarge { what, needed, limit });
+        }
+        self.check_buffer(what, needed)
+    }
+
     /// Fails if a buffer of this size would be beyond the limits of the GPU.
     pub(crate) fn check_buffer(&self, what: &'static str, needed: u64) -> Result<(), ViewError> {
         let limit = self.device.limits().max_buffer_size;

@@ -15,6 +15,7 @@ use wgpu::{
     VertexBufferLayout,
 };
 
+use crate::flock::FlockPipelines;
 use crate::mesh::MeshPipelines;
 use crate::placement::{DrawUniforms, Placement};
 use crate::quantized::SchemePipelines;
@@ -32,6 +33,7 @@ pub struct Renderer {
     pub(crate) sampler: Sampler,
     pub(crate) meshes: OnceLock<MeshPipelines>,
     pub(crate) schemes: OnceLock<SchemePipelines>,
+    pub(crate) flocks: OnceLock<FlockPipelines>,
     background: OnceLock<RenderPipeline>,
 }
 
@@ -72,6 +74,7 @@ impl Renderer {
             }),
             meshes: OnceLock::new(),
             schemes: OnceLock::new(),
+            flocks: OnceLock::new(),
             background: OnceLock::new(),
         }
     }

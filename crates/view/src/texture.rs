@@ -30,6 +30,12 @@ pub(crate) fn upload(gpu: &Gpu, image: &Image) -> Texture {
     let limit = gpu.device.limits().max_texture_dimension_2d;
     let fits = |&(width, height, _): &(u32, u32, &[[u8; 4]])| width.max(height) <= limit;
     let levels: Vec<_> = image.levels().filter(fits).collect();
+    upload_levels(gpu, &levels)
+}
+
+/// Uploads an image as sRGB: width, height and texels of its levels, the finest first, of which there
+/// must be one.
+pub(crate) fn upload_levels(gpu: &Gpu, levels: &[(u32, u32, &[[u8; 4]])]) -> Texture {
     let (width, height, _) = levels[0];
     let texture = gpu.device.create_texture(&TextureDescriptor {
         label: Some("image"),

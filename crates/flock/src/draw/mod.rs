@@ -4,6 +4,8 @@ mod impostors;
 mod merged;
 mod paint;
 
+pub use paint::STONE;
+
 use std::sync::Arc;
 
 use meshlod_mesh::{Layer, LayerKind, Mesh};
@@ -49,8 +51,8 @@ pub struct FrameMesh {
     impostors: FrameImpostors,
 }
 
-/// Water from the surface down.
-const WATER: Background = Background::Gradient { top: [126, 186, 206], bottom: [16, 52, 84] };
+/// Background of pictures of flocks: water from the surface down.
+pub const WATER: Background = Background::Gradient { top: [126, 186, 206], bottom: [16, 52, 84] };
 
 impl<'a> FlockPainter<'a> {
     /// Creates a painter; obstacles are in the coordinates of the flock.

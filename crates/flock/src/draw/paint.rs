@@ -13,8 +13,8 @@ pub(super) enum OwnedPaint {
     Materials(Materials),
 }
 
-/// Colour of obstacles, sRGB.
-pub(super) const STONE: [f32; 3] = [0.47, 0.45, 0.42];
+/// sRGB colour of obstacles, each channel from 0 to 1.
+pub const STONE: [f32; 3] = [0.47, 0.45, 0.42];
 
 impl OwnedPaint {
     /// Returns the colours of members whose vertices have these layers.

@@ -23,7 +23,7 @@ impl Look {
 
     /// Returns the materials with which a model of these layers is drawn, a plain one if it has no
     /// colours at all; `None` if its vertex colours are shown.
-    pub(crate) fn materials_over(&self, layers: &[Layer]) -> Option<Cow<'_, Materials>> {
+    pub fn materials_over(&self, layers: &[Layer]) -> Option<Cow<'_, Materials>> {
         match &self.materials {
             Some(materials) => Some(Cow::Borrowed(materials)),
             None if layers.iter().any(is_color) => None,

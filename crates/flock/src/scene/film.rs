@@ -54,6 +54,19 @@ impl Film {
         Ok((&self.flock, camera.moving(velocity.into())))
     }
 
+    /// Moves an obstacle of the scenario; members make room for it.
+    ///
+    /// # Errors
+    /// An obstacle that does not exist, or a place that is not finite or too far away; then nothing
+    /// has moved.
+    pub fn move_obstacle(&mut self, index: usize, by: Vec3) -> Result<(), SceneError> {
+        self.simulation.move_obstacle(index, by)?;
+        let Scenario { simulation, obstacles, .. } = &mut self.scenario;
+        simulation.obstacles[index].translate(by);
+        obstacles[index].translate(by);
+        Ok(())
+    }
+
     /// Returns the scenario.
     pub fn scenario(&self) -> &Scenario {
         &self.scenario
@@ -100,7 +113,8 @@ mod tests {
     use meshlod_mesh::Mesh;
 
     use super::*;
-    use crate::scene::{ScenarioName, ScenarioOptions};
+    use crate::scene::{ScenarioName, ScenarioOptions, SceneObstacle};
+    use crate::simulation::SimulationError;
 
     fn scenario(name: ScenarioName, members: usize, schools: usize) -> Scenario {
         let terrain: Mesh = meshlod_samples::terrain(2_000);
@@ -170,6 +184,31 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn members_make_room_for_an_obstacle_that_moves() {
+        let mut film = Film::new(scenario(ScenarioName::Obstacles, 60, 1)).unwrap();
+        let leader = film.next_frame().unwrap().0.schools[0].leader;
+        let ball = |obstacle: &SceneObstacle| match obstacle {
+            SceneObstacle::Sphere { center, .. } => Some(*center),
+            _ => None,
+        };
+        let obstacles = &film.scenario().obstacles;
+        let (index, center) =
+            obstacles.iter().enumerate().find_map(|(i, o)| Some((i, ball(o)?))).unwrap();
+        film.move_obstacle(index, leader - center).unwrap();
+        assert!(ball(&film.scenario().obstacles[index]).unwrap().distance(leader) < 1e-3);
+        for _ in 0..20 {
+            let members = film.next_frame().unwrap().0.members.clone();
+            let obstacle = &film.scenario().simulation.obstacles[index];
+            for i in 0..members.len() {
+                assert!(obstacle.distance(members.position(i)).distance > 0.0, "member {i}");
+            }
+        }
+        let none = film.move_obstacle(99, Vec3::ZERO);
+        assert!(matches!(none, Err(SceneError::Simulation(SimulationError::NoObstacle { .. }))));
+        assert!(film.move_obstacle(index, Vec3::NAN).is_err());
     }
 
     #[test]

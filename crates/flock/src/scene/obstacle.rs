@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use meshlod_mesh::Mesh;
 
 use crate::scene::solid;
@@ -45,6 +45,18 @@ impl SceneObstacle {
             Self::Capsule { ends, radius } => Obstacle::Capsule { ends: *ends, radius: *radius },
             Self::Mesh(mesh) => Obstacle::Field(Arc::new(DistanceField::new(mesh, FIELD_CELLS)?)),
         })
+    }
+
+    /// Moves the obstacle.
+    pub fn translate(&mut self, by: Vec3) {
+        match self {
+            Self::Sphere { center, .. } => *center += by,
+            Self::Capsule { ends, .. } => ends.iter_mut().for_each(|end| *end += by),
+            Self::Mesh(mesh) => {
+                let by = by.as_dvec3();
+                mesh.positions.iter_mut().for_each(|p| *p = (DVec3::from(*p) + by).into());
+            }
+        }
     }
 
     /// Returns the obstacle as a mesh, for drawing.

@@ -14,17 +14,23 @@ pub struct ChainLevels {
     entries: Vec<InstanceLevel>,
 }
 
-/// Bits of a float below those that choose an entry.
-const DROPPED_BITS: u32 = 19;
-
-/// Squared distances between these have entries; others take the nearest.
-const LEAST: f32 = 1.0 / (1 << 20) as f32;
-const MOST: f32 = (1u64 << 40) as f32;
+const DROPPED_BITS: u32 = ChainLevels::DROPPED_BITS;
+const LEAST: f32 = ChainLevels::LEAST;
+const MOST: f32 = ChainLevels::MOST;
 
 /// Number of entries before that of [`LEAST`].
 const FIRST: u32 = LEAST.to_bits() >> DROPPED_BITS;
 
 impl ChainLevels {
+    /// Bits of a float below those that choose an entry.
+    pub const DROPPED_BITS: u32 = 19;
+
+    /// Least square of a distance that has an entry of its own; smaller ones take the first.
+    pub const LEAST: f32 = 1.0 / (1 << 20) as f32;
+
+    /// Greatest square of a distance that has an entry of its own; larger ones take the last.
+    pub const MOST: f32 = (1u64 << 40) as f32;
+
     /// Creates a table of hidden members; [`ChainLevels::fill`] gives it levels.
     pub fn new() -> Self {
         let last = MOST.to_bits() >> DROPPED_BITS;
@@ -47,6 +53,24 @@ impl ChainLevels {
             let fits = |level: &usize| table.triangle_count(*level) as f32 <= most + 0.5;
             chain.levels.clone().find(fits).unwrap_or(chain.levels.end - 1)
         });
+    }
+
+    /// Sets for every distance the coarsest level of the whole chain whose error spans at most one
+    /// pixel, at a detail of 1; `pixels_at_one` are the pixels of a body length at distance 1.
+    pub fn fill_by_screen_error(&mut self, table: &LevelTable, pixels_at_one: f32, detail: f32) {
+        let whole = table.chains[0].levels.clone();
+        // Error in body lengths that spans a pixel at distance 1.
+        let tolerance = 1.0 / (detail * pixels_at_one);
+        self.fill(|distance| {
+            let fits = |level: &usize| table.levels[*level].error <= tolerance * distance;
+            whole.clone().rev().find(fits).unwrap_or(whole.start)
+        });
+    }
+
+    /// Returns the level of every entry. Entry i is for squares of distances whose bits, shifted
+    /// right by [`ChainLevels::DROPPED_BITS`], are i more than those of [`ChainLevels::LEAST`].
+    pub fn entries(&self) -> &[InstanceLevel] {
+        &self.entries
     }
 
     /// Returns the level for the square of a distance; zero for one that is not a number.

@@ -31,6 +31,14 @@ pub enum SimulationError {
     /// An obstacle has a coordinate or radius outside its range, or not a number.
     #[error("obstacle {0}: coordinates must be within 1e6 of the origin, and the radius over 0")]
     Obstacle(usize),
+    /// An obstacle that is to be moved does not exist.
+    #[error("the simulation has {count} obstacles, counted from 0; there is no obstacle {index}")]
+    NoObstacle {
+        /// Index of the obstacle asked for.
+        index: usize,
+        /// Number of obstacles.
+        count: usize,
+    },
     /// A step is so long that a member could pass through what it should swim round.
     #[error(
         "a member at {max_speed} body lengths per second swims farther than its clearance of \

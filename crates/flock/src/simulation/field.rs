@@ -113,6 +113,11 @@ impl DistanceField {
         (mix(along_xy[0], along_xy[1], z), gradient / self.cell)
     }
 
+    /// Moves the field, with the mesh that it is of.
+    pub(super) fn translate(&mut self, by: Vec3) {
+        self.origin += by;
+    }
+
     /// Returns the length of a cell's side: the detail that the field resolves.
     pub fn cell(&self) -> f32 {
         self.cell

@@ -187,6 +187,27 @@ impl Simulation {
         }
     }
 
+    /// Moves an obstacle, and every member that it would hold to the nearest free water.
+    ///
+    /// # Errors
+    /// An obstacle that does not exist, or a place that is not finite or too far away; then nothing
+    /// has moved.
+    pub fn move_obstacle(&mut self, index: usize, by: Vec3) -> Result<(), SimulationError> {
+        let count = self.options.obstacles.len();
+        let found = self.options.obstacles.get_mut(index);
+        let obstacle = found.ok_or(SimulationError::NoObstacle { index, count })?;
+        let mut moved = obstacle.clone();
+        moved.translate(by);
+        if !moved.is_valid() {
+            return Err(SimulationError::Obstacle(index));
+        }
+        self.balls[index] = moved.ball();
+        *obstacle = moved;
+        let SimulationOptions { obstacles, behaviour, .. } = &self.options;
+        self.swarm.make_room(&Waters::new(obstacles, &self.balls, behaviour));
+        Ok(())
+    }
+
     /// Moves the leaders to where they are at the end of this step.
     fn move_leaders(&mut self) {
         let step_s = self.options.step_s;

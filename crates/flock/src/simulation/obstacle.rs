@@ -53,6 +53,15 @@ impl Obstacle {
         }
     }
 
+    /// Moves the obstacle. A distance field that others share is copied first.
+    pub fn translate(&mut self, by: Vec3) {
+        match self {
+            Self::Sphere { center, .. } => *center += by,
+            Self::Capsule { ends, .. } => ends.iter_mut().for_each(|end| *end += by),
+            Self::Field(field) => Arc::make_mut(field).translate(by),
+        }
+    }
+
     /// Returns centre and radius of a ball around the obstacle.
     pub(super) fn ball(&self) -> (Vec3, f32) {
         match self {
@@ -70,7 +79,7 @@ impl Obstacle {
         match self {
             Self::Sphere { center, radius } => near(center) && wide(*radius),
             Self::Capsule { ends: [a, b], radius } => near(a) && near(b) && wide(*radius),
-            Self::Field(_) => true,
+            Self::Field(field) => near(&field.ball().0),
         }
     }
 }

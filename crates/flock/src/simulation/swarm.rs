@@ -3,6 +3,7 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
+use super::avoid::Waters;
 use super::neighbours::LANES;
 
 /// Arrays by axis.
@@ -54,6 +55,16 @@ impl Swarm {
             self.to.velocity[axis].push(velocity[axis]);
             self.kept.slot[axis].push(slot[axis]);
             self.kept.social[axis].push(0.0);
+        }
+    }
+
+    /// Moves the members that an obstacle holds to free water near them.
+    pub fn make_room(&mut self, waters: &Waters<'_>) {
+        let [x, y, z] = &mut self.to.position;
+        let members = self.kept.id.len();
+        for ((x, y), z) in x.iter_mut().zip(y).zip(z).take(members) {
+            let at = Vec3::new(*x, *y, *z);
+            [*x, *y, *z] = waters.find_free(at).to_array();
         }
     }
 

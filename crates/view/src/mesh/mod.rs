@@ -12,8 +12,8 @@ use wgpu::{BindGroup, Buffer, BufferUsages, IndexFormat, RenderPass};
 
 pub(crate) use self::build::fractions;
 use self::build::{CornerVertices, face_order};
-use self::colors::Surface;
-pub(crate) use self::pipelines::{MaterialBinding, MeshPipelines};
+pub(crate) use self::colors::{Surface, VertexColors};
+pub(crate) use self::pipelines::{MaterialBinding, MeshPipelines, VERTEX_BUFFERS};
 use crate::placement::Placement;
 use crate::renderer::{Renderer, bind_group};
 use crate::upload::upload_sliced;

@@ -18,13 +18,7 @@ impl ScreenError {
 impl Policy for ScreenError {
     fn select(&mut self, view: &View<'_>, levels: &mut [InstanceLevel]) {
         let View { table, camera, .. } = *view;
-        let whole = table.chains[0].levels.clone();
-        // Error in body lengths that spans a pixel at distance 1.
-        let tolerance = 1.0 / (view.detail() * camera.pixels_at_one());
-        self.levels.fill(|distance| {
-            let fits = |level: &usize| table.levels[*level].error <= tolerance * distance;
-            whole.clone().rev().find(fits).unwrap_or(whole.start)
-        });
+        self.levels.fill_by_screen_error(table, camera.pixels_at_one(), view.detail());
         let by_distance = &self.levels;
         view.assign(levels, |_, lanes, chosen| {
             by_distance.look_up(&lanes.distance_squared, chosen);

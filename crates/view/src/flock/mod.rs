@@ -1,0 +1,19 @@
+//! Flocks on the GPU: one buffer of all levels, and members as instances.
+//!
+//! A [`GpuFlock`] draws what a `Selector` chose on the CPU. A [`GpuSelection`] chooses on the GPU
+//! itself, with the rule of the policy `screen-error`, and leaves out what a [`HiZ`] says is hidden.
+
+mod atlas;
+mod drawn;
+mod hiz;
+mod instances;
+mod model;
+mod obstacles;
+mod pipelines;
+mod selection;
+
+pub use drawn::GpuFlock;
+pub use hiz::HiZ;
+pub use obstacles::GpuObstacles;
+pub(crate) use pipelines::FlockPipelines;
+pub use selection::GpuSelection;

@@ -1,0 +1,32 @@
+//! Buffers of the GPU read back.
+
+use wgpu::{Buffer, BufferDescriptor, BufferUsages, MapMode};
+
+use crate::{Gpu, ViewError};
+
+/// Reads the first bytes of a buffer, after everything submitted so far. It must be a source of
+/// copies, and the number of bytes a multiple of four.
+pub(crate) fn read_buffer(gpu: &Gpu, from: &Buffer, bytes: u64) -> Result<Vec<u8>, ViewError> {
+    if bytes == 0 {
+        return Ok(Vec::new());
+    }
+    let copy = gpu.device.create_buffer(&BufferDescriptor {
+        label: Some("read back"),
+        size: bytes,
+        usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    encoder.copy_buffer_to_buffer(from, 0, &copy, 0, bytes);
+    gpu.queue.submit([encoder.finish()]);
+    let (send, receive) = std::sync::mpsc::channel();
+    copy.map_async(MapMode::Read, .., move |done| {
+        let _ = send.send(done);
+    });
+    gpu.wait()?;
+    let failed = |why: String| ViewError::Failed(why);
+    let done = receive.recv().map_err(|error| failed(error.to_string()))?;
+    done.map_err(|error| failed(error.to_string()))?;
+    let mapped = copy.get_mapped_range(..).map_err(|error| failed(error.to_string()))?;
+    Ok(mapped.to_vec())
+}
