@@ -28,16 +28,3 @@ pub fn cracks(picture: &Picture) -> usize {
     }
     (0..width * height).filter(|&at| is_open(at) && !reached[at]).count()
 }
-
-/// Counts background pixels of which all eight neighbours are covered: models with holes have larger
-/// ones.
-pub fn pinholes(picture: &Picture) -> usize {
-    let (width, height) = (picture.width() as usize, picture.height() as usize);
-    let alpha = |x: usize, y: usize| picture.rgba()[4 * (y * width + x) + 3];
-    let is_pinhole = |x: usize, y: usize| {
-        let around = (y - 1..=y + 1).flat_map(|v| (x - 1..=x + 1).map(move |u| (u, v)));
-        alpha(x, y) < 255 && around.filter(|&(u, v)| alpha(u, v) == 255).count() == 8
-    };
-    let inside = (1..height - 1).flat_map(|y| (1..width - 1).map(move |x| (x, y)));
-    inside.filter(|&(x, y)| is_pinhole(x, y)).count()
-}
