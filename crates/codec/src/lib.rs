@@ -50,9 +50,7 @@ pub use blocks::{
 };
 pub use bytes::Malformed;
 pub use lattice::{Lattice, LatticeBlocks, LatticeError, StoredLattice, StoredShear};
-pub use parts::{
-    Part, Partitioner, Parts, PartsError, Reconstruction, StoredPart, StoredParts,
-};
+pub use parts::{Part, Partitioner, Parts, PartsError, Reconstruction, StoredPart, StoredParts};
 pub use resident::{
     CompressError, Compressed, CompressedSizes, Compression, CompressionTarget, Scheme, StoredMesh,
     StoredPositions, compress, parts_for,

@@ -171,7 +171,8 @@ impl GpuCompressed {
         if let Some(matrices) = matrices {
             pass.set_bind_group(2, matrices.bind_group(), &[]);
         }
-        let fetched = self.vertices.iter().chain(self.normals.iter().filter(|_| matrices.is_none()));
+        let fetched =
+            self.vertices.iter().chain(self.normals.iter().filter(|_| matrices.is_none()));
         for (slot, buffer) in (0..).zip(fetched) {
             pass.set_vertex_buffer(slot, buffer.slice(..));
         }

@@ -94,8 +94,8 @@ impl SchemePipelines {
             _ if entry == SchemeEntry::WithNormals => Some(VertexFormat::Uint32),
             _ => None,
         };
-        let attribute =
-            position.map(|format| [wgpu::VertexAttribute { format, offset: 0, shader_location: 0 }]);
+        let attribute = position
+            .map(|format| [wgpu::VertexAttribute { format, offset: 0, shader_location: 0 }]);
         let positions = attribute.iter().map(|attributes| buffer(attributes));
         let normal = vertex_attr_array![1 => Snorm16x2];
         let normals = (entry == SchemeEntry::WithNormals).then(|| buffer(&normal));
