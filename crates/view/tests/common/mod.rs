@@ -1,6 +1,8 @@
 //! Helpers of the tests on the GPU.
 #![allow(dead_code)]
 
+pub mod compressed;
+
 use std::sync::OnceLock;
 
 use meshlod::Mesh;
