@@ -98,7 +98,7 @@ mod tests {
                 for axis in 0..3 {
                     let both = number(stored.words, start, block.widths[axis].into()) as u64;
                     let cells = block.cells(axis);
-                    let own = if at % 2 == 0 { both % cells } else { both / cells };
+                    let own = if at.is_multiple_of(2) { both % cells } else { both / cells };
                     (0..3).for_each(|k| place[k] += block.sides[axis][k] * own as f64);
                     start += u64::from(block.widths[axis]);
                 }
