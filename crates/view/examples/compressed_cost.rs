@@ -2,7 +2,7 @@
 //! parts, blocks and lattice of about 11 bits, in turn.
 //!
 //! `cargo run --release -p meshlod-view --example compressed_cost -- MESH... [SIDE]`; default: 512
-//! pixels. Times are those of a submission until the GPU is done, medians of 41.
+//! pixels. Times are those of a submission until the GPU is done, medians of 21.
 
 use std::error::Error;
 use std::time::Instant;
@@ -14,7 +14,7 @@ use meshlod::codec::{
 use meshlod::picture::{Camera, View};
 use meshlod_view::{Canvas, Gpu, GpuCompressed, Placement, Renderer, Shade, TargetFormat};
 
-const TURNS: usize = 41;
+const TURNS: usize = 21;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let (sides, paths): (Vec<_>, Vec<_>) =
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{}, {side} x {side} pixels", gpu.name());
     println!("| | | ms | / plain | bytes a vertex | plain |\n|---|---|--:|--:|--:|--:|");
     for path in paths {
-        let mut mesh = meshlod::read(&path, &Default::default())?.into_mesh();
+        let mut mesh = meshlod::read(path.as_ref(), &Default::default())?.into_mesh();
         mesh.attributes = None;
         let name = path.rsplit('/').next().unwrap_or(&path);
         measure(&renderer, name.trim_end_matches(".ply"), &mesh, side)?;

@@ -64,3 +64,104 @@ impl Compressed {
         self.layers.iter().find(|layer| layer.kind() == kind).map(PackedLayer::decode)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use meshlod_samples as samples;
+
+    use super::*;
+    use crate::attributes::AttributeBounds;
+    use crate::lattice::StoredShear;
+    use crate::{CompressionTarget, Reconstruction, Scheme, compress};
+
+    fn number(words: &[u64], at: u64, width: u32) -> u128 {
+        let bit = |bit: u64| u128::from(words[(bit / 64) as usize] >> (bit % 64) & 1);
+        (0..u64::from(width)).map(|k| bit(at + k) << k).sum()
+    }
+
+    /// Decodes the stored position with an index as the documentation says.
+    fn place(positions: &StoredPositions<'_>, at: usize) -> [f64; 3] {
+        match positions {
+            StoredPositions::Parts(parts) => {
+                let part = parts.parts.iter().find(|part| part.nodes.contains(&(at as u32)));
+                let offset = part.unwrap().offset;
+                [0, 1, 2].map(|k| {
+                    let cell = offset[k] + i32::from(parts.positions[at][k]);
+                    f64::from(parts.cell[k]) * (f64::from(cell) + parts.within)
+                })
+            }
+            StoredPositions::Blocks(stored) => {
+                let block = &stored.blocks[at / 32];
+                let pair = block.widths.iter().map(|&width| u64::from(width)).sum::<u64>();
+                let mut start = block.start + (at % 32 / 2) as u64 * pair;
+                let mut place = [0, 1, 2].map(|k| stored.centre[k] + block.first[k]);
+                for axis in 0..3 {
+                    let both = number(stored.words, start, block.widths[axis].into()) as u64;
+                    let cells = block.cells(axis);
+                    let own = if at.is_multiple_of(2) { both % cells } else { both / cells };
+                    (0..3).for_each(|k| place[k] += block.sides[axis][k] * own as f64);
+                    start += u64::from(block.widths[axis]);
+                }
+                place
+            }
+            StoredPositions::Lattice(stored) => {
+                let cell = cell(&stored.blocks[at / 32], stored.words, at % 32);
+                let side = f64::from(stored.exponent).exp2();
+                [0, 1, 2].map(|k| (stored.first[k] + cell[k]) as f64 * side)
+            }
+        }
+    }
+
+    fn cell(block: &StoredShear, words: &[u64], at: usize) -> [i64; 3] {
+        let (tuple, width) = (usize::from(block.tuple), u32::from(block.width));
+        let mut digits = number(words, block.start + (at / tuple) as u64 * u64::from(width), width);
+        let spans = block.spans().map(u128::from);
+        (0..at % tuple).for_each(|_| digits /= spans[0] * spans[1] * spans[2]);
+        let mut next = |span: u128| {
+            let digit = (digits % span) as i64 - span as i64 / 2;
+            digits /= span;
+            digit
+        };
+        let [mut u, mut v, mut w] = spans.map(&mut next);
+        let [a, b, c, d] = block.slopes.map(i64::from);
+        let [e, f, g] = block.bends.map(i64::from);
+        let [across_u, across_v, _] = spans.map(|span| 64 * span as i64);
+        v += (b * u).div_euclid(64);
+        u += (a * v).div_euclid(64);
+        w += (c * u).div_euclid(64) + (d * v).div_euclid(64);
+        w += (u * (e * u + f * v)).div_euclid(across_u) + (g * v * v).div_euclid(across_v);
+        let mut cell = [0; 3];
+        for (k, x) in [u, v, w].into_iter().enumerate() {
+            let axis = (usize::from(block.axis) + 1 + k) % 3;
+            cell[axis] = i64::from(block.middle[k]) + x;
+        }
+        cell
+    }
+
+    #[test]
+    fn stored_bits_are_what_the_documentation_says() {
+        for mesh in [samples::gyroid(3000), samples::fish(2000), samples::sphere(300)] {
+            for scheme in [Scheme::Parts(Reconstruction::Centred), Scheme::Blocks, Scheme::Lattice]
+            {
+                for bits in [7, 11, 16] {
+                    let target = CompressionTarget::Bits(bits);
+                    let done = compress(&mesh, scheme, target, &AttributeBounds::default());
+                    let compressed = done.unwrap().compressed;
+                    let (stored, decoded) =
+                        (compressed.stored().unwrap(), compressed.decode().unwrap());
+                    assert_eq!(stored.faces.len(), decoded.faces.len());
+                    let diagonal = decoded.bounds().diagonal();
+                    for (face, is) in stored.faces.iter().zip(&decoded.faces) {
+                        for (&node, vertex) in face.iter().zip(is) {
+                            let at = stored.position_of[node as usize] as usize;
+                            let (place, is) =
+                                (place(&stored.positions, at), decoded.positions[vertex.index()]);
+                            let away = (0..3).map(|k| (place[k] - is[k]).abs()).fold(0.0, f64::max);
+                            assert!(away <= 1e-14 * diagonal, "{scheme:?} {bits}: {away}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -39,7 +39,7 @@ pub struct GpuCompressed {
     origin: [f64; 3],
     shader: SchemeShader,
     bind_group: BindGroup,
-    /// What vertices are fetched from: bytes of parts, or positions of nodes with normals.
+    /// Bytes of parts; with normals, the positions of nodes. Otherwise shaders read stored bits only.
     vertices: Option<Buffer>,
     normals: Option<Buffer>,
     indices: Buffer,

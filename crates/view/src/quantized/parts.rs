@@ -20,12 +20,7 @@ pub(super) fn data<'a>(
     stored: &StoredMesh<'a>,
 ) -> Result<SchemeData<'a>, Malformed> {
     check(parts, stored)?;
-    let middle = [0, 1, 2].map(|axis| {
-        let offsets = parts.parts.iter().map(|part| part.offset[axis]);
-        let (low, high) = (offsets.clone().min().unwrap_or(0), offsets.max().unwrap_or(0));
-        // The local cells of the last part follow.
-        (low + high + 256) / 2
-    });
+    let middle = middle(parts);
     let offset = |of: [i32; 3]| {
         let [x, y, z] = [0, 1, 2].map(|axis| of[axis] - middle[axis]);
         [x, y, z, 0]
@@ -47,6 +42,22 @@ pub(super) fn data<'a>(
         runs,
         parts: Some((offsets, cell)),
     })
+}
+
+/// Returns the grid cell in the middle of all nodes.
+fn middle(parts: &StoredParts<'_>) -> [i32; 3] {
+    let (mut low, mut high) = ([i32::MAX; 3], [i32::MIN; 3]);
+    for part in parts.parts.iter().filter(|part| !part.nodes.is_empty()) {
+        let nodes = part.nodes.start as usize..part.nodes.end as usize;
+        for (position, axis) in
+            parts.positions[nodes].iter().flat_map(|position| position.iter().zip(0..3))
+        {
+            let cell = part.offset[axis] + i32::from(*position);
+            (low[axis], high[axis]) = (low[axis].min(cell), high[axis].max(cell));
+        }
+    }
+    // Cells are within 2^24, so that sums do not overflow; without nodes there are none.
+    [0, 1, 2].map(|axis| if low[axis] > high[axis] { 0 } else { (low[axis] + high[axis]) / 2 })
 }
 
 /// Returns the faces of consecutive patches.

@@ -33,7 +33,7 @@ pub(super) enum SchemeEntry {
     ByMatrix,
 }
 
-type Key = (SchemeShader, SchemeEntry, bool);
+type PipelineKey = (SchemeShader, SchemeEntry, bool);
 
 /// Pipelines of compressed geometry, and the layouts of what they bind.
 #[derive(Debug)]
@@ -41,7 +41,7 @@ pub(crate) struct SchemePipelines {
     /// Uniforms, words, headers.
     pub layout: BindGroupLayout,
     pub matrix_layout: BindGroupLayout,
-    compiled: Mutex<BTreeMap<Key, Arc<RenderPipeline>>>,
+    compiled: Mutex<BTreeMap<PipelineKey, Arc<RenderPipeline>>>,
 }
 
 const DRAW: &str = include_str!("../shaders/draw.wgsl");

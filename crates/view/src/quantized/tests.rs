@@ -24,11 +24,17 @@ fn decode_all(@builtin(global_invocation_id) id: vec3u) {
 }
 ";
 
-fn places(renderer: &Renderer, data: &SchemeData<'_>, count: usize) -> Vec<[f32; 3]> {
+/// Decodes all places. Of parts, `fetched` has the fetched word and the part of each vertex.
+fn places(
+    renderer: &Renderer,
+    data: &SchemeData<'_>,
+    fetched: &[[u32; 2]],
+    count: usize,
+) -> Vec<[f32; 3]> {
     let gpu = renderer.gpu();
     let device = &gpu.device;
     let place = match data.shader {
-        SchemeShader::Parts => "placed(unpack4xU8(fetched[id.x]), fetched[id.x] >> 24u)",
+        SchemeShader::Parts => "placed(unpack4xU8(fetched[2u * id.x]), fetched[2u * id.x + 1u])",
         _ => "decoded(id.x)",
     };
     let module =
@@ -55,7 +61,7 @@ fn places(renderer: &Renderer, data: &SchemeData<'_>, count: usize) -> Vec<[f32;
     let uniforms = buffer_of(gpu, "scheme", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM);
     let of = |bytes: &[u8]| storage_of(gpu, bytes, BufferUsages::empty());
     let storages = data.storages.each_ref().map(|bytes| of(bytes));
-    let fetched = of(data.fetched.as_deref().unwrap_or_default());
+    let fetched = of(bytemuck::cast_slice(fetched));
     let size = 12 * count as u64;
     let buffer = |usage| {
         device.create_buffer(&BufferDescriptor {
@@ -99,8 +105,17 @@ fn compare(renderer: &Renderer, mesh: &Mesh, scheme: Scheme, bits: u32) -> (Sche
         StoredPositions::Blocks(blocks) => blocks::data(blocks, 0),
         StoredPositions::Lattice(lattice) => lattice::data(lattice, 0),
     };
+    let mut fetched = Vec::new();
+    if let (StoredPositions::Parts(parts), Some(bytes)) = (&stored.positions, &data.fetched) {
+        let (words, _) = bytes.as_chunks();
+        for (number, part) in (0..).zip(&parts.parts) {
+            let words = &words[part.nodes.start as usize..part.nodes.end as usize];
+            assert!(words.iter().all(|word| word[3] == number as u8));
+            fetched.extend(words.iter().map(|&word| [u32::from_le_bytes(word), number]));
+        }
+    }
     let count = 1 + stored.position_of.iter().max().map_or(0, |&most| most as usize);
-    let found = places(renderer, &data, count);
+    let found = places(renderer, &data, &fetched, count);
     let decoded = done.compressed.decode().unwrap();
     let diagonal = decoded.bounds().diagonal();
     let mut far: f64 = 0.0;

@@ -1,6 +1,7 @@
 //! Helpers of the tests on the GPU.
 #![allow(dead_code)]
 
+pub mod compressed;
 pub mod cracks;
 
 use std::sync::OnceLock;
