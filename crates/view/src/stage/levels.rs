@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use meshlod::mesh::Bounds;
-use meshlod::multires::{Implicit, QueryError};
+use meshlod::multires::{Focus, Implicit, QueryError};
 use wgpu::RenderPass;
 
 use super::Display;
 use crate::{
-    CutFollower, CutQuery, CutStep, CutVertices, GpuCut, Placement, Renderer, Transition, ViewError,
+    CutFollower, CutQuery, CutStep, CutTolerance, CutVertices, GpuCut, Placement, Renderer,
+    Transition, ViewError,
 };
 
 /// Levels of a multiresolution model on the GPU, and the cut of them that is shown.
@@ -36,15 +37,19 @@ const FADE_S: f32 = 0.25;
 /// Splits and merges in one step, about 1.5 MB of uploads: what a frame can take.
 const CHANGES: usize = 20_000;
 
+/// Faces that are shown before anything is asked for.
+const FIRST_FACES: usize = 50_000;
+
 impl LevelsSubject {
-    /// Uploads the vertices of all levels of a model. Blocks while normals are computed.
+    /// Uploads the vertices of all levels of a model, and shows a level of at most 50,000 faces.
+    /// Blocks while normals are computed.
     ///
     /// # Errors
     /// A model beyond the limits of the GPU.
     pub fn new(renderer: &Renderer, model: &Arc<Implicit>) -> Result<Self, ViewError> {
         let vertices =
             CutVertices::new(model).map_err(|error| ViewError::Failed(error.to_string()))?;
-        Ok(Self {
+        let mut this = Self {
             cut: GpuCut::new(renderer, model, &vertices)?,
             bounds: vertices.bounds(),
             follower: CutFollower::start(model.clone(), Some(CHANGES)),
@@ -53,7 +58,11 @@ impl LevelsSubject {
             fading: [renderer.placement(), renderer.placement()],
             last: CutStep::default(),
             is_waiting: false,
-        })
+        };
+        let tolerance = CutTolerance::Faces(FIRST_FACES);
+        this.ask(CutQuery { focus: Focus::Everything, tolerance });
+        this.finish().map_err(|error| ViewError::Failed(error.to_string()))?;
+        Ok(this)
     }
 
     /// Asks for another cut; the one shown stays until steps towards it are ready.
