@@ -1,8 +1,8 @@
 //! Cost of a frame of a school on the GPU, with levels and without, at equal pictures.
 //!
-//! `cargo run --release -p meshlod-view --example flock_cost -- [--members N]` finds for each way of
-//! choosing levels the coarsest that differs from full detail by a mean FLIP of at most .02, and times
-//! all of them by turns.
+//! `cargo run --release -p meshlod-view --example flock_cost -- [--members N]` finds for each way
+//! of choosing levels the coarsest that differs from full detail by a mean FLIP of at most .02, and
+//! times all of them by turns.
 
 #[path = "../tests/common/school.rs"]
 mod school;
@@ -126,9 +126,12 @@ impl<'a> Stage<'a> {
     /// Draws a frame and returns its mean FLIP against another.
     fn error(&mut self, arm: &Arm, full: &Picture) -> Result<f64, ViewError> {
         let mut selector = self.selector(arm);
-        self.draw(arm, &mut selector)?;
+        let cost = self.draw(arm, &mut selector)?;
         let errors = flip(full, &self.canvas.read()?)?;
-        Ok(errors.iter().map(|&e| f64::from(e)).sum::<f64>() / errors.len() as f64)
+        let error = errors.iter().map(|&e| f64::from(e)).sum::<f64>() / errors.len() as f64;
+        let (name, fineness, ms) = (arm.name(), arm.fineness, cost.all_ms);
+        eprintln!("{name} at {fineness:.3}: {} triangles, {ms:.0} ms, {error:.4}", cost.triangles);
+        Ok(error)
     }
 
     /// Finds the coarsest fineness whose picture is near enough to full detail, from where the arm
@@ -202,7 +205,7 @@ fn compare(gpu: &Gpu, school: &SampleSchool, members: usize) -> Result<(), ViewE
     let mut arms = vec![full];
     let limits = if is_slow { &[None, Some(12.0)][..] } else { &[None, Some(6.0), Some(12.0)] };
     for &px in limits {
-        let by_budget = Arm { fineness: all / 64.0, ..Arm::of(PolicyName::Ours, px) };
+        let by_budget = Arm { fineness: all / 32.0, ..Arm::of(PolicyName::Ours, px) };
         arms.extend(stage.coarsest(by_budget, &picture)?);
         let by_error = Arm { fineness: 0.5, ..Arm::of(PolicyName::ScreenError, px) };
         let found = stage.coarsest(by_error, &picture)?;

@@ -9,8 +9,8 @@ use meshlod::flock::{Flock, FlockCamera};
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, IndexFormat, RenderPass};
 
 use super::atlas::AtlasBinding;
-use super::instances::{Instance, Slots, SortedInstances};
-use super::model::FlockModel;
+use super::instances::{Instance, LevelSlots, SortedInstances};
+use super::model::FlockLevels;
 use crate::placement::Placement;
 use crate::renderer::Renderer;
 use crate::{Gpu, ViewError};
@@ -21,7 +21,7 @@ use crate::{Gpu, ViewError};
 #[derive(Debug)]
 pub struct GpuFlock {
     gpu: Gpu,
-    pub(super) model: Arc<FlockModel>,
+    pub(super) model: Arc<FlockLevels>,
     pub(super) atlas: Option<Arc<AtlasBinding>>,
     sorted: SortedInstances,
     instances: Buffer,
@@ -37,7 +37,7 @@ impl GpuFlock {
     /// # Errors
     /// Materials that do not match the table, and a table beyond the limits of the GPU.
     pub fn new(renderer: &Renderer, table: &LevelTable, look: &Look) -> Result<Self, ViewError> {
-        let model = FlockModel::new(renderer, table, look)?;
+        let model = FlockLevels::new(renderer, table, look)?;
         Ok(Self::of(renderer.gpu(), Arc::new(model), None))
     }
 
@@ -56,7 +56,7 @@ impl GpuFlock {
         Self::of(&self.gpu, self.model.clone(), self.atlas.clone())
     }
 
-    fn of(gpu: &Gpu, model: Arc<FlockModel>, atlas: Option<Arc<AtlasBinding>>) -> Self {
+    fn of(gpu: &Gpu, model: Arc<FlockLevels>, atlas: Option<Arc<AtlasBinding>>) -> Self {
         Self {
             gpu: gpu.clone(),
             impostor_slot: model.levels,
@@ -86,7 +86,7 @@ impl GpuFlock {
         self.impostor_slot = if has_atlas { model.levels } else { model.coarsest };
         self.origin = camera.eye();
         let slots =
-            Slots { levels: model.levels, impostors: self.impostor_slot, origin: self.origin };
+            LevelSlots { levels: model.levels, impostors: self.impostor_slot, origin: self.origin };
         self.sorted.sort(&flock.members, levels, &slots);
         let bytes: &[u8] = bytemuck::cast_slice(&self.sorted.instances);
         if bytes.len() as u64 > self.instances.size() {
@@ -162,7 +162,7 @@ fn instance_buffer(gpu: &Gpu, instances: usize) -> Buffer {
 
 /// Binds what the levels of members need, but their materials.
 pub(super) fn bind(
-    model: &FlockModel,
+    model: &FlockLevels,
     instances: &Buffer,
     renderer: &Renderer,
     pass: &mut RenderPass<'_>,

@@ -31,7 +31,7 @@ impl SortedInstances {
     ///
     /// Members without a level in the table, and those whose position is not finite, are left out.
     /// Allocates only where there are more members than ever before.
-    pub fn sort(&mut self, members: &Members, levels: &[InstanceLevel], slots: &Slots) {
+    pub fn sort(&mut self, members: &Members, levels: &[InstanceLevel], slots: &LevelSlots) {
         let level_of = |(member, &level): (usize, &InstanceLevel)| {
             let slot = slots.of(level)?;
             members.position(member).is_finite().then_some((member, slot))
@@ -65,7 +65,7 @@ impl SortedInstances {
 
 /// Places for the members of each level.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Slots {
+pub(super) struct LevelSlots {
     /// Levels of the table.
     pub levels: usize,
     /// Slot of impostors: the one after all levels, or that of a level.
@@ -74,7 +74,7 @@ pub(super) struct Slots {
     pub origin: Vec3,
 }
 
-impl Slots {
+impl LevelSlots {
     fn count(&self) -> usize {
         self.levels + 1
     }
@@ -99,7 +99,7 @@ mod tests {
         }
         let level = InstanceLevel::drawn;
         let levels = [level(1), InstanceLevel::IMPOSTOR, level(0), level(1), level(0), level(7)];
-        let slots = Slots { levels: 3, impostors: 3, origin: Vec3::X };
+        let slots = LevelSlots { levels: 3, impostors: 3, origin: Vec3::X };
         let mut sorted = SortedInstances::default();
         for _ in 0..2 {
             sorted.sort(&members, &levels, &slots);

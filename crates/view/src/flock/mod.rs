@@ -1,9 +1,10 @@
 //! Flocks on the GPU: one buffer of all levels, and members as instances.
 //!
 //! A [`GpuFlock`] draws what a `Selector` chose on the CPU. A [`GpuSelection`] chooses on the GPU
-//! itself, with the rule of the policy `screen-error`, and leaves out what a [`HiZ`] says is hidden.
+//! itself, by the rule of the policy `screen-error`, and leaves out what is hidden by a [`HiZ`].
 
 mod atlas;
+mod choice;
 mod drawn;
 mod hiz;
 mod instances;

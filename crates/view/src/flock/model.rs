@@ -13,7 +13,7 @@ use crate::renderer::{Renderer, buffer_of};
 
 /// All levels of a table in one vertex and one index buffer, with the materials of the model.
 #[derive(Debug)]
-pub(super) struct FlockModel {
+pub(super) struct FlockLevels {
     pub positions: Buffer,
     pub attributes: Buffer,
     pub indices: Buffer,
@@ -34,7 +34,7 @@ pub(super) struct LevelDraw {
     pub indices: Range<u32>,
 }
 
-impl FlockModel {
+impl FlockLevels {
     pub fn new(renderer: &Renderer, table: &LevelTable, look: &Look) -> Result<Self, ViewError> {
         let gpu = renderer.gpu();
         let finest = table.mesh(0);

@@ -3,23 +3,22 @@
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
-use meshlod::flock::levels::{LevelTable, NEAREST_FACING};
+use meshlod::flock::levels::LevelTable;
 use meshlod::flock::select::{Budget, ChainLevels, InstanceLevel};
 use meshlod::flock::{Flock, FlockCamera};
 use wgpu::{
-    BindGroup, BindGroupLayout, Buffer, BufferBindingType, BufferDescriptor, BufferUsages,
-    CommandEncoder, ComputePipeline, Features, RenderPass, ShaderStages,
+    BindGroup, Buffer, BufferDescriptor, BufferUsages, CommandEncoder, Features, RenderPass,
 };
 
 use super::atlas::AtlasBinding;
+use super::choice::{ChoicePipelines, MemberBuffers};
 use super::drawn::{GpuFlock, bind, bind_impostors};
 use super::hiz::{self, HiZ};
 use super::instances::Instance;
-use super::model::FlockModel;
-use super::pipelines::{SHARED, compute_pipeline};
+use super::model::FlockLevels;
 use crate::placement::Placement;
 use crate::read::read_buffer;
-use crate::renderer::{Renderer, bind_group, buffer_binding, buffer_of, layout, storage, uniform};
+use crate::renderer::{Renderer, bind_group, buffer_of};
 use crate::{Gpu, ViewError};
 
 /// Flock whose levels are chosen on the GPU, and drawn without a word from the CPU.
@@ -31,7 +30,7 @@ use crate::{Gpu, ViewError};
 #[derive(Debug)]
 pub struct GpuSelection {
     gpu: Gpu,
-    model: Arc<FlockModel>,
+    model: Arc<FlockLevels>,
     atlas: Option<Arc<AtlasBinding>>,
     table: Arc<LevelTable>,
     pipelines: ChoicePipelines,
@@ -49,30 +48,6 @@ pub struct GpuSelection {
     origin: [f64; 3],
     /// Leave out the faces that members turn away, by the facing chains. No picture changes.
     pub facing: bool,
-}
-
-/// Buffers with room for a number of members.
-#[derive(Debug)]
-struct MemberBuffers {
-    uploaded: Vec<Instance>,
-    count: u32,
-    room: usize,
-    source: Buffer,
-    chosen: Buffer,
-    instances: Buffer,
-    common: BindGroup,
-    scatter: BindGroup,
-}
-
-#[derive(Debug)]
-struct ChoicePipelines {
-    choose: ComputePipeline,
-    plan: ComputePipeline,
-    scatter: ComputePipeline,
-    common_layout: BindGroupLayout,
-    rule_layout: BindGroupLayout,
-    plan_layout: BindGroupLayout,
-    scatter_layout: BindGroupLayout,
 }
 
 /// `View` of flock_choose.wgsl.
@@ -93,8 +68,6 @@ struct ViewUniforms {
     draws: u32,
     pad: u32,
 }
-
-const SHADER: &str = include_str!("../shaders/flock_choose.wgsl");
 
 /// Members that a workgroup handles.
 const GROUP: u32 = 256;
@@ -321,78 +294,4 @@ fn rule(by_distance: &ChainLevels, table: &LevelTable) -> Vec<u32> {
         [side as u32, depth.levels.start as u32]
     });
     levels.chain(facing).collect()
-}
-
-impl MemberBuffers {
-    fn new(
-        gpu: &Gpu,
-        pipelines: &ChoicePipelines,
-        view: &Buffer,
-        slots: &Buffer,
-        room: usize,
-    ) -> Self {
-        let made = |label, bytes: usize, usage: BufferUsages| {
-            gpu.device.create_buffer(&BufferDescriptor {
-                label: Some(label),
-                size: (room.max(1) * bytes) as u64,
-                usage: usage | BufferUsages::STORAGE,
-                mapped_at_creation: false,
-            })
-        };
-        let bytes = size_of::<Instance>();
-        let source = made("members", bytes, BufferUsages::COPY_DST);
-        let chosen = made("chosen levels", 8, BufferUsages::COPY_SRC);
-        let instances = made("sorted members", bytes, BufferUsages::VERTEX);
-        let common = [view, &source, &chosen, slots].map(Buffer::as_entire_binding);
-        let scatter = [instances.as_entire_binding()];
-        Self {
-            uploaded: Vec::with_capacity(room),
-            count: 0,
-            room,
-            common: bind_group(&gpu.device, &pipelines.common_layout, common),
-            scatter: bind_group(&gpu.device, &pipelines.scatter_layout, scatter),
-            source,
-            chosen,
-            instances,
-        }
-    }
-}
-
-impl ChoicePipelines {
-    fn new(gpu: &Gpu) -> Self {
-        let compute = |ty| (ShaderStages::COMPUTE, ty);
-        let written = || compute(buffer_binding(BufferBindingType::Storage { read_only: false }));
-        let read = || compute(storage());
-        let of = |bindings: &[_]| layout(&gpu.device, bindings);
-        let common_layout = of(&[compute(uniform()), read(), written(), written()]);
-        let rule_layout = hiz::choice_layout(gpu);
-        let plan_layout = of(&[read(), written()]);
-        let scatter_layout = of(&[written()]);
-        let source = [constants().as_str(), SHARED, SHADER].concat();
-        let made = |entry, second| {
-            compute_pipeline(gpu, "choice of levels", &source, entry, &[&common_layout, second])
-        };
-        Self {
-            choose: made("choose", &rule_layout),
-            plan: made("plan", &plan_layout),
-            scatter: made("scatter", &scatter_layout),
-            common_layout,
-            rule_layout,
-            plan_layout,
-            scatter_layout,
-        }
-    }
-}
-
-/// Returns the constants of [`ChainLevels`] and of facing chains for the shader.
-fn constants() -> String {
-    format!(
-        "const LEAST = {:e}f;\nconst MOST = {:e}f;\nconst DROPPED_BITS = {}u;\n\
-         const ENTRIES = {}u;\nconst NEAREST_FACING = {:e}f;\n",
-        ChainLevels::LEAST,
-        ChainLevels::MOST,
-        ChainLevels::DROPPED_BITS,
-        ChainLevels::new().entries().len(),
-        NEAREST_FACING,
-    )
 }

@@ -1,4 +1,4 @@
-// What all shaders of flocks share: frames of members, and grids of directions. Those of meshlod::flock.
+// What all shaders of flocks share: frames of members and grids of directions, as in meshlod::flock.
 
 // Left, up and heading of a member that swims along a unit vector, as columns.
 fn frame_of(heading: vec3f) -> mat3x3f {

@@ -14,7 +14,7 @@ struct View {
     // Tangents of half the fields of view, and the radius over their cosines.
     tangents: vec2f,
     margins: vec2f,
-    // Squares of the distances beyond which a member becomes an impostor, and beyond which it stays one.
+    // Squares of the distances beyond which a member becomes an impostor, and stays one.
     impostors: vec2f,
     draws: u32,
     pad: u32,
