@@ -1,4 +1,4 @@
-//! What a stage shows, on the GPU.
+//! Subjects: things on the GPU that a stage shows.
 
 use meshlod::check::{Objects, ObjectsBy};
 use meshlod::mesh::{Bounds, LayerKind};
@@ -25,7 +25,7 @@ pub enum Subject {
 #[derive(Debug)]
 pub struct MeshSubject {
     mesh: GpuMesh,
-    /// The same surface in the colours of its distance from another.
+    /// Copy of the surface in the colours of its distance from another.
     heat: Option<GpuMesh>,
     bounds: Bounds,
     vertices: usize,
