@@ -10,7 +10,7 @@ use crate::failure::Failure;
 use crate::session::Session;
 use crate::verbs::{
     build, check, compress, decompress, extract, flock, info, lods, measure, render, repair,
-    replay, sample, simplify, strip,
+    replay, sample, simplify, strip, view,
 };
 
 /// Level of detail for triangle meshes.
@@ -44,6 +44,7 @@ pub enum Verb {
     Measure(measure::Measure),
     Sample(sample::Sample),
     Render(render::Render),
+    View(view::View),
     Flock(flock::Flock),
     Demo(Demo),
 }
@@ -66,6 +67,7 @@ impl Verb {
             Self::Measure(verb) => verb.run(session),
             Self::Sample(verb) => verb.run(session),
             Self::Render(verb) => verb.run(session),
+            Self::View(verb) => verb.run(session),
             Self::Flock(verb) => verb.run(session),
             Self::Demo(verb) => verb.run(session),
         }

@@ -30,6 +30,8 @@ mod simplify_run;
 mod table;
 mod topology;
 mod verbs;
+#[cfg(feature = "view")]
+mod view;
 mod volume;
 
 use std::process::{ExitCode, exit};

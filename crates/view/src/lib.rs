@@ -40,6 +40,8 @@ pub mod stage;
 mod target;
 mod texture;
 mod upload;
+#[cfg(feature = "viewer")]
+pub mod viewer;
 
 pub use canvas::Canvas;
 pub use error::ViewError;

@@ -15,3 +15,4 @@ pub mod replay;
 pub mod sample;
 pub mod simplify;
 pub mod strip;
+pub mod view;

@@ -10,8 +10,8 @@ use super::palette::color_of;
 use super::{Coloring, Display, Loaded};
 use crate::{GpuMesh, Placement, Renderer, ViewError};
 
-/// Thing on the GPU that a stage shows.
-#[derive(Debug)]
+/// Thing on the GPU that a stage shows; a clone shares what is on the GPU.
+#[derive(Clone, Debug)]
 pub enum Subject {
     /// A mesh of one level.
     Mesh(Box<MeshSubject>),
@@ -20,7 +20,7 @@ pub enum Subject {
 }
 
 /// Mesh on the GPU, with what its colourings need.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct MeshSubject {
     mesh: GpuMesh,
     /// The same surface in the colours of its distance from another.

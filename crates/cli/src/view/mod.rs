@@ -1,0 +1,3 @@
+//! Modes of the verb `view`, one a file.
+
+pub mod window;
