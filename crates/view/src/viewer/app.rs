@@ -14,9 +14,12 @@ use super::picture_pane::PicturePane;
 use super::settings::Settings;
 use super::timing::FrameTimes;
 use super::work::{EarlyLoad, News};
-use super::{ViewerOptions, ViewerReport, panels, theme};
+use super::{ViewerOptions, ViewerReport, panels, theme, work};
 use crate::stage::Stage;
 use crate::{Gpu, Renderer, TargetFormat, ViewError};
+
+/// Time between frames that show progress.
+const PROGRESS_INTERVAL: Duration = Duration::from_millis(60);
 
 /// Everything that the window shows and does.
 pub(crate) struct ViewerApp {
@@ -128,7 +131,9 @@ impl ViewerApp {
     fn warm_up(&self) {
         let renderer = Arc::clone(&self.renderer);
         std::thread::spawn(move || {
-            renderer.meshes();
+            // A software GPU compiles shaders when they first draw. Without it, the first picture
+            // takes longer and nothing else happens.
+            let _ = work::warm_up(&renderer);
         });
     }
 
@@ -173,8 +178,8 @@ impl ViewerApp {
         }
         self.notices.retain(|notice| notice.until > Instant::now());
         if self.jobs.running().next().is_some() {
-            // Spinners and progress bars turn.
-            next = Some(Duration::ZERO);
+            // Progress moves; more often would take time from the work.
+            next = next.or(Some(PROGRESS_INTERVAL));
         } else if !self.notices.is_empty() {
             next = next.or(Some(Duration::from_millis(500)));
         }
@@ -273,7 +278,7 @@ impl eframe::App for ViewerApp {
         if let Some(wait) = next {
             ctx.request_repaint_after(wait);
         }
-        if next.is_none_or(|wait| !wait.is_zero()) {
+        if next.is_none_or(|wait| wait > PROGRESS_INTERVAL) {
             self.times.rest();
         }
     }

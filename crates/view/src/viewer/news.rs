@@ -7,7 +7,8 @@ use super::document::{
     CutControl, Document, DocumentId, DocumentLevel, FocusKind, LevelGoal, ShownSide,
 };
 use super::follower::{CutFocus, CutQuery, CutTolerance, view_camera};
-use super::work::{Comparison, MadeLevel, News};
+use super::jobs::JobKind;
+use super::work::{self, Comparison, MadeLevel, News, NormalsState};
 use crate::stage::{Loaded, Subject};
 
 impl ViewerApp {
@@ -24,7 +25,7 @@ impl ViewerApp {
 
     fn take(&mut self, news: News) {
         match news {
-            News::Opened(loaded, subject) => self.opened(loaded, subject),
+            News::Opened(loaded, subject, state) => self.opened(loaded, subject, state),
             News::Simplified(id, level) => self.simplified(id, *level),
             News::Compared(id, comparison) => self.compared(id, *comparison),
             News::Checked(id, report, places) => {
@@ -46,7 +47,7 @@ impl ViewerApp {
         }
     }
 
-    fn opened(&mut self, loaded: Arc<Loaded>, subject: Subject) {
+    fn opened(&mut self, loaded: Arc<Loaded>, subject: Subject, state: NormalsState) {
         self.load_ms = Some(loaded.time.as_secs_f64() * 1e3);
         for warning in &loaded.warnings {
             self.complain(format!("{}: {warning}", loaded.name()));
@@ -64,6 +65,12 @@ impl ViewerApp {
             self.stage.rig.frame(&loaded.bounds, self.stage.aspect(self.size));
         }
         self.note_open_files();
+        if state == NormalsState::Rough {
+            let renderer = Arc::clone(&self.renderer);
+            self.jobs.start(JobKind::Color, "Finding creases", move |watch| {
+                work::refine(original, &loaded, &renderer, watch)
+            });
+        }
     }
 
     fn simplified(&mut self, id: DocumentId, made: MadeLevel) {

@@ -25,10 +25,17 @@ pub(crate) fn show(app: &mut ViewerApp, ui: &mut Ui) {
     Panel::top("tabs").frame(bar).show(ui, |ui| tabs::show(app, ui, &mut actions));
     Panel::bottom("status").frame(bar).show(ui, |ui| status::show(app, ui, &mut actions));
     if app.settings.has_panel && app.flight.is_none() {
-        let frame = Frame::new().fill(theme::PANEL).inner_margin(Margin::symmetric(14, 10));
+        let frame = Frame::new().fill(theme::PANEL).inner_margin(Margin {
+            left: 14,
+            right: 10,
+            top: 10,
+            bottom: 10,
+        });
         let panel = Panel::right("panel").frame(frame).exact_size(WIDTH).resizable(false);
         panel.show(ui, |ui| {
             ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+                // The scroll bar floats over the edge.
+                ui.set_max_width(WIDTH - 40.0);
                 file::show(app, ui);
                 display::show(app, ui, &mut actions);
                 levels::show(app, ui, &mut actions);
@@ -120,7 +127,7 @@ fn wide_button(ui: &mut Ui, text: &str, is_main: bool) -> bool {
     if is_main {
         button = button.fill(ui.visuals().selection.bg_fill);
     }
-    ui.add(button).clicked()
+    ui.vertical_centered_justified(|ui| ui.add(button).clicked()).inner
 }
 
 /// Shows the progress of a job of a kind with a button that cancels it; returns false if there is

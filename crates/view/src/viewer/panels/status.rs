@@ -29,7 +29,6 @@ pub(super) fn show(app: &ViewerApp, ui: &mut Ui, out: &mut Vec<Action>) {
                 let share = job.watch.share().map(|share| format!(" {:.0} %", 100.0 * share));
                 let text = format!("{}{}", job.label, share.unwrap_or_default());
                 ui.label(small(text, theme::STRONG));
-                ui.add(egui::Spinner::new().size(13.0));
             } else if let Some(notice) = app.notices.last() {
                 let color = if notice.is_problem { theme::ERROR } else { theme::STRONG };
                 ui.add(egui::Label::new(small(notice.text.clone(), color)).truncate());
