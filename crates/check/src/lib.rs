@@ -16,6 +16,7 @@ mod kinds;
 mod locks;
 mod object_octree;
 mod objects;
+mod place;
 mod repair;
 mod summary;
 mod unique_positions;

@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::io::Write;
+use std::time::Instant;
 
 use meshlod::Format;
 
@@ -15,13 +16,16 @@ pub struct Session {
     /// File format of standard input and output.
     pub format: Option<Format>,
     pub progress: Progress,
+    /// Start of the program.
+    #[cfg_attr(not(feature = "view"), allow(dead_code))]
+    pub started: Instant,
     threads: Option<usize>,
 }
 
 impl Session {
     pub fn new(global: GlobalArgs) -> Self {
         let GlobalArgs { json, threads, format } = global;
-        Self { json, format, progress: Progress::new(), threads }
+        Self { json, format, progress: Progress::new(), started: Instant::now(), threads }
     }
 
     pub fn start_threads(&self) -> Result<(), Failure> {

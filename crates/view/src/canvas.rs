@@ -72,6 +72,18 @@ impl Canvas {
         &self.depth
     }
 
+    /// Returns a view of the pixels for panels, whose texels are sRGB values as they are.
+    #[cfg(feature = "viewer")]
+    pub(crate) fn panel_view(&self) -> TextureView {
+        let format = Some(self.resolved.format().remove_srgb_suffix());
+        let usage = Some(TextureUsages::TEXTURE_BINDING);
+        self.resolved.create_view(&wgpu::TextureViewDescriptor {
+            format,
+            usage,
+            ..Default::default()
+        })
+    }
+
     /// Clears the canvas and draws on it, and submits that to the GPU.
     pub fn draw(&self, draw: impl FnOnce(&mut RenderPass<'_>)) {
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());

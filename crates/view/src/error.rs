@@ -16,6 +16,9 @@ pub enum ViewError {
     /// The GPU refused to open, or was lost while it worked.
     #[error("the GPU failed: {0}")]
     Failed(String),
+    /// There is no screen, or no window can be opened on it.
+    #[error("the window cannot be opened: {0}")]
+    NoWindow(String),
     /// Something needs a larger buffer or texture than the GPU has.
     #[error("{what} needs {needed} bytes in one buffer, but this GPU allows {limit}")]
     TooLarge {

@@ -49,6 +49,8 @@ mod strips;
 mod target;
 mod texture;
 mod upload;
+#[cfg(feature = "viewer")]
+pub mod viewer;
 
 pub use canvas::Canvas;
 pub use cut::{CutFollower, CutQuery, CutStep, CutTolerance, CutVertices, GpuCut, Transition};

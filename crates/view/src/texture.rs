@@ -21,7 +21,8 @@ pub(crate) fn texture_2d(
         dimension: TextureDimension::D2,
         format,
         usage,
-        view_formats: &[],
+        // Panels show targets as they are, without decoding sRGB.
+        view_formats: &[format.remove_srgb_suffix()],
     })
 }
 

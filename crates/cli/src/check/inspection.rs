@@ -3,9 +3,7 @@
 use std::ops::ControlFlow;
 
 use meshlod::Mesh;
-use meshlod::check::{
-    CheckOptions, Finding, Intersection, Kind, Kinds, Objects, Severity, Summary, check,
-};
+use meshlod::check::{CheckOptions, Finding, Kind, Kinds, Objects, Severity, Summary, check};
 
 use crate::check::contacts::Contacts;
 use crate::check::marks::Marks;
@@ -93,35 +91,5 @@ impl Inspection {
     /// Returns the name of an object of the mesh.
     pub fn name(&self, object: meshlod::check::ObjectId) -> &str {
         self.objects.names.get(object.0 as usize).map_or("", String::as_str)
-    }
-}
-
-/// Returns the position of a finding in world space; `None` for one without a position.
-pub fn place(mesh: &Mesh, finding: &Finding) -> Option<[f64; 3]> {
-    let vertex = |v: meshlod::mesh::VertexId| mesh.positions.get(v.index()).copied();
-    let face = |f: meshlod::mesh::FaceId| {
-        let corners = mesh.faces.get(f.index())?.map(vertex);
-        let [a, b, c] = [corners[0]?, corners[1]?, corners[2]?];
-        Some([0, 1, 2].map(|axis| (a[axis] + b[axis] + c[axis]) / 3.0))
-    };
-    match finding {
-        Finding::NonFiniteVertex { vertex: v }
-        | Finding::UnusedVertex { vertex: v }
-        | Finding::NonManifoldVertex { vertex: v, .. } => vertex(*v),
-        Finding::CoincidentVertices { vertices } | Finding::BoundaryLoop { vertices, .. } => {
-            vertex(*vertices.first()?)
-        }
-        Finding::InconsistentEdge { edge: [a, b], .. }
-        | Finding::NonManifoldEdge { edge: [a, b], .. } => {
-            let (a, b) = (vertex(*a)?, vertex(*b)?);
-            Some([0, 1, 2].map(|axis| (a[axis] + b[axis]) / 2.0))
-        }
-        Finding::BadIndex { face: f, .. }
-        | Finding::DegenerateFace { face: f, .. }
-        | Finding::DuplicateFace { face: f, .. }
-        | Finding::InsideOut { face: f, .. } => face(*f),
-        Finding::SelfIntersection { intersection: Intersection { point, .. }, .. }
-        | Finding::Contact { intersection: Intersection { point, .. }, .. } => Some(*point),
-        Finding::BadAttributes { .. } | Finding::Crowded { .. } => None,
     }
 }

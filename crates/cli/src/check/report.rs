@@ -4,7 +4,7 @@ use meshlod::check::{Degeneracy, Finding, Intersection, Kind, ObjectId, Severity
 use serde_json::{Value, json};
 
 use crate::check::contacts::KINDS;
-use crate::check::inspection::{Inspection, place};
+use crate::check::inspection::Inspection;
 use crate::check::sites::Sites;
 
 /// Returns the report of a mesh check as JSON: counts by kind, findings, contacts by pair of
@@ -52,7 +52,7 @@ fn of(inspection: &Inspection, finding: &Finding) -> Value {
     let mut json = ids(inspection, finding);
     json["kind"] = finding.kind().name().into();
     json["severity"] = severity(finding.kind()).into();
-    json["place"] = json!(place(&inspection.mesh, finding));
+    json["place"] = json!(finding.place(&inspection.mesh));
     json
 }
 

@@ -3,7 +3,7 @@
 use meshlod::check::{Finding, Kind};
 
 use crate::check::contacts::{KINDS, ObjectPair};
-use crate::check::inspection::{Inspection, place};
+use crate::check::inspection::Inspection;
 use crate::check::report::severity;
 use crate::check::sites::Sites;
 use crate::numbers::{count, faces, plural, value};
@@ -93,7 +93,7 @@ pub fn first(inspection: &Inspection, sites: &Sites, finding: &Finding) -> Strin
             faces.map(|f| sites.face(f)).join(" and ")
         }
     };
-    match place(&inspection.mesh, finding) {
+    match finding.place(&inspection.mesh) {
         Some(place) => format!("first: {ids} at {}", place.map(value).join(" ")),
         None => format!("first: {ids}"),
     }

@@ -1,4 +1,4 @@
-//! `view`: shows models in a window, or films them without one.
+//! `view`: opens files in a window, or films them without one.
 
 use std::path::PathBuf;
 
@@ -7,41 +7,49 @@ use clap::Args;
 use crate::answer::Answer;
 use crate::args::ReadArgs;
 use crate::failure::Failure;
+use crate::parse;
 use crate::session::Session;
 
-/// View models on the GPU, live
+/// Open meshes in a window
 ///
-/// Opens any mesh, levels of detail (.mlod) and compressed meshes (.mlq, .mlz). With --script it draws
-/// the pictures of a film instead, without a window.
+/// Meshes of all formats, .mlod, .mlq and .mlz; more can be dropped on the window. Press ? for the
+/// keys.
 #[derive(Args)]
+#[cfg_attr(not(feature = "view"), allow(dead_code))]
 pub struct View {
-    /// Files to view
+    /// Files to open
     #[arg(value_name = "FILE")]
     pub files: Vec<PathBuf>,
-    /// Draw the film that a script describes, as OUT/frame_0000.png and so on, and write the figures of
-    /// its frames to OUT/frames.jsonl
-    #[arg(long, value_name = "FILE", requires = "out")]
+    /// Close the window S seconds after the first picture
+    #[arg(long, value_name = "S", value_parser = parse::length, allow_negative_numbers = true)]
+    pub seconds: Option<f64>,
+    /// Write a picture once everything is loaded, and close the window unless --seconds is given
+    #[arg(long, value_name = "OUT.png")]
+    pub screenshot: Option<PathBuf>,
+    /// Draw the film that a script describes instead, without a window: OUT/frame_0000.png and so on,
+    /// and the figures of its frames in OUT/frames.jsonl
+    #[arg(long, value_name = "FILE", requires = "out", conflicts_with_all = ["seconds", "screenshot"])]
     pub script: Option<PathBuf>,
-    /// Folder for the pictures of a script; created if missing
-    #[arg(long, value_name = "DIR", requires = "script")]
+    /// Folder for the film of a script; created if missing
+    #[arg(long, value_name = "OUT", requires = "script")]
     pub out: Option<PathBuf>,
     #[command(flatten)]
     pub reading: ReadArgs,
 }
 
 impl View {
-    #[cfg(not(feature = "view"))]
-    pub fn run(self, _: &Session) -> Result<Answer, Failure> {
-        Err(Failure::new(crate::view::MISSING))
-    }
-
     #[cfg(feature = "view")]
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         match (&self.script, &self.out) {
             (Some(script), Some(out)) => {
                 crate::view::film::run(&self.files, &self.reading, script, out, session)
             }
-            _ => Err(Failure::new("no window yet")),
+            _ => crate::view::window::run(self, session),
         }
+    }
+
+    #[cfg(not(feature = "view"))]
+    pub fn run(self, _: &Session) -> Result<Answer, Failure> {
+        Err(Failure::new(crate::view::MISSING))
     }
 }

@@ -17,7 +17,7 @@ pub(super) struct FlockLevels {
     pub positions: Buffer,
     pub attributes: Buffer,
     pub indices: Buffer,
-    /// What is drawn for the levels: material after material, and level after level.
+    /// Draws of the levels: material after material, and level after level.
     pub draws: Vec<LevelDraw>,
     pub materials: Vec<MaterialBinding>,
     /// Number of levels.

@@ -5,6 +5,7 @@ mod colors;
 mod pipelines;
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use meshlod::Mesh;
 use meshlod::picture::{Normals, Paint, PictureError};
@@ -20,7 +21,9 @@ use crate::upload::upload_sliced;
 use crate::{Gpu, ViewError};
 
 /// Mesh on the GPU: wedges with normals, texture coordinates and colours; and its materials.
-#[derive(Debug)]
+///
+/// A clone shares all of that.
+#[derive(Clone, Debug)]
 pub struct GpuMesh {
     origin: [f64; 3],
     positions: Buffer,
@@ -30,7 +33,7 @@ pub struct GpuMesh {
     ranges: Vec<(Range<u32>, usize)>,
     materials: Vec<MaterialBinding>,
     /// Faces of the mesh in the order of the index buffer; `None` if that is their own.
-    order: Option<Vec<u32>>,
+    order: Option<Arc<[u32]>>,
     faces: u32,
     bytes: u64,
     /// Bindings for drawing face by face, if the buffers are small enough for that.
@@ -101,7 +104,7 @@ impl GpuMesh {
                 .map(|m| MaterialBinding::new(renderer, m))
                 .collect(),
             faces: order.len() as u32,
-            order: (ranges_len > 1).then_some(order),
+            order: (ranges_len > 1).then(|| order.into()),
             bytes: position_bytes + attribute_bytes + index_bytes,
             storage: None,
         };

@@ -37,7 +37,7 @@ pub(crate) const VERTEX_BUFFERS: [VertexBufferLayout<'static>; 2] = [
 ];
 
 /// Material of a mesh, bound to its texture.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct MaterialBinding {
     pub bind_group: BindGroup,
 }

@@ -10,8 +10,8 @@ use super::palette::color_of;
 use super::{Coloring, CompressedSubject, Display, LevelsSubject, Loaded, LoadedContent};
 use crate::{GpuMesh, Placement, Renderer, ViewError};
 
-/// Thing on the GPU that a stage shows.
-#[derive(Debug)]
+/// Thing on the GPU that a stage shows; a clone shares what is on the GPU.
+#[derive(Clone, Debug)]
 pub enum Subject {
     /// A mesh of one level.
     Mesh(Box<MeshSubject>),
@@ -22,7 +22,7 @@ pub enum Subject {
 }
 
 /// Mesh on the GPU, with what its colourings need.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct MeshSubject {
     mesh: GpuMesh,
     /// Copy of the surface in the colours of its distance from another.

@@ -1,0 +1,124 @@
+//! The viewer: a window with the stage, panels, keys and mouse.
+//!
+//! The frame never waits: files are read, meshes simplified, checked and uploaded by jobs on other
+//! threads, whose news arrive as messages.
+
+mod actions;
+mod app;
+mod central;
+mod document;
+mod gpu_guard;
+mod input;
+mod jobs;
+mod news;
+mod options;
+mod overlay;
+mod panels;
+mod picture_pane;
+mod settings;
+mod theme;
+mod timing;
+mod work;
+
+pub use options::{ViewerOptions, ViewerReport};
+
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex};
+
+use eframe::egui_wgpu::{WgpuConfiguration, WgpuError, WgpuSetup, WgpuSetupCreateNew};
+
+use crate::{Gpu, ViewError};
+use app::ViewerApp;
+use work::EarlyLoad;
+
+/// Name under which the window and its settings are remembered.
+const APP_ID: &str = "meshlod";
+
+/// Opens the viewer and returns when its window is closed.
+///
+/// Must be called on the main thread. After the loss of the GPU the window opens once more.
+///
+/// # Errors
+/// No screen or no GPU, and a GPU that keeps failing.
+pub fn run(options: ViewerOptions) -> Result<ViewerReport, ViewError> {
+    leave_a_core();
+    let report = Arc::new(Mutex::new(ViewerReport::default()));
+    let files = open_window(&options, &report)?;
+    if report.lock().is_ok_and(|report| report.gpu_was_lost) {
+        open_window(&ViewerOptions { files, ..options }, &report)?;
+        if report.lock().is_ok_and(|report| report.gpu_was_lost) {
+            return Err(ViewError::Failed("it was lost twice".into()));
+        }
+    }
+    let report = report.lock().map(|report| report.clone());
+    report.map_err(|_| ViewError::Failed("a thread of the viewer panicked".into()))
+}
+
+/// Opens the window until it is closed; returns the files that were open, for another try.
+fn open_window(
+    options: &ViewerOptions,
+    report: &Arc<Mutex<ViewerReport>>,
+) -> Result<Vec<PathBuf>, ViewError> {
+    // Files are read while the window and the GPU open.
+    let early: Vec<EarlyLoad> =
+        options.files.iter().map(|path| EarlyLoad::start(path, &options.reading)).collect();
+    let open = Arc::new(Mutex::new(options.files.clone()));
+    let (app_options, app_report, app_open) = (options.clone(), Arc::clone(report), open.clone());
+    let native = native_options(options);
+    let done = eframe::run_native(
+        APP_ID,
+        native,
+        Box::new(move |context| {
+            let app = ViewerApp::new(context, app_options, early, app_report, app_open)?;
+            Ok(Box::new(app))
+        }),
+    );
+    done.map_err(|error| view_error(&error))?;
+    Ok(open.lock().map(|open| open.clone()).unwrap_or_default())
+}
+
+fn native_options(options: &ViewerOptions) -> eframe::NativeOptions {
+    let setup = WgpuSetupCreateNew {
+        power_preference: eframe::wgpu::PowerPreference::HighPerformance,
+        device_descriptor: Arc::new(Gpu::descriptor),
+        ..WgpuSetupCreateNew::without_display_handle()
+    };
+    let viewport = egui::ViewportBuilder::default()
+        .with_title("meshlod")
+        .with_app_id(APP_ID)
+        .with_inner_size([1280.0, 800.0])
+        .with_min_inner_size([320.0, 240.0])
+        .with_drag_and_drop(true);
+    eframe::NativeOptions {
+        viewport,
+        renderer: eframe::Renderer::Wgpu,
+        wgpu_options: WgpuConfiguration {
+            wgpu_setup: WgpuSetup::CreateNew(setup),
+            ..WgpuConfiguration::default()
+        },
+        persistence_path: options.memory.clone(),
+        ..eframe::NativeOptions::default()
+    }
+}
+
+fn view_error(error: &eframe::Error) -> ViewError {
+    match error {
+        eframe::Error::Wgpu(
+            WgpuError::RequestAdapterError(_) | WgpuError::CustomNativeAdapterSelectionError(_),
+        ) => ViewError::NoGpu,
+        eframe::Error::Wgpu(error) => ViewError::Failed(one_line(error)),
+        error => ViewError::NoWindow(one_line(error)),
+    }
+}
+
+fn one_line(error: &impl ToString) -> String {
+    error.to_string().lines().map(str::trim).collect::<Vec<_>>().join(" ")
+}
+
+/// Leaves one core to the frame, unless the number of threads was chosen already.
+fn leave_a_core() {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(cores.saturating_sub(1).max(1));
+    // An error says that the pool is there, with the number of threads that was asked for.
+    let _ = pool.build_global();
+}

@@ -1,0 +1,62 @@
+//! Top bar: the open files, and which side of the active one is shown.
+
+use egui::{Align, Layout, RichText, Ui};
+
+use super::{Action, choices};
+use crate::viewer::app::ViewerApp;
+use crate::viewer::document::ShownSide;
+use crate::viewer::input::Command;
+use crate::viewer::theme;
+
+pub(super) fn show(app: &ViewerApp, ui: &mut Ui, out: &mut Vec<Action>) {
+    ui.horizontal(|ui| {
+        if app.documents.is_empty() {
+            ui.label(RichText::new("meshlod").color(theme::WEAK));
+        }
+        for (index, document) in app.documents.iter().enumerate() {
+            let name = RichText::new(document.loaded.name());
+            let tab = ui.selectable_label(app.active == index, name);
+            let tab = tab.on_hover_text(document.loaded.path.display().to_string());
+            if tab.clicked() {
+                out.push(Action::Activate(index));
+            }
+            if tab.middle_clicked() {
+                out.push(Action::Close(index));
+            }
+            tab.context_menu(|ui| {
+                if ui.button("Close").clicked() {
+                    out.push(Action::Close(index));
+                }
+            });
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let commands = [
+                ("?", Command::ToggleHelp, "Keys and mouse"),
+                ("Panel", Command::TogglePanel, "Show or hide the side panel (N)"),
+            ];
+            for (text, command, hint) in commands {
+                if ui.button(text).on_hover_text(hint).clicked() {
+                    out.push(Action::Do(command));
+                }
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| sides(app, ui, out));
+        });
+    });
+}
+
+fn sides(app: &ViewerApp, ui: &mut Ui, out: &mut Vec<Action>) {
+    let Some(document) = app.document().filter(|document| document.has_sides()) else { return };
+    ui.separator();
+    let all = [
+        (ShownSide::Original, if document.level.is_some() { "Original" } else { "Cut" }),
+        (ShownSide::Level, "Level"),
+        (ShownSide::Both, "Side by side"),
+    ];
+    let there: Vec<_> = all
+        .into_iter()
+        .filter(|(side, _)| *side != ShownSide::Level || document.level.is_some())
+        .collect();
+    if let Some(side) = choices(ui, document.mode, &there) {
+        out.push(Action::Show(side));
+    }
+}
