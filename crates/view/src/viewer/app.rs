@@ -15,7 +15,7 @@ use super::settings::Settings;
 use super::timing::FrameTimes;
 use super::work::{EarlyLoad, News};
 use super::{ViewerOptions, ViewerReport, panels, theme, work};
-use crate::stage::Stage;
+use crate::stage::{Loaded, Stage, SubjectId};
 use crate::{Gpu, Renderer, TargetFormat, ViewError};
 
 /// Time between frames that show progress.
@@ -46,6 +46,8 @@ pub(crate) struct ViewerApp {
     pub size: [u32; 2],
     pub problems: Vec<String>,
     pub load_ms: Option<f64>,
+    /// Subjects whose normals are to be refined once they are on the screen.
+    pub rough: Vec<(SubjectId, Arc<Loaded>)>,
     /// True once a frame has drawn a subject.
     pub has_drawn: bool,
     next_document: usize,
@@ -111,6 +113,7 @@ impl ViewerApp {
             size: [0; 2],
             problems: Vec::new(),
             load_ms: None,
+            rough: Vec::new(),
             has_drawn: false,
             next_document: 0,
             report,
@@ -264,6 +267,9 @@ impl ViewerApp {
 impl eframe::App for ViewerApp {
     fn logic(&mut self, ctx: &egui::Context, _: &mut eframe::Frame) {
         self.watch_gpu(ctx);
+        if self.times.first_picture_ms.is_some() {
+            self.refine_normals();
+        }
         self.take_news();
         self.keep_schedule(ctx);
     }

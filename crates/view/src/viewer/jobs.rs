@@ -38,6 +38,7 @@ pub(crate) enum JobKind {
     Compare,
     Check,
     Color,
+    Refine,
     Save,
 }
 

@@ -64,9 +64,16 @@ impl ViewerApp {
         }
         self.note_open_files();
         if state == NormalsState::Rough {
+            self.rough.push((original, loaded));
+        }
+    }
+
+    /// Starts to refine the normals of what is on the screen by now.
+    pub fn refine_normals(&mut self) {
+        for (id, loaded) in std::mem::take(&mut self.rough) {
             let renderer = Arc::clone(&self.renderer);
-            self.jobs.start(JobKind::Color, "Finding creases", move |watch| {
-                work::refine(original, &loaded, &renderer, watch)
+            self.jobs.start(JobKind::Refine, "Finding creases", move |watch| {
+                work::refine(id, &loaded, &renderer, watch)
             });
         }
     }
