@@ -11,7 +11,7 @@ use super::{Coloring, CompressedSubject, Display, LevelsSubject, Loaded, LoadedC
 use crate::{GpuMesh, Placement, Renderer, ViewError};
 
 /// Thing on the GPU that a stage shows; a clone shares what is on the GPU.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub enum Subject {
     /// A mesh of one level.
     Mesh(Box<MeshSubject>),
@@ -53,6 +53,11 @@ impl Subject {
             }
             _ => Self::Mesh(Box::new(MeshSubject::new(renderer, loaded)?)),
         })
+    }
+
+    /// Returns the mesh; `None` for what is no mesh of one level.
+    pub fn as_mesh(&self) -> Option<&MeshSubject> {
+        if let Self::Mesh(mesh) = self { Some(mesh) } else { None }
     }
 
     /// Returns the box around the surface.
@@ -146,6 +151,12 @@ impl Subject {
             Self::Levels(levels) => levels.draw(renderer, pass, placement, display),
             Self::Compressed(compressed) => compressed.draw(renderer, pass, placement),
         }
+    }
+}
+
+impl From<MeshSubject> for Subject {
+    fn from(mesh: MeshSubject) -> Self {
+        Self::Mesh(Box::new(mesh))
     }
 }
 

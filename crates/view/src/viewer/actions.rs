@@ -12,7 +12,7 @@ use super::document::{DocumentLevel, LevelGoal, ShownSide};
 use super::input::{Command, OrbitStep, commands};
 use super::jobs::JobKind;
 use super::work;
-use crate::stage::{Coloring, Shading, SubjectId};
+use crate::stage::{Coloring, Shading, Subject, SubjectId};
 
 /// Turn of the keys 2, 4, 6 and 8, in radians.
 const ORBIT_STEP: f64 = std::f64::consts::PI / 12.0;
@@ -240,7 +240,8 @@ impl ViewerApp {
         let Some(document) = self.document() else { return };
         let Some(DocumentLevel { loaded, subject, .. }) = &document.level else { return };
         let surface = |id: SubjectId, loaded: &Arc<_>| {
-            self.stage.subject(id).map(|subject| (id, Arc::clone(loaded), subject.clone()))
+            let mesh = |subject: &Subject| subject.as_mesh().cloned();
+            self.stage.subject(id).map(|subject| (id, Arc::clone(loaded), mesh(subject)))
         };
         let both = (surface(document.original, &document.loaded), surface(*subject, loaded));
         let ((Some(a), Some(b)), id) = (both, document.id) else { return };
@@ -278,12 +279,13 @@ impl ViewerApp {
         let shown: Vec<_> = self.stage.shown().collect();
         let lacking = own.into_iter().flatten().find_map(|(id, loaded)| {
             let subject = self.stage.subject(id).filter(|subject| !subject.has(wanted))?;
-            shown.contains(&id).then(|| (id, subject.clone(), loaded))
+            let mesh = subject.as_mesh().filter(|_| shown.contains(&id))?;
+            Some((id, mesh.clone(), loaded))
         });
-        let Some((id, subject, loaded)) = lacking else { return };
+        let Some((id, mesh, loaded)) = lacking else { return };
         let renderer = Arc::clone(&self.renderer);
         self.jobs.start(JobKind::Color, "Colouring", move |_| {
-            work::color(id, subject, &loaded, wanted, &renderer)
+            work::color(id, mesh, &loaded, wanted, &renderer)
         });
     }
 

@@ -105,8 +105,7 @@ impl ViewerApp {
     }
 
     fn compared(&mut self, id: DocumentId, comparison: Comparison) {
-        let [_, (level_id, _)] = &comparison.subjects;
-        let level_id = *level_id;
+        let level_id = comparison.level;
         let document = self.by_id(id);
         let level = document.and_then(|document| document.level.as_mut());
         // Another level may have been made meanwhile.

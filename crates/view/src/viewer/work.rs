@@ -16,7 +16,9 @@ use meshlod::{
 
 use super::document::{DocumentId, LevelDistance};
 use super::jobs::{Outcome, Watch};
-use crate::stage::{Coloring, LoadError, Loaded, LoadedContent, Stage, Subject, SubjectId};
+use crate::stage::{
+    Coloring, LoadError, Loaded, LoadedContent, MeshSubject, Stage, Subject, SubjectId,
+};
 use crate::{Canvas, Renderer, ViewError};
 
 /// What jobs bring back.
@@ -46,9 +48,11 @@ pub(crate) struct MadeLevel {
     pub seconds: f64,
 }
 
-/// Both surfaces in the colours of their distance from the other.
+/// Surfaces in the colours of their distance from the other; only meshes have them.
 pub(crate) struct Comparison {
-    pub subjects: [(SubjectId, Subject); 2],
+    pub subjects: Vec<(SubjectId, Subject)>,
+    /// Level that was compared.
+    pub level: SubjectId,
     pub distance: LevelDistance,
 }
 
@@ -217,7 +221,7 @@ impl Observe for Counter<'_> {
 /// Measures the distance of two surfaces, and uploads both in its colours.
 pub(crate) fn compare(
     document: DocumentId,
-    surfaces: [(SubjectId, Arc<Loaded>, Subject); 2],
+    surfaces: [(SubjectId, Arc<Loaded>, Option<MeshSubject>); 2],
     renderer: &Renderer,
     watch: &Watch,
 ) -> Outcome<News> {
@@ -236,17 +240,17 @@ pub(crate) fn compare(
     let all = || to_b.iter().chain(&to_a).copied().filter(|distance| distance.is_finite());
     let greatest = all().fold(0.0, f64::max);
     let rms = (all().map(|x| x * x).sum::<f64>() / all().count().max(1) as f64).sqrt();
-    let mut colored = Vec::new();
-    for ((id, loaded, mut subject), distances) in surfaces.into_iter().zip([to_b, to_a]) {
+    let level = surfaces[1].0;
+    let mut subjects = Vec::new();
+    for ((id, loaded, mesh), distances) in surfaces.into_iter().zip([to_b, to_a]) {
         let distances: Vec<f32> = distances.into_iter().map(|distance| distance as f32).collect();
-        let Subject::Mesh(mesh) = &mut subject;
+        let Some(mut mesh) = mesh else { continue };
         mesh.set_heat(renderer, &loaded.mesh, loaded.normals, &distances, greatest as f32)
             .map_err(|error| error.to_string())?;
-        colored.push((id, subject));
+        subjects.push((id, mesh.into()));
     }
-    let Ok(subjects) = <[_; 2]>::try_from(colored) else { return Ok(None) };
     let distance = LevelDistance { greatest, rms };
-    Ok(Some(News::Compared(document, Box::new(Comparison { subjects, distance }))))
+    Ok(Some(News::Compared(document, Box::new(Comparison { subjects, level, distance }))))
 }
 
 /// Checks a document.
@@ -262,15 +266,14 @@ pub(crate) fn check(document: DocumentId, loaded: &Loaded, watch: &Watch) -> Out
 /// Uploads the colours of faces that a colouring needs.
 pub(crate) fn color(
     id: SubjectId,
-    mut subject: Subject,
+    mut mesh: MeshSubject,
     loaded: &Loaded,
     coloring: Coloring,
     renderer: &Renderer,
 ) -> Outcome<News> {
-    let Subject::Mesh(mesh) = &mut subject;
     let colored = mesh.color_faces(renderer, &loaded.mesh, coloring);
     colored.map_err(|error| error.to_string())?;
-    Ok(Some(News::Colored(id, subject)))
+    Ok(Some(News::Colored(id, mesh.into())))
 }
 
 /// Writes a picture to a file.

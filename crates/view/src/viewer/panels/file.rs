@@ -31,8 +31,8 @@ fn facts(loaded: &Loaded, ui: &mut Ui) {
             row(ui, "Bits per vertex", format!("{bits:.1}"));
         }
         LoadedContent::Levels(model) => {
-            row(ui, "Coarsest level", format!("{} faces", grouped(model.implicit().base_faces())));
-            row(ui, "Updates", grouped(model.implicit().update_count()));
+            row(ui, "Coarsest level", format!("{} faces", grouped(model.base_faces())));
+            row(ui, "Updates", grouped(model.update_count()));
         }
         _ => {}
     }
