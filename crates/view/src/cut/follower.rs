@@ -115,17 +115,20 @@ struct Worker<'m> {
     is_first: bool,
     /// Slots that the current step has changed, some of them more than once.
     touched: Vec<u32>,
+    /// Error found for the last number of faces.
+    error: Option<f64>,
     /// Diagonal of the model's box, once it is needed.
     diagonal: OnceCell<f64>,
 }
 
-/// Rounds of bisection for a number of faces: a tolerance to one part in a thousand.
-const ROUNDS: usize = 24;
+/// Rounds of bisection for a number of faces: an error to one part in four hundred.
+const ROUNDS: usize = 8;
 
 impl<'m> Worker<'m> {
     fn new(model: &'m Implicit, changes: Option<usize>) -> Self {
         Self {
             cut: Cut::new(model),
+            error: None,
             model,
             changes,
             is_first: true,
@@ -185,28 +188,46 @@ impl<'m> Worker<'m> {
         Ok(change.done)
     }
 
-    /// Finds the smallest error with which the cut has at most `count` faces.
+    /// Finds about the smallest error with which the cut has at most `count` faces, beginning at that
+    /// of the last search: every step costs what it changes.
     fn reach(&mut self, query: &CutQuery, count: usize) -> Result<bool, QueryError> {
         let unlimited = self.changes.take();
+        let found = self.search(query, count);
+        self.changes = unlimited;
+        found
+    }
+
+    fn search(&mut self, query: &CutQuery, count: usize) -> Result<bool, QueryError> {
         let diagonal = *self.diagonal.get_or_init(|| diagonal(self.model));
-        // Errors spread over many orders of magnitude: their logarithms are bisected.
-        let [mut low, mut high] = [diagonal * 1e-9, diagonal].map(f64::ln);
+        let range = diagonal * 1e-9..diagonal;
+        let mut error = self.error.unwrap_or(diagonal * 1e-2);
+        // Twice the error until the faces are few enough, or half of it while they are.
+        let is_fine = self.faces_at(query, error)? > count;
+        let by = if is_fine { 2.0 } else { 0.5 };
+        while range.contains(&error) && (self.faces_at(query, error * by)? > count) == is_fine {
+            error *= by;
+        }
+        let [mut low, mut high] = if is_fine { [error, error * by] } else { [error * by, error] };
         for _ in 0..ROUNDS {
-            let middle = 0.5 * (low + high);
-            self.update(query, Tolerance::Uniform(middle.exp()))?;
-            let faces = self.cut.face_count();
+            let middle = (low * high).sqrt();
+            let faces = self.faces_at(query, middle)?;
             if faces > count {
                 low = middle
             } else {
                 high = middle
             }
-            if faces <= count && faces as f64 > 0.995 * count as f64 {
+            if faces <= count && faces as f64 > 0.99 * count as f64 {
                 break;
             }
         }
-        let done = self.update(query, Tolerance::Uniform(high.exp()));
-        self.changes = unlimited;
-        done
+        self.error = Some(high);
+        self.faces_at(query, high).map(|_| true)
+    }
+
+    /// Changes the cut to an error, and returns its faces.
+    fn faces_at(&mut self, query: &CutQuery, error: f64) -> Result<usize, QueryError> {
+        self.update(query, Tolerance::Uniform(error))?;
+        Ok(self.cut.face_count())
     }
 
     /// Returns what the slots that were touched hold now.
