@@ -104,7 +104,10 @@ fn native_options(options: &ViewerOptions) -> eframe::NativeOptions {
 fn view_error(error: &eframe::Error) -> ViewError {
     match error {
         eframe::Error::Wgpu(
-            WgpuError::RequestAdapterError(_) | WgpuError::CustomNativeAdapterSelectionError(_),
+            WgpuError::RequestAdapterError(_)
+            | WgpuError::CustomNativeAdapterSelectionError(_)
+            // No driver at all: not even a surface can be made.
+            | WgpuError::CreateSurfaceError(_),
         ) => ViewError::NoGpu,
         eframe::Error::Wgpu(error) => ViewError::Failed(one_line(error)),
         error => ViewError::NoWindow(one_line(error)),
@@ -112,7 +115,10 @@ fn view_error(error: &eframe::Error) -> ViewError {
 }
 
 fn one_line(error: &impl ToString) -> String {
-    error.to_string().lines().map(str::trim).collect::<Vec<_>>().join(" ")
+    let text = error.to_string().lines().map(str::trim).collect::<Vec<_>>().join(" ");
+    // The window library begins with a line of its source: "os error at …/mod.rs:765: ".
+    let place = text.rsplit_once(".rs:").and_then(|(_, rest)| rest.split_once(": "));
+    place.map_or(text.clone(), |(_, reason)| reason.to_owned())
 }
 
 /// Leaves one core to the frame, unless the number of threads was chosen already.
