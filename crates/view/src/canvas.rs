@@ -9,12 +9,14 @@ use wgpu::{
 use crate::texture::texture_2d;
 use crate::{Gpu, TargetFormat, ViewError};
 
-/// Target in memory: antialiased, with depth, and readable as a [`Picture`].
+/// Target in memory, with depth, and readable as a [`Picture`].
 #[derive(Debug)]
 pub struct Canvas {
     gpu: Gpu,
+    format: TargetFormat,
     size: [u32; 2],
-    samples: TextureView,
+    /// Samples of the pixels, if there are several for each.
+    samples: Option<TextureView>,
     resolved: Texture,
     resolved_view: TextureView,
     depth: TextureView,
@@ -25,11 +27,20 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// Creates a transparent canvas of a width and height in pixels.
+    /// Creates a transparent, antialiased canvas of a width and height in pixels.
     ///
     /// # Errors
     /// A side of zero, or beyond the limit of the GPU.
     pub fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, ViewError> {
+        Self::with_format(gpu, size, TargetFormat::CANVAS)
+    }
+
+    /// Creates a transparent canvas with another number of samples per pixel than
+    /// [`TargetFormat::CANVAS`], or other formats.
+    ///
+    /// # Errors
+    /// As [`Canvas::new`].
+    pub fn with_format(gpu: &Gpu, size: [u32; 2], format: TargetFormat) -> Result<Self, ViewError> {
         let limit = gpu.device.limits().max_texture_dimension_2d;
         if size.iter().any(|&side| side == 0 || side > limit) {
             let [width, height] = size;
@@ -38,20 +49,22 @@ impl Canvas {
             );
             return Err(ViewError::Failed(why));
         }
-        let format = TargetFormat::CANVAS;
         let attachment = TextureUsages::RENDER_ATTACHMENT;
-        let samples = texture_2d(gpu, size, format.color, format.samples, attachment);
+        let view = |texture: &Texture| texture.create_view(&Default::default());
+        let samples = (format.samples > 1)
+            .then(|| view(&texture_2d(gpu, size, format.color, format.samples, attachment)));
         let bound = attachment | TextureUsages::TEXTURE_BINDING;
         let depth = texture_2d(gpu, size, format.depth, format.samples, bound);
         let readable = bound | TextureUsages::COPY_SRC;
         let resolved = texture_2d(gpu, size, format.color, 1, readable);
         Ok(Self {
             gpu: gpu.clone(),
+            format,
             size,
-            samples: samples.create_view(&Default::default()),
-            resolved_view: resolved.create_view(&Default::default()),
+            samples,
+            resolved_view: view(&resolved),
             resolved,
-            depth: depth.create_view(&Default::default()),
+            depth: view(&depth),
             clear: [0.0; 4],
             keeps_depth: false,
         })
@@ -60,6 +73,11 @@ impl Canvas {
     /// Returns the width and height in pixels.
     pub fn size(&self) -> [u32; 2] {
         self.size
+    }
+
+    /// Returns the format of its passes.
+    pub fn format(&self) -> TargetFormat {
+        self.format
     }
 
     /// Returns the texture that shows what was drawn.
@@ -94,17 +112,15 @@ impl Canvas {
     /// Begins a pass that clears the canvas.
     pub fn pass<'e>(&self, encoder: &'e mut CommandEncoder) -> RenderPass<'e> {
         let [r, g, b, a] = self.clear;
+        let store = if self.samples.is_some() { StoreOp::Discard } else { StoreOp::Store };
         let keep = if self.keeps_depth { StoreOp::Store } else { StoreOp::Discard };
         encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("canvas"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &self.samples,
+                view: self.samples.as_ref().unwrap_or(&self.resolved_view),
                 depth_slice: None,
-                resolve_target: Some(&self.resolved_view),
-                ops: Operations {
-                    load: LoadOp::Clear(Color { r, g, b, a }),
-                    store: StoreOp::Discard,
-                },
+                resolve_target: self.samples.as_ref().map(|_| &self.resolved_view),
+                ops: Operations { load: LoadOp::Clear(Color { r, g, b, a }), store },
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &self.depth,

@@ -16,7 +16,7 @@ use wgpu::{
 use crate::placement::{Placement, clip_from_local};
 use crate::renderer::{PipelineBuild, Renderer, bind_group, buffer_of};
 use crate::texture::texture_2d;
-use crate::{Canvas, Shade, ViewError};
+use crate::{Canvas, Shade, TargetFormat, ViewError};
 
 /// Shadow of a thing on the ground.
 #[derive(Debug)]
@@ -29,6 +29,7 @@ pub struct Ground {
     place: Buffer,
     bind_group: BindGroup,
     pipeline: RenderPipeline,
+    format: TargetFormat,
 }
 
 /// `Place` of ground.wgsl.
@@ -101,7 +102,21 @@ impl Ground {
         let layout = pipeline.get_bind_group_layout(0);
         let bind_group = shadow_group(renderer, &layout, &place, &map);
         let origin = DVec3::from(origin);
-        Ok(Self { origin, middle, half, axes: [right, ahead], place, bind_group, pipeline })
+        Ok(Self {
+            origin,
+            middle,
+            half,
+            axes: [right, ahead],
+            place,
+            bind_group,
+            pipeline,
+            format: renderer.format(),
+        })
+    }
+
+    /// Returns the format of the passes that the shadow can be drawn into.
+    pub fn format(&self) -> TargetFormat {
+        self.format
     }
 
     /// Draws the shadow into a picture of a camera, after the backdrop.

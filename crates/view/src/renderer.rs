@@ -114,8 +114,8 @@ impl Renderer {
             contents: bytemuck::bytes_of(&colors),
             usage: BufferUsages::UNIFORM,
         });
-        let layout = self.background_pipeline().get_bind_group_layout(0);
-        let bind_group = bind_group(&self.gpu.device, &layout, [buffer.as_entire_binding()]);
+        let bind_group =
+            bind_group(&self.gpu.device, &self.draw_layout, [buffer.as_entire_binding()]);
         Some(Backdrop { bind_group })
     }
 
@@ -131,6 +131,7 @@ impl Renderer {
             let shader = self.shader("background", include_str!("shaders/background.wgsl").into());
             let build = PipelineBuild {
                 entries: ["corner", "fill"],
+                layouts: &[&self.draw_layout],
                 depth: (CompareFunction::GreaterEqual, false),
                 ..PipelineBuild::new("background", &shader)
             };

@@ -73,6 +73,11 @@ impl Stage {
         self.slots.iter().map(|slot| slot.subject)
     }
 
+    /// Returns the number of faces of everything that is shown.
+    pub fn faces(&self) -> usize {
+        self.shown().filter_map(|id| self.subject(id)).map(Subject::faces).sum()
+    }
+
     /// Returns the box around everything that is shown.
     pub fn bounds(&self) -> Bounds {
         let mut bounds = Bounds::EMPTY;
@@ -164,7 +169,8 @@ impl Stage {
             return;
         }
         for (slot, column) in self.slots.iter().zip(0u32..) {
-            if let Some((_, ground)) = &self.grounds[slot.subject.0] {
+            let ground = self.grounds[slot.subject.0].as_ref().map(|(_, ground)| ground);
+            if let Some(ground) = ground.filter(|ground| ground.format() == renderer.format()) {
                 set_viewport(pass, column * slot_size[0], slot_size);
                 ground.draw(renderer, pass, camera, slot_size);
             }

@@ -48,7 +48,7 @@ impl ViewerApp {
 
     /// Opens a file in the background.
     pub fn open(&mut self, path: PathBuf) {
-        let (renderer, reading) = (Arc::clone(&self.renderer), self.options.reading);
+        let (renderer, reading) = (self.renderer(), self.options.reading);
         let label = format!("Opening {}", path.display());
         let work = move |watch: &_| work::open(&path, &reading, &renderer, watch);
         self.jobs.start(JobKind::Open, label, work);
@@ -230,7 +230,7 @@ impl ViewerApp {
             LevelGoal::Pixels => Target::Error(order.pixels * pixel),
         };
         let (id, loaded) = (document.id, Arc::clone(&document.loaded));
-        let (renderer, method) = (Arc::clone(&self.renderer), order.method);
+        let (renderer, method) = (self.renderer(), order.method);
         self.jobs.start(JobKind::Simplify, "Simplifying", move |watch| {
             work::simplify(id, &loaded, method, target, &renderer, watch)
         });
@@ -245,7 +245,7 @@ impl ViewerApp {
         };
         let both = (surface(document.original, &document.loaded), surface(*subject, loaded));
         let ((Some(a), Some(b)), id) = (both, document.id) else { return };
-        let renderer = Arc::clone(&self.renderer);
+        let renderer = self.renderer();
         self.jobs.start(JobKind::Compare, "Measuring the distance", move |watch| {
             work::compare(id, [a, b], &renderer, watch)
         });
@@ -283,7 +283,7 @@ impl ViewerApp {
             Some((id, mesh.clone(), loaded))
         });
         let Some((id, mesh, loaded)) = lacking else { return };
-        let renderer = Arc::clone(&self.renderer);
+        let renderer = self.renderer();
         self.jobs.start(JobKind::Color, "Colouring", move |_| {
             work::color(id, mesh, &loaded, wanted, &renderer)
         });

@@ -10,13 +10,13 @@ use meshlod::picture::UpAxis;
 use super::document::{Document, DocumentId};
 use super::gpu_guard::GpuGuard;
 use super::jobs::{JobKind, Jobs};
-use super::picture_pane::PicturePane;
+use super::picture_pane::{PaneRenderers, PicturePane};
 use super::settings::Settings;
 use super::timing::FrameTimes;
 use super::work::{EarlyLoad, News};
 use super::{ViewerOptions, ViewerReport, panels, theme, work};
 use crate::stage::{Loaded, Stage, SubjectId};
-use crate::{Gpu, Renderer, TargetFormat, ViewError};
+use crate::{Gpu, Renderer, ViewError};
 
 /// Time between frames that show progress.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(60);
@@ -25,7 +25,7 @@ const PROGRESS_INTERVAL: Duration = Duration::from_millis(60);
 pub(crate) struct ViewerApp {
     pub options: ViewerOptions,
     pub state: RenderState,
-    pub renderer: Arc<Renderer>,
+    pub renderers: Arc<PaneRenderers>,
     pub guard: GpuGuard,
     pub stage: Stage,
     pub pane: PicturePane,
@@ -88,7 +88,7 @@ impl ViewerApp {
         let state = context.wgpu_render_state.clone().ok_or(ViewError::NoGpu)?;
         let gpu = Gpu::new(&state.adapter, state.device.clone(), state.queue.clone());
         let guard = GpuGuard::of(&gpu, &context.egui_ctx);
-        let renderer = Arc::new(Renderer::new(&gpu, TargetFormat::CANVAS));
+        let renderers = Arc::new(PaneRenderers::new(&gpu));
         theme::apply(&context.egui_ctx);
         let settings = Settings::read(context.storage);
         let mut stage = Stage::default();
@@ -122,11 +122,11 @@ impl ViewerApp {
             last_seconds: 0.0,
             shot: Shot::Waiting,
             close_at: None,
-            renderer,
+            renderers,
         };
         this.warm_up();
         for early in early {
-            let (name, renderer) = (early.path.display().to_string(), Arc::clone(&this.renderer));
+            let (name, renderer) = (early.path.display().to_string(), this.renderer());
             let work = move |watch: &_| early.upload(&renderer, watch);
             this.jobs.start(JobKind::Open, format!("Opening {name}"), work);
         }
@@ -135,12 +135,17 @@ impl ViewerApp {
 
     /// Compiles the pipelines beside everything else.
     fn warm_up(&self) {
-        let renderer = Arc::clone(&self.renderer);
+        let renderers = Arc::clone(&self.renderers);
         std::thread::spawn(move || {
             // A software GPU compiles shaders when they first draw. Without it, the first picture
             // takes longer and nothing else happens.
-            let _ = work::warm_up(&renderer);
+            let _ = work::warm_up(&renderers.draft).and_then(|()| work::warm_up(&renderers.full));
         });
+    }
+
+    /// Returns the renderer that uploads and draws.
+    pub fn renderer(&self) -> Arc<Renderer> {
+        Arc::clone(&self.renderers.full)
     }
 
     pub fn next_document_id(&mut self) -> DocumentId {
@@ -246,7 +251,7 @@ impl ViewerApp {
         let [median_frame_ms, longest_frame_ms] = self.times.summary();
         let [median_loading_frame_ms, longest_loading_frame_ms] = self.times.loading_summary();
         *report = ViewerReport {
-            gpu: self.renderer.gpu().name().to_owned(),
+            gpu: self.renderers.full.gpu().name().to_owned(),
             faces: shown.iter().map(|subject| subject.faces()).sum(),
             vertices: shown.iter().map(|subject| subject.vertices()).sum(),
             gpu_bytes: shown.iter().map(|subject| subject.bytes()).sum(),

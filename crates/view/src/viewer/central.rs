@@ -36,10 +36,13 @@ impl ViewerApp {
     }
 
     fn show_picture(&mut self, ui: &Ui, rect: Rect) {
-        let limit = self.renderer.gpu().device.limits().max_texture_dimension_2d;
+        let limit = self.renderers.full.gpu().device.limits().max_texture_dimension_2d;
         let size = self.size.map(|side| side.min(limit));
         let drawn =
-            self.pane.draw(&mut self.stage, &self.renderer, &self.state, size, self.changes);
+            self.pane.draw(&mut self.stage, &self.renderers, &self.state, size, self.changes);
+        if self.pane.is_draft() {
+            ui.ctx().request_repaint();
+        }
         match drawn {
             Ok(Some(texture)) => {
                 let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));

@@ -71,7 +71,7 @@ impl ViewerApp {
     /// Starts to refine the normals of what is on the screen by now.
     pub fn refine_normals(&mut self) {
         for (id, loaded) in std::mem::take(&mut self.rough) {
-            let renderer = Arc::clone(&self.renderer);
+            let renderer = self.renderer();
             self.jobs.start(JobKind::Refine, "Finding creases", move |watch| {
                 work::refine(id, &loaded, &renderer, watch)
             });

@@ -1,13 +1,18 @@
 //! The stage as a texture that panels show.
 
+use std::sync::Arc;
+
 use eframe::egui_wgpu::RenderState;
 use egui::TextureId;
 use meshlod::picture::{Camera, Picture};
 
 use crate::stage::{Display, Stage};
-use crate::{Canvas, Renderer, ViewError};
+use crate::{Canvas, Gpu, Renderer, TargetFormat, ViewError};
 
 /// Picture of the stage, drawn again only when something has changed.
+///
+/// A large model that is new is drawn with one sample a pixel and without its shadow first, so that
+/// there is something to see, and as it should be in the frame after.
 #[derive(Debug, Default)]
 pub(crate) struct PicturePane {
     canvas: Option<Canvas>,
@@ -15,7 +20,7 @@ pub(crate) struct PicturePane {
     drawn: Option<Drawn>,
 }
 
-/// What a picture depends on.
+/// State on which a picture depends.
 #[derive(Clone, Debug, PartialEq)]
 struct Drawn {
     size: [u32; 2],
@@ -23,6 +28,28 @@ struct Drawn {
     display: Display,
     /// Number of changes of subjects so far.
     changes: u64,
+    is_draft: bool,
+}
+
+/// Renderers of the picture, by what they are for.
+#[derive(Debug)]
+pub(crate) struct PaneRenderers {
+    pub full: Arc<Renderer>,
+    /// One sample a pixel.
+    pub draft: Renderer,
+}
+
+/// Faces above which a new model is drawn as a draft first.
+const DRAFT_FACES: usize = 200_000;
+
+impl PaneRenderers {
+    pub fn new(gpu: &Gpu) -> Self {
+        let draft = TargetFormat { samples: 1, ..TargetFormat::CANVAS };
+        Self {
+            full: Arc::new(Renderer::new(gpu, TargetFormat::CANVAS)),
+            draft: Renderer::new(gpu, draft),
+        }
+    }
 }
 
 impl PicturePane {
@@ -31,7 +58,7 @@ impl PicturePane {
     pub fn draw(
         &mut self,
         stage: &mut Stage,
-        renderer: &Renderer,
+        renderers: &PaneRenderers,
         state: &RenderState,
         size: [u32; 2],
         changes: u64,
@@ -39,21 +66,33 @@ impl PicturePane {
         if size.contains(&0) {
             return Ok(self.texture);
         }
-        let wanted = Drawn { size, camera: stage.rig.camera(), display: stage.display, changes };
+        let is_new = self.drawn.as_ref().is_none_or(|drawn| drawn.changes != changes);
+        let is_draft = is_new && stage.faces() > DRAFT_FACES;
+        let (camera, display) = (stage.rig.camera(), stage.display);
+        let wanted = Drawn { size, camera, display, changes, is_draft };
         if self.drawn.as_ref() == Some(&wanted) {
             return Ok(self.texture);
         }
-        if self.canvas.as_ref().is_none_or(|canvas| canvas.size() != size) {
-            let canvas = Canvas::new(renderer.gpu(), size)?;
+        let renderer = if is_draft { &renderers.draft } else { &*renderers.full };
+        let fits = |canvas: &Canvas| canvas.size() == size && canvas.format() == renderer.format();
+        if !self.canvas.as_ref().is_some_and(fits) {
+            let canvas = Canvas::with_format(renderer.gpu(), size, renderer.format())?;
             self.register(&canvas, state);
             self.canvas = Some(canvas);
         }
-        stage.prepare(renderer)?;
+        if !is_draft {
+            stage.prepare(renderer)?;
+        }
         if let Some(canvas) = &self.canvas {
             canvas.draw(|pass| stage.draw(renderer, pass, size));
         }
         self.drawn = Some(wanted);
         Ok(self.texture)
+    }
+
+    /// Returns true if the picture is a draft, to be drawn again at once.
+    pub fn is_draft(&self) -> bool {
+        self.drawn.as_ref().is_some_and(|drawn| drawn.is_draft)
     }
 
     /// Reads the pixels of the picture; `None` before the first one.

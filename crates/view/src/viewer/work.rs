@@ -135,7 +135,7 @@ pub(crate) fn warm_up(renderer: &Renderer) -> Result<(), ViewError> {
     let id = stage.add(Subject::new(renderer, &loaded)?);
     stage.show(&[id]);
     stage.rig.frame(&loaded.bounds, 1.0);
-    let canvas = Canvas::new(renderer.gpu(), [8, 8])?;
+    let canvas = Canvas::with_format(renderer.gpu(), [8, 8], renderer.format())?;
     canvas.draw(|pass| stage.draw(renderer, pass, [8, 8]));
     Ok(())
 }
