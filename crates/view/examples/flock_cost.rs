@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p meshlod-view --example flock_cost -- [--members N]` finds for each way
 //! of choosing levels the coarsest that differs from full detail by a mean FLIP of at most .02, and
-//! times all of them by turns.
+//! times all of them by turns. With `--budget` it only draws `ours` with that many triangles.
 
 #[path = "../tests/common/school.rs"]
 mod school;
@@ -189,7 +189,12 @@ impl Arm {
 }
 
 /// Finds the arms, times them by turns, and prints a row for each.
-fn compare(gpu: &Gpu, school: &SampleSchool, members: usize) -> Result<(), ViewError> {
+fn compare(
+    gpu: &Gpu,
+    school: &SampleSchool,
+    members: usize,
+    budget: Option<f64>,
+) -> Result<(), ViewError> {
     let mut stage = Stage::new(gpu, school, members)?;
     let full = Arm::of(PolicyName::None, None);
     let mut selector = stage.selector(&full);
@@ -204,7 +209,10 @@ fn compare(gpu: &Gpu, school: &SampleSchool, members: usize) -> Result<(), ViewE
     }
     let mut arms = vec![full];
     let limits = if is_slow { &[None, Some(12.0)][..] } else { &[None, Some(6.0), Some(12.0)] };
-    for &px in limits {
+    if let Some(fineness) = budget {
+        arms.push(Arm { fineness, ..Arm::of(PolicyName::Ours, None) });
+    }
+    for &px in limits.iter().filter(|_| budget.is_none()) {
         let by_budget = Arm { fineness: all / 32.0, ..Arm::of(PolicyName::Ours, px) };
         arms.extend(stage.coarsest(by_budget, &picture)?);
         let by_error = Arm { fineness: 0.5, ..Arm::of(PolicyName::ScreenError, px) };
@@ -250,10 +258,14 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let members = match &words[..] {
-        [] => vec![150, 10_000],
-        [option, members] if option == "--members" => vec![members.parse()?],
-        _ => return Err("the only option is --members N".into()),
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let (members, budget) = match words[..] {
+        [] => (vec![150, 1_000, 10_000], None),
+        ["--members", members] => (vec![members.parse()?], None),
+        ["--members", members, "--budget", budget] => {
+            (vec![members.parse()?], Some(budget.parse()?))
+        }
+        _ => return Err("the options are --members N, and then --budget TRIANGLES".into()),
     };
     let gpu = Gpu::headless()?;
     println!("{}, {} x {}, FLIP at most {FLIP}", gpu.name(), SIZE[0], SIZE[1]);
@@ -263,7 +275,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     );
     println!("|--:|---|--:|--:|--:|--:|--:|--:|");
     for members in members {
-        compare(&gpu, &school, members)?;
+        compare(&gpu, &school, members, budget)?;
     }
     Ok(())
 }

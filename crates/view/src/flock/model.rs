@@ -5,11 +5,13 @@ use std::ops::Range;
 use meshlod::flock::levels::{LevelTable, Look};
 use meshlod::mesh::{Layer, LayerKind, WedgeId};
 use meshlod::picture::Paint;
-use wgpu::{Buffer, BufferUsages};
+use wgpu::{
+    AddressMode, Buffer, BufferUsages, FilterMode, MipmapFilterMode, Sampler, SamplerDescriptor,
+};
 
-use crate::ViewError;
 use crate::mesh::{MaterialBinding, Surface, VertexAttributes, VertexColors, fractions};
 use crate::renderer::{Renderer, buffer_of};
+use crate::{Gpu, ViewError};
 
 /// All levels of a table in one vertex and one index buffer, with the materials of the model.
 #[derive(Debug)]
@@ -45,6 +47,7 @@ impl FlockLevels {
         gpu.check_buffer("the flock's levels", 12 * table.triangles.len() as u64)?;
         let positions = bytemuck::cast_slice(&table.positions);
         let attributes = attributes(table, &surface);
+        let sampler = sampler(gpu);
         let (triangles, draws) = by_material(table, surface.materials.len());
         Ok(Self {
             positions: buffer_of(gpu, "flock positions", positions, BufferUsages::VERTEX),
@@ -64,12 +67,25 @@ impl FlockLevels {
             materials: surface
                 .materials
                 .iter()
-                .map(|m| MaterialBinding::new(renderer, m))
+                .map(|m| MaterialBinding::with_sampler(renderer, m, &sampler))
                 .collect(),
             levels: table.levels.len(),
             coarsest: table.chains[0].levels.end - 1,
         })
     }
+}
+
+/// Returns a sampler without anisotropy: members are small, and llvmpipe visits every texel of a
+/// footprint, which on slivers of coarse levels is most of the texture.
+fn sampler(gpu: &Gpu) -> Sampler {
+    gpu.device.create_sampler(&SamplerDescriptor {
+        address_mode_u: AddressMode::Repeat,
+        address_mode_v: AddressMode::Repeat,
+        mag_filter: FilterMode::Linear,
+        min_filter: FilterMode::Linear,
+        mipmap_filter: MipmapFilterMode::Linear,
+        ..Default::default()
+    })
 }
 
 /// Returns normal, colour and texture coordinates of every vertex of a table.

@@ -2,8 +2,8 @@
 
 use bytemuck::{Pod, Zeroable};
 use wgpu::{
-    BindGroup, BindGroupLayout, BindingResource, BufferUsages, RenderPipeline, ShaderStages,
-    VertexBufferLayout, VertexStepMode, vertex_attr_array,
+    BindGroup, BindGroupLayout, BindingResource, BufferUsages, RenderPipeline, Sampler,
+    ShaderStages, VertexBufferLayout, VertexStepMode, vertex_attr_array,
 };
 
 use super::colors::SurfaceMaterial;
@@ -83,6 +83,15 @@ impl Renderer {
 
 impl MaterialBinding {
     pub(crate) fn new(renderer: &Renderer, material: &SurfaceMaterial<'_>) -> Self {
+        Self::with_sampler(renderer, material, &renderer.sampler)
+    }
+
+    /// Binds a material to a sampler of its own.
+    pub(crate) fn with_sampler(
+        renderer: &Renderer,
+        material: &SurfaceMaterial<'_>,
+        sampler: &Sampler,
+    ) -> Self {
         let gpu = renderer.gpu();
         let [r, g, b] = material.base_color;
         let uniforms = MaterialUniforms {
@@ -103,7 +112,7 @@ impl MaterialBinding {
             [
                 buffer.as_entire_binding(),
                 BindingResource::TextureView(&view),
-                BindingResource::Sampler(&renderer.sampler),
+                BindingResource::Sampler(sampler),
             ],
         );
         Self { bind_group }
