@@ -33,7 +33,7 @@ pub(super) fn show(app: &ViewerApp, ui: &mut Ui, out: &mut Vec<Action>) {
                 let color = if notice.is_problem { theme::ERROR } else { theme::STRONG };
                 ui.add(egui::Label::new(small(notice.text.clone(), color)).truncate());
             } else {
-                ui.label(small(app.renderer.gpu().name().to_owned(), theme::WEAK));
+                ui.label(small(app.renderers.full.gpu().name().to_owned(), theme::WEAK));
             }
         });
     });
