@@ -54,7 +54,7 @@ const ROOM: f64 = 1.7;
 /// Rounds of blur, with the distance of their taps in pixels.
 const BLURS: [f32; 3] = [1.0, 2.0, 3.5];
 
-const OPACITY: f32 = 0.55;
+const OPACITY: f32 = 0.45;
 
 impl Ground {
     /// Draws the shadow of a thing within `bounds` that `draw` draws with a placement; `origin` is

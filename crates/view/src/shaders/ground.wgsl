@@ -36,7 +36,7 @@ fn shadow(in: Pixel) -> @location(0) vec4f {
     // Nothing is left at the rim of the square.
     let from_middle = length(in.uv * 2.0 - 1.0);
     let fade = 1.0 - smoothstep(0.75, 1.0, from_middle);
-    return vec4f(0.05, 0.06, 0.08, dark * fade * place.opacity);
+    return vec4f(0.0, 0.0, 0.0, dark * fade * place.opacity);
 }
 
 @vertex
