@@ -1,4 +1,4 @@
-//! What keys and panels ask for, done.
+//! Actions: the wishes of keys and panels, carried out.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -21,7 +21,7 @@ const FLIGHT_SPEED: f64 = 0.4;
 /// Radius of what is shown around a finding, relative to the diagonal.
 const FINDING_RADIUS: f64 = 0.03;
 
-/// What a panel asks for.
+/// Wish of a panel.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Action {
     Do(Command),

@@ -30,7 +30,7 @@ pub(crate) struct Document {
     pub cut: Option<CutControl>,
 }
 
-/// What of a document is shown.
+/// Side of a document that is shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum ShownSide {
     #[default]
@@ -40,7 +40,7 @@ pub(crate) enum ShownSide {
     Both,
 }
 
-/// What a level must reach.
+/// Goal of a level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LevelGoal {
     Faces,

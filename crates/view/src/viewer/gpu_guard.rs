@@ -1,4 +1,4 @@
-//! What the GPU complains about, kept for the frame to look at.
+//! Complaints of the GPU, kept for the frame to look at.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -7,10 +7,10 @@ use crate::Gpu;
 
 /// Loss of the device, and errors that no call returned.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct GpuGuard(Arc<Shared>);
+pub(crate) struct GpuGuard(Arc<GpuTrouble>);
 
 #[derive(Debug, Default)]
-struct Shared {
+struct GpuTrouble {
     is_lost: AtomicBool,
     errors: Mutex<Vec<String>>,
 }

@@ -4,7 +4,7 @@ use egui::{Key, Modifiers, PointerButton};
 
 use crate::stage::Side;
 
-/// What a key asks for.
+/// Wish of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Command {
     Look(Side),
@@ -32,7 +32,7 @@ pub(crate) enum OrbitStep {
     Down,
 }
 
-/// What a drag of the pointer does.
+/// Effect of a drag of the pointer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum DragAction {
     Orbit,

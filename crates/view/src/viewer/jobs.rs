@@ -44,10 +44,10 @@ pub(crate) enum JobKind {
 
 /// Progress of a job and the wish to end it, shared with its thread.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Watch(Arc<Shared>);
+pub(crate) struct Watch(Arc<JobState>);
 
 #[derive(Debug, Default)]
-struct Shared {
+struct JobState {
     is_cancelled: AtomicBool,
     /// Share of the work that is done, in millionths; 0 if it is not known.
     done: AtomicU64,

@@ -1,4 +1,4 @@
-//! What happens when jobs are done.
+//! News: the results of jobs, taken in.
 
 use std::sync::Arc;
 
@@ -26,7 +26,8 @@ impl ViewerApp {
             News::Opened(loaded, subject, state) => self.opened(loaded, subject, state),
             News::Simplified(id, level) => self.simplified(id, *level),
             News::Compared(id, comparison) => self.compared(id, *comparison),
-            News::Checked(id, report, places) => {
+            News::Checked(id, checked) => {
+                let (report, places) = *checked;
                 if let Some(document) = self.by_id(id) {
                     document.findings.unfolded =
                         report.summary.found().map(|(kind, _)| kind).next();

@@ -1,4 +1,4 @@
-//! What the viewer is asked for, and what it reports at the end.
+//! Options of the viewer, and its report at the end.
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -24,7 +24,7 @@ pub struct ViewerOptions {
     pub started: Instant,
 }
 
-/// What happened while the viewer was open.
+/// Figures and problems of the time while the viewer was open.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct ViewerReport {
     /// Name of the GPU.

@@ -1,4 +1,4 @@
-//! What the viewer remembers from one run to the next, beside its window.
+//! Settings that the viewer remembers from one run to the next, beside its window.
 
 use serde::{Deserialize, Serialize};
 

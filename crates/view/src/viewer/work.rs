@@ -21,13 +21,13 @@ use crate::stage::{
 };
 use crate::{Canvas, Renderer, ViewError};
 
-/// What jobs bring back.
+/// Result of a job.
 pub(crate) enum News {
     /// A file, and its subject; with normals that are still to be refined, or not.
     Opened(Arc<Loaded>, Subject, NormalsState),
     Simplified(DocumentId, Box<MadeLevel>),
     Compared(DocumentId, Box<Comparison>),
-    Checked(DocumentId, CheckReport, Vec<Option<[f64; 3]>>),
+    Checked(DocumentId, Box<(CheckReport, Vec<Option<[f64; 3]>>)>),
     Colored(SubjectId, Subject),
     Saved(PathBuf),
 }
@@ -260,7 +260,7 @@ pub(crate) fn check(document: DocumentId, loaded: &Loaded, watch: &Watch) -> Out
         return Ok(None);
     }
     let places = report.findings.iter().map(|finding| finding.place(&loaded.mesh)).collect();
-    Ok(Some(News::Checked(document, report, places)))
+    Ok(Some(News::Checked(document, Box::new((report, places)))))
 }
 
 /// Uploads the colours of faces that a colouring needs.

@@ -1,4 +1,4 @@
-//! What the file holds.
+//! Contents of the file.
 
 use egui::Ui;
 
