@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // The vertices of all levels are uploaded once; a thread follows the camera with a cut.
     let mut cut = GpuCut::new(&renderer, &model, &CutVertices::new(&model)?)?;
-    let follower = CutFollower::start(model, Some(20_000));
+    let mut follower = CutFollower::start(model, Some(20_000));
     let placement = renderer.placement();
     let backdrop = renderer.backdrop(Background::default());
 

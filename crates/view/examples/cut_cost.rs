@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let vertices = CutVertices::new(&model)?;
     println!("vertices of all levels: {:.0} ms", start.elapsed().as_secs_f64() * 1e3);
     let mut cut = GpuCut::new(&renderer, &model, &vertices)?;
-    let follower = CutFollower::start(model, None);
+    let mut follower = CutFollower::start(model, None);
     let bounds = vertices.bounds();
     let orbit = Orbit { middle: bounds.center(), radius: 1.1 * bounds.diagonal() };
 
@@ -79,7 +79,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("{} faces at 1 px, 1920 x 1080, orbit of .1 degrees a frame", cut.faces());
     println!("sent: {sent:.3} % of the index buffer, at most {most:.3} %");
     println!("cut: {:.2} ms; draw: {:.1} ms (medians)", median(|f| f.1).0, median(|f| f.2).0);
-    look_for_cracks(&gpu, &renderer, &mut cut, &follower, &orbit, &bounds, views)
+    look_for_cracks(&gpu, &renderer, &mut cut, &mut follower, &orbit, &bounds, views)
 }
 
 /// Draws cuts of many kinds from many sides, and counts background pixels inside the silhouette that
@@ -88,7 +88,7 @@ fn look_for_cracks(
     gpu: &Gpu,
     renderer: &Renderer,
     cut: &mut GpuCut,
-    follower: &CutFollower,
+    follower: &mut CutFollower,
     orbit: &Orbit,
     bounds: &Bounds,
     views: u32,

@@ -2,10 +2,11 @@
 
 use meshlod::picture::Picture;
 use wgpu::{
-    BufferDescriptor, BufferUsages, Color, CommandEncoder, Extent3d, LoadOp, MapMode, Operations,
+    BufferDescriptor, BufferUsages, Color, CommandEncoder, Extent3d, LoadOp, Operations,
     RenderPass, StoreOp, Texture, TextureUsages, TextureView,
 };
 
+use crate::read::map;
 use crate::texture::texture_2d;
 use crate::{Gpu, TargetFormat, ViewError};
 
@@ -35,20 +36,21 @@ impl Canvas {
         Self::with_format(gpu, size, TargetFormat::CANVAS)
     }
 
-    /// Creates a transparent canvas with another number of samples per pixel than
-    /// [`TargetFormat::CANVAS`], or other formats.
+    /// Creates a transparent canvas with the depths and the samples per pixel of a format, which a
+    /// renderer for that format draws on; its colours are those of [`TargetFormat::CANVAS`].
     ///
     /// # Errors
-    /// As [`Canvas::new`].
+    /// As [`Canvas::new`], and a format of other colours.
     pub fn with_format(gpu: &Gpu, size: [u32; 2], format: TargetFormat) -> Result<Self, ViewError> {
         let limit = gpu.device.limits().max_texture_dimension_2d;
         if size.iter().any(|&side| side == 0 || side > limit) {
-            let [width, height] = size;
-            let why = format!(
-                "a picture of {width} x {height} pixels: sides must be between 1 and {limit}"
-            );
-            return Err(ViewError::Failed(why));
+            return Err(ViewError::Size { size, limit });
         }
+        if format.color != TargetFormat::CANVAS.color || ![1, 4].contains(&format.samples) {
+            return Err(ViewError::Unsupported("draw on a canvas of this format"));
+        }
+        let pixels = u64::from(size[0]) * u64::from(size[1]);
+        gpu.check_buffer("the pixels of a picture", 4 * pixels)?;
         let attachment = TextureUsages::RENDER_ATTACHMENT;
         let view = |texture: &Texture| texture.create_view(&Default::default());
         let samples = (format.samples > 1)
@@ -156,17 +158,7 @@ impl Canvas {
             Extent3d { width, height, depth_or_array_layers: 1 },
         );
         self.gpu.queue.submit([encoder.finish()]);
-        let (send, receive) = std::sync::mpsc::channel();
-        buffer.map_async(MapMode::Read, .., move |done| {
-            let _ = send.send(done);
-        });
-        self.gpu.wait()?;
-        let failed = |why: String| ViewError::Failed(why);
-        receive
-            .recv()
-            .map_err(|error| failed(error.to_string()))?
-            .map_err(|error| failed(error.to_string()))?;
-        let bytes = buffer.get_mapped_range(..).map_err(|error| failed(error.to_string()))?;
+        let bytes = map(&self.gpu, &buffer)?;
         let rows = bytes.chunks_exact(row as usize);
         let rgba = rows.flat_map(|bytes| &bytes[..4 * width as usize]).copied().collect();
         Ok(Picture::new(width, height, rgba)?)

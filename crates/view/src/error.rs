@@ -4,6 +4,8 @@ use meshlod::flock::scene::SceneError;
 use meshlod::picture::PictureError;
 use thiserror::Error;
 
+use crate::CutError;
+
 /// Reason why something cannot be drawn on the GPU.
 #[derive(Debug, Error)]
 pub enum ViewError {
@@ -19,6 +21,23 @@ pub enum ViewError {
     /// There is no screen, or no window can be opened on it.
     #[error("the window cannot be opened: {0}")]
     NoWindow(String),
+    /// A picture has no pixels, or more than the GPU can draw.
+    #[error("a picture of {} x {} pixels: sides must be between 1 and {limit}", size[0], size[1])]
+    Size {
+        /// Width and height that were asked for, in pixels.
+        size: [u32; 2],
+        /// Longest side that the GPU can draw, in pixels.
+        limit: u32,
+    },
+    /// A subject does not have the colours that a script asks for.
+    #[error("it has no colours of the kind \"{0}\"")]
+    NoColors(&'static str),
+    /// The GPU lacks a feature.
+    #[error("this GPU cannot {0}")]
+    Unsupported(&'static str),
+    /// A cut cannot follow its query.
+    #[error(transparent)]
+    Cut(#[from] CutError),
     /// Something needs a larger buffer or texture than the GPU has.
     #[error("{what} needs {needed} bytes in one buffer, but this GPU allows {limit}")]
     TooLarge {

@@ -1,5 +1,8 @@
 //! The GPU: a device and its queue.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use wgpu::{
     Adapter, Backends, Device, Features, Instance, InstanceDescriptor, PowerPreference, Queue,
 };
@@ -14,12 +17,11 @@ pub struct Gpu {
     /// Queue that takes uploads and commands.
     pub queue: Queue,
     name: String,
+    is_lost: Arc<AtomicBool>,
 }
 
 /// Features that are used where the GPU has them.
-const WANTED: Features = Features::INDIRECT_FIRST_INSTANCE
-    .union(Features::MULTI_DRAW_INDIRECT_COUNT)
-    .union(Features::TIMESTAMP_QUERY);
+const WANTED: Features = Features::INDIRECT_FIRST_INSTANCE;
 
 impl Gpu {
     /// Opens the fastest GPU without a window.
@@ -37,13 +39,22 @@ impl Gpu {
         let adapter = [first, all].into_iter().find_map(adapter).ok_or(ViewError::NoGpu)?;
         let opened = pollster::block_on(adapter.request_device(&Self::descriptor(&adapter)));
         let (device, queue) = opened.map_err(|error| ViewError::Failed(error.to_string()))?;
-        Ok(Self::new(&adapter, device, queue))
+        let this = Self::new(&adapter, device, queue);
+        let is_lost = Arc::clone(&this.is_lost);
+        let note = move |_, _| is_lost.store(true, Ordering::Relaxed);
+        this.device.set_device_lost_callback(note);
+        Ok(this)
     }
 
     /// Takes a device that was opened elsewhere, such as by a window.
     pub fn new(adapter: &Adapter, device: Device, queue: Queue) -> Self {
         let info = adapter.get_info();
-        Self { device, queue, name: format!("{} ({})", info.name, info.backend) }
+        Self {
+            device,
+            queue,
+            name: format!("{} ({})", info.name, info.backend),
+            is_lost: Arc::default(),
+        }
     }
 
     /// Returns a description of the device to open on an adapter: with all of its limits, and the
@@ -62,11 +73,26 @@ impl Gpu {
         &self.name
     }
 
+    /// Returns the flag that says that the device was lost, for the callback that notices: a GPU
+    /// without a window has one of its own.
+    #[cfg(feature = "viewer")]
+    pub(crate) fn loss(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.is_lost)
+    }
+
+    /// Returns true if the device was lost. To poll it then would end the program.
+    pub(crate) fn is_lost(&self) -> bool {
+        self.is_lost.load(Ordering::Relaxed)
+    }
+
     /// Waits until everything submitted so far is done.
     ///
     /// # Errors
     /// The device was lost.
     pub fn wait(&self) -> Result<(), ViewError> {
+        if self.is_lost() {
+            return Err(ViewError::Failed("the device was lost".into()));
+        }
         let done = self.device.poll(wgpu::PollType::wait_indefinitely());
         done.map(|_| ()).map_err(|error| ViewError::Failed(error.to_string()))
     }

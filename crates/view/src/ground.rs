@@ -6,7 +6,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 use meshlod::mesh::Bounds;
-use meshlod::picture::{Camera, Lighting, UpAxis, View};
+use meshlod::picture::{Camera, Lighting, UpAxis};
 use wgpu::{
     BindGroup, BlendState, Buffer, BufferUsages, CommandEncoder, CompareFunction, FilterMode,
     PrimitiveTopology, RenderPass, RenderPipeline, SamplerDescriptor, TextureFormat, TextureUsages,
@@ -76,10 +76,11 @@ impl Ground {
         };
         let mut middle = DVec3::from(bounds.center());
         let [a, b] = [(axis + 1) % 3, (axis + 2) % 3].map(|k| bounds.max[k] - bounds.min[k]);
-        let half = (0.5 * ROOM * a.hypot(b)).max(bounds.diagonal() * 1e-3);
+        let half =
+            (0.5 * ROOM * a.hypot(b)).max(bounds.diagonal() * 1e-3).max(f64::MIN_POSITIVE.sqrt());
         middle[axis] = bounds.min[axis];
 
-        let canvas = Canvas::new(gpu, [SIDE; 2])?;
+        let canvas = Canvas::with_format(gpu, [SIDE; 2], renderer.format())?;
         let placement = renderer.placement();
         let above = camera_above(bounds, middle, half, axis, ahead);
         let shade = Shade { lighting: Lighting::Unlit, ..Shade::default() };
@@ -153,9 +154,7 @@ fn camera_above(bounds: &Bounds, middle: DVec3, half: f64, axis: usize, ahead: V
     let height = (bounds.max[axis] - bounds.min[axis]) + AWAY * half;
     eye[axis] += height;
     let fov_rad = 2.0 * (half / height).atan();
-    let camera = Camera::look_at(eye.into(), middle.into(), ahead.as_dvec3().into(), fov_rad);
-    debug_assert!(View::default().fov_rad > fov_rad);
-    camera
+    Camera::look_at(eye.into(), middle.into(), ahead.as_dvec3().into(), fov_rad)
 }
 
 /// Blurs a map of coverage.

@@ -53,7 +53,9 @@ mod upload;
 pub mod viewer;
 
 pub use canvas::Canvas;
-pub use cut::{CutFollower, CutQuery, CutStep, CutTolerance, CutVertices, GpuCut, Transition};
+pub use cut::{
+    CutError, CutFollower, CutQuery, CutStep, CutTolerance, CutVertices, GpuCut, Transition,
+};
 pub use error::ViewError;
 pub use flock::{GpuFlock, GpuObstacles, GpuSelection, HiZ};
 pub use gpu::Gpu;

@@ -19,14 +19,19 @@ pub(crate) fn read_buffer(gpu: &Gpu, from: &Buffer, bytes: u64) -> Result<Vec<u8
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     encoder.copy_buffer_to_buffer(from, 0, &copy, 0, bytes);
     gpu.queue.submit([encoder.finish()]);
+    map(gpu, &copy)
+}
+
+/// Returns the bytes of a buffer that can be mapped, after everything submitted so far.
+pub(crate) fn map(gpu: &Gpu, buffer: &Buffer) -> Result<Vec<u8>, ViewError> {
     let (send, receive) = std::sync::mpsc::channel();
-    copy.map_async(MapMode::Read, .., move |done| {
+    buffer.map_async(MapMode::Read, .., move |done| {
         let _ = send.send(done);
     });
     gpu.wait()?;
     let failed = |why: String| ViewError::Failed(why);
     let done = receive.recv().map_err(|error| failed(error.to_string()))?;
     done.map_err(|error| failed(error.to_string()))?;
-    let mapped = copy.get_mapped_range(..).map_err(|error| failed(error.to_string()))?;
+    let mapped = buffer.get_mapped_range(..).map_err(|error| failed(error.to_string()))?;
     Ok(mapped.to_vec())
 }

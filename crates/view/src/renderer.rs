@@ -259,7 +259,7 @@ pub(crate) fn bind_group<'a>(
     device.create_bind_group(&BindGroupDescriptor { label: None, layout, entries: &entries })
 }
 
-/// Creates a buffer with contents. An empty one gets four bytes, since none may be empty.
+/// Creates a buffer with contents. An empty one gets 16 bytes, since none may be empty.
 pub(crate) fn buffer_of(
     gpu: &Gpu,
     label: &str,

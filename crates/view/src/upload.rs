@@ -48,7 +48,7 @@ fn settle(gpu: &Gpu) {
     gpu.queue.on_submitted_work_done(move || flag.store(true, Ordering::Release));
     while !done.load(Ordering::Acquire) {
         // A device that was lost never gets done.
-        if gpu.device.poll(PollType::Poll).is_err() {
+        if gpu.is_lost() || gpu.device.poll(PollType::Poll).is_err() {
             return;
         }
         std::thread::sleep(Duration::from_micros(500));

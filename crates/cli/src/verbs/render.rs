@@ -126,6 +126,11 @@ impl Render {
             let reason = "cannot be combined with --checker or --heat-against in this format";
             return Err(Failure::usage(format_args!("--gpu {reason}")));
         }
+        let is_compressed = self.input.extension().is_some_and(|s| s.eq_ignore_ascii_case("mlq"));
+        if self.wireframe && is_compressed {
+            let reason = "a compressed mesh has no wireframe: decompress it first";
+            return Err(Failure::usage(format_args!("--wireframe: {reason}")));
+        }
         session.progress.stage("drawing");
         let display = Display {
             shading: if self.flat { Shading::Flat } else { Shading::Smooth },

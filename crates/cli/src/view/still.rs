@@ -59,7 +59,7 @@ fn draw(
         let camera = view_camera(camera, size);
         let tolerance = CutTolerance::Pixels { camera, pixels: 1.0 };
         levels.ask(CutQuery { focus: Focus::Everything, tolerance });
-        levels.finish().map_err(|error| ViewError::Failed(error.to_string()))?;
+        levels.finish()?;
     }
     let placement = renderer.placement();
     placement.set(camera, size, subject.origin(), &subject.display(display).shade());

@@ -2,13 +2,14 @@
 
 use std::cell::OnceCell;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
+use std::sync::mpsc::{Receiver, Sender, SyncSender, TryRecvError, channel, sync_channel};
 use std::thread;
 
 use meshlod::mesh::Bounds;
 use meshlod::multires::{
     Cut, Focus, Implicit, Query, QueryError, Tolerance, UpdateLimits, ViewCamera,
 };
+use thiserror::Error;
 
 /// Query for a [`CutFollower`].
 #[derive(Clone, Debug)]
@@ -50,59 +51,106 @@ pub struct CutStep {
     pub milliseconds: f64,
 }
 
-/// Follows a moving query on a thread of its own. Drop it to end the thread.
+/// Reason why a follower has no answer.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum CutError {
+    /// The query is invalid; the cut has not changed.
+    #[error(transparent)]
+    Query(#[from] QueryError),
+    /// The thread has ended, which it never does by itself.
+    #[error("the thread that follows the cut has ended")]
+    Ended,
+}
+
+/// Follows a moving query on a thread of its own, which ends when this is dropped.
 #[derive(Debug)]
 pub struct CutFollower {
-    queries: Option<Sender<CutQuery>>,
-    steps: Option<Receiver<Result<CutStep, QueryError>>>,
-    thread: Option<thread::JoinHandle<()>>,
+    queries: Sender<(u64, CutQuery)>,
+    answers: Receiver<(u64, Result<CutStep, QueryError>)>,
+    /// Number of the last query.
+    asked: u64,
+    is_waiting: bool,
 }
 
 impl CutFollower {
     /// Starts at the coarsest level: the first step has all its faces.
     ///
     /// A step does at most `changes` splits and merges, which bounds what a frame uploads: a change
-    /// touches about six slots of 12 bytes. `None` answers every query in one step.
+    /// touches about six slots of 12 bytes. `None` answers every query in one step, and so does a
+    /// search for a number of faces in any case.
     pub fn start(model: Arc<Implicit>, changes: Option<usize>) -> Self {
         let (queries, incoming) = channel();
         // One step at a time: the next one waits until this one has been taken.
-        let (outgoing, steps) = sync_channel(0);
-        let thread = thread::spawn(move || Worker::new(&model, changes).serve(incoming, outgoing));
-        Self { queries: Some(queries), steps: Some(steps), thread: Some(thread) }
+        let (outgoing, answers) = sync_channel(0);
+        thread::spawn(move || Worker::new(&model, changes).serve(&incoming, &outgoing));
+        Self { queries, answers, asked: 0, is_waiting: false }
     }
 
     /// Asks for another cut; queries that have not been begun are forgotten.
-    pub fn ask(&self, query: CutQuery) {
-        if let Some(queries) = &self.queries {
-            // A thread that has ended is told by the steps.
-            let _ = queries.send(query);
+    pub fn ask(&mut self, query: CutQuery) {
+        self.asked += 1;
+        self.is_waiting = true;
+        // A thread that has ended is noticed by the next poll.
+        let _ = self.queries.send((self.asked, query));
+    }
+
+    /// Returns true until the last query has been answered to the end.
+    pub fn is_waiting(&self) -> bool {
+        self.is_waiting
+    }
+
+    /// Returns the next step, if it is ready; never waits. It may still be one towards an earlier
+    /// query.
+    ///
+    /// # Errors
+    /// The last query is invalid, or the thread has ended.
+    pub fn poll(&mut self) -> Option<Result<CutStep, CutError>> {
+        match self.answers.try_recv() {
+            Ok(answer) => self.take(answer),
+            Err(TryRecvError::Empty) => None,
+            Err(TryRecvError::Disconnected) => self.end(),
         }
     }
 
-    /// Returns the next step, if there is one; never waits.
-    ///
-    /// # Errors
-    /// The query is invalid; the cut has not changed.
-    pub fn poll(&self) -> Option<Result<CutStep, QueryError>> {
-        self.steps.as_ref()?.try_recv().ok()
-    }
-
-    /// Waits for the next step of a query that was asked; `None` if the thread has ended.
+    /// Waits for the next step; `None` if nothing is asked.
     ///
     /// # Errors
     /// As [`CutFollower::poll`].
-    pub fn wait(&self) -> Option<Result<CutStep, QueryError>> {
-        self.steps.as_ref()?.recv().ok()
-    }
-}
-
-impl Drop for CutFollower {
-    fn drop(&mut self) {
-        // Closed channels end the thread, wherever it is.
-        (self.queries, self.steps) = (None, None);
-        if let Some(thread) = self.thread.take() {
-            let _ = thread.join();
+    pub fn wait(&mut self) -> Option<Result<CutStep, CutError>> {
+        while self.is_waiting {
+            let step = match self.answers.recv() {
+                Ok(answer) => self.take(answer),
+                Err(_) => self.end(),
+            };
+            if step.is_some() {
+                return step;
+            }
         }
+        None
+    }
+
+    /// Takes an answer; `None` for a refusal of an earlier query.
+    fn take(
+        &mut self,
+        (number, step): (u64, Result<CutStep, QueryError>),
+    ) -> Option<Result<CutStep, CutError>> {
+        let is_last = number == self.asked;
+        match step {
+            Ok(step) => {
+                self.is_waiting = !(is_last && step.is_done);
+                Some(Ok(step))
+            }
+            Err(error) if is_last => {
+                self.is_waiting = false;
+                Some(Err(error.into()))
+            }
+            Err(_) => None,
+        }
+    }
+
+    fn end(&mut self) -> Option<Result<CutStep, CutError>> {
+        let was_waiting = std::mem::take(&mut self.is_waiting);
+        was_waiting.then_some(Err(CutError::Ended))
     }
 }
 
@@ -139,20 +187,20 @@ impl<'m> Worker<'m> {
 
     fn serve(
         mut self,
-        queries: Receiver<CutQuery>,
-        steps: SyncSender<Result<CutStep, QueryError>>,
+        queries: &Receiver<(u64, CutQuery)>,
+        answers: &SyncSender<(u64, Result<CutStep, QueryError>)>,
     ) {
-        let Ok(mut query) = queries.recv() else { return };
+        let Ok((mut number, mut query)) = queries.recv() else { return };
         loop {
-            query = queries.try_iter().last().unwrap_or(query);
+            (number, query) = queries.try_iter().last().unwrap_or((number, query));
             let step = self.step(&query);
             let is_done = step.as_ref().map_or(true, |step| step.is_done);
-            if steps.send(step).is_err() {
+            if answers.send((number, step)).is_err() {
                 return;
             }
             if is_done {
                 let Ok(next) = queries.recv() else { return };
-                query = next;
+                (number, query) = next;
             }
         }
     }
@@ -200,7 +248,8 @@ impl<'m> Worker<'m> {
     fn search(&mut self, query: &CutQuery, count: usize) -> Result<bool, QueryError> {
         let diagonal = *self.diagonal.get_or_init(|| diagonal(self.model));
         let range = diagonal * 1e-9..diagonal;
-        let mut error = self.error.unwrap_or(diagonal * 1e-2);
+        let last = self.error.filter(|error| range.contains(error));
+        let mut error = last.unwrap_or(diagonal * 1e-2);
         // Twice the error until the faces are few enough, or half of it while they are.
         let is_fine = self.faces_at(query, error)? > count;
         let by = if is_fine { 2.0 } else { 0.5 };
@@ -211,11 +260,7 @@ impl<'m> Worker<'m> {
         for _ in 0..ROUNDS {
             let middle = (low * high).sqrt();
             let faces = self.faces_at(query, middle)?;
-            if faces > count {
-                low = middle
-            } else {
-                high = middle
-            }
+            *(if faces > count { &mut low } else { &mut high }) = middle;
             if faces <= count && faces as f64 > 0.99 * count as f64 {
                 break;
             }
@@ -263,7 +308,7 @@ mod tests {
 
     /// Applies steps until one is done, and returns the triangles.
     fn follow(
-        follower: &CutFollower,
+        follower: &mut CutFollower,
         query: CutQuery,
         slots: &mut HashMap<u32, [u32; 3]>,
     ) -> CutStep {
@@ -277,7 +322,7 @@ mod tests {
                 };
             }
             assert_eq!(slots.len(), step.faces);
-            if step.is_done {
+            if !follower.is_waiting() {
                 return step;
             }
         }
@@ -287,10 +332,10 @@ mod tests {
     fn patches_add_up_to_the_cut() {
         let model = model();
         for changes in [None, Some(40)] {
-            let follower = CutFollower::start(model.clone(), changes);
+            let mut follower = CutFollower::start(model.clone(), changes);
             let mut slots = HashMap::new();
             for error in [1.0, 0.01, 0.0, 0.002, 0.1] {
-                follow(&follower, uniform(error), &mut slots);
+                follow(&mut follower, uniform(error), &mut slots);
                 let cut = Cut::at(&model, &Query::uniform(error)).unwrap();
                 let sorted = |all: Vec<[u32; 3]>| {
                     let mut all: Vec<_> = all.into_iter().map(rotated).collect();
@@ -316,23 +361,45 @@ mod tests {
 
     #[test]
     fn a_number_of_faces_is_reached_from_below() {
-        let follower = CutFollower::start(model(), Some(100));
+        let mut follower = CutFollower::start(model(), Some(100));
         let mut slots = HashMap::new();
-        for count in [500, 2_000, 100] {
+        let all = follow(&mut follower, uniform(0.0), &mut slots).faces;
+        // Beyond both ends, too: what is found there must not lead the next search astray.
+        for (count, least) in
+            [(500, 450), (2_000, 1_800), (0, 0), (2_000, 1_800), (2 * all, all), (100, 80)]
+        {
             let tolerance = CutTolerance::Faces(count);
             let query = CutQuery { focus: Focus::Everything, tolerance };
-            let step = follow(&follower, query, &mut slots);
-            assert!(step.faces <= count && step.faces > count * 9 / 10, "{} {count}", step.faces);
+            let step = follow(&mut follower, query, &mut slots);
+            let base = follow(&mut follower, uniform(1e9), &mut slots).faces;
+            assert!((least..=count.max(base)).contains(&step.faces), "{} {count}", step.faces);
         }
     }
 
     #[test]
+    fn a_step_towards_an_earlier_query_is_not_the_answer() {
+        let mut follower = CutFollower::start(model(), None);
+        let finest = Cut::new(&model()).face_count();
+        follower.ask(uniform(0.0));
+        // The worker may be done with it, and wait to hand it over.
+        std::thread::sleep(std::time::Duration::from_millis(50));
+        follower.ask(uniform(f64::NAN));
+        follower.ask(uniform(1e9));
+        let mut last = None;
+        while let Some(step) = follower.wait() {
+            last = Some(step.unwrap());
+        }
+        assert_eq!(last.map(|step| step.faces), Some(finest), "the coarsest, asked for last");
+        assert!(!follower.is_waiting() && follower.poll().is_none());
+    }
+
+    #[test]
     fn a_bad_query_is_an_error_and_changes_nothing() {
-        let follower = CutFollower::start(model(), None);
+        let mut follower = CutFollower::start(model(), None);
         let mut slots = HashMap::new();
-        follow(&follower, uniform(0.01), &mut slots);
+        follow(&mut follower, uniform(0.01), &mut slots);
         follower.ask(uniform(f64::NAN));
         assert!(follower.wait().unwrap().is_err());
-        assert!(follow(&follower, uniform(0.01), &mut slots).patches.is_empty());
+        assert!(follow(&mut follower, uniform(0.01), &mut slots).patches.is_empty());
     }
 }

@@ -8,7 +8,7 @@ use meshlod::multires::Implicit;
 use wgpu::{BindGroup, Buffer, BufferDescriptor, BufferUsages, IndexFormat, RenderPass};
 
 use self::dirty::DirtyRanges;
-pub use self::follower::{CutFollower, CutQuery, CutStep, CutTolerance};
+pub use self::follower::{CutError, CutFollower, CutQuery, CutStep, CutTolerance};
 pub use self::vertices::CutVertices;
 use crate::mesh::MaterialBinding;
 use crate::placement::{Placement, linear};

@@ -87,14 +87,14 @@ impl GpuFlock {
         self.origin = camera.eye();
         let slots =
             LevelSlots { levels: model.levels, impostors: self.impostor_slot, origin: self.origin };
+        // Before anything changes: what does not fit leaves the last frame as it was.
+        let needed = (flock.members.len() * size_of::<Instance>()) as u64;
+        self.gpu.check_buffer("the flock's members", needed)?;
         self.sorted.sort(&flock.members, levels, &slots);
         let bytes: &[u8] = bytemuck::cast_slice(&self.sorted.instances);
         if bytes.len() as u64 > self.instances.size() {
             // Room for all, so that members that come into view need no other buffer.
-            let members = flock.members.len();
-            let needed = (members * size_of::<Instance>()) as u64;
-            self.gpu.check_buffer("the flock's members", needed)?;
-            self.instances = instance_buffer(&self.gpu, members);
+            self.instances = instance_buffer(&self.gpu, flock.members.len());
         }
         if !bytes.is_empty() {
             self.gpu.queue.write_buffer(&self.instances, 0, bytes);

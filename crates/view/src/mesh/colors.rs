@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use meshlod::Mesh;
 use meshlod::mesh::LayerKind;
-use meshlod::picture::{ColorMap, Paint, PictureError, Texture, Values};
+use meshlod::picture::{Paint, PictureError, Texture, Values};
 
 /// Colours of a mesh: of its materials, its vertices and its faces. They are multiplied.
 pub(crate) struct Surface<'a> {
@@ -27,8 +27,11 @@ pub(crate) enum VertexColors {
     Vertices(Vec<[u8; 3]>),
 }
 
-/// Colour of what has none that the paint asks for, and of values that are not a number.
+/// Colour of a surface without what the paint asks for.
 const BARE: [u8; 3] = [205; 3];
+
+/// Colour of values that are not a number.
+const NOT_A_NUMBER: [u8; 3] = [128; 3];
 
 impl<'a> Surface<'a> {
     pub(crate) fn new(mesh: &'a Mesh, paint: &Paint<'a>) -> Result<Self, PictureError> {
@@ -94,12 +97,13 @@ impl<'a> Surface<'a> {
 /// Returns the colours of values.
 fn mapped(values: &Values<'_>) -> Vec<[u8; 3]> {
     let Values { values, map, range: [low, high] } = *values;
-    let color = |&value: &f32| color_of(map, (value - low) / (high - low));
+    let span = high - low;
+    let per_value = if span != 0.0 && span.is_finite() { 1.0 / span } else { 0.0 };
+    let color = |&value: &f32| match value.is_nan() {
+        true => NOT_A_NUMBER,
+        false => map.color(((value - low) * per_value).clamp(0.0, 1.0)),
+    };
     values.iter().map(color).collect()
-}
-
-fn color_of(map: ColorMap, t: f32) -> [u8; 3] {
-    if t.is_nan() { BARE } else { map.color(t) }
 }
 
 pub(super) fn check(what: &'static str, found: usize, expected: usize) -> Result<(), PictureError> {

@@ -51,7 +51,7 @@ impl GpuBlock {
         let [x, y, z] = block.widths;
         Self {
             u,
-            // Words that can be bound have fewer than 2^32 bits.
+            // Checked before: 2^32 bits are the most.
             start: block.start as u32,
             v,
             widths: u32::from_le_bytes([x, y, z, 0]),

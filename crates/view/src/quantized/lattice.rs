@@ -71,7 +71,7 @@ impl GpuShear {
         let width = if block.tuple == 1 { SINGLE + block.width } else { block.width };
         let away = |k: usize| block.middle[k].wrapping_sub(middle[(axis + 1 + k) % 3]);
         Self {
-            // Words that can be bound have fewer than 2^32 bits.
+            // Checked before: 2^32 bits are the most.
             start: block.start as u32,
             middle: [away(0), away(1), away(2)],
             spans: u32::from_le_bytes([x, y, z, block.axis]),

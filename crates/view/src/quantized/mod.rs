@@ -86,6 +86,9 @@ struct SchemeData<'a> {
     parts: Option<(Vec<[i32; 4]>, [f64; 3])>,
 }
 
+/// Most bytes of stored bits: shaders count bits in 32 bits.
+const MOST_WORD_BYTES: u64 = 1 << 29;
+
 impl GpuCompressed {
     /// Uploads a compressed mesh: stored bits, headers as matrices, and decoded faces.
     ///
@@ -202,8 +205,12 @@ impl GpuCompressed {
         gpu.check_buffer("the compressed mesh's normals", normals.len() as u64)?;
         gpu.check_buffer("the compressed mesh's faces", index_bytes)?;
         let [words, headers] = &data.storages;
-        check_storage(gpu, "the bits of compressed positions", words.len() as u64)?;
-        check_storage(gpu, "the headers of compressed positions", headers.len() as u64)?;
+        let (what, needed) = ("the bits of compressed positions", words.len() as u64);
+        gpu.check_storage(what, needed)?;
+        if needed > MOST_WORD_BYTES {
+            return Err(ViewError::TooLarge { what, needed, limit: MOST_WORD_BYTES });
+        }
+        gpu.check_storage("the headers of compressed positions", headers.len() as u64)?;
         let uniforms = SchemeUniforms { scale: data.scale.map(|x| x as f32), padding: 0 };
         let uniforms =
             buffer_of(gpu, "scheme", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM);
@@ -236,13 +243,6 @@ fn storage_of(gpu: &Gpu, bytes: &[u8], usage: BufferUsages) -> Buffer {
         padded.to_mut().resize(LEAST, 0);
     }
     buffer_of(gpu, "compressed positions", &padded, BufferUsages::STORAGE | usage)
-}
-
-/// Fails if a binding of this size would be beyond the limits of the GPU.
-fn check_storage(gpu: &Gpu, what: &'static str, needed: u64) -> Result<(), ViewError> {
-    gpu.check_buffer(what, needed)?;
-    let limit = gpu.device.limits().max_storage_buffer_binding_size;
-    if needed <= limit { Ok(()) } else { Err(ViewError::TooLarge { what, needed, limit }) }
 }
 
 /// Returns the range of all faces, as one instance.

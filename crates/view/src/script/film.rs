@@ -62,7 +62,15 @@ impl ScriptFilm {
         let framed = rig.pose();
         let mut stage = Stage::default();
         (stage.rig, stage.display) = (rig, script.display());
-        let subject = stage.add(Subject::new(&renderer, loaded)?);
+        let mut subject = Subject::new(&renderer, loaded)?;
+        let wanted = stage.display.coloring;
+        if let Subject::Mesh(mesh) = &mut subject {
+            mesh.color_faces(&renderer, &loaded.mesh, wanted)?;
+        }
+        if !subject.has(wanted) {
+            return Err(ViewError::NoColors(wanted.name()));
+        }
+        let subject = stage.add(subject);
         stage.show(&[subject]);
         let bounds = loaded.bounds;
         Ok(Self { script, renderer, canvas, stage, subject, framed, bounds, frame: 0 })
@@ -119,6 +127,6 @@ impl ScriptFilm {
 fn follow(levels: &mut LevelsSubject, query: CutQuery) -> Result<f64, ViewError> {
     let start = Instant::now();
     levels.ask(query);
-    levels.finish().map_err(|error| ViewError::Failed(error.to_string()))?;
+    levels.finish()?;
     Ok(start.elapsed().as_secs_f64() * 1e3)
 }

@@ -57,9 +57,20 @@ pub enum ScriptError {
     /// The script has no frames, or more than a film can have.
     #[error("frames must be between 1 and {MAX_FRAMES}, not {0}")]
     Frames(u32),
-    /// The first key is not at the first frame, or a key is not after the one before.
-    #[error("keys must begin at frame 0 and ascend; key {0} does not")]
-    Order(usize),
+    /// The first key is not at the first frame.
+    #[error("the first key must be at frame 0")]
+    NoStart,
+    /// A key is not after the one before, or beyond the last frame.
+    #[error("the frames of keys must ascend and be below {frames}; that of key {key} does not")]
+    Order {
+        /// Number of the key, from 0.
+        key: usize,
+        /// Number of frames.
+        frames: u32,
+    },
+    /// The size of the pictures is out of range.
+    #[error("sides of size must be between 1 and 16384 pixels, not {} x {}", .0[0], .0[1])]
+    Size([u32; 2]),
     /// A number of a key is out of range.
     #[error("key {key}: {name} must be {range}, not {value}")]
     Range {
@@ -110,11 +121,15 @@ impl Script {
             return Err(ScriptError::Fov(script.fov));
         }
         if script.keys.first().is_none_or(|key| key.frame != 0) {
-            return Err(ScriptError::Order(0));
+            return Err(ScriptError::NoStart);
         }
+        if !script.size.iter().all(|side| (1..=16_384).contains(side)) {
+            return Err(ScriptError::Size(script.size));
+        }
+        let frames = script.frames;
         for (at, pair) in script.keys.windows(2).enumerate() {
-            if pair[1].frame <= pair[0].frame {
-                return Err(ScriptError::Order(at + 1));
+            if pair[1].frame <= pair[0].frame || pair[1].frame >= frames {
+                return Err(ScriptError::Order { key: at + 1, frames });
             }
         }
         script.keys.iter().enumerate().try_for_each(|(at, key)| key.check(at))?;
@@ -170,7 +185,13 @@ mod tests {
         let error = |json: &str| Script::parse(json).unwrap_err().to_string();
         assert!(error(r#"{ "frames": 2, "keys": [], "sized": 1 }"#).contains("sized"));
         assert!(error(r#"{ "frames": 0, "keys": [] }"#).starts_with("frames must be"));
-        assert!(error(r#"{ "frames": 2, "keys": [] }"#).contains("key 0"));
+        assert!(error(r#"{ "frames": 2, "keys": [] }"#).contains("at frame 0"));
+        let keys = r#""keys": [{ "frame": 0 }]"#;
+        assert!(error(&format!(r#"{{ "frames": 1, "size": [0, 9], {keys} }}"#)).contains("0 x 9"));
+        let display = r#""display": { "wirefame": true }"#;
+        assert!(error(&format!(r#"{{ "frames": 1, {display}, {keys} }}"#)).contains("wirefame"));
+        let keys = r#""keys": [{ "frame": 0 }, { "frame": 5 }]"#;
+        assert!(error(&format!(r#"{{ "frames": 2, {keys} }}"#)).contains("key 1"));
         let keys = r#""keys": [{ "frame": 0 }, { "frame": 0 }]"#;
         assert!(error(&format!(r#"{{ "frames": 2, {keys} }}"#)).contains("key 1"));
         let keys = r#""keys": [{ "frame": 0, "pixels": -1 }]"#;

@@ -7,7 +7,7 @@ use crate::Shade;
 
 /// How the subjects of a stage are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(default)]
+#[serde(default, deny_unknown_fields)]
 pub struct Display {
     /// Shading of the surface.
     pub shading: Shading,
@@ -49,19 +49,22 @@ pub enum Coloring {
     Materials,
     /// Distance from the original, for subjects that were compared with it.
     Heat,
+    /// One colour for each triangle strip.
+    Strips,
     /// One colour for each part or block of compressed geometry.
     Parts,
 }
 
 impl Coloring {
     /// All colourings, in the order in which menus list them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Own,
         Self::Clay,
         Self::Checker,
         Self::Objects,
         Self::Materials,
         Self::Heat,
+        Self::Strips,
         Self::Parts,
     ];
 
@@ -74,13 +77,19 @@ impl Coloring {
             Self::Objects => "Objects",
             Self::Materials => "Materials",
             Self::Heat => "Distance",
+            Self::Strips => "Strips",
             Self::Parts => "Parts",
         }
     }
 
     /// Returns true if each face has a colour of its own.
     pub(crate) fn is_by_face(self) -> bool {
-        matches!(self, Self::Objects | Self::Materials | Self::Parts)
+        self.is_by_mesh_face() || self == Self::Parts
+    }
+
+    /// Returns true if a mesh needs the colours of its faces on the GPU.
+    pub(crate) fn is_by_mesh_face(self) -> bool {
+        matches!(self, Self::Objects | Self::Materials | Self::Strips)
     }
 }
 

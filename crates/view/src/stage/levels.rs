@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use meshlod::mesh::Bounds;
-use meshlod::multires::{Focus, Implicit, QueryError};
+use meshlod::multires::{Focus, Implicit};
 use wgpu::RenderPass;
 
 use super::Display;
 use crate::{
-    CutFollower, CutQuery, CutStep, CutTolerance, CutVertices, GpuCut, Placement, Renderer,
-    Transition, ViewError,
+    CutError, CutFollower, CutQuery, CutStep, CutTolerance, CutVertices, GpuCut, Placement,
+    Renderer, Transition, ViewError,
 };
 
 /// Levels of a multiresolution model on the GPU, and the cut of them that is shown.
@@ -28,7 +28,6 @@ pub struct LevelsSubject {
     /// Placements of the triangles that go and come.
     fading: [Placement; 2],
     last: CutStep,
-    is_waiting: bool,
 }
 
 /// Duration of a dithered transition, in seconds.
@@ -41,14 +40,14 @@ const CHANGES: usize = 20_000;
 const FIRST_FACES: usize = 50_000;
 
 impl LevelsSubject {
-    /// Uploads the vertices of all levels of a model, and shows a level of at most 50,000 faces.
+    /// Uploads the vertices of all levels of a model, and shows a level of at most 50,000 faces,
+    /// or the coarsest.
     /// Blocks while normals are computed.
     ///
     /// # Errors
     /// A model beyond the limits of the GPU.
     pub fn new(renderer: &Renderer, model: &Arc<Implicit>) -> Result<Self, ViewError> {
-        let vertices =
-            CutVertices::new(model).map_err(|error| ViewError::Failed(error.to_string()))?;
+        let vertices = CutVertices::new(model).map_err(CutError::from)?;
         let mut this = Self {
             cut: GpuCut::new(renderer, model, &vertices)?,
             bounds: vertices.bounds(),
@@ -57,18 +56,16 @@ impl LevelsSubject {
             fade_s: 0.0,
             fading: [renderer.placement(), renderer.placement()],
             last: CutStep::default(),
-            is_waiting: false,
         };
         let tolerance = CutTolerance::Faces(FIRST_FACES);
         this.ask(CutQuery { focus: Focus::Everything, tolerance });
-        this.finish().map_err(|error| ViewError::Failed(error.to_string()))?;
+        this.finish()?;
         Ok(this)
     }
 
     /// Asks for another cut; the one shown stays until steps towards it are ready.
     pub fn ask(&mut self, query: CutQuery) {
         self.follower.ask(query);
-        self.is_waiting = true;
     }
 
     /// Takes the next step towards the cut that was asked for, if it is ready, and returns whether
@@ -76,7 +73,7 @@ impl LevelsSubject {
     ///
     /// # Errors
     /// The query was invalid; the cut has not changed.
-    pub fn poll(&mut self, seconds: f32) -> Result<bool, QueryError> {
+    pub fn poll(&mut self, seconds: f32) -> Result<bool, CutError> {
         if self.cut.is_fading() {
             self.fade_s += seconds;
             if self.fade_s >= FADE_S {
@@ -85,36 +82,31 @@ impl LevelsSubject {
             return Ok(true);
         }
         let Some(step) = self.follower.poll() else { return Ok(false) };
-        self.take(step).map(|()| true)
+        self.show(step?);
+        Ok(true)
     }
 
     /// Waits until the cut is the one that was asked for, and shows it at once.
     ///
     /// # Errors
     /// As [`LevelsSubject::poll`].
-    pub fn finish(&mut self) -> Result<(), QueryError> {
-        while self.is_waiting {
-            let Some(step) = self.follower.wait() else { break };
-            self.take(step)?;
+    pub fn finish(&mut self) -> Result<(), CutError> {
+        while let Some(step) = self.follower.wait() {
+            self.show(step?);
         }
         self.cut.finish_fade();
         Ok(())
     }
 
-    fn take(&mut self, step: Result<CutStep, QueryError>) -> Result<(), QueryError> {
-        // A query that was refused is not asked again.
-        self.is_waiting = false;
-        let step = step?;
-        self.is_waiting = !step.is_done;
+    fn show(&mut self, step: CutStep) {
         self.cut.apply(&step, self.transition);
         self.fade_s = 0.0;
         self.last = CutStep { patches: Vec::new(), ..step };
-        Ok(())
     }
 
     /// Returns true while the cut is on the way to the one that was asked for.
     pub fn is_changing(&self) -> bool {
-        self.is_waiting || self.cut.is_fading()
+        self.follower.is_waiting() || self.cut.is_fading()
     }
 
     /// Returns the counts and the time of the last step, without its patches.

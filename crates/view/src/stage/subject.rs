@@ -1,8 +1,11 @@
 //! Subjects: things on the GPU that a stage shows.
 
+use std::collections::HashMap;
+
 use meshlod::check::{Objects, ObjectsBy};
-use meshlod::mesh::{Bounds, LayerKind};
+use meshlod::mesh::{Bounds, LayerKind, VertexId};
 use meshlod::picture::{ColorMap, Normals, Paint, Values};
+use meshlod::strip::{StripOptions, stripify};
 use meshlod::{Mesh, OwnedPaint};
 use wgpu::RenderPass;
 
@@ -112,7 +115,9 @@ impl Subject {
                 Coloring::Own | Coloring::Clay => true,
                 Coloring::Checker => mesh.has_uv,
                 Coloring::Heat => mesh.heat.is_some(),
-                Coloring::Objects | Coloring::Materials => mesh.by_face == Some(coloring),
+                Coloring::Objects | Coloring::Materials | Coloring::Strips => {
+                    mesh.by_face == Some(coloring)
+                }
                 Coloring::Parts => false,
             },
             Self::Levels(_) => matches!(coloring, Coloring::Own | Coloring::Clay),
@@ -206,7 +211,7 @@ impl MeshSubject {
         mesh: &Mesh,
         coloring: Coloring,
     ) -> Result<(), ViewError> {
-        if !coloring.is_by_face() || self.by_face == Some(coloring) {
+        if !coloring.is_by_mesh_face() || self.by_face == Some(coloring) {
             return Ok(());
         }
         self.mesh.set_face_colors(renderer, &face_colors(mesh, coloring))?;
@@ -233,16 +238,32 @@ impl MeshSubject {
     }
 }
 
-/// Returns the colour of each face by its object or material.
+/// Returns the colour of each face by its object, material or strip.
 fn face_colors(mesh: &Mesh, coloring: Coloring) -> Vec<[u8; 3]> {
     match (coloring, &mesh.materials) {
         (Coloring::Materials, Some(labels)) => {
             labels.of_face.iter().map(|&label| color_of(label)).collect()
         }
         (Coloring::Materials, None) => vec![color_of(0); mesh.faces.len()],
+        (Coloring::Strips, _) => strip_colors(mesh),
         _ => {
             let objects = Objects::of(mesh, ObjectsBy::Auto);
             objects.of_face.iter().map(|object| color_of(object.0)).collect()
         }
     }
+}
+
+/// Returns the colour of each face by its strip.
+fn strip_colors(mesh: &Mesh) -> Vec<[u8; 3]> {
+    let key = |mut face: [VertexId; 3]| {
+        face.sort_unstable();
+        face
+    };
+    let mut colors = HashMap::with_capacity(mesh.faces.len());
+    for (number, strip) in stripify(&mesh.faces, &StripOptions::default()).iter().enumerate() {
+        let triangles = strip.windows(3).map(|t| key([t[0], t[1], t[2]]));
+        colors.extend(triangles.map(|face| (face, color_of(number as u32))));
+    }
+    let color = |face: &[VertexId; 3]| colors.get(&key(*face)).copied().unwrap_or([128; 3]);
+    mesh.faces.iter().map(color).collect()
 }

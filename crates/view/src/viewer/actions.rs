@@ -209,6 +209,9 @@ impl ViewerApp {
         for id in [Some(document.original), made].into_iter().flatten() {
             self.stage.remove(id);
         }
+        if index < self.active {
+            self.active -= 1;
+        }
         self.active = self.active.min(self.documents.len().saturating_sub(1));
         self.note_open_files();
         self.show_document();
@@ -260,18 +263,25 @@ impl ViewerApp {
     /// Starts what the wanted colouring needs and the shown subjects lack.
     pub fn ensure_colors(&mut self) {
         let wanted = self.stage.display.coloring;
+        if self.tried.first().is_some_and(|&(_, coloring)| coloring != wanted) {
+            self.tried.clear();
+        }
+        // Each of these jobs gives back a whole subject: two at once would undo each other.
+        let jobs = [JobKind::Compare, JobKind::Color, JobKind::Refine, JobKind::Simplify];
+        if jobs.iter().any(|&kind| self.jobs.has(kind)) {
+            return;
+        }
         let Some(document) = self.document() else { return };
         if wanted == Coloring::Heat {
-            let is_measured = document.level.as_ref().is_none_or(|level| level.distance.is_some());
-            let is_busy = self.jobs.has(JobKind::Compare) || self.jobs.has(JobKind::Simplify);
-            if !is_measured && !is_busy {
+            let level = document.level.as_ref().filter(|level| level.distance.is_none());
+            let Some(wish) = level.map(|level| (level.subject, wanted)) else { return };
+            if !self.tried.contains(&wish) {
+                self.tried.push(wish);
                 self.compare();
             }
             return;
         }
-        if !matches!(wanted, Coloring::Objects | Coloring::Materials)
-            || self.jobs.has(JobKind::Color)
-        {
+        if !wanted.is_by_mesh_face() {
             return;
         }
         let level = document.level.as_ref().map(|level| (level.subject, Arc::clone(&level.loaded)));
@@ -279,10 +289,12 @@ impl ViewerApp {
         let shown: Vec<_> = self.stage.shown().collect();
         let lacking = own.into_iter().flatten().find_map(|(id, loaded)| {
             let subject = self.stage.subject(id).filter(|subject| !subject.has(wanted))?;
-            let mesh = subject.as_mesh().filter(|_| shown.contains(&id))?;
+            let is_new = shown.contains(&id) && !self.tried.contains(&(id, wanted));
+            let mesh = subject.as_mesh().filter(|_| is_new)?;
             Some((id, mesh.clone(), loaded))
         });
         let Some((id, mesh, loaded)) = lacking else { return };
+        self.tried.push((id, wanted));
         let renderer = self.renderer();
         self.jobs.start(JobKind::Color, "Colouring", move |_| {
             work::color(id, mesh, &loaded, wanted, &renderer)

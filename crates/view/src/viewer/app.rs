@@ -15,7 +15,7 @@ use super::settings::Settings;
 use super::timing::FrameTimes;
 use super::work::{EarlyLoad, News};
 use super::{ViewerOptions, ViewerReport, panels, theme, work};
-use crate::stage::{Loaded, Stage, SubjectId};
+use crate::stage::{Coloring, Loaded, Stage, Subject, SubjectId};
 use crate::{Gpu, Renderer, ViewError};
 
 /// Time between frames that show progress.
@@ -48,6 +48,9 @@ pub(crate) struct ViewerApp {
     pub load_ms: Option<f64>,
     /// Subjects whose normals are to be refined once they are on the screen.
     pub rough: Vec<(SubjectId, Arc<Loaded>)>,
+    /// Colours that jobs were started for: one that was refused or cancelled is not tried again
+    /// until other colours were chosen.
+    pub tried: Vec<(SubjectId, Coloring)>,
     /// True once a frame has drawn a subject.
     pub has_drawn: bool,
     next_document: usize,
@@ -114,6 +117,7 @@ impl ViewerApp {
             problems: Vec::new(),
             load_ms: None,
             rough: Vec::new(),
+            tried: Vec::new(),
             has_drawn: false,
             next_document: 0,
             report,
@@ -198,6 +202,18 @@ impl ViewerApp {
         next
     }
 
+    /// Returns true if the picture shows everything as it should: with final normals, and the cut
+    /// that was asked for.
+    fn is_settled(&self) -> bool {
+        let is_busy = self.jobs.has(JobKind::Refine) || !self.rough.is_empty();
+        let is_changing = self
+            .stage
+            .shown()
+            .filter_map(|id| self.stage.subject(id))
+            .any(|subject| matches!(subject, Subject::Levels(levels) if levels.is_changing()));
+        !is_busy && !is_changing && self.pane.is_final(self.changes)
+    }
+
     /// Writes the picture that was asked for, and closes the window when it is time.
     fn keep_schedule(&mut self, ctx: &egui::Context) {
         let is_loading = self.jobs.has(JobKind::Open);
@@ -207,10 +223,12 @@ impl ViewerApp {
         }
         if let Some(path) = self.options.screenshot.clone() {
             match self.shot {
-                Shot::Waiting => {
+                Shot::Waiting if self.documents.is_empty() => self.shot = Shot::Writing,
+                Shot::Waiting if self.is_settled() => {
                     self.save_picture(path);
                     self.shot = Shot::Writing;
                 }
+                Shot::Waiting => ctx.request_repaint_after(PROGRESS_INTERVAL),
                 Shot::Writing if !self.jobs.has(JobKind::Save) => {
                     self.shot = Shot::Done;
                     if self.options.seconds.is_none() {

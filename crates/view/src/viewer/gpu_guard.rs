@@ -19,10 +19,11 @@ impl GpuGuard {
     /// Watches a device from now on; without that, its errors end the program.
     pub fn of(gpu: &Gpu, wake: &egui::Context) -> Self {
         let this = Self::default();
-        let (lost, woken) = (this.clone(), wake.clone());
+        let (lost, woken, is_lost) = (this.clone(), wake.clone(), gpu.loss());
         gpu.device.set_device_lost_callback(move |reason, _| {
             // The end of the program destroys the device as well.
             if reason != wgpu::DeviceLostReason::Destroyed {
+                is_lost.store(true, Ordering::Relaxed);
                 lost.0.is_lost.store(true, Ordering::Relaxed);
                 woken.request_repaint();
             }

@@ -44,7 +44,8 @@ pub fn run(options: ViewerOptions) -> Result<ViewerReport, ViewError> {
     leave_a_core();
     let report = Arc::new(Mutex::new(ViewerReport::default()));
     let files = open_window(&options, &report)?;
-    if report.lock().is_ok_and(|report| report.gpu_was_lost) {
+    let take_loss = || report.lock().is_ok_and(|mut r| std::mem::take(&mut r.gpu_was_lost));
+    if take_loss() {
         open_window(&ViewerOptions { files, ..options }, &report)?;
         if report.lock().is_ok_and(|report| report.gpu_was_lost) {
             return Err(ViewError::Failed("it was lost twice".into()));

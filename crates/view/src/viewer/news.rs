@@ -142,7 +142,10 @@ impl ViewerApp {
             self.jobs.waker().request_repaint();
         }
         match has_changed {
-            Ok(true) => self.changes += 1,
+            Ok(true) => {
+                self.changes += 1;
+                self.jobs.waker().request_repaint();
+            }
             Ok(false) => {}
             Err(error) => self.complain(format!("{name}: {error}")),
         }

@@ -6,7 +6,7 @@ use eframe::egui_wgpu::RenderState;
 use egui::TextureId;
 use meshlod::picture::{Camera, Picture};
 
-use crate::stage::{Display, Stage};
+use crate::stage::{Display, Stage, SubjectId};
 use crate::{Canvas, Gpu, Renderer, TargetFormat, ViewError};
 
 /// Picture of the stage, drawn again only when something has changed.
@@ -26,6 +26,7 @@ struct Drawn {
     size: [u32; 2],
     camera: Camera,
     display: Display,
+    shown: Vec<SubjectId>,
     /// Number of changes of subjects so far.
     changes: u64,
     is_draft: bool,
@@ -66,10 +67,11 @@ impl PicturePane {
         if size.contains(&0) {
             return Ok(self.texture);
         }
-        let is_new = self.drawn.as_ref().is_none_or(|drawn| drawn.changes != changes);
+        let shown: Vec<_> = stage.shown().collect();
+        let is_new = self.drawn.as_ref().is_none_or(|drawn| drawn.shown != shown);
         let is_draft = is_new && stage.faces() > DRAFT_FACES;
         let (camera, display) = (stage.rig.camera(), stage.display);
-        let wanted = Drawn { size, camera, display, changes, is_draft };
+        let wanted = Drawn { size, camera, display, shown, changes, is_draft };
         if self.drawn.as_ref() == Some(&wanted) {
             return Ok(self.texture);
         }
@@ -93,6 +95,11 @@ impl PicturePane {
     /// Returns true if the picture is a draft, to be drawn again at once.
     pub fn is_draft(&self) -> bool {
         self.drawn.as_ref().is_some_and(|drawn| drawn.is_draft)
+    }
+
+    /// Returns true if the picture shows all changes of subjects, as it should.
+    pub fn is_final(&self, changes: u64) -> bool {
+        self.drawn.as_ref().is_some_and(|drawn| drawn.changes == changes && !drawn.is_draft)
     }
 
     /// Reads the pixels of the picture; `None` before the first one.

@@ -23,8 +23,11 @@ fn seen_at(place: vec3f, normal: vec3f, piece: u32) -> Fragment {
     return Fragment(draw.clip_from_local * vec4f(place, 1.0), place, normal, piece);
 }
 
-// Unit vector from its point on the unfolded octahedron.
+// Unit vector from its point on the unfolded octahedron; zero from the corner that means none.
 fn unfolded(at: vec2f) -> vec3f {
+    if all(at <= vec2f(-1.0)) {
+        return vec3f(0.0);
+    }
     let z = 1.0 - abs(at.x) - abs(at.y);
     let over = vec2f(max(-z, 0.0));
     return normalize(vec3f(at - select(-over, over, at >= vec2f(0.0)), z));
@@ -42,7 +45,7 @@ fn shaded(in: Fragment, @builtin(front_facing) front: bool) -> @location(0) vec4
     dissolve(in.clip);
     let to_eye = normalize(draw.eye - in.place);
     let normal = seen_normal(in.normal, in.place, to_eye, front);
-    var color = CLAY * draw.tint;
+    var color = select(CLAY, vec3f(1.0), has(TINT_ONLY)) * draw.tint;
     if has(FACE_COLORS) {
         color = piece_color(in.piece) * draw.tint;
     }
