@@ -11,6 +11,7 @@ pub mod model;
 pub mod names;
 pub mod record;
 mod sample_fish;
+pub mod scene;
 pub mod score;
 pub mod shoot;
 pub mod summary;

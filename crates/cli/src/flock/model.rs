@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use meshlod::flock::levels::{Look, ModelAxes};
+use meshlod::flock::levels::{ChainOptions, LevelTable, Look, ModelAxes};
 use meshlod::mesh::{Borders, ConditionOptions, Locks, Search, condition};
 use meshlod::{Mesh, Method};
 
@@ -37,8 +37,6 @@ pub struct ModelArgs {
     #[arg(long, value_name = "NAME", default_value = Method::default().name(),
         value_parser = parse::method, help = parse::methods())]
     pub method: Method,
-    #[command(flatten)]
-    pub reading: ReadArgs,
 }
 
 /// Model of the members, ready for its levels.
@@ -63,13 +61,13 @@ const MAX_FACES: usize = 1_000_000;
 
 impl FlockModel {
     /// Reads the model, or generates the sample.
-    pub fn load(args: &ModelArgs, session: &Session) -> Result<Self, Failure> {
+    pub fn load(args: &ModelArgs, reading: &ReadArgs, session: &Session) -> Result<Self, Failure> {
         if let Forward::Along(forward) = args.forward {
             check_axes(forward, args.up)?;
         }
         let (mesh, look) = match &args.model {
             None => textured_fish().map_err(Failure::new)?,
-            Some(path) => read(path, &args.reading, session)?,
+            Some(path) => read(path, reading, session)?,
         };
         let (forward, is_guessed) = match args.forward {
             Forward::Along(axis) => (axis, false),
@@ -90,6 +88,13 @@ impl FlockModel {
     /// Returns the axes of the model.
     pub fn axes(&self) -> ModelAxes {
         ModelAxes { forward: self.forward.vector(), up: self.up.vector() }
+    }
+
+    /// Builds the levels of the model.
+    pub fn table(&self, method: Method) -> Result<LevelTable, Failure> {
+        let options = ChainOptions { axes: self.axes(), method, ..ChainOptions::default() };
+        LevelTable::new(&self.mesh, &self.look, &options)
+            .map_err(|error| Failure::at(Path::new(&self.name), error))
     }
 }
 

@@ -1,20 +1,19 @@
 //! `flock`: films schools of a model, every member with the level that a policy chooses.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
 use clap::Args;
-use meshlod::Mesh;
-use meshlod::flock::levels::{ChainOptions, LevelTable};
-use meshlod::flock::scene::{Film, Scenario, ScenarioName, ScenarioOptions, SceneError};
+use meshlod::flock::scene::{Film, ScenarioName};
 use meshlod::flock::select::{Budget, PolicyName};
-use meshlod::samples;
 
 use crate::answer::Answer;
+use crate::args::ReadArgs;
 use crate::failure::Failure;
 use crate::files;
 use crate::flock::model::{FlockModel, ModelArgs};
+use crate::flock::scene::SceneSettings;
 use crate::flock::summary::Summary;
 use crate::flock::{evaluate, names, record, score, shoot};
 use crate::parse;
@@ -28,6 +27,8 @@ use crate::session::Session;
 pub struct Flock {
     #[command(flatten)]
     pub model: ModelArgs,
+    #[command(flatten)]
+    pub reading: ReadArgs,
     /// Number of members
     #[arg(long, value_name = "N", default_value_t = 150, value_parser = names::members,
         allow_negative_numbers = true)]
@@ -95,30 +96,27 @@ pub struct Flock {
     pub no_pictures: bool,
 }
 
-/// Faces of the terrain that the scenario of this name swims over.
-const TERRAIN_FACES: usize = 40_000;
-
 impl Flock {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         files::check_folder(&self.out)?;
         if let Some(folder) = &self.record {
             record::check(folder, self.members, self.frames)?;
         }
-        let scenario = self.scenario()?;
-        let model = FlockModel::load(&self.model, session)?;
+        let scenario = self.scenes(self.size).scenario(self.camera)?;
+        let model = FlockModel::load(&self.model, &self.reading, session)?;
         if let Some(folder) = &self.score {
             return score::run(folder, &model, session);
         }
         if self.evaluate {
             session.progress.stage("building levels");
-            let table = Arc::new(self.table(&model)?);
+            let table = Arc::new(model.table(self.model.method)?);
             return evaluate::run(&self, &model, &table, session);
         }
         session.progress.stage("setting the scene");
         let film = Film::new(scenario).map_err(Failure::new)?;
         session.progress.stage("building levels");
         let start = Instant::now();
-        let table = Arc::new(self.table(&model)?);
+        let table = Arc::new(model.table(self.model.method)?);
         let build_seconds = start.elapsed().as_secs_f64();
         let full = self.members.saturating_mul(table.triangle_count(0));
         let triangles = self.triangles.unwrap_or_else(|| (full / 10).max(1));
@@ -139,31 +137,9 @@ impl Flock {
         Ok(Answer::new(summary.json(), summary.text()))
     }
 
-    /// Describes the scene.
-    fn scenario(&self) -> Result<Scenario, Failure> {
-        let needs_terrain = self.camera == ScenarioName::Terrain;
-        let terrain: Option<Mesh> = needs_terrain.then(|| samples::terrain(TERRAIN_FACES));
-        let options = ScenarioOptions {
-            members: self.members,
-            schools: self.schools,
-            seed: self.seed,
-            size: self.size,
-            frame_s: 1.0 / self.fps,
-            terrain: terrain.as_ref(),
-        };
-        Scenario::named(self.camera, &options).map_err(|error| match error {
-            SceneError::Schools { .. } => Failure::usage(format_args!("--schools: {error}")),
-            error => Failure::new(error),
-        })
-    }
-
-    fn table(&self, model: &FlockModel) -> Result<LevelTable, Failure> {
-        let options = ChainOptions {
-            axes: model.axes(),
-            method: self.model.method,
-            ..ChainOptions::default()
-        };
-        LevelTable::new(&model.mesh, &model.look, &options)
-            .map_err(|error| Failure::at(Path::new(&model.name), error))
+    /// Returns what all scenes have in common, with pictures of a size in pixels.
+    pub fn scenes(&self, size: [u32; 2]) -> SceneSettings {
+        let Self { members, schools, seed, fps, .. } = *self;
+        SceneSettings { members, schools, seed, size, fps }
     }
 }

@@ -1,4 +1,4 @@
-//! `view`: opens files in a window, or films them without one.
+//! `view`: opens files or a school in a window, or films files without one.
 
 use std::path::PathBuf;
 
@@ -9,12 +9,15 @@ use crate::args::ReadArgs;
 use crate::failure::Failure;
 use crate::parse;
 use crate::session::Session;
+use crate::view::school_args::SchoolArgs;
 
-/// Open meshes in a window
+/// Open meshes or a school in a window
 ///
-/// Meshes of all formats, .mlod, .mlq and .mlz; more can be dropped on the window. Press ? for the
-/// keys.
+/// Meshes of all formats, .mlod, .mlq and .mlz; more can be dropped on the window. With --flock, a
+/// school instead, whose levels of detail, camera and obstacles can be changed while it swims. Press ?
+/// for the keys.
 #[derive(Args)]
+#[command(mut_group("ModelArgs", |group| group.requires("flock")))]
 #[cfg_attr(not(feature = "view"), allow(dead_code))]
 pub struct View {
     /// Files to open
@@ -23,7 +26,7 @@ pub struct View {
     /// Close the window S seconds after the first picture
     #[arg(long, value_name = "S", value_parser = parse::length, allow_negative_numbers = true)]
     pub seconds: Option<f64>,
-    /// Write a picture once everything is loaded, and close the window unless --seconds is given
+    /// Write a picture once everything is loaded (of a school, after 30 frames), and close the window unless --seconds is given
     #[arg(long, value_name = "OUT.png")]
     pub screenshot: Option<PathBuf>,
     /// Draw the film that a script describes instead, without a window: OUT/frame_0000.png and so on,
@@ -35,11 +38,19 @@ pub struct View {
     pub out: Option<PathBuf>,
     #[command(flatten)]
     pub reading: ReadArgs,
+    /// Show a school of a model instead of files
+    #[arg(long, conflicts_with_all = ["files", "script"])]
+    pub flock: bool,
+    #[command(flatten)]
+    pub school: SchoolArgs,
 }
 
 impl View {
     #[cfg(feature = "view")]
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
+        if self.flock {
+            return crate::view::school::run(self, session);
+        }
         match (&self.script, &self.out) {
             (Some(script), Some(out)) => {
                 crate::view::film::run(&self.files, &self.reading, script, out, session)

@@ -6,6 +6,9 @@
 #[cfg(feature = "view")]
 pub mod film;
 #[cfg(feature = "view")]
+pub mod school;
+pub mod school_args;
+#[cfg(feature = "view")]
 pub mod still;
 #[cfg(feature = "view")]
 pub mod window;

@@ -1,5 +1,7 @@
 //! School that swims, with levels beside full detail: what a window shows, without the window.
 
+mod clock;
+mod follow;
 mod stats;
 
 use std::sync::Arc;
@@ -14,10 +16,12 @@ use meshlod::flock::{Flock, FlockCamera};
 use meshlod::picture::Lighting;
 use wgpu::RenderPass;
 
+use self::clock::FilmClock;
 use self::stats::cohesion;
 pub use self::stats::{SchoolFrame, SchoolHistory};
 use crate::placement::{Placement, Shade};
 use crate::renderer::{Backdrop, Renderer};
+use crate::stage::CameraRig;
 use crate::{GpuFlock, GpuObstacles, ViewError};
 
 /// Scene that runs: a simulation, the choice of levels, and both on the GPU, frame by frame.
@@ -36,6 +40,9 @@ pub struct SchoolShow {
     water: Backdrop,
     size: [u32; 2],
     frame: Option<(Flock, FlockCamera)>,
+    /// Camera of the film in the frame.
+    path: Option<FlockCamera>,
+    clock: FilmClock,
     before: Option<Instant>,
     history: SchoolHistory,
     /// Limits of the policy, and the size below which members are impostors.
@@ -45,6 +52,11 @@ pub struct SchoolShow {
     pub split: Option<f32>,
     /// The school stands still, while levels are still chosen.
     pub is_paused: bool,
+    /// Time passes as on the clock, in whole frames of the scenario; by default, one a frame.
+    pub is_live: bool,
+    /// Camera that moves along with the first school, its target relative to the leader, in body
+    /// lengths; `None` for the camera of the film.
+    pub orbit: Option<CameraRig>,
     /// Lighting of members and obstacles.
     pub lighting: Lighting,
 }
@@ -83,11 +95,15 @@ impl SchoolShow {
             placement: renderer.placement(),
             water: water.ok_or_else(|| ViewError::Failed("water has a colour".into()))?,
             frame: None,
+            path: None,
+            clock: FilmClock::default(),
             before: None,
             history: SchoolHistory::new(HISTORY),
             budget: Budget::default(),
             split: None,
             is_paused: false,
+            is_live: false,
+            orbit: None,
             lighting: Lighting::Headlight,
         })
     }
@@ -176,25 +192,31 @@ impl SchoolShow {
 
     /// Moves the school on unless it is paused, and fits the camera to the size of the picture.
     fn simulate(&mut self) -> Result<(), ViewError> {
-        if !self.is_paused || self.frame.is_none() {
+        for _ in 0..self.film_frames() {
             let (flock, camera) = self.film.next_frame()?;
+            self.path = Some(camera);
             match &mut self.frame {
-                Some(frame) => {
-                    frame.0.clone_from(flock);
-                    frame.1 = camera;
-                }
+                Some(frame) => frame.0.clone_from(flock),
                 none => *none = Some((flock.clone(), camera)),
             }
         }
-        if let Some((_, camera)) = &mut self.frame
-            && camera.size() != self.size
-        {
-            let (eye, forward) = (camera.eye().into(), camera.axes()[2].into());
-            let velocity = camera.velocity().into();
-            let fitted = FlockCamera::look_along(eye, forward, camera.fov_rad(), self.size);
-            *camera = fitted.map_err(meshlod::flock::scene::SceneError::from)?.moving(velocity);
+        if let (Some((flock, camera)), Some(path)) = (&mut self.frame, &self.path) {
+            *camera = match &self.orbit {
+                Some(rig) => follow::camera(rig, flock, self.size)?,
+                None => follow::fitted(path, self.size)?,
+            };
         }
         Ok(())
+    }
+
+    /// Returns the number of frames of the film that pass in this frame.
+    fn film_frames(&mut self) -> usize {
+        let elapsed_s = self.clock.lap();
+        match (&self.frame, self.is_paused, self.is_live) {
+            (None, ..) | (_, false, false) => 1,
+            (_, true, _) => 0,
+            (_, false, true) => self.clock.frames(elapsed_s, self.film.scenario().frame_s),
+        }
     }
 
     /// Draws the frame into a pass of the size of the picture.

@@ -9,11 +9,11 @@ use super::overlay::{self, SlotView};
 use super::theme;
 
 /// Radians of turn per point of a drag: once across a window turns around.
-const TURN_PER_POINT: f64 = 0.007;
+pub(crate) const TURN_PER_POINT: f64 = 0.007;
 /// Factor of the distance per point of scrolling.
-const ZOOM_PER_POINT: f64 = 0.0022;
+pub(crate) const ZOOM_PER_POINT: f64 = 0.0022;
 /// Factor of the distance per point of a zooming drag.
-const DRAG_ZOOM_PER_POINT: f64 = 0.008;
+pub(crate) const DRAG_ZOOM_PER_POINT: f64 = 0.008;
 /// Radians per point that the pointer moves in a flight.
 const LOOK_PER_POINT: f64 = 0.003;
 
@@ -199,7 +199,7 @@ impl ViewerApp {
 }
 
 /// Draws a line of text on a dark rounded ground.
-fn tag(ui: &Ui, at: egui::Pos2, text: &str) {
+pub(crate) fn tag(ui: &Ui, at: egui::Pos2, text: &str) {
     let font = FontId::proportional(12.5);
     let text = ui.painter().layout_no_wrap(text.to_owned(), font, theme::STRONG);
     let margin = Vec2::new(9.0, 5.0);

@@ -15,12 +15,14 @@ mod options;
 mod overlay;
 mod panels;
 mod picture_pane;
+mod school;
 mod settings;
 mod theme;
 mod timing;
 mod work;
 
 pub use options::{ViewerOptions, ViewerReport};
+pub use school::{SchoolReport, SchoolScenes, SchoolWindowOptions, run_school};
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};

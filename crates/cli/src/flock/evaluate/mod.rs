@@ -12,11 +12,10 @@ use meshlod::flock::evaluate::{
     Arm, Evaluation, EvaluationOptions, Footage, Track, evaluate, over_time,
 };
 use meshlod::flock::levels::LevelTable;
-use meshlod::flock::scene::{Scenario, ScenarioName, ScenarioOptions};
+use meshlod::flock::scene::ScenarioName;
 use meshlod::flock::select::policies::Factors;
 use meshlod::flock::select::{Budget, PolicyName};
 use meshlod::io::write_file;
-use meshlod::samples;
 
 use crate::answer::Answer;
 use crate::failure::Failure;
@@ -140,21 +139,10 @@ pub fn check_extent(members: usize, table: &LevelTable) -> Result<(), Failure> {
 
 /// Records the five scenes.
 fn footage(options: &Flock, extent: &Extent, session: &Session) -> Result<Vec<Footage>, Failure> {
-    const TERRAIN_FACES: usize = 40_000;
-    let terrain = samples::terrain(TERRAIN_FACES);
+    let scenes = options.scenes(extent.size);
     let record = |(i, name): (usize, ScenarioName)| {
         session.progress.part("recording", i, ScenarioName::ALL.len());
-        let options = ScenarioOptions {
-            members: options.members,
-            schools: options.schools,
-            seed: options.seed,
-            size: extent.size,
-            frame_s: 1.0 / options.fps,
-            terrain: Some(&terrain),
-        };
-        Scenario::named(name, &options)
-            .and_then(|scenario| scenario.footage(extent.frames))
-            .map_err(Failure::new)
+        scenes.scenario(name)?.footage(extent.frames).map_err(Failure::new)
     };
     ScenarioName::ALL.into_iter().enumerate().map(record).collect()
 }

@@ -51,7 +51,7 @@ pub(crate) fn show(app: &mut ViewerApp, ui: &mut Ui) {
 }
 
 /// Shows a titled part of the side panel, which can be folded.
-fn section(ui: &mut Ui, title: &str, is_open: bool, add: impl FnOnce(&mut Ui)) {
+pub(crate) fn section(ui: &mut Ui, title: &str, is_open: bool, add: impl FnOnce(&mut Ui)) {
     ui.add_space(2.0);
     let title = RichText::new(title).strong().color(theme::STRONG);
     egui::CollapsingHeader::new(title).default_open(is_open).show_unindented(ui, |ui| {
@@ -63,7 +63,7 @@ fn section(ui: &mut Ui, title: &str, is_open: bool, add: impl FnOnce(&mut Ui)) {
 }
 
 /// Shows a name and its value in a row.
-fn row(ui: &mut Ui, name: &str, value: impl Into<String>) {
+pub(crate) fn row(ui: &mut Ui, name: &str, value: impl Into<String>) {
     ui.horizontal(|ui| {
         ui.label(RichText::new(name).color(theme::WEAK));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
