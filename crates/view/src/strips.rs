@@ -1,12 +1,12 @@
 //! Triangle strips on the GPU, with restart.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use meshlod::Mesh;
-use meshlod::picture::{Normals, PictureError, corner_normals};
+use meshlod::picture::PictureError;
 use meshlod::strip::Strips;
 use wgpu::{Buffer, BufferUsages, IndexFormat, RenderPass};
 
-use crate::mesh::{MaterialBinding, VertexAttributes, fractions, middle};
+use crate::mesh::{MaterialBinding, middle, smooth_attributes};
 use crate::placement::{Placement, linear};
 use crate::renderer::{Renderer, buffer_of};
 use crate::{Gpu, ViewError};
@@ -103,16 +103,4 @@ impl GpuStrips {
         pass.set_index_buffer(self.indices.slice(..), IndexFormat::Uint32);
         pass.draw_indexed(0..self.entries, 0, 0..1);
     }
-}
-
-/// Returns white attributes with the smooth normal of each vertex.
-fn smooth_attributes(mesh: &Mesh) -> Vec<VertexAttributes> {
-    let white = VertexAttributes { color: [255; 4], ..VertexAttributes::default() };
-    let mut all = vec![white; mesh.positions.len()];
-    for (face, normals) in mesh.faces.iter().zip(corner_normals(mesh, Normals::Smooth)) {
-        for (v, normal) in face.iter().zip(normals) {
-            all[v.index()].normal = fractions(Vec3::from(normal).into());
-        }
-    }
-    all
 }

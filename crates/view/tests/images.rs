@@ -188,3 +188,26 @@ fn a_shadow_lies_under_the_thing_and_fades_outwards() {
     assert!(darker.len() > 2_000, "{}", darker.len());
     assert!(darker.iter().all(|&(x, y)| y > 80 && x > 3 && x < 476), "not at the rims");
 }
+
+#[test]
+fn a_mesh_that_is_one_point_is_drawn_and_casts_a_shadow() {
+    use meshlod::picture::UpAxis;
+    use meshlod_view::stage::{Loaded, Stage, Subject};
+    use meshlod_view::{Canvas, Renderer, TargetFormat};
+    let Some(gpu) = gpu() else { return };
+    let mut ball = samples::sphere(20);
+    ball.attributes = None;
+    ball.positions.iter_mut().for_each(|p| *p = [1.0, 2.0, 3.0]);
+    let clay = std::sync::Arc::new(meshlod::OwnedPaint::CLAY);
+    let loaded = Loaded::from_mesh("point", ball, clay);
+    let renderer = Renderer::new(gpu, TargetFormat::CANVAS);
+    let mut stage = Stage::default();
+    let id = stage.add(Subject::new(&renderer, &loaded).unwrap());
+    stage.show(&[id]);
+    stage.rig.set_up(UpAxis::Z);
+    stage.rig.frame(&loaded.bounds, 1.0);
+    stage.prepare(&renderer).unwrap();
+    let canvas = Canvas::new(gpu, [32, 32]).unwrap();
+    canvas.draw(|pass| stage.draw(&renderer, pass, [32, 32]));
+    assert!(canvas.read().unwrap().rgba().iter().skip(3).step_by(4).all(|&alpha| alpha == 255));
+}

@@ -24,7 +24,10 @@ pub fn run(
     session: &Session,
 ) -> Result<Answer, Failure> {
     let [input] = inputs else {
-        return Err(Failure::usage(format_args!("--script needs exactly one FILE, not {}", inputs.len())));
+        return Err(Failure::usage(format_args!(
+            "--script needs exactly one FILE, not {}",
+            inputs.len()
+        )));
     };
     files::check_folder(out)?;
     let text =

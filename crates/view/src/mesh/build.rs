@@ -28,6 +28,10 @@ impl CornerVertices {
         normals: Normals,
         origin: [f64; 3],
     ) -> Self {
+        let is_smooth = matches!(normals, Normals::Smooth | Normals::FromMesh);
+        if mesh.attributes.is_none() && (is_smooth || normals == Normals::Flat) {
+            return Self::shared(mesh, surface, is_smooth, origin);
+        }
         let normals = (normals != Normals::Flat).then(|| corner_normals(mesh, normals));
         let layer = |kind| mesh.attributes.as_ref().and_then(|all| all.layer(kind));
         let uvs = layer(LayerKind::Uv(0));
@@ -82,6 +86,41 @@ impl CornerVertices {
         }
         this
     }
+}
+
+impl CornerVertices {
+    /// Takes the vertices of a mesh as they are, where corners differ by nothing else.
+    fn shared(mesh: &Mesh, surface: &Surface<'_>, is_smooth: bool, origin: [f64; 3]) -> Self {
+        let origin = DVec3::from(origin);
+        let place = |p: &[f64; 3]| (DVec3::from(*p) - origin).as_vec3().into();
+        let mut attributes = match is_smooth {
+            true => smooth_attributes(mesh),
+            false => vec![WHITE; mesh.positions.len()],
+        };
+        if let VertexColors::Vertices(colors) = &surface.vertex_colors {
+            for (attributes, &[r, g, b]) in attributes.iter_mut().zip(colors) {
+                attributes.color = [r, g, b, 255];
+            }
+        }
+        Self {
+            positions: mesh.positions.iter().map(place).collect(),
+            attributes,
+            triangles: mesh.faces.iter().map(|face| face.map(|v| v.0)).collect(),
+        }
+    }
+}
+
+const WHITE: VertexAttributes = VertexAttributes { normal: [0; 4], color: [255; 4], uv: [0.0; 2] };
+
+/// Returns white attributes with the smooth normal of each vertex.
+pub(crate) fn smooth_attributes(mesh: &Mesh) -> Vec<VertexAttributes> {
+    let mut all = vec![WHITE; mesh.positions.len()];
+    for (face, normals) in mesh.faces.iter().zip(corner_normals(mesh, Normals::Smooth)) {
+        for (v, normal) in face.iter().zip(normals) {
+            all[v.index()].normal = fractions(normal);
+        }
+    }
+    all
 }
 
 fn same(a: &VertexAttributes, b: &VertexAttributes) -> bool {

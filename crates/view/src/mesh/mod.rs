@@ -11,8 +11,8 @@ use meshlod::Mesh;
 use meshlod::picture::{Normals, Paint, PictureError};
 use wgpu::{BindGroup, Buffer, BufferUsages, IndexFormat, RenderPass};
 
-pub(crate) use self::build::fractions;
 use self::build::{CornerVertices, face_order};
+pub(crate) use self::build::{fractions, smooth_attributes};
 pub(crate) use self::colors::{Surface, VertexColors};
 pub(crate) use self::pipelines::{MaterialBinding, MeshPipelines, VERTEX_BUFFERS};
 use crate::placement::Placement;
