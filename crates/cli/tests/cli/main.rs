@@ -15,3 +15,4 @@ mod strip;
 mod topology;
 mod usage;
 mod verbs;
+mod view;
