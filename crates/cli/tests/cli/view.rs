@@ -63,7 +63,7 @@ mod window {
         let run = Run::new();
         run.sample("sphere", 100, "small.ply");
         let arguments = ["view", "--flock", "--members", "20", "--schools", "2", "--model"];
-        let more = ["small.ply", "--camera", "obstacles", "--policy", "screen-error"];
+        let more = ["small.ply", "--camera", "obstacles", "--policy", "budget"];
         let end = ["--seconds", "1", "--screenshot", "a.png", "--json"];
         let all = [&arguments[..], &more, &end].concat();
         let Some(done) = on_a_screen(&run, &all, false) else { return };
@@ -71,7 +71,7 @@ mod window {
         let report: Value = serde_json::from_slice(&done.stdout).expect("one object");
         assert_eq!((&report["members"], &report["schools"]), (&20.into(), &2.into()));
         assert_eq!(report["camera"], "obstacles");
-        assert_eq!(report["policy"], "screen-error");
+        assert_eq!(report["policy"], "budget");
         assert_eq!(report["problems"].as_array().map(Vec::len), Some(0), "{report}");
         assert!(report["frames"].as_u64() > Some(2), "{report}");
         let mean = |name: &str| report[name].as_f64().unwrap_or_default();

@@ -10,7 +10,7 @@ use crate::viewer::panels::{grouped, row, section};
 use crate::viewer::theme;
 
 /// Width of the side panel, in points.
-const WIDTH: f32 = 248.0;
+const WIDTH: f32 = 276.0;
 
 /// Shows everything around the picture.
 pub(crate) fn show(app: &mut SchoolApp, ui: &mut Ui) {
