@@ -7,6 +7,7 @@ use clap::Args;
 use crate::answer::Answer;
 use crate::args::ReadArgs;
 use crate::failure::Failure;
+use crate::flock::model::ModelArgs;
 use crate::parse;
 use crate::session::Session;
 use crate::view::school_args::SchoolArgs;
@@ -43,6 +44,8 @@ pub struct View {
     pub flock: bool,
     #[command(flatten)]
     pub school: SchoolArgs,
+    #[command(flatten)]
+    pub model: ModelArgs,
 }
 
 impl View {

@@ -34,11 +34,11 @@ pub fn run(verb: View, session: &Session) -> Result<Answer, Failure> {
     };
     session.progress.stage("setting the scene");
     let scenario = scenes.scenario(args.camera)?;
-    let model = FlockModel::load(&args.model, &verb.reading, session)?;
+    let model = FlockModel::load(&verb.model, &verb.reading, session)?;
     // Levels take seconds; a machine without a GPU should say so at once.
     Gpu::headless()?;
     session.progress.stage("building levels");
-    let table = Arc::new(model.table(args.model.method)?);
+    let table = Arc::new(model.table(verb.model.method)?);
     session.progress.stage("drawing impostors");
     let impostor = Impostor::draw(&table, &model.look, &ImpostorOptions::default());
     let impostor = Arc::new(impostor.map_err(Failure::new)?);

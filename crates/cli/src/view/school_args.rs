@@ -4,7 +4,6 @@ use clap::Args;
 use meshlod::flock::scene::ScenarioName;
 use meshlod::flock::select::PolicyName;
 
-use crate::flock::model::ModelArgs;
 use crate::flock::names;
 use crate::parse;
 
@@ -29,6 +28,4 @@ pub struct SchoolArgs {
     #[arg(long, value_name = "NAME", default_value = "ours", value_parser = names::policy,
         help = names::policies())]
     pub policy: PolicyName,
-    #[command(flatten)]
-    pub model: ModelArgs,
 }

@@ -10,7 +10,7 @@ use crate::viewer::panels::{grouped, row, section};
 use crate::viewer::theme;
 
 /// Width of the side panel, in points.
-const WIDTH: f32 = 248.0;
+const WIDTH: f32 = 276.0;
 
 /// Shows everything around the picture.
 pub(crate) fn show(app: &mut SchoolApp, ui: &mut Ui) {
@@ -60,16 +60,18 @@ fn scenes(app: &mut SchoolApp, ui: &mut Ui) {
 fn policies(app: &mut SchoolApp, ui: &mut Ui) {
     let controls = &mut app.controls;
     ui.spacing_mut().item_spacing.y = 2.0;
-    for policy in PolicyName::ALL {
-        ui.horizontal(|ui| {
-            if ui.selectable_label(controls.policy == policy, title(policy)).clicked() {
-                controls.policy = policy;
+    let [first, second] = [&PolicyName::ALL[..6], &PolicyName::ALL[6..]];
+    ui.columns(2, |columns| {
+        for (ui, policies) in columns.iter_mut().zip([first, second]) {
+            for &policy in policies {
+                let label = ui.selectable_label(controls.policy == policy, title(policy));
+                let hint = format!("Key {}", keys::key_of(policy));
+                if label.on_hover_text(hint).clicked() {
+                    controls.policy = policy;
+                }
             }
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                ui.label(RichText::new(keys::key_of(policy)).size(11.0).color(theme::WEAK));
-            });
-        });
-    }
+        }
+    });
     ui.add_space(6.0);
     let text = |text: &str| RichText::new(text).color(theme::WEAK);
     ui.spacing_mut().slider_width = 118.0;
