@@ -16,3 +16,4 @@ mod topology;
 mod usage;
 mod verbs;
 mod view;
+mod view_school;
