@@ -6,7 +6,7 @@ use meshlod::samples;
 
 use crate::failure::Failure;
 
-/// What the scenes of a run have in common.
+/// Settings that all scenes of a run share.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneSettings {
     pub members: usize,

@@ -11,7 +11,7 @@ fn options_of_a_school_need_the_flag() {
         (&["--model", "a.ply"], "--flock"),
         (&["--flock", "a.ply"], "cannot be used with"),
         (&["--flock", "--script", "a.json", "--out", "b"], "cannot be used with"),
-        (&["--flock", "--policy", "best"], "the policies are none, "),
+        (&["--flock", "--policy", "best"], "distance, screen-error, "),
         (&["--flock", "--camera", "top"], "the cameras are ring, inside, far, obstacles, terrain"),
     ];
     for (arguments, reason) in cases {

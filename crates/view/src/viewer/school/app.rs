@@ -12,7 +12,7 @@ use meshlod::picture::UpAxis;
 use super::controls::Controls;
 use super::drag::PickedObstacle;
 use super::pane::SchoolPane;
-use super::report::{Outcome, Totals};
+use super::report::{SchoolOutcome, Totals};
 use super::stage_thread::ComingScene;
 use super::{SchoolReport, SchoolWindowOptions, panel};
 use crate::stage::{CameraRig, RigPose};
@@ -50,7 +50,7 @@ pub(crate) struct SchoolApp {
     last_problem: Option<Instant>,
     close_at: Option<Instant>,
     has_picture: bool,
-    outcome: Arc<Mutex<Outcome>>,
+    outcome: Arc<Mutex<SchoolOutcome>>,
 }
 
 impl SchoolApp {
@@ -58,7 +58,7 @@ impl SchoolApp {
     pub fn new(
         context: &eframe::CreationContext<'_>,
         options: SchoolWindowOptions,
-        outcome: Arc<Mutex<Outcome>>,
+        outcome: Arc<Mutex<SchoolOutcome>>,
     ) -> Result<Self, ViewError> {
         let state = context.wgpu_render_state.clone().ok_or(ViewError::NoGpu)?;
         let gpu = Gpu::new(&state.adapter, state.device.clone(), state.queue.clone());

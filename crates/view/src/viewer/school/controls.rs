@@ -1,4 +1,4 @@
-//! What the panel sets and every frame obeys.
+//! Settings that the panel changes and every frame obeys.
 
 use meshlod::flock::select::{Budget, PolicyName};
 

@@ -21,7 +21,7 @@ use std::sync::{Arc, Mutex};
 use super::{ViewerOptions, leave_a_core, native_options, view_error};
 use crate::ViewError;
 use app::SchoolApp;
-use report::Outcome;
+use report::SchoolOutcome;
 
 /// Name under which the window is remembered.
 const APP_ID: &str = "meshlod-school";
@@ -34,7 +34,7 @@ const APP_ID: &str = "meshlod-school";
 /// No screen or no GPU, a GPU that fails, and a scene that cannot be set up at the start.
 pub fn run_school(options: SchoolWindowOptions) -> Result<SchoolReport, ViewError> {
     leave_a_core();
-    let outcome = Arc::new(Mutex::new(Outcome::default()));
+    let outcome = Arc::new(Mutex::new(SchoolOutcome::default()));
     let told = Arc::clone(&outcome);
     let mut native = native_options(&ViewerOptions {
         memory: options.memory.clone(),

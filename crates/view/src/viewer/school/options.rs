@@ -1,4 +1,4 @@
-//! What the window of a school is asked for, and what it reports at the end.
+//! Options of the window of a school, and its report at the end.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -38,7 +38,7 @@ pub struct SchoolWindowOptions {
     pub memory: Option<PathBuf>,
 }
 
-/// What happened while the window of a school was open. Means are over all frames.
+/// Figures of the time in which the window of a school was open. Means are over all frames.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct SchoolReport {
     /// Name of the GPU.

@@ -3,9 +3,9 @@
 use super::SchoolReport;
 use crate::{SchoolFrame, ViewError};
 
-/// What the window leaves behind when it closes.
+/// Report and error that the window leaves behind when it closes.
 #[derive(Debug, Default)]
-pub(crate) struct Outcome {
+pub(crate) struct SchoolOutcome {
     pub report: SchoolReport,
     /// Error that closed the window.
     pub error: Option<ViewError>,
