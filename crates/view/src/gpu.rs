@@ -24,6 +24,10 @@ pub struct Gpu {
 const WANTED: Features = Features::INDIRECT_FIRST_INSTANCE;
 
 impl Gpu {
+    /// Interfaces to the GPU that are used: Vulkan, Metal and Direct3D 12. OpenGL lacks what shaders
+    /// need here, such as storage buffers for vertices.
+    pub(crate) const BACKENDS: Backends = Backends::PRIMARY;
+
     /// Opens the fastest GPU without a window.
     ///
     /// The environment may choose another: `WGPU_BACKEND`, `WGPU_ADAPTER_NAME`.
@@ -32,11 +36,8 @@ impl Gpu {
     /// No GPU is there, or it does not open.
     pub fn headless() -> Result<Self, ViewError> {
         let all = InstanceDescriptor::new_without_display_handle_from_env();
-        // OpenGL comes last: looking for it makes some drivers print to the terminal.
-        let backends = all.backends & Backends::PRIMARY;
-        let first = InstanceDescriptor::new_without_display_handle_from_env();
-        let first = InstanceDescriptor { backends, ..first };
-        let adapter = [first, all].into_iter().find_map(adapter).ok_or(ViewError::NoGpu)?;
+        let backends = all.backends & Self::BACKENDS;
+        let adapter = adapter(InstanceDescriptor { backends, ..all }).ok_or(ViewError::NoGpu)?;
         let opened = pollster::block_on(adapter.request_device(&Self::descriptor(&adapter)));
         let (device, queue) = opened.map_err(|error| ViewError::Failed(error.to_string()))?;
         let this = Self::new(&adapter, device, queue);

@@ -171,6 +171,10 @@ impl ViewerApp {
     /// Shows a line about what went wrong, and keeps it for the report.
     pub fn complain(&mut self, text: impl Into<String>) {
         let (text, until) = (text.into(), Instant::now() + Duration::from_secs(12));
+        // Some come with every frame.
+        if self.problems.contains(&text) {
+            return;
+        }
         self.problems.push(text.clone());
         self.notices.push(Notice { text, is_problem: true, until });
     }

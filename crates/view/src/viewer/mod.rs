@@ -81,11 +81,12 @@ fn open_window(
 }
 
 fn native_options(options: &ViewerOptions) -> eframe::NativeOptions {
-    let setup = WgpuSetupCreateNew {
+    let mut setup = WgpuSetupCreateNew {
         power_preference: eframe::wgpu::PowerPreference::HighPerformance,
         device_descriptor: Arc::new(Gpu::descriptor),
         ..WgpuSetupCreateNew::without_display_handle()
     };
+    setup.instance_descriptor.backends &= Gpu::BACKENDS;
     let viewport = egui::ViewportBuilder::default()
         .with_title("meshlod")
         .with_app_id(APP_ID)
