@@ -147,6 +147,9 @@ pub(crate) fn clip_from_world(camera: &Camera, size: [u32; 2], origin: [f64; 3])
     DMat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose()
 }
 
+/// sRGB colour of surfaces without colours of their own, that of [`meshlod::OwnedPaint::CLAY`].
+pub(crate) const CLAY: [u8; 3] = [226, 208, 186];
+
 /// Converts an sRGB colour to linear light.
 pub(crate) fn linear(color: [u8; 3]) -> [f32; 3] {
     color.map(|level| {

@@ -7,7 +7,7 @@ use meshlod::strip::Strips;
 use wgpu::{Buffer, BufferUsages, IndexFormat, RenderPass};
 
 use crate::mesh::{MaterialBinding, middle, smooth_attributes};
-use crate::placement::{Placement, linear};
+use crate::placement::{CLAY, Placement, linear};
 use crate::renderer::{Renderer, buffer_of};
 use crate::{Gpu, ViewError};
 
@@ -25,9 +25,6 @@ pub struct GpuStrips {
     entries: u32,
     material: MaterialBinding,
 }
-
-/// sRGB colour of strips.
-const CLAY: [u8; 3] = [226, 208, 186];
 
 impl GpuStrips {
     /// Uploads the vertices of a mesh, with smooth normals, and strips of it or of one of its levels.

@@ -10,9 +10,9 @@ use wgpu::{BindGroup, Buffer, BufferDescriptor, BufferUsages, IndexFormat, Rende
 use self::dirty::DirtyRanges;
 pub use self::follower::{CutError, CutFollower, CutQuery, CutStep, CutTolerance};
 pub use self::vertices::CutVertices;
-use crate::mesh::MaterialBinding;
-use crate::placement::{Placement, linear};
-use crate::renderer::{Renderer, bind_group, buffer_of};
+use crate::mesh::{MaterialBinding, bind_faces};
+use crate::placement::{CLAY, Placement, linear};
+use crate::renderer::{Renderer, buffer_of};
 use crate::{Gpu, ViewError};
 
 /// Cut on the GPU: vertices of all levels, and the triangles of the current cut by slot.
@@ -59,9 +59,6 @@ pub enum Transition {
 /// Slot without a triangle.
 const EMPTY: [u32; 3] = [0; 3];
 
-/// sRGB colour of models without colours.
-const CLAY: [u8; 3] = [226, 208, 186];
-
 impl GpuCut {
     /// Uploads the vertices of a model, with room for the triangles of its finest level.
     ///
@@ -97,7 +94,8 @@ impl GpuCut {
             faces: 0,
             uploaded: 0,
         };
-        this.storage = this.bind_storage(renderer);
+        let buffers = [&this.positions, &this.attributes, &this.indices];
+        this.storage = bind_faces(renderer, buffers, &[u32::MAX]);
         Ok(this)
     }
 
@@ -243,18 +241,5 @@ impl GpuCut {
         self.uploaded += self.indices.size();
         // It was bound to the old buffer; a wireframe is drawn without its lines from here on.
         self.storage = None;
-    }
-
-    fn bind_storage(&self, renderer: &Renderer) -> Option<BindGroup> {
-        let limit = self.gpu.device.limits().max_storage_buffer_binding_size;
-        let buffers = [&self.positions, &self.attributes, &self.indices];
-        if buffers.iter().any(|buffer| buffer.size() > limit) {
-            return None;
-        }
-        let white = bytemuck::bytes_of(&u32::MAX);
-        let colors = buffer_of(&self.gpu, "colours", white, BufferUsages::STORAGE);
-        let [a, b, c] = buffers.map(Buffer::as_entire_binding);
-        let all = [a, b, c, colors.as_entire_binding()];
-        Some(bind_group(&self.gpu.device, &renderer.meshes().storage_layout, all))
     }
 }

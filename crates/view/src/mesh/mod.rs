@@ -15,10 +15,10 @@ use self::build::{CornerVertices, face_order};
 pub(crate) use self::build::{fractions, smooth_attributes};
 pub(crate) use self::colors::{Surface, VertexColors};
 pub(crate) use self::pipelines::{MaterialBinding, MeshPipelines, VERTEX_BUFFERS};
+use crate::ViewError;
 use crate::placement::Placement;
 use crate::renderer::{Renderer, bind_group};
 use crate::upload::upload_sliced;
-use crate::{Gpu, ViewError};
 
 /// Mesh on the GPU: wedges with normals, texture coordinates and colours; and its materials.
 ///
@@ -128,12 +128,6 @@ impl GpuMesh {
         self.bytes
     }
 
-    /// Returns true if the mesh can be drawn face by face, as wireframes and colours of faces need
-    /// it; some GPUs allow that only up to a size.
-    pub fn has_faces_apart(&self) -> bool {
-        self.storage.is_some()
-    }
-
     /// Gives the faces colours, sRGB in the order of the mesh's faces, for a
     /// [`Shade`](crate::Shade) with colours of faces.
     ///
@@ -193,18 +187,26 @@ impl GpuMesh {
     }
 
     fn bind_storage(&self, renderer: &Renderer, colors: &[u32]) -> Option<BindGroup> {
-        let gpu: &Gpu = renderer.gpu();
-        let limit = gpu.device.limits().max_storage_buffer_binding_size;
-        let buffers = [&self.positions, &self.attributes, &self.indices];
-        if buffers.iter().any(|buffer| buffer.size() > limit) {
-            return None;
-        }
-        let colors =
-            upload_sliced(gpu, "colours", bytemuck::cast_slice(colors), BufferUsages::STORAGE);
-        let [a, b, c] = buffers.map(Buffer::as_entire_binding);
-        let all = [a, b, c, colors.as_entire_binding()];
-        Some(bind_group(&gpu.device, &renderer.meshes().storage_layout, all))
+        bind_faces(renderer, [&self.positions, &self.attributes, &self.indices], colors)
     }
+}
+
+/// Binds positions, attributes and indices for drawing face by face, with sRGB colours of the faces;
+/// `None` if a buffer is beyond what the GPU binds as storage.
+pub(crate) fn bind_faces(
+    renderer: &Renderer,
+    buffers: [&Buffer; 3],
+    colors: &[u32],
+) -> Option<BindGroup> {
+    let gpu = renderer.gpu();
+    let limit = gpu.device.limits().max_storage_buffer_binding_size;
+    if buffers.iter().any(|buffer| buffer.size() > limit) {
+        return None;
+    }
+    let colors = upload_sliced(gpu, "colours", bytemuck::cast_slice(colors), BufferUsages::STORAGE);
+    let [a, b, c] = buffers.map(Buffer::as_entire_binding);
+    let all = [a, b, c, colors.as_entire_binding()];
+    Some(bind_group(&gpu.device, &renderer.meshes().storage_layout, all))
 }
 
 /// Returns the middle of the box of all positions that faces use.

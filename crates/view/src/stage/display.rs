@@ -4,6 +4,7 @@ use meshlod::picture::{BackFaces, Background, Lighting, Wireframe};
 use serde::{Deserialize, Serialize};
 
 use crate::Shade;
+use crate::placement::CLAY;
 
 /// How the subjects of a stage are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -95,9 +96,6 @@ impl Coloring {
 
 /// Tint of faces seen from behind, a warm red that no light makes of clay.
 const BEHIND: [u8; 3] = [214, 92, 74];
-
-/// Clay, as [`meshlod::OwnedPaint::CLAY`].
-const CLAY: [u8; 3] = [226, 208, 186];
 
 impl Default for Display {
     fn default() -> Self {

@@ -5,6 +5,7 @@
 
 mod actions;
 mod app;
+mod canvas_texture;
 mod central;
 mod document;
 mod gpu_guard;

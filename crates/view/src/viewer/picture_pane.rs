@@ -6,8 +6,9 @@ use eframe::egui_wgpu::RenderState;
 use egui::TextureId;
 use meshlod::picture::{Camera, Picture};
 
+use super::canvas_texture::CanvasTexture;
 use crate::stage::{Display, Stage, SubjectId};
-use crate::{Canvas, Gpu, Renderer, TargetFormat, ViewError};
+use crate::{Gpu, Renderer, TargetFormat, ViewError};
 
 /// Picture of the stage, drawn again only when something has changed.
 ///
@@ -15,8 +16,7 @@ use crate::{Canvas, Gpu, Renderer, TargetFormat, ViewError};
 /// there is something to see, and as it should be in the frame after.
 #[derive(Debug, Default)]
 pub(crate) struct PicturePane {
-    canvas: Option<Canvas>,
-    texture: Option<TextureId>,
+    canvas: CanvasTexture,
     drawn: Option<Drawn>,
 }
 
@@ -65,7 +65,7 @@ impl PicturePane {
         changes: u64,
     ) -> Result<Option<TextureId>, ViewError> {
         if size.contains(&0) {
-            return Ok(self.texture);
+            return Ok(self.canvas.texture());
         }
         let shown: Vec<_> = stage.shown().collect();
         let is_new = self.drawn.as_ref().is_none_or(|drawn| drawn.shown != shown);
@@ -73,23 +73,16 @@ impl PicturePane {
         let (camera, display) = (stage.rig.camera(), stage.display);
         let wanted = Drawn { size, camera, display, shown, changes, is_draft };
         if self.drawn.as_ref() == Some(&wanted) {
-            return Ok(self.texture);
+            return Ok(self.canvas.texture());
         }
         let renderer = if is_draft { &renderers.draft } else { &*renderers.full };
-        let fits = |canvas: &Canvas| canvas.size() == size && canvas.format() == renderer.format();
-        if !self.canvas.as_ref().is_some_and(fits) {
-            let canvas = Canvas::with_format(renderer.gpu(), size, renderer.format())?;
-            self.register(&canvas, state);
-            self.canvas = Some(canvas);
-        }
         if !is_draft {
             stage.prepare(renderer)?;
         }
-        if let Some(canvas) = &self.canvas {
-            canvas.draw(|pass| stage.draw(renderer, pass, size));
-        }
+        let canvas = self.canvas.canvas(renderer, state, size)?;
+        canvas.draw(|pass| stage.draw(renderer, pass, size));
         self.drawn = Some(wanted);
-        Ok(self.texture)
+        Ok(self.canvas.texture())
     }
 
     /// Returns true if the picture is a draft, to be drawn again at once.
@@ -104,20 +97,6 @@ impl PicturePane {
 
     /// Reads the pixels of the picture; `None` before the first one.
     pub fn read(&self) -> Result<Option<Picture>, ViewError> {
-        self.canvas.as_ref().map(Canvas::read).transpose()
-    }
-
-    fn register(&mut self, canvas: &Canvas, state: &RenderState) {
-        let (view, filter) = (canvas.panel_view(), wgpu::FilterMode::Linear);
-        let mut panels = state.renderer.write();
-        match self.texture {
-            Some(id) => {
-                panels.update_egui_texture_from_wgpu_texture(&state.device, &view, filter, id);
-            }
-            None => {
-                let id = panels.register_native_texture(&state.device, &view, filter);
-                self.texture = Some(id);
-            }
-        }
+        self.canvas.read()
     }
 }

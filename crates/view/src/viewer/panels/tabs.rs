@@ -48,15 +48,11 @@ fn sides(app: &ViewerApp, ui: &mut Ui, out: &mut Vec<Action>) {
     let Some(document) = app.document().filter(|document| document.has_sides()) else { return };
     ui.separator();
     let all = [
-        (ShownSide::Original, if document.level.is_some() { "Original" } else { "Cut" }),
+        (ShownSide::Original, "Original"),
         (ShownSide::Level, "Level"),
         (ShownSide::Both, "Side by side"),
     ];
-    let there: Vec<_> = all
-        .into_iter()
-        .filter(|(side, _)| *side != ShownSide::Level || document.level.is_some())
-        .collect();
-    if let Some(side) = choices(ui, document.mode, &there) {
+    if let Some(side) = choices(ui, document.mode, &all) {
         out.push(Action::Show(side));
     }
 }

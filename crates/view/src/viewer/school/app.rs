@@ -11,11 +11,11 @@ use meshlod::picture::UpAxis;
 
 use super::controls::Controls;
 use super::drag::PickedObstacle;
-use super::pane::SchoolPane;
 use super::report::{SchoolOutcome, Totals};
 use super::stage_thread::ComingScene;
 use super::{SchoolReport, SchoolWindowOptions, panel};
 use crate::stage::{CameraRig, RigPose};
+use crate::viewer::canvas_texture::CanvasTexture;
 use crate::viewer::gpu_guard::GpuGuard;
 use crate::viewer::theme;
 use crate::viewer::timing::FrameTimes;
@@ -39,7 +39,7 @@ pub(crate) struct SchoolApp {
     pub orbit: Option<CameraRig>,
     /// Obstacle that the pointer holds.
     pub held: Option<PickedObstacle>,
-    pub pane: SchoolPane,
+    pub pane: CanvasTexture,
     /// Size of the picture in pixels.
     pub size: [u32; 2],
     /// Number of faces of all members in full detail.
@@ -82,7 +82,7 @@ impl SchoolApp {
             show: None,
             orbit: None,
             held: None,
-            pane: SchoolPane::default(),
+            pane: CanvasTexture::default(),
             size: [0; 2],
             full_faces,
             times: FrameTimes::new(Instant::now()),
@@ -153,7 +153,8 @@ impl SchoolApp {
         show.resize(self.size);
         let drawn = show
             .advance()
-            .and_then(|()| self.pane.draw(show, &self.renderer, &self.state, self.size));
+            .and_then(|()| self.pane.canvas(&self.renderer, &self.state, self.size))
+            .map(|canvas| canvas.draw(|pass| show.draw(&self.renderer, pass)));
         if let Some(frame) = show.history().last() {
             self.totals.add(frame);
         }

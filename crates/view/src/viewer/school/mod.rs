@@ -9,7 +9,6 @@ mod drag;
 mod graphs;
 mod keys;
 mod options;
-mod pane;
 mod panel;
 mod report;
 mod stage_thread;

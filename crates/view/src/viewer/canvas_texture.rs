@@ -1,44 +1,45 @@
-//! School as a texture that the window shows.
+//! Canvas as a texture that panels show.
 
 use eframe::egui_wgpu::RenderState;
 use egui::TextureId;
 use meshlod::picture::Picture;
 
-use crate::{Canvas, Renderer, SchoolShow, ViewError};
+use crate::{Canvas, Renderer, ViewError};
 
-/// Canvas on which every frame is drawn, and its texture.
+/// Canvas that is made anew when its size or format changes, under one texture of the panels.
 #[derive(Debug, Default)]
-pub(crate) struct SchoolPane {
+pub(crate) struct CanvasTexture {
     canvas: Option<Canvas>,
     texture: Option<TextureId>,
 }
 
-impl SchoolPane {
-    /// Draws a frame of a size in pixels, no side of which may be 0, and returns its texture.
-    pub fn draw(
+impl CanvasTexture {
+    /// Returns a canvas of a size in pixels for a renderer; no side may be 0.
+    pub fn canvas(
         &mut self,
-        show: &SchoolShow,
         renderer: &Renderer,
         state: &RenderState,
         size: [u32; 2],
-    ) -> Result<Option<TextureId>, ViewError> {
-        if self.canvas.as_ref().is_none_or(|canvas| canvas.size() != size) {
-            let canvas = Canvas::new(renderer.gpu(), size)?;
-            self.register(&canvas, state);
-            self.canvas = Some(canvas);
-        }
-        if let Some(canvas) = &self.canvas {
-            canvas.draw(|pass| show.draw(renderer, pass));
-        }
-        Ok(self.texture)
+    ) -> Result<&Canvas, ViewError> {
+        let format = renderer.format();
+        let fits = |canvas: &Canvas| canvas.size() == size && canvas.format() == format;
+        let canvas = match self.canvas.take().filter(fits) {
+            Some(canvas) => canvas,
+            None => {
+                let canvas = Canvas::with_format(renderer.gpu(), size, format)?;
+                self.register(&canvas, state);
+                canvas
+            }
+        };
+        Ok(self.canvas.insert(canvas))
     }
 
-    /// Returns the texture of the last frame.
+    /// Returns the texture; `None` before the first canvas.
     pub fn texture(&self) -> Option<TextureId> {
         self.texture
     }
 
-    /// Reads the pixels of the last frame; `None` before the first one.
+    /// Reads the pixels; `None` before the first canvas.
     pub fn read(&self) -> Result<Option<Picture>, ViewError> {
         self.canvas.as_ref().map(Canvas::read).transpose()
     }
