@@ -7,8 +7,7 @@ use std::path::{Path, PathBuf};
 use meshlod_io::{IoError, Scene, write_file};
 use meshlod_mesh::Mesh;
 use meshlod_multires::{
-    Archive, Certificate, ErrorKind, FileError, Forest, Level, ModelFile, Query, Rtin,
-    RtinExtractor, Storage,
+    Archive, Certificate, ErrorKind, FileError, Forest, Level, ModelFile, Query, Storage,
 };
 use meshlod_simplify::{Method, Options, SimplifyError};
 use thiserror::Error;
@@ -63,12 +62,13 @@ pub struct BuildReport {
 #[derive(Clone, Debug)]
 pub struct ExtractOptions<'f> {
     /// Region to refine, and the largest error allowed there; by default the whole model, without
-    /// error.
+    /// error. A point stands for the closest point of the finest surface.
     pub query: Query<'f>,
     /// Largest number of faces of the mesh. If set, the query only decides where errors matter
     /// most.
     pub max_faces: Option<usize>,
-    /// True to leave out faces entirely outside the focus region of the query.
+    /// True to leave out faces entirely outside the focus region of the query. Of a point only the
+    /// nearest faces are left.
     pub crop: bool,
 }
 
@@ -187,17 +187,17 @@ pub fn extract(path: &Path, options: &ExtractOptions<'_>) -> Result<Mesh, Levels
 
 fn level(file: File, options: &ExtractOptions<'_>) -> Result<Level, FileError> {
     let ExtractOptions { query, max_faces, crop } = options;
-    let level = match (ModelFile::open(file)?, *max_faces) {
-        (ModelFile::Contractions(archive), None) => archive.extract(query)?.level,
-        (ModelFile::Contractions(archive), Some(faces)) => {
-            archive.extract_at_most(faces, query)?.level
-        }
-        (ModelFile::HeightField(field), None) => Rtin::new(&field).level(query)?,
-        (ModelFile::HeightField(field), Some(faces)) => {
-            RtinExtractor::new(&Rtin::new(&field)).at_most(faces, query)?.clone()
-        }
+    let file = ModelFile::open(file)?;
+    let (query, nearest) = file.at_surface(query, *max_faces)?;
+    let level = match *max_faces {
+        None => file.extract(&query)?.level,
+        Some(faces) => file.extract_at_most(faces, &query)?.level,
     };
-    Ok(if *crop { level.within(&query.focus)? } else { level })
+    Ok(match nearest {
+        _ if !*crop => level,
+        Some(point) => level.nearest(point)?,
+        None => level.within(&query.focus)?,
+    })
 }
 
 #[cfg(test)]

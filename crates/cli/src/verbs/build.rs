@@ -204,7 +204,7 @@ impl Build {
         };
         let bytes = field.to_file(precision).map_err(|error| failed(&error))?;
         let stored = ModelFile::open(bytes.clone()).map_err(|error| failed(&error))?;
-        let ModelFile::HeightField(field) = stored else { unreachable!("a field was written") };
+        let ModelFile::HeightField(field, _) = stored else { unreachable!("a field was written") };
         let rounding = field.fit().rounded;
         let part = percent(100.0 * rounding / mesh.bounds().diagonal());
         Ok(Built {

@@ -10,6 +10,7 @@ mod hostile;
 mod levels;
 mod models;
 mod pipes;
+mod queries;
 mod repair;
 mod run;
 mod strip;
