@@ -6,6 +6,7 @@
 
 use glam::DVec3;
 
+use crate::refusal::Refusal;
 use crate::surface::Surface;
 use crate::surface::neighbourhood::Neighbourhood;
 
@@ -46,6 +47,22 @@ impl VolumePlane {
         let moved = x + self.normal * (self.loss(x) / self.normal.length_squared());
         if moved.is_finite() { moved } else { x }
     }
+}
+
+/// Returns the position on the surface's normal at the contracted vertex `kept` that conserves the
+/// volume; the vertex's own position where the ring is open. Refuses what is out of reach.
+pub(crate) fn along_normal(
+    surface: &Surface,
+    neighbourhood: &Neighbourhood,
+    kept: usize,
+) -> Result<DVec3, Refusal> {
+    let from = surface.position(neighbourhood.contracted()[kept]);
+    if !neighbourhood.is_closed(surface) {
+        return Ok(from);
+    }
+    let offset = VolumePlane::new(surface, neighbourhood, from).nearest(DVec3::ZERO);
+    let is_near = offset.length() <= neighbourhood.radius(from);
+    if is_near { Ok(from + offset) } else { Err(Refusal::Volume) }
 }
 
 /// Calls `each` for every face that a contraction replaces, with its normal (twice the area long)
