@@ -2,7 +2,7 @@
 
 use clap::Args;
 use meshlod::check::Fused;
-use meshlod::{Scene, Target, fuse_scene};
+use meshlod::{Constraints, Scene, Target};
 use serde_json::{Value, json};
 
 use crate::numbers::{count, faces, plural};
@@ -28,12 +28,13 @@ pub struct FuseReport {
 impl FuseArgs {
     /// Fuses intersecting objects of a scene if `--fuse` is given.
     pub fn apply(&self, scene: &mut Scene, session: &Session) -> Option<FuseReport> {
-        self.fuse.then(|| {
+        if self.fuse {
             session.progress.stage("fusing");
-            let before = shown_faces(scene);
-            let fused = fuse_scene(scene);
-            FuseReport { before, after: shown_faces(scene), fused }
-        })
+        }
+        let before = shown_faces(scene);
+        let constraints = Constraints { fuse: self.fuse, ..Constraints::default() };
+        let fused = constraints.fuse(scene)?;
+        Some(FuseReport { before, after: shown_faces(scene), fused })
     }
 }
 

@@ -72,10 +72,10 @@ impl Lods {
             (1..=self.levels.len()).try_for_each(|i| files::check_place(&self.file_of(i)))?;
         }
         let mut scene = files::read(&self.input, &self.reading, session)?;
-        let fused = self.method.fuse.apply(&mut scene, session);
+        let fused = self.method.constraints.fuse.apply(&mut scene, session);
         let input = InputScene { scene: &scene, path: &self.input, reading: &self.reading };
         let options = self.method.options(&input, session)?;
-        let borders = self.method.topology.borders();
+        let borders = self.method.constraints.topology.borders();
         let ready = ReadyScene::new(&scene, &options, borders, &self.input, session)?;
         let (mut chain, time) = self.chain(&scene, &ready, fused.as_ref(), session)?;
         if let Some(level) = chain.last() {

@@ -12,11 +12,12 @@ use serde_json::{Value, json};
 
 use crate::answer::Answer;
 use crate::args::{ReadArgs, WriteArgs};
+use crate::constraints::ConstraintArgs;
 use crate::distance;
 use crate::failure::Failure;
 use crate::files;
-use crate::fuse::{self, FuseArgs};
-use crate::locks::{self, InputScene, LockArgs};
+use crate::fuse;
+use crate::locks::{self, InputScene};
 use crate::measured_bound::BoundSearch;
 use crate::numbers::{count, faces, percent, value};
 use crate::parse::{self, Bound};
@@ -24,7 +25,7 @@ use crate::sequence;
 use crate::session::Session;
 use crate::simplify_report;
 use crate::simplify_run::{self, ReadyScene, Simplified, SimplifyRun};
-use crate::topology::{self, TopologyArgs};
+use crate::topology;
 use crate::volume;
 
 /// Reduce a mesh to fewer faces
@@ -84,11 +85,7 @@ pub struct MethodArgs {
         value_parser = parse::method, help = parse::methods())]
     method: Method,
     #[command(flatten)]
-    pub fuse: FuseArgs,
-    #[command(flatten)]
-    locks: LockArgs,
-    #[command(flatten)]
-    pub topology: TopologyArgs,
+    pub constraints: ConstraintArgs,
     /// Cost weight of boundaries, where 0 means none [default: 9 for lindstrom-turk, 2 for qem]
     #[arg(long, value_name = "WEIGHT", value_parser = parse::weight, allow_negative_numbers = true)]
     boundary: Option<f64>,
@@ -127,8 +124,7 @@ impl MethodArgs {
             boundary_weight: self.boundary,
             ..Options::default()
         };
-        let options = self.topology.apply(options, input.scene)?;
-        self.locks.apply(options, input, session)
+        self.constraints.apply(options, input, session)
     }
 
     fn weights(&self) -> AttributeWeights {
@@ -180,19 +176,20 @@ impl Simplify {
     pub fn run(mut self, session: &Session) -> Result<Answer, Failure> {
         let format = files::check_output(&self.output, session)?;
         if let Some(path) = &self.sequence {
-            self.method.topology.keep()?;
+            let reason = "--sequence records a run with --topology keep";
+            self.method.constraints.topology.keep(reason)?;
             sequence::check(path, &self.input, &self.output)?;
         }
         let mut scene = files::read(&self.input, &self.reading, session)?;
         if self.sequence.is_some() {
             sequence::check_scene(&scene, &self.input, session)?;
         }
-        let fused = self.method.fuse.apply(&mut scene, session);
+        let fused = self.method.constraints.fuse.apply(&mut scene, session);
         let target = self.target.target(&scene);
         let target = fused.as_ref().map_or(target, |fused| fused.target(target));
         let input = InputScene { scene: &scene, path: &self.input, reading: &self.reading };
         let options = self.method.options(&input, session)?;
-        let borders = self.method.topology.borders();
+        let borders = self.method.constraints.topology.borders();
         let ready = ReadyScene::new(&scene, &options, borders, &self.input, session)?;
         let task = Task { scene: &scene, ready, target, options };
         let (mut done, mut time) = match target {

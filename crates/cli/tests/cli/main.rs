@@ -3,6 +3,7 @@
 mod check;
 mod compare;
 mod compress;
+mod constraints;
 mod demo;
 mod flock;
 mod hostile;
