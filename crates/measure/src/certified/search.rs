@@ -140,7 +140,7 @@ impl<'s> Search<'s> {
     }
 }
 
-/// What a task found.
+/// Cells and the farthest point that a task found.
 #[derive(Clone)]
 struct Outcome {
     open: Vec<Cell>,
