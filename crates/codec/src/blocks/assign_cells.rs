@@ -5,6 +5,7 @@
 //! of its faces to their planes, with all other vertices fixed: iterated conditional modes [Bes86].
 
 use glam::{DMat3, DVec3};
+use rayon::prelude::*;
 
 use super::deviation::{Limits, Neighbourhood};
 use super::original::{OriginalSurface, outer};
@@ -142,19 +143,26 @@ impl CellAssignment {
         surface: &OriginalSurface,
         grids: &[BlockGrid],
         most: f64,
-        vertices: impl Iterator<Item = usize>,
+        vertices: &[usize],
     ) -> Vec<usize> {
-        let stays_far = |&v: &usize| {
+        let limits = Limits { enough: most, most: f64::INFINITY };
+        let deviation = |moved: &[DVec3], hood: &Neighbourhood| hood.deviation(moved, limits);
+        let is_far = |&v: &usize| {
+            !surface.is_near(v, &self.moved, most)
+                && deviation(&self.moved, &Neighbourhood::new(surface, v)) > most
+        };
+        let far: Vec<usize> = vertices.par_iter().copied().filter(is_far).collect();
+        // One that is moved changes the faces of those around it.
+        let mut far = surface.with_neighbours(far.into_iter());
+        far.retain(|&v| {
             if surface.is_near(v, &self.moved, most) {
                 return false;
             }
             let hood = Neighbourhood::new(surface, v);
-            let limits = Limits { enough: most, most: f64::INFINITY };
-            let deviation = hood.deviation(&self.moved, limits);
-            deviation > most
-                && self.repair_one(surface, &grids[v / BLOCK], &hood, deviation, most) > most
-        };
-        vertices.filter(stays_far).collect()
+            let is = deviation(&self.moved, &hood);
+            is > most && self.repair_one(surface, &grids[v / BLOCK], &hood, is, most) > most
+        });
+        far
     }
 
     /// Moves the vertex of a neighbourhood to the cell around it with the fewest flipped faces and

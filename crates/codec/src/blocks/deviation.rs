@@ -1,6 +1,7 @@
 //! Distance of a moved vertex and its surroundings from the original surface, and back.
 
 use glam::DVec3;
+use meshlod_spatial::closest_point;
 use rayon::prelude::*;
 
 use super::original::OriginalSurface;
@@ -10,7 +11,9 @@ use super::original::OriginalSurface;
 const SAMPLED: usize = 32;
 /// Limit on the faces around a vertex that are searched for the closest point.
 const SEARCHED: usize = 128;
-/// Vertices that share a running maximum.
+/// Vertices that are examined first for the largest deviation.
+const FIRST: usize = 64;
+/// Other vertices that share a running maximum.
 const CHUNK: usize = 4096;
 
 /// Faces among which the closest point to a sample of a vertex's faces is sought.
@@ -32,19 +35,26 @@ pub(super) struct Limits {
 impl OriginalSurface {
     /// Returns the largest deviation of all vertices.
     pub(super) fn max_deviation(&self, moved: &[DVec3]) -> f64 {
-        let chunks = (0..self.places.len().div_ceil(CHUNK)).into_par_iter();
-        let farthest = |chunk: usize| {
-            let last = self.places.len().min((chunk + 1) * CHUNK);
-            (chunk * CHUNK..last).fold(0.0, |enough: f64, v| {
-                enough.max(self.deviation(v, moved, Limits { enough, most: f64::INFINITY }))
-            })
+        let farther = |enough: f64, &v: &usize| {
+            enough.max(self.deviation(v, moved, Limits { enough, most: f64::INFINITY }))
         };
-        chunks.map(farthest).reduce(|| 0.0, f64::max)
+        let mut vertices: Vec<usize> = (0..self.places.len()).collect();
+        let first = FIRST.min(vertices.len());
+        // With those that left their planes the most, few others need more than a glance.
+        if first < vertices.len() {
+            let far: Vec<f64> =
+                vertices.par_iter().map(|&v| self.plane_distance(v, moved[v])).collect();
+            vertices.select_nth_unstable_by(first, |&a, &b| far[b].total_cmp(&far[a]).then(a.cmp(&b)));
+        }
+        let (first, others) = vertices.split_at(first);
+        let enough = first.iter().fold(0.0, farther);
+        let chunks = others.par_chunks(CHUNK).map(|chunk| chunk.iter().fold(enough, farther));
+        chunks.reduce(|| enough, f64::max)
     }
 
-    /// As [`Neighbourhood::deviation`], without a neighbourhood where no vertex moved far.
+    /// As [`Neighbourhood::deviation`], with a glance first that spares most vertices the search.
     pub(super) fn deviation(&self, vertex: usize, moved: &[DVec3], limits: Limits) -> f64 {
-        if self.is_still(vertex, moved, limits.enough) {
+        if self.is_near(vertex, moved, limits.enough) {
             return 0.0;
         }
         Neighbourhood::new(self, vertex).deviation(moved, limits)
@@ -93,20 +103,16 @@ impl<'s> Neighbourhood<'s> {
             // All its faces have no area.
             most = most.max(moved[self.vertex].length_squared());
         }
-        for &face in self.faces.iter().take(self.surface.ring(self.vertex).len().min(SAMPLED)) {
+        let sampled = self.surface.ring(self.vertex).len().min(SAMPLED);
+        for (at, &face) in self.faces[..sampled].iter().enumerate() {
             let a = self.surface.faces[face as usize].after(v);
             let b = self.surface.faces[face as usize].after(a);
-            // The vertex, quarter points of an edge, and points within the face.
-            for of in [
-                [v, v, v, v],
-                [v, v, v, a],
-                [v, v, a, a],
-                [v, a, a, a],
-                [v, v, a, b],
-                [v, a, a, b],
-                [v, a, b, b],
-            ] {
-                most = most.max(self.squared_distance(of, face, moved, [most, limit]));
+            let mut near = [face; 2];
+            // Quarter points of an edge, points within the face, and the vertex.
+            let points = [[v, v, v, a], [v, v, a, a], [v, a, a, a], [v, v, a, b], [v, a, a, b]];
+            let vertex = (at == 0).then_some([v; 4]);
+            for of in vertex.into_iter().chain(points).chain([[v, a, b, b]]) {
+                most = most.max(self.squared_distance(of, &mut near, moved, [most, limit]));
                 if most >= limit {
                     return f64::INFINITY;
                 }
@@ -117,10 +123,12 @@ impl<'s> Neighbourhood<'s> {
 
     /// Returns the squared distance of the mean of four corners of a face from the other surface,
     /// or any number below `enough`, or any above `limit`.
+    ///
+    /// `near` has the faces that were near enough for the last point, in either direction.
     fn squared_distance(
         &self,
         of: [u32; 4],
-        face: u32,
+        near: &mut [u32; 2],
         moved: &[DVec3],
         [enough, limit]: [f64; 2],
     ) -> f64 {
@@ -131,45 +139,36 @@ impl<'s> Neighbourhood<'s> {
         if by.length_squared() <= enough {
             return 0.0;
         }
-        let place = |v: u32| places[v as usize];
-        let to_was = self.nearest(was + by, face, place, enough);
+        let [near_was, near_is] = near;
+        let to_was = self.nearest(was + by, near_was, |v| places[v as usize], enough);
         if to_was >= limit {
             return to_was;
         }
-        to_was.max(self.nearest(was, face, |v| places[v as usize] + moved[v as usize], enough))
+        let place = |v: u32| places[v as usize] + moved[v as usize];
+        to_was.max(self.nearest(was, near_is, place, enough))
     }
 
-    /// Returns the squared distance from a point of `own` to the nearest face, or to the first one
-    /// that is near enough.
-    fn nearest(&self, p: DVec3, own: u32, place: impl Fn(u32) -> DVec3, enough: f64) -> f64 {
-        let mut nearest = f64::INFINITY;
-        // Its own face is mostly near enough.
-        for &face in [own].iter().chain(&self.faces) {
+    /// Returns the squared distance from a point to the nearest face, or to the first one that is
+    /// near enough, with `near` before all others.
+    fn nearest(
+        &self,
+        p: DVec3,
+        near: &mut u32,
+        place: impl Fn(u32) -> DVec3,
+        enough: f64,
+    ) -> f64 {
+        let mut nearest = (f64::INFINITY, *near);
+        for &face in [*near].iter().chain(&self.faces) {
             let corners = self.surface.faces[face as usize].corners.map(&place);
-            nearest = nearest.min(p.distance_squared(closest(p, corners)));
-            if nearest <= enough {
+            let distance = p.distance_squared(closest_point(p, &corners));
+            if distance < nearest.0 {
+                nearest = (distance, face);
+            }
+            if distance <= enough {
                 break;
             }
         }
-        nearest
+        *near = nearest.1;
+        nearest.0
     }
-}
-
-/// Returns the point of a triangle that is closest to `p`.
-fn closest(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
-    let normal = (b - a).cross(c - a);
-    let inside = |a: DVec3, b: DVec3| (b - a).cross(p - a).dot(normal) >= 0.0;
-    if normal != DVec3::ZERO && inside(a, b) && inside(b, c) && inside(c, a) {
-        return p - normal * ((p - a).dot(normal) / normal.length_squared());
-    }
-    let on = |a: DVec3, b: DVec3| {
-        let along = b - a;
-        let part = (p - a).dot(along) / along.length_squared();
-        // An edge of length 0 gives NaN, which ends here as 0.
-        a + along * if part > 0.0 { part.min(1.0) } else { 0.0 }
-    };
-    let nearer = |x: DVec3, y: DVec3| {
-        if y.distance_squared(p) < x.distance_squared(p) { y } else { x }
-    };
-    nearer(nearer(on(a, b), on(b, c)), on(c, a))
 }

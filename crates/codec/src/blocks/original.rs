@@ -29,6 +29,8 @@ pub(super) struct Face {
 
 /// Least cosine between the normals of faces that count as level with each other.
 const LEVEL: f64 = 0.8;
+/// Limit on the faces around a neighbour that are looked at.
+const WIDEST: usize = 32;
 
 impl OriginalSurface {
     pub(super) fn new(mesh: &Mesh, ordered: &[VertexId], centre: DVec3) -> Self {
@@ -109,19 +111,39 @@ impl OriginalSurface {
     }
 
     /// Returns true if a vertex is certainly about as near to the faces around it as `most`: if
-    /// none of their corners moved farther, or if the faces are nearly level and it stays above and
-    /// near them.
+    /// neither it nor a neighbour moved farther, or if the faces around it, or those and the faces
+    /// around its neighbours, are nearly level and it stays above and near them.
     pub(super) fn is_near(&self, vertex: usize, moved: &[DVec3], most: f64) -> bool {
         if self.is_still(vertex, moved, most) {
             return true;
         }
+        if self.boundary(vertex).is_some() || self.plane_distance(vertex, moved[vertex]) > most {
+            return false;
+        }
         let normal = self.faces_around(vertex).map(|face| face.normal * face.area).sum::<DVec3>();
         let least = LEVEL * normal.length();
+        let is_level = |face: &Face| face.normal.dot(normal) >= least;
+        let height = |least: f64, face: &Face| least.min(face.height);
+        let around = self.faces_around(vertex);
+        if !around.clone().all(is_level) {
+            return false;
+        }
+        let reach = around.clone().fold(f64::INFINITY, height);
         let length = moved[vertex].length();
-        let is_over = |face: &Face| face.normal.dot(normal) >= least && length <= face.height;
-        self.boundary(vertex).is_none()
-            && self.faces_around(vertex).all(is_over)
-            && self.plane_distance(vertex, moved[vertex]) <= most
+        if length <= reach {
+            return true;
+        }
+        let beside = |face: &Face| face.corners.into_iter().filter(|&v| v as usize != vertex);
+        let mut wide = around.flat_map(beside).map(|v| v as usize);
+        let place = self.places[vertex] + moved[vertex];
+        length <= 2.0 * reach
+            && wide.all(|v| {
+                let is_over = |face: &Face| {
+                    let away = place - self.places[face.corners[0] as usize];
+                    is_level(face) && face.height >= reach && face.normal.dot(away).abs() <= most
+                };
+                self.boundary(v).is_none() && self.ring(v).len() <= WIDEST && self.faces_around(v).all(is_over)
+            })
     }
 
     /// Returns the distance of a moved vertex from the planes around it, and from its boundary.
