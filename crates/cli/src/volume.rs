@@ -1,13 +1,61 @@
-//! Change of volume in a simplification, as JSON and text.
+//! Volume of simplified meshes: its exact restoration, and its change as JSON and text.
 
-use meshlod::Method;
-use meshlod::simplify::{Unconserved, VolumeLoss};
+use clap::Args;
+use meshlod::simplify::{Digits, ExactVolumeError, Unconserved, VolumeLoss, VolumeResidual};
+use meshlod::{ConditionedScene, Mesh, Method, conserve_volumes};
 use serde_json::{Value, json};
 
 use crate::numbers::percent;
+use crate::session::Session;
 
 /// Relative change of volume up to which the text does not mention it.
 const UNSEEN: f64 = 1e-4;
+
+/// Option for levels of exactly the original volume.
+#[derive(Args)]
+pub struct ExactVolumeArgs {
+    /// Adjust the last digits of vertices until the closed parts of every mesh have their original
+    /// volume in the precision that is written
+    #[arg(long)]
+    pub exact_volume: bool,
+}
+
+impl ExactVolumeArgs {
+    /// Restores the volumes of the meshes of a level, if that is asked for. Returns the largest
+    /// relative deviation that is left, or `None` if no mesh has a volume.
+    pub fn restore(
+        &self,
+        scene: &ConditionedScene<'_>,
+        level: &mut [Mesh],
+        digits: Digits,
+        session: &Session,
+    ) -> Option<f64> {
+        if !self.exact_volume {
+            return None;
+        }
+        worst_residual(conserve_volumes(scene, level, digits), session)
+    }
+}
+
+/// Returns the largest relative deviation from the volumes of meshes; warns of those that could not
+/// be restored.
+pub fn worst_residual(
+    found: Vec<Result<VolumeResidual, ExactVolumeError>>,
+    session: &Session,
+) -> Option<f64> {
+    let several = found.len() > 1;
+    let mut worst: Option<f64> = None;
+    for (i, residual) in found.into_iter().enumerate() {
+        match residual {
+            Ok(residual) => worst = Some(residual.after.abs().max(worst.unwrap_or(0.0))),
+            Err(error) if several => {
+                session.warn(format_args!("--exact-volume: mesh {i}: {error}"));
+            }
+            Err(error) => session.warn(format_args!("--exact-volume: {error}")),
+        }
+    }
+    worst
+}
 
 /// Returns the contractions that could not conserve the volume as JSON, and what is still owed;
 /// `null` for a method that does not aim to.
@@ -31,7 +79,7 @@ fn with_bounds(some: &Unconserved) -> Value {
 /// Describes the volume that a volume-conserving method has lost in closed parts, relative to the
 /// `volume` of the input; `None` if it is not worth a line. What the level repays is not lost.
 pub fn lost_text(method: Method, loss: &VolumeLoss, volume: f64) -> Option<String> {
-    let lost = (loss.running_sum - loss.owed) / volume;
+    let lost = loss.lost() / volume;
     if !method.conserves_volume() || lost.is_nan() || lost.abs() < UNSEEN {
         return None;
     }

@@ -142,7 +142,9 @@ impl OriginalSurface {
                     let away = place - self.places[face.corners[0] as usize];
                     is_level(face) && face.height >= reach && face.normal.dot(away).abs() <= most
                 };
-                self.boundary(v).is_none() && self.ring(v).len() <= WIDEST && self.faces_around(v).all(is_over)
+                self.boundary(v).is_none()
+                    && self.ring(v).len() <= WIDEST
+                    && self.faces_around(v).all(is_over)
             })
     }
 

@@ -42,6 +42,12 @@ pub struct Unconserved {
 }
 
 impl VolumeLoss {
+    /// Returns the volume that a [settled level](crate::Simplifier::settled_level) has lost, in
+    /// cubic model units: the sum without what is owed, which the level has been repaid.
+    pub fn lost(&self) -> f64 {
+        self.running_sum - self.owed
+    }
+
     /// Adds the volume lost by another mesh, placed by the matrix `transform` (columns, as in
     /// glTF).
     pub fn add(&mut self, other: &Self, transform: &[[f64; 4]; 4]) {

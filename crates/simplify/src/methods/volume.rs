@@ -10,6 +10,9 @@ use crate::refusal::Refusal;
 use crate::surface::Surface;
 use crate::surface::neighbourhood::Neighbourhood;
 
+/// Largest displacement along a normal, as a part of the distance to the farthest vertex around.
+const REACH: f64 = 0.5;
+
 /// Plane `normal`·x = `level`, where x is an offset from a given origin.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct VolumePlane {
@@ -61,7 +64,7 @@ pub(crate) fn along_normal(
         return Ok(from);
     }
     let offset = VolumePlane::new(surface, neighbourhood, from).nearest(DVec3::ZERO);
-    let is_near = offset.length() <= neighbourhood.radius(from);
+    let is_near = offset.length() <= REACH * neighbourhood.radius(from);
     if is_near { Ok(from + offset) } else { Err(Refusal::Volume) }
 }
 
