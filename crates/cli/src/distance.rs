@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use meshlod::measure::{
-    Distance, DistanceOptions, MeasureError, OneSidedDistance, PreparedSurface, surface_distance,
+    Bracket, CertifiedDistance, Distance, DistanceOptions, MeasureError, OneSidedDistance, Place,
+    PreparedSurface, surface_distance,
 };
 use meshlod::{Mesh, Scene, io::SceneMesh};
 use serde_json::{Value, json};
@@ -62,8 +63,7 @@ pub fn to_json(distance: &Distance) -> Value {
     };
     let way = |way: &OneSidedDistance| {
         let mut json = lengths(way.mean, way.rms, way.max);
-        json["place"] =
-            json!({ "from": way.place.from, "to": way.place.to, "face": way.place.face.0 });
+        json["place"] = place_json(&way.place);
         json
     };
     let mut json = lengths(distance.mean(), distance.rms(), distance.max());
@@ -89,4 +89,46 @@ pub fn to_table(distance: &Distance) -> String {
         way("backward", &distance.backward),
         row("both", distance.mean(), distance.rms(), distance.max()),
     ])
+}
+
+/// Returns the bounds of the maximum distance in each direction and combined as JSON, in model units
+/// and percent of the diagonal.
+pub fn certified_json(distance: &CertifiedDistance) -> Value {
+    let way = |way: &Bracket| {
+        json!({
+            "lower": way.lower,
+            "upper": way.upper,
+            "lower_percent": distance.percent(way.lower),
+            "upper_percent": distance.percent(way.upper),
+            "reached": way.reached,
+            "place": place_json(&way.place),
+        })
+    };
+    let mut json = way(&distance.symmetric());
+    json["forward"] = way(&distance.forward);
+    json["backward"] = way(&distance.backward);
+    json
+}
+
+/// Formats the bounds of the maximum distance in each direction and combined as a table.
+pub fn certified_table(distance: &CertifiedDistance) -> String {
+    let row = |name: &str, way: Bracket| {
+        let cell = |length| {
+            [numbers::value(length), format!("({})", numbers::percent(distance.percent(length)))]
+        };
+        let ([a, b], [c, d]) = (cell(way.lower), cell(way.upper));
+        let note = if way.reached { "" } else { "limit of the search reached" };
+        [name.into(), a, b, c, d, note.into()]
+    };
+    let table = aligned(&[
+        ["max", "at least", "", "at most", "", ""].map(String::from),
+        row("forward", distance.forward),
+        row("backward", distance.backward),
+        row("both", distance.symmetric()),
+    ]);
+    format!("\n{table}")
+}
+
+fn place_json(place: &Place) -> Value {
+    json!({ "from": place.from, "to": place.to, "face": place.face.0 })
 }

@@ -2,7 +2,8 @@
 //!
 //! [`distance`] measures how far two meshes are apart, by samples spread evenly over both. To
 //! measure many meshes against one, build a [`PreparedSurface`] of each and call
-//! [`surface_distance`].
+//! [`surface_distance`]. [`certified_distance`] encloses the maximum, which samples bound from below
+//! only.
 //!
 //! ```
 //! use meshlod_measure::{DistanceOptions, PreparedSurface, distance, surface_distance, volume};
@@ -26,6 +27,7 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod certified;
 mod distance;
 #[cfg(test)]
 mod fixtures;
@@ -34,6 +36,10 @@ mod quality;
 mod sample;
 mod size;
 
+pub use certified::{
+    Bracket, CertifiedDistance, CertifiedOptions, certified_distance, certified_one_way,
+    certified_surface_distance,
+};
 pub use distance::{
     Distance, DistanceOptions, MeasureError, OneSidedDistance, Place, distance, surface_distance,
     vertex_errors,

@@ -122,7 +122,8 @@ impl<'m> Simplifier<'m> {
     /// Builds the report of the run so far.
     fn report(&self, target: Target, stop: &Stop) -> Report {
         let output_faces = self.live_faces();
-        let Tally { vanished, refusals, error_estimate, volume } = self.engine.tally();
+        let Tally { vanished, contractions, refusals, error_estimate, volume } =
+            self.engine.tally();
         let reached = matches!(target, Target::Error(_)) || output_faces <= stop.faces;
         Report {
             method: self.method,
@@ -132,6 +133,7 @@ impl<'m> Simplifier<'m> {
             non_manifold_vertices: self.input.non_manifold_vertices,
             held: self.input.held,
             output_faces,
+            contractions,
             vanished,
             reached,
             error_estimate,
@@ -151,6 +153,16 @@ impl<'m> Simplifier<'m> {
     /// the input.
     pub fn level(&self) -> Mesh {
         self.engine.level(self.mesh)
+    }
+
+    /// Returns the current mesh as [`Self::level`] does, but with the volume that
+    /// [`Method::LindstromTurk`] still owes repaid by vertices around, which move along their
+    /// normals by a small part of an edge.
+    ///
+    /// Locked and tied vertices and boundaries stay. A run to [`Target::Error`] owes its bound
+    /// more than its volume, and repays nothing. Histories have the levels without repayment.
+    pub fn settled_level(&self) -> Mesh {
+        self.engine.settled_level(self.mesh)
     }
 
     /// Returns the number of input faces without those left out as degenerate or duplicate.

@@ -50,6 +50,12 @@ impl Bvh {
         self.in_model(&best)
     }
 
+    /// Returns the squared distance, in square model units, of `point` from one face.
+    pub fn distance_squared_to(&self, point: [f64; 3], face: FaceId) -> f64 {
+        let slot = self.slots[face.index()] as usize;
+        self.frame.model_squared(self.candidate(self.frame.local(point), slot).distance_squared)
+    }
+
     /// Returns a point on the mesh within the distance `most` of `point`, which must be finite;
     /// `None` if there is no such point.
     ///

@@ -18,7 +18,6 @@ use crate::session::Session;
 use crate::simplify_report;
 use crate::simplify_run::{self, ReadyScene};
 use crate::topology;
-use crate::volume::unconserved_text;
 
 /// A mesh, and the sizes and methods for which to compare simplifications of it.
 pub struct Comparison<'s> {
@@ -161,16 +160,6 @@ impl ComparisonResult {
     /// Iterates over the methods that reached one size, with their simplified meshes.
     pub fn at(&self, size: usize) -> impl Iterator<Item = (&MethodResult, &Level)> + Clone {
         self.entries.iter().filter_map(move |entry| Some((entry, entry.chain.levels.get(size)?)))
-    }
-
-    /// Returns the volume-conserving methods that could not conserve the volume at one size, with a
-    /// description.
-    pub fn unconserved(&self, size: usize) -> Vec<(Method, String)> {
-        let line = |(entry, level): (&MethodResult, &Level)| {
-            let method = entry.chain.method;
-            Some((method, unconserved_text(method, &level.report.volume)?))
-        };
-        self.at(size).filter_map(line).collect()
     }
 
     /// Prints warnings about methods that failed and targets that were missed.

@@ -4,10 +4,8 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use meshlod::simplify::{AttributeWeights, Digits};
-use meshlod::{
-    Mesh, Method, Options, Report, Scene, Target, conserve_volumes, digits_of, world_bounds,
-};
+use meshlod::simplify::AttributeWeights;
+use meshlod::{Method, Options, Report, Scene, Target, digits_of, world_bounds, world_volume};
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
@@ -26,7 +24,7 @@ use crate::session::Session;
 use crate::simplify_report;
 use crate::simplify_run::{self, ReadyScene, Simplified, SimplifyRun};
 use crate::topology;
-use crate::volume;
+use crate::volume::{self, ExactVolumeArgs};
 
 /// Reduce a mesh to fewer faces
 #[derive(Args)]
@@ -47,12 +45,11 @@ pub struct Simplify {
     measured: bool,
     /// Record all levels on the way in FILE, for the verb replay, which needs --scene IN to restore
     /// nodes and materials; the input must hold exactly one mesh
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["measured", "fuse"])]
+    #[arg(long, value_name = "FILE",
+        conflicts_with_all = ["measured", "fuse", "exact_volume"])]
     sequence: Option<PathBuf>,
-    /// Adjust the last digits of vertices until every closed mesh has its original volume in the
-    /// precision that is written
-    #[arg(long, conflicts_with = "sequence")]
-    exact_volume: bool,
+    #[command(flatten)]
+    volume: ExactVolumeArgs,
     /// Exit with 1 if the target is out of reach
     #[arg(long)]
     strict: bool,
@@ -197,22 +194,18 @@ impl Simplify {
             _ if self.measured => self.measured_run(&task, session)?,
             _ => self.plain_run(&task, session)?,
         };
-        let residual = if self.exact_volume {
-            let start = Instant::now();
-            let digits = digits_of(format, self.writing.options().precision);
-            let residual = self.conserve(&task, &mut done.meshes, digits, session)?;
-            time += start.elapsed();
-            residual
-        } else {
-            None
-        };
+        let start = Instant::now();
+        let digits = digits_of(format, self.writing.options().precision);
+        let residual = self.volume.restore(&task.ready.scene, &mut done.meshes, digits, session);
+        time += start.elapsed();
         self.method.warn(&done.report, &task.ready, session);
         if !done.report.reached {
             let reason = simplify_report::why_not_reached(&done.report, task.options.topology);
             session.warn(Failure::at(&self.input, reason));
         }
         let mut json = self.json(&done, &task.ready, fused.as_ref(), time);
-        let mut text = self.text(&done, &task.ready, fused.as_ref(), time);
+        let volume = if residual.is_some() { f64::NAN } else { world_volume(&scene) };
+        let mut text = self.text(&done, &task.ready, fused.as_ref(), (volume, time));
         simplify_run::replace(&mut scene, std::mem::take(&mut done.meshes));
         let write = || files::write(&self.output, &scene, &self.writing, session);
         match (&self.sequence, &done.sequence) {
@@ -228,27 +221,6 @@ impl Simplify {
             missed: self.strict && !done.report.reached,
             ..Answer::new(json, text)
         })
-    }
-
-    /// Restores the volumes of the levels. Returns the largest relative deviation, or `None` if no
-    /// mesh has a volume.
-    fn conserve(
-        &self,
-        task: &Task<'_>,
-        levels: &mut [Mesh],
-        digits: Digits,
-        session: &Session,
-    ) -> Result<Option<f64>, Failure> {
-        let found = conserve_volumes(task.scene, levels, digits, &task.options.locks)
-            .map_err(|error| Failure::at(&self.input, error))?;
-        let mut worst: Option<f64> = None;
-        for (i, residual) in found.into_iter().enumerate() {
-            match residual {
-                Ok(residual) => worst = Some(residual.after.abs().max(worst.unwrap_or(0.0))),
-                Err(error) => session.warn(format_args!("--exact-volume: mesh {i}: {error}")),
-            }
-        }
-        Ok(worst)
     }
 
     fn plain_run(
@@ -306,7 +278,8 @@ impl Simplify {
             json[key] = value.clone();
         }
         json["error_measured"] = done.measured.as_ref().map(distance::to_json).into();
-        json["volume_running_sum"] = report.volume.running_sum.into();
+        json["volume_running_sum"] = report.volume.lost().into();
+        json["contractions"] = simplify_report::contractions_json(report);
         json["volume_not_conserved"] = volume::unconserved_json(report.method, &report.volume);
         json["simplify_seconds"] = time.as_secs_f64().into();
         json["degenerate_faces"] = report.degenerate_faces.into();
@@ -327,7 +300,7 @@ impl Simplify {
         done: &Simplified,
         ready: &ReadyScene<'_>,
         fused: Option<&fuse::FuseReport>,
-        time: Duration,
+        (volume, time): (f64, Duration),
     ) -> String {
         let report = &done.report;
         let input_faces = fused.map_or(report.input_faces, |fused| fused.before);
@@ -346,7 +319,7 @@ impl Simplify {
         if let Some(distance) = &done.measured {
             text += &format!("error_measured:\n{}", distance::to_table(distance));
         }
-        if let Some(line) = volume::unconserved_text(report.method, &report.volume) {
+        if let Some(line) = volume::lost_text(report.method, &report.volume, volume) {
             text += &format!("{line}\n");
         }
         text + &simplify_report::seconds_line(time)

@@ -49,6 +49,25 @@ fn simplify_reaches_a_ratio_and_says_so() {
 }
 
 #[test]
+fn measure_encloses_the_maximum_when_asked() {
+    let run = Run::new();
+    run.sample("knot", 4_000, "in.ply");
+    run.json(&["simplify", "in.ply", "out.ply", "--ratio", "10%"]);
+    let plain = run.json(&["measure", "in.ply", "out.ply"]);
+    assert!(plain.get("certified").is_none());
+    let apart = run.json(&["measure", "in.ply", "out.ply", "--certified"]);
+    let certified = &apart["certified"];
+    for way in ["forward", "backward"] {
+        let [lower, upper] = ["lower", "upper"].map(|bound| number(&certified[way][bound]));
+        assert!(lower <= upper && upper <= 1.0101 * lower, "{certified}");
+        assert!(number(&apart[way]["max"]) <= upper, "{apart}");
+    }
+    assert_eq!(certified["reached"], true);
+    let text = run.run(&["measure", "in.ply", "out.ply", "--certified"]);
+    assert!(text.text().contains("at most"), "{text:?}");
+}
+
+#[test]
 fn no_option_changes_the_method_or_drops_attribute_weights() {
     let run = Run::new();
     run.sample("fish", 1_000, "in.obj");

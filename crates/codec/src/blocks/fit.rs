@@ -185,8 +185,8 @@ impl Fit {
         let mut doubtful: Vec<usize> = (0..self.surface.places.len()).collect();
         for _ in 0..ROUNDS {
             let Attempt { grids, assignment, .. } = &mut *attempt;
-            let doubts = doubtful.into_iter();
-            let far = assignment.repair(&self.surface, grids, MAX_DISTANCE * self.most(), doubts);
+            let most = MAX_DISTANCE * self.most();
+            let far = assignment.repair(&self.surface, grids, most, &doubtful);
             // The cause may be a neighbour of the distant vertex.
             let far = self.surface.with_neighbours(far.into_iter());
             let mut bad = self.blocks_of(far, &assignment.moved);

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::engine::policy::Placement;
 use crate::methods::qem::{Optimal, Quadrics};
-use crate::methods::volume::VolumePlane;
+use crate::methods::volume::{VolumePlane, along_normal};
 use crate::refusal::Refusal;
 use crate::surface::contracted::Freedom;
 use crate::surface::neighbourhood::Neighbourhood;
@@ -27,6 +27,10 @@ impl Placement<Quadrics> for VolumeConserving {
         neighbourhood: &Neighbourhood,
     ) -> Result<Placed, Refusal> {
         let placed = Optimal.place(surface, memory, neighbourhood)?;
+        if let Freedom::AlongNormal(kept) = neighbourhood.freedom() {
+            let position = along_normal(surface, neighbourhood, kept)?;
+            return Ok(Placed { position, ..placed });
+        }
         if neighbourhood.freedom() != Freedom::Free
             || !neighbourhood.is_closed(surface)
             || neighbourhood.ring().is_empty()

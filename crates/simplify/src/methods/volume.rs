@@ -6,8 +6,12 @@
 
 use glam::DVec3;
 
+use crate::refusal::Refusal;
 use crate::surface::Surface;
 use crate::surface::neighbourhood::Neighbourhood;
+
+/// Largest displacement along a normal, as a part of the distance to the farthest vertex around.
+const REACH: f64 = 0.5;
 
 /// Plane `normal`·x = `level`, where x is an offset from a given origin.
 #[derive(Clone, Copy, Debug, Default)]
@@ -46,6 +50,22 @@ impl VolumePlane {
         let moved = x + self.normal * (self.loss(x) / self.normal.length_squared());
         if moved.is_finite() { moved } else { x }
     }
+}
+
+/// Returns the position on the surface's normal at the contracted vertex `kept` that conserves the
+/// volume; the vertex's own position where the ring is open. Refuses what is out of reach.
+pub(crate) fn along_normal(
+    surface: &Surface,
+    neighbourhood: &Neighbourhood,
+    kept: usize,
+) -> Result<DVec3, Refusal> {
+    let from = surface.position(neighbourhood.contracted()[kept]);
+    if !neighbourhood.is_closed(surface) {
+        return Ok(from);
+    }
+    let offset = VolumePlane::new(surface, neighbourhood, from).nearest(DVec3::ZERO);
+    let is_near = offset.length() <= REACH * neighbourhood.radius(from);
+    if is_near { Ok(from + offset) } else { Err(Refusal::Volume) }
 }
 
 /// Calls `each` for every face that a contraction replaces, with its normal (twice the area long)
