@@ -63,6 +63,7 @@ pub fn unconserved_json(method: Method, loss: &VolumeLoss) -> Value {
     let json = || {
         json!({
             "at_boundaries": with_bounds(&loss.open),
+            "behind_boundary_cones": loss.at_boundaries,
             "held": with_bounds(&loss.held),
             "owed": loss.owed,
         })

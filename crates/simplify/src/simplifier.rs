@@ -11,6 +11,7 @@ use crate::kernel::{self, PlaneDistance, SweptVolume};
 use crate::methods;
 use crate::options::{Method, Options, Report, SimplifyError, Target, Topology};
 use crate::surface::Surface;
+use crate::surface::rims::Rims;
 
 /// Bounding-box diagonals that can be worked with. Costs grow with up to the sixth power of a
 /// length and checks with the eighth; outside this range doubles would overflow or underflow.
@@ -209,6 +210,7 @@ fn by_policies<'m>(
         .filter(|&v| connectivity.marks(VertexId::new(v)).non_manifold())
         .count();
     let mut surface = Surface::new(mesh, &connectivity);
+    surface.rims = Rims::new(mesh, &connectivity);
     let held = locks::apply(options, &connectivity, &mut surface);
     let input = InputSummary { degenerate_faces, duplicate_faces, non_manifold_vertices, held };
     let below = options.vanish_below.filter(|_| options.topology == Topology::Free);

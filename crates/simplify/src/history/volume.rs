@@ -4,6 +4,7 @@ use glam::{DMat3, DMat4, DVec3};
 use meshlod_mesh::{Bounds, FaceId};
 
 use crate::engine::policy::Observe;
+use crate::methods::volume::VolumePlane;
 use crate::surface::contracted::Freedom;
 use crate::surface::neighbourhood::{Neighbourhood, Spoke};
 use crate::surface::{Flags, Placed, Surface};
@@ -22,8 +23,12 @@ pub struct VolumeLoss {
     /// Sum of the absolute volumes of the closed components that were removed as a whole, in cubic
     /// model units.
     pub vanished: f64,
-    /// Contractions at a boundary, and open components that were removed as a whole. No volume is
-    /// defined there, so the sum leaves them out.
+    /// Volume before minus volume after, summed over all contractions at a boundary, in cubic model
+    /// units: behind the faces and cones that close them, from each boundary loop to its middle in
+    /// the input. Zero by the kernel, which has no cones.
+    pub at_boundaries: f64,
+    /// Contractions at a boundary, and open components that were removed as a whole. `running_sum`
+    /// leaves them out.
     pub open: Unconserved,
     /// Contractions forced to one position by a lock, a tie or a seam, and closed components that
     /// were removed as a whole, each counted once. The sum includes them. At a seam, methods that
@@ -55,6 +60,7 @@ impl VolumeLoss {
         let scale = DMat3::from_mat4(transform).determinant().abs();
         self.running_sum += other.running_sum * scale;
         self.owed += other.owed * scale;
+        self.at_boundaries += other.at_boundaries * scale;
         self.vanished += other.vanished * scale;
         self.open.count_in(&other.open, &transform);
         self.held.count_in(&other.held, &transform);
@@ -83,6 +89,9 @@ impl Unconserved {
 impl Observe for VolumeLoss {
     fn before(&mut self, surface: &Surface, neighbourhood: &Neighbourhood, placed: &Placed) {
         if !neighbourhood.is_closed(surface) {
+            let from = surface.position(neighbourhood.contracted()[placed.kept]);
+            let plane = VolumePlane::new(surface, neighbourhood, from);
+            self.at_boundaries += plane.loss(placed.position - from) / 6.0;
             return self.open.add(placed.position);
         }
         // Relative to the kept vertex, which is a corner of nearly all old faces.

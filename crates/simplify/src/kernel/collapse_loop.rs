@@ -315,7 +315,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         let from_middle = match mobility {
             Mobility::Free => A::Metric::optimum(&aim, deferral.allowed()),
             Mobility::AlongNormal if !edge_ring.is_open(vertices, v0) => {
-                A::Metric::optimum_along_normal(&aim, deferral.allowed())
+                A::Metric::optimum_along_normal(&aim, end0, deferral.allowed())
             }
             _ => -quadric.half,
         };

@@ -23,6 +23,7 @@ use crate::kernel::setup::vertex_order::{Order, numbers};
 use crate::options::Contractions;
 use crate::refusal::Refusal;
 use crate::surface::Surface;
+use crate::surface::rims::Rims;
 
 /// The input mesh, and its correspondence with the kernel's vertices.
 pub(crate) struct KernelInput<'m> {
@@ -194,7 +195,9 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
             let mesh =
                 workspace(self.names(), &self.partition.models[0], self.source.faces.as_deref());
             let (connectivity, _) = clean::connect(&mesh);
-            Surface::new(&mesh, &connectivity)
+            let mut surface = Surface::new(&mesh, &connectivity);
+            surface.rims = Rims::new(&mesh, &connectivity);
+            surface
         })
     }
 

@@ -233,6 +233,7 @@ fn choose(
         volume.add(normal, corner);
         swept = swept + Quadric::squared_plane(normal, normal.dot(corner));
     });
+    volume.add_cones(surface, neighbourhood, origin);
     let mut boundary = BoundarySums::default();
     for feature_edge in feature_edges(surface, neighbourhood.contracted()) {
         let [from, to] = feature_edge.ends.map(|v| surface.position(v) - origin);
@@ -248,7 +249,10 @@ fn choose(
     let offset = match neighbourhood.freedom().kept() {
         Some(kept) => place(kept) - origin,
         None => match boundary.line() {
-            Some(line) => line.best(&volume, &swept, middle, neighbourhood.radius(origin + middle)),
+            Some(line) => {
+                let reach = neighbourhood.radius(origin + middle);
+                volume.nearest_within(line.best(&volume, &swept, middle, reach), reach)
+            }
             None => swept.optimum_on(volume.normal, volume.level, middle, PULL),
         },
     };

@@ -6,7 +6,7 @@ mod channels;
 mod creases;
 mod face_order;
 mod fan;
-mod feature_edges;
+pub(crate) mod feature_edges;
 mod kim_jang;
 mod lee_jang;
 mod lindstrom_turk;
@@ -16,7 +16,7 @@ mod quadric;
 mod samples;
 mod slopes;
 mod spr;
-mod volume;
+pub(crate) mod volume;
 mod wu;
 
 use crate::engine::candidates::{EdgeCandidates, FaceAndEdgeCandidates};

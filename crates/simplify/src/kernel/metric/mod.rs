@@ -119,7 +119,7 @@ pub(crate) trait Metric: Copy + Send + Sync {
 
     /// Returns the best place on the line through the first end along the surface's normal,
     /// relative to the middle of the edge: the first end itself unless the volume is preserved.
-    fn optimum_along_normal(quadric: &EdgeQuadricF64, _allowed: f64) -> DVec3 {
+    fn optimum_along_normal(quadric: &EdgeQuadricF64, _end0: &Vertex, _allowed: f64) -> DVec3 {
         -quadric.half
     }
 

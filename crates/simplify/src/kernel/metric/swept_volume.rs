@@ -185,14 +185,14 @@ impl Metric for SweptVolume {
 
     /// The place lies where the normal meets the plane of equal volume, or as near to it as
     /// `allowed` permits.
-    fn optimum_along_normal(quadric: &EdgeQuadricF64, allowed: f64) -> DVec3 {
+    fn optimum_along_normal(quadric: &EdgeQuadricF64, end0: &Vertex, allowed: f64) -> DVec3 {
         let &EdgeQuadricF64 { normal, level, half, .. } = quadric;
-        let squared = normal.length_squared();
-        if squared <= f64::MIN_POSITIVE {
-            return -half;
+        let direction = end0.quadric.vector().as_dvec3();
+        let step = direction * ((level + normal.dot(half)) / normal.dot(direction));
+        match step.is_finite() {
+            true => towards(quadric, -half, step - half, allowed * quadric.weight()),
+            false => -half,
         }
-        let place = normal * ((level + normal.dot(half)) / squared) - half;
-        towards(quadric, -half, place, allowed * quadric.weight())
     }
 
     #[inline(always)]
