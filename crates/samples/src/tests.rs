@@ -5,8 +5,7 @@ use meshlod_mesh::{Connectivity, VertexId, face_components};
 
 use super::*;
 
-const CLOSED: [&str; 7] =
-    ["sphere", "torus", "faceted-torus", "knot", "gyroid", "plate", "fish"];
+const CLOSED: [&str; 7] = ["sphere", "torus", "faceted-torus", "knot", "gyroid", "plate", "fish"];
 
 fn named(name: &str, faces: usize) -> Mesh {
     by_name(name, Some(faces)).expect("a known name")

@@ -179,8 +179,7 @@ impl CellAssignment {
         let at = grid.at(surface.places[v]);
         // The closest cells first: any that is near enough will do.
         let range = |k: usize| [0.0, 1.0, -1.0, 2.0].map(|by| grid.within(k, at[k].floor() + by));
-        let mut best =
-            ((flips(surface, v, &self.moved), deviation), self.cells[v], self.moved[v]);
+        let mut best = ((flips(surface, v, &self.moved), deviation), self.cells[v], self.moved[v]);
         let [across, along, beside] = [2, 1, 0].map(range);
         let cells = across.iter().flat_map(|&c| along.iter().map(move |&b| (b, c)));
         for cell in cells.flat_map(|(b, c)| beside.iter().map(move |&a| [a, b, c])) {

@@ -44,7 +44,8 @@ impl OriginalSurface {
         if first < vertices.len() {
             let far: Vec<f64> =
                 vertices.par_iter().map(|&v| self.plane_distance(v, moved[v])).collect();
-            vertices.select_nth_unstable_by(first, |&a, &b| far[b].total_cmp(&far[a]).then(a.cmp(&b)));
+            vertices
+                .select_nth_unstable_by(first, |&a, &b| far[b].total_cmp(&far[a]).then(a.cmp(&b)));
         }
         let (first, others) = vertices.split_at(first);
         let enough = first.iter().fold(0.0, farther);
@@ -150,13 +151,7 @@ impl<'s> Neighbourhood<'s> {
 
     /// Returns the squared distance from a point to the nearest face, or to the first one that is
     /// near enough, with `near` before all others.
-    fn nearest(
-        &self,
-        p: DVec3,
-        near: &mut u32,
-        place: impl Fn(u32) -> DVec3,
-        enough: f64,
-    ) -> f64 {
+    fn nearest(&self, p: DVec3, near: &mut u32, place: impl Fn(u32) -> DVec3, enough: f64) -> f64 {
         let mut nearest = (f64::INFINITY, *near);
         for &face in [*near].iter().chain(&self.faces) {
             let corners = self.surface.faces[face as usize].corners.map(&place);
