@@ -41,7 +41,7 @@ impl FuseArgs {
 impl FuseReport {
     /// Returns true if fusing changed the scene.
     pub fn is_change(&self) -> bool {
-        self.fused != Fused::default()
+        self.fused != Fused { left: self.fused.left, ..Fused::default() }
     }
 
     /// Converts a target ratio to a number of faces, based on the faces before fusing.
@@ -60,14 +60,19 @@ impl FuseReport {
             "new_vertices": self.fused.imprint.vertices,
             "buried_faces": self.fused.buried,
             "joined_edges": self.fused.joined,
+            "open_components_left": self.fused.left,
         })
     }
 
     /// Formats the changes made by fusing as one line.
     pub fn to_text(&self) -> String {
-        let Fused { imprint, buried, joined } = self.fused;
+        let Fused { imprint, buried, joined, left } = self.fused;
+        let left = match left {
+            0 => String::new(),
+            left => format!(", {} open component{} left as is", count(left), plural(left)),
+        };
         format!(
-            "fused: {} to {} ({} cut, {} inner piece{} removed, {} edge{} joined)\n",
+            "fused: {} to {} ({} cut, {} inner piece{} removed, {} edge{} joined{left})\n",
             faces(self.before),
             count(self.after),
             count(imprint.faces),

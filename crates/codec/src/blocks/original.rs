@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use glam::{DMat3, DVec3};
 use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId};
+use rayon::prelude::*;
 
 use super::SurfaceChange;
 
@@ -29,6 +30,8 @@ pub(super) struct Face {
 
 /// Least cosine between the normals of faces that count as level with each other.
 const LEVEL: f64 = 0.8;
+/// Faces that are summed up together.
+const CHUNK: usize = 4096;
 /// Limit on the faces around a neighbour that are looked at.
 const WIDEST: usize = 32;
 
@@ -39,7 +42,9 @@ impl OriginalSurface {
         let places: Vec<_> =
             ordered.iter().map(|v| DVec3::from(mesh.positions[v.index()]) - centre).collect();
         let face = |face: &[VertexId; 3]| Face::new(face.map(|v| numbers[v.index()]), &places);
-        let faces: Vec<_> = mesh.faces.iter().filter_map(face).collect();
+        let mut faces: Vec<_> = mesh.faces.par_iter().filter_map(face).collect();
+        // Near each other in memory if they are on the surface.
+        faces.par_sort_by_key(|face| face.corners.into_iter().min());
         let mut starts = vec![0; places.len() + 1];
         faces.iter().flat_map(|face| face.corners).for_each(|v| starts[v as usize + 1] += 1);
         (0..places.len()).for_each(|v| starts[v + 1] += starts[v]);
@@ -83,16 +88,19 @@ impl OriginalSurface {
 
     /// Returns the mean distance of the moved faces' points from the original planes.
     pub(super) fn error(&self, moved: &[DVec3]) -> f64 {
-        let (mut sum, mut area) = (0.0, 0.0);
-        for face in &self.faces {
+        let error = |face: &Face| {
             let [a, b, c] = face.corners.map(|v| face.normal.dot(moved[v as usize]));
             let corners = a.abs() + b.abs() + c.abs();
             let middles = ((a + b).abs() + (b + c).abs() + (c + a).abs()) * 0.5;
             // Strang's seven-point rule of third order.
             let mean = corners / 20.0 + middles * (2.0 / 15.0) + (a + b + c).abs() * (9.0 / 60.0);
-            sum += face.area * mean;
-            area += face.area;
-        }
+            [face.area * mean, face.area]
+        };
+        // Summed in an order that does not depend on the number of threads.
+        let add = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a + c, b + d];
+        let sum = |faces: &[Face]| faces.iter().map(error).fold([0.0; 2], add);
+        let sums: Vec<_> = self.faces.par_chunks(CHUNK).map(sum).collect();
+        let [sum, area] = sums.into_iter().fold([0.0; 2], add);
         if area > 0.0 { sum / area } else { 0.0 }
     }
 
@@ -101,7 +109,7 @@ impl OriginalSurface {
         SurfaceChange {
             error_estimate: self.error(moved),
             max_estimate: self.max_deviation(moved),
-            flips: self.faces.iter().filter(|face| self.is_flipped(face, moved)).count(),
+            flips: self.faces.par_iter().filter(|face| self.is_flipped(face, moved)).count(),
         }
     }
 

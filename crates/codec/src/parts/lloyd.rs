@@ -12,7 +12,7 @@ use super::face_graph::FaceGraph;
 const ROUNDS: usize = 16;
 const PATIENCE: usize = 2;
 /// Distances that are told apart, up to the side of the largest box.
-const STEPS: usize = 256;
+const STEPS: usize = 512;
 
 /// Improves a partition until its common box shrinks no further. Every part keeps a face.
 pub(super) fn relax(graph: &FaceGraph, parts: Vec<u32>, count: usize) -> Vec<u32> {
