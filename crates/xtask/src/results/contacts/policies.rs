@@ -22,7 +22,7 @@ const RATIOS: [f64; 2] = [0.25, 0.1];
 /// Folder of the pictures and of the table.
 const FOLDER: &str = "docs/notes/contacts";
 /// Width and height of one picture.
-const SIZE: [u32; 2] = [480, 300];
+const SIZE: [u32; 2] = [360, 225];
 
 /// Treatments of contacts, none first.
 const TREATMENTS: [Option<ContactPolicy>; 4] =
@@ -58,12 +58,7 @@ pub fn run(project: &Project) -> Result<()> {
         add_rows(&mut table, name, &mesh, &of_policies)?;
         // Only the sample is ours to show.
         if index == 0 {
-            for (at, ratio) in RATIOS.into_iter().enumerate() {
-                let meshes = of_policies.iter().map(|levels| &levels[at].mesh);
-                let picture = picture(std::iter::once(&mesh).chain(meshes), &mesh)?;
-                let file = format!("policies-{:.0}.png", 100.0 * ratio);
-                write_file(&folder.join(file), &picture.png())?;
-            }
+            write_file(&folder.join("policies.png"), &picture(&mesh, &of_policies)?.png())?;
         }
     }
     let text = format!("Made by `cargo xtask policies`.\n\n{}", table.markdown());
@@ -108,19 +103,19 @@ fn add_rows(table: &mut Table, name: &str, mesh: &Mesh, of_policies: &[Vec<Level
     Ok(())
 }
 
-/// Draws meshes side by side with their faces: the original, then the levels in the order of
-/// [`TREATMENTS`].
-fn picture<'m>(meshes: impl Iterator<Item = &'m Mesh>, original: &Mesh) -> Result<Picture> {
+/// Draws a mesh and its levels with their faces: a row for each ratio, the original first, then the
+/// levels in the order of [`TREATMENTS`].
+fn picture(original: &Mesh, of_policies: &[Vec<Level>]) -> Result<Picture> {
     let [width, height] = SIZE.map(f64::from);
-    let view = View {
-        direction: [0.15, -0.2, -1.0],
-        aspect: width / height,
-        fill: 0.95,
-        ..View::default()
-    };
+    let direction = [0.15, -0.2, -1.0];
+    let view = View { direction, aspect: width / height, fill: 0.95, ..View::default() };
     let camera = Camera::fit_mesh(original, &view);
     let style = Style { size: SIZE, wireframe: Some(Wireframe::default()), ..Style::default() };
+    let rows = (0..RATIOS.len()).flat_map(|at| {
+        let levels = of_policies.iter().map(move |levels| &levels[at].mesh);
+        std::iter::once(original).chain(levels)
+    });
     let pictures: Vec<Picture> =
-        meshes.map(|mesh| render(mesh, &camera, &style)).collect::<Result<_, _>>()?;
-    Ok(grid(&pictures, 3)?)
+        rows.map(|mesh| render(mesh, &camera, &style)).collect::<Result<_, _>>()?;
+    Ok(grid(&pictures, 1 + TREATMENTS.len())?)
 }
