@@ -102,7 +102,7 @@ fn contacts(mesh: &Mesh) -> Locks {
 }
 
 /// Makes the levels in one run; the sides in `open` may stay open.
-fn ours(
+pub fn ours(
     mesh: &Mesh,
     values: Values,
     locks: Locks,
