@@ -105,12 +105,12 @@ mod tests {
         let held = Unconserved { contractions: 1, bounds };
         let loss = VolumeLoss { running_sum: 0.03, owed: 0.01, held, ..VolumeLoss::default() };
         let text = |method, loss: &VolumeLoss| lost_text(method, loss, 2.0);
-        let expected = "volume: -1.000%; --exact-volume restores it";
+        let expected = "volume: -1%; --exact-volume restores it";
         assert_eq!(text(Method::LeeJang, &loss).as_deref(), Some(expected));
         assert_eq!(text(Method::Qem, &loss), None);
         let vanished = VolumeLoss { vanished: 0.01, ..loss };
         let expected =
-            "volume: -1.000%, 0.5000% in parts that vanished; --exact-volume restores it";
+            "volume: -1%, 0.5% in parts that vanished; --exact-volume restores it";
         assert_eq!(text(Method::LeeJang, &vanished).as_deref(), Some(expected));
         let repaid = VolumeLoss { owed: 0.03, ..loss };
         assert_eq!(text(Method::LeeJang, &repaid), None);

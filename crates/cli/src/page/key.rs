@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use meshlod::Method;
 
 /// Shapes within a circle of radius 5 around the origin, of about equal size.
-const SHAPES: [&str; 9] = [
+const SHAPES: [&str; 10] = [
     "M-4 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0z",
     "M-3.5-3.5h7v7h-7z",
     "M0-4.8L4.4 3.4h-8.8z",
@@ -15,6 +15,7 @@ const SHAPES: [&str; 9] = [
     "M-4.6 0L-2.3-4h4.6L4.6 0L2.3 4h-4.6z",
     "M-2.2-5L0-2.8L2.2-5L5-2.2L2.8 0L5 2.2L2.2 5L0 2.8L-2.2 5L-5 2.2L-2.8 0L-5-2.2z",
     "M0-5L1.4-1.6L5-1.5L2.2.8L3.1 4.3L0 2.3L-3.1 4.3L-2.2.8L-5-1.5L-1.4-1.6z",
+    "M-4.2-4.4h8.4L1.2 0L4.2 4.4h-8.4L-1.2 0z",
 ];
 
 /// Returns the marker shape of a method as an SVG path around the origin.

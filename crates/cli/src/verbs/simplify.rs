@@ -233,13 +233,15 @@ impl Simplify {
             run.record();
         }
         let report = run.simplify_to(task.target)?;
-        let (meshes, time) = (run.level(), run.time());
-        let sequence = match self.sequence {
+        let time = run.time();
+        let (meshes, sequence) = match self.sequence {
             Some(_) => {
                 let all = run.into_sequence();
-                Some(all.ok_or_else(|| sequence::several_meshes(&self.input))?)
+                let all = all.ok_or_else(|| sequence::several_meshes(&self.input))?;
+                // As the sequence restores it, without the repayment of volume.
+                (vec![all.level()], Some(all))
             }
-            None => None,
+            None => (run.level(), None),
         };
         Ok((Simplified { meshes, report, measured: None, sequence }, time))
     }
