@@ -85,6 +85,7 @@ pub fn fit_text(fit: &Fit) -> String {
 pub fn error_kind<S: Source>(archive: &Archive<S>) -> &'static str {
     match archive.error_kind() {
         ErrorKind::Estimate => "estimate",
+        ErrorKind::Measured => "measured",
         ErrorKind::Bound => "bound",
     }
 }
@@ -101,5 +102,14 @@ pub fn rounding_text<S: Source>(archive: &Archive<S>) -> String {
     match archive.is_lossless() {
         true => format!("lossless; vertices of coarser levels {moved}"),
         false => format!("vertices {moved}"),
+    }
+}
+
+/// Returns the kind of a model's errors in words.
+pub fn errors_text(kind: &str) -> &'static str {
+    match kind {
+        "measured" => "measured errors",
+        "bound" => "error bounds",
+        _ => "error estimates",
     }
 }

@@ -109,8 +109,7 @@ mod tests {
         assert_eq!(text(Method::LeeJang, &loss).as_deref(), Some(expected));
         assert_eq!(text(Method::Qem, &loss), None);
         let vanished = VolumeLoss { vanished: 0.01, ..loss };
-        let expected =
-            "volume: -1%, 0.5% in parts that vanished; --exact-volume restores it";
+        let expected = "volume: -1%, 0.5% in parts that vanished; --exact-volume restores it";
         assert_eq!(text(Method::LeeJang, &vanished).as_deref(), Some(expected));
         let repaid = VolumeLoss { owed: 0.03, ..loss };
         assert_eq!(text(Method::LeeJang, &repaid), None);

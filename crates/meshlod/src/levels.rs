@@ -8,6 +8,7 @@ use meshlod_io::{IoError, Scene, write_file};
 use meshlod_mesh::Mesh;
 use meshlod_multires::{
     Archive, Certificate, ErrorKind, FileError, Forest, Level, ModelFile, Query, Storage,
+    StoredErrors,
 };
 use meshlod_simplify::{Method, Options, SimplifyError};
 use thiserror::Error;
@@ -19,7 +20,8 @@ use crate::Constraints;
 pub struct BuildOptions {
     /// Simplification method whose contractions define the levels.
     pub method: Method,
-    /// Whether the stored errors are estimates or proven bounds, which take several times as long.
+    /// Whether the stored errors are estimates, measured, or proven bounds. Measuring takes several
+    /// times as long as estimates.
     pub errors: ErrorKind,
     /// True to keep the vertices of the mesh bit for bit, so that the finest level equals the mesh.
     pub lossless: bool,
@@ -34,7 +36,7 @@ impl Default for BuildOptions {
     fn default() -> Self {
         Self {
             method: Method::LindstromTurk,
-            errors: ErrorKind::Estimate,
+            errors: ErrorKind::Measured,
             lossless: false,
             storage: Storage::default(),
             constraints: Constraints::default(),
@@ -131,10 +133,14 @@ fn encode(mesh: &Mesh, options: &BuildOptions) -> Result<(Vec<u8>, BuildReport),
         .map_err(|error| FileError::Build(error.into()))?;
     let mut forest = record(&mesh, &simplify)?;
     match options.errors {
-        ErrorKind::Estimate => forest.smooth_errors(),
+        ErrorKind::Estimate | ErrorKind::Measured => forest.smooth_errors(),
         ErrorKind::Bound => forest.measure_bounds(),
     }
-    let (bytes, certificate) = Archive::write(&forest, &options.storage)?;
+    let mut storage = options.storage;
+    if options.errors == ErrorKind::Measured {
+        storage.errors = StoredErrors::Measured;
+    }
+    let (bytes, certificate) = Archive::write(&forest, &storage)?;
     let archive = Archive::open(bytes)?;
     let (base_faces, updates) = (archive.base_faces(), archive.update_count());
     let (full_faces, bytes) = (forest.full_faces(), archive.into_source());

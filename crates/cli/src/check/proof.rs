@@ -45,11 +45,12 @@ fn prove_contractions(
         "certificate": model_file::certificate_json(&certificate),
     });
     let text = format!(
-        "{}: {} to {}, {there} of {chunks} chunk{}, error {kind}s; {}\n{}\n",
+        "{}: {} to {}, {there} of {chunks} chunk{}, {}; {}\n{}\n",
         files::name(path),
         count(model.base_faces()),
         faces(model.full_faces()),
         plural(chunks),
+        model_file::errors_text(kind),
         model_file::rounding_text(archive),
         model_file::certificate_text(&certificate),
     );

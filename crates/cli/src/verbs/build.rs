@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use meshlod::io::write_file;
 use meshlod::multires::{
     Archive, BuildError, Certificate, Fit, Forest, HeightField, HeightPrecision, ModelFile,
-    Recorder, Storage,
+    Recorder, Storage, StoredErrors,
 };
 use meshlod::simplify::Simplifier;
 use meshlod::{Mesh, Method, Options, Target};
@@ -41,10 +41,14 @@ pub struct Build {
     #[arg(long, value_name = "NAME", default_value = Method::LindstromTurk.name(),
         value_parser = parse::method, help = parse::methods())]
     method: Method,
-    /// Compute proven error bounds in place of the method's smoothed estimates; this takes several
-    /// times as long. The errors of right triangles are bounds in any case
+    /// Compute proven error bounds in place of measured errors: levels of the same error have two to
+    /// three times as many faces. The errors of right triangles are bounds in any case
     #[arg(long)]
     bounds: bool,
+    /// Keep the method's smoothed estimates in place of measured errors: faster, but single places
+    /// are off by two to three times as much
+    #[arg(long, conflicts_with = "bounds")]
+    estimates: bool,
     /// Largest displacement of a vertex by rounding: 0.001 in model units, or 0.005% of the
     /// diagonal; by a cell or two more where a triangle would lose its area
     #[arg(long, value_name = "BOUND", value_parser = parse::bound, default_value = "0.005%",
@@ -168,14 +172,18 @@ impl Build {
         let held = locks::to_json(&report.map_err(|error| failed(error.into()))?);
         let mut forest = both.0.into_forest().map_err(failed)?;
         session.progress.stage("measuring errors");
-        match self.bounds {
-            true => forest.measure_bounds(),
-            // With unsmoothed maxima, cuts would be worse on the whole.
-            false => forest.smooth_errors(),
+        if self.bounds {
+            forest.measure_bounds();
+        } else {
+            forest.smooth_errors();
         }
         session.progress.stage("proving and packing");
         let rounding = (!self.lossless).then(|| self.rounding(mesh));
-        let storage = Storage { rounding, updates_per_chunk: self.in_chunk };
+        let errors = match self.bounds || self.estimates {
+            true => StoredErrors::AsRecorded,
+            false => StoredErrors::Measured,
+        };
+        let storage = Storage { rounding, updates_per_chunk: self.in_chunk, errors };
         let written = Archive::write(&forest, &storage);
         let (bytes, certificate) = written.map_err(|error| Failure::at(&self.input, error))?;
         let archive = Archive::open(bytes).map_err(|error| Failure::at(&self.output, error))?;
@@ -264,10 +272,11 @@ impl Build {
         );
         text += &match &built.levels {
             Levels::Contractions { updates, base_faces, certificate, error_kind, .. } => format!(
-                "{} updates by {} down to {}, with error {error_kind}s; {}\n",
+                "{} updates by {} down to {}, with {}; {}\n",
                 count(*updates),
                 self.method.name(),
                 faces(*base_faces),
+                model_file::errors_text(error_kind),
                 model_file::certificate_text(certificate),
             ),
             Levels::RightTriangles { size: [columns, rows], fit } => format!(

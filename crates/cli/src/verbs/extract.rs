@@ -63,7 +63,7 @@ enum VerticalAxis {
 #[derive(Args)]
 #[group(required = true, multiple = false)]
 struct ExtractTarget {
-    /// Largest error, by the estimates or bounds in the file: 1px as the camera sees it, 0.01% of
+    /// Largest error, by the measured errors, estimates or bounds in the file: 1px as the camera sees it, 0.01% of
     /// the diagonal, or 0.5 in model units; 0 leaves out only detail that changes nothing
     #[arg(long, value_name = "BOUND", value_parser = query_args::error_limit, allow_hyphen_values = true)]
     error: Option<ErrorLimit>,

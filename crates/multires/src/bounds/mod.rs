@@ -10,25 +10,27 @@
 mod enclosing_ball;
 mod overlay;
 mod plane_triangle;
-mod stars;
 #[cfg(test)]
 mod tests;
 
 use glam::{DVec3, Vec3};
 
-use crate::forest::Forest;
+use crate::forest::{Forest, Stars};
 use crate::length16::Length16;
 use enclosing_ball::EnclosingBall;
 use overlay::{Fragment, Overlay};
-use stars::Stars;
 
-/// Meaning of the errors stored with a model's updates: estimates or proven bounds.
+/// Meaning of the errors stored with a model's updates: estimates, measured distances or proven
+/// bounds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ErrorKind {
     /// The errors are estimates by the simplification: most triangles are within them, some are
     /// not.
     #[default]
     Estimate,
+    /// The errors are distances measured between each level and the input, both ways, at many points
+    /// ([`Forest::measure_errors`]).
+    Measured,
     /// The errors are proven bounds: no triangle deviates by more.
     Bound,
 }
@@ -72,12 +74,12 @@ impl Forest {
     }
 
     /// Returns the position of a node, in stored units.
-    fn stored_point(&self, node: u32) -> DVec3 {
+    pub(crate) fn stored_point(&self, node: u32) -> DVec3 {
         Vec3::from(self.positions[node as usize]).as_dvec3()
     }
 
     /// Sets the error of an update and records it as a lower bound for the updates it depends on.
-    fn set_error(&mut self, u: usize, error: Length16, lower_bounds: &mut [Length16]) {
+    pub(crate) fn set_error(&mut self, u: usize, error: Length16, lower_bounds: &mut [Length16]) {
         self.updates[u].error = error;
         if self.updates[u].fused_with_child {
             // Both updates of a face contraction are needed as a whole.

@@ -247,8 +247,8 @@ fn grow(growth: &mut Vec<(u32, f64)>, node: u32, by: f64) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::stars::Stars;
     use super::*;
+    use crate::forest::Stars;
     use crate::tests::walks::{Dice, each};
 
     /// Sample points inside a triangle, on its edges and at its corners.

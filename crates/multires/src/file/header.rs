@@ -58,6 +58,15 @@ impl Section {
     }
 }
 
+/// Returns the code of a kind of errors.
+fn kind_code(kind: ErrorKind) -> u8 {
+    match kind {
+        ErrorKind::Estimate => 0,
+        ErrorKind::Bound => 1,
+        ErrorKind::Measured => 2,
+    }
+}
+
 impl Header {
     /// Length of the header and its index, in bytes.
     pub(super) fn len(&self) -> u64 {
@@ -77,7 +86,7 @@ impl Header {
         let kind = self.about.error_kind;
         out.extend(self.lattice.to_bytes());
         let flags = if self.lossless { LOSSLESS } else { 0 };
-        out.extend([u8::from(kind == ErrorKind::Bound), flags]);
+        out.extend([kind_code(kind), flags]);
         let words = [self.roots, self.base_faces, self.base.bytes, self.base.checksum];
         out.extend(words.iter().flat_map(|word| word.to_le_bytes()));
         out.extend((self.chunks.len() as u32).to_le_bytes());
@@ -128,6 +137,7 @@ impl Header {
                 error_kind: match bytes[BODY_AT + 2] {
                     0 => ErrorKind::Estimate,
                     1 => ErrorKind::Bound,
+                    2 => ErrorKind::Measured,
                     _ => return Err(bad("it has an unknown kind of errors")),
                 },
             },

@@ -31,7 +31,7 @@ use thiserror::Error;
 pub use archive::{Archive, Extract};
 pub use container::{FieldParts, ModelFile};
 pub use source::Source;
-pub use write::Storage;
+pub use write::{Storage, StoredErrors};
 
 use crate::cut::CertifyError;
 use crate::forest::BuildError;

@@ -5,6 +5,7 @@ use glam::{DVec3, Vec3};
 use super::lattice::Lattice;
 use super::normal_predictor::NormalPredictor;
 use super::unflatten::unflatten;
+use super::write::StoredErrors;
 use crate::bounds::ErrorKind;
 use crate::forest::{BuildError, Forest, MAX_LEVELS, NONE};
 use crate::implicit::{Implicit, Order};
@@ -36,13 +37,20 @@ impl Forest {
     /// nested again. Levels are renumbered, and siblings ordered, so that they compress well.
     /// # Errors
     /// Too many nodes.
-    pub(super) fn quantized(&self, lattice: Lattice) -> Result<Quantized, BuildError> {
+    pub(super) fn quantized(
+        &self,
+        lattice: Lattice,
+        errors: StoredErrors,
+    ) -> Result<Quantized, BuildError> {
         let mut this = self.clone();
         let moved = this.snap_to(lattice)?;
+        if errors == StoredErrors::Measured {
+            this.measure_against(&self.input(), moved.all.max(moved.restored));
+        }
         // A bound must hold between the moved vertices and the exact input.
-        let rounding = match self.error_kind {
-            ErrorKind::Bound => moved.all.max(moved.restored) + moved.restored,
-            ErrorKind::Estimate => 0.0,
+        let rounding = match (self.error_kind, errors) {
+            (ErrorKind::Estimate, _) | (_, StoredErrors::Measured) => 0.0,
+            _ => moved.all.max(moved.restored) + moved.restored,
         };
         for u in 0..this.updates.len() {
             let update = &this.updates[u];

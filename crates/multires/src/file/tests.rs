@@ -47,7 +47,10 @@ fn in_order<C: Ord>(faces: impl Iterator<Item = [C; 3]>) -> Vec<[C; 3]> {
 fn a_file_gives_back_the_model() {
     each(|what, mesh, forest| {
         let rounded = Implicit::new(
-            &forest.quantized(lattice(forest, &small(), diagonal(forest))).unwrap().forest,
+            &forest
+                .quantized(lattice(forest, &small(), diagonal(forest)), StoredErrors::AsRecorded)
+                .unwrap()
+                .forest,
         )
         .unwrap();
         let (read, certificate) = Archive::open(bytes(forest)).unwrap().read().unwrap();

@@ -27,11 +27,24 @@ pub struct Storage {
     ///
     /// Larger chunks make the file a little smaller, smaller ones let a query read less.
     pub updates_per_chunk: usize,
+    /// Errors to store.
+    pub errors: StoredErrors,
+}
+
+/// Errors to store in a `.mlod` file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StoredErrors {
+    /// The forest's, whatever they are.
+    #[default]
+    AsRecorded,
+    /// Distances of the levels from the input, measured after rounding. Where they are below the
+    /// rounding the forest's errors are kept, up to there.
+    Measured,
 }
 
 impl Default for Storage {
     fn default() -> Self {
-        Self { rounding: None, updates_per_chunk: 1 << 12 }
+        Self { rounding: None, updates_per_chunk: 1 << 12, errors: StoredErrors::AsRecorded }
     }
 }
 
@@ -53,7 +66,7 @@ pub(super) fn write(
         return Err(FileError::Rounding(rounding));
     }
     let lattice = lattice(forest, storage, diagonal);
-    let Quantized { forest, max_displacement } = forest.quantized(lattice)?;
+    let Quantized { forest, max_displacement } = forest.quantized(lattice, storage.errors)?;
     let order = Order::new(&forest);
     let mt = Implicit::in_order(&forest, &order)?;
     let (certificate, sections) = rayon::join(

@@ -3,6 +3,7 @@
 mod by_level;
 mod recorder;
 mod smooth_errors;
+mod stars;
 
 use std::collections::BTreeMap;
 
@@ -20,6 +21,7 @@ use crate::query::{Ball, PackedBall};
 pub(crate) use by_level::by_level;
 pub(crate) use recorder::MAX_RANKED;
 pub use recorder::Recorder;
+pub(crate) use stars::Stars;
 
 /// Upper bound of levels, exclusive.
 pub(crate) const MAX_LEVELS: u16 = 1 << 15;

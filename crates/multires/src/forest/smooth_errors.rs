@@ -17,7 +17,7 @@ impl Forest {
     ///
     /// Cost: linear.
     pub fn smooth_errors(&mut self) {
-        if self.error_kind == ErrorKind::Bound {
+        if self.error_kind != ErrorKind::Estimate {
             return;
         }
         let trend =

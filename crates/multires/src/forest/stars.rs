@@ -6,7 +6,7 @@ use crate::forest::{Forest, NONE};
 ///
 /// The corners at a node form a linked list, so that a contraction joins two lists.
 #[derive(Debug)]
-pub(super) struct Stars {
+pub(crate) struct Stars {
     /// Faces by their nodes; the first node of a removed face is [`NONE`].
     faces: Vec<[u32; 3]>,
     /// First and last corner of each node's list. Corner `k` of face `f` is `3 f + k`.
@@ -15,15 +15,18 @@ pub(super) struct Stars {
     next: Vec<u32>,
     /// Fine side of the last contraction.
     fine: Vec<[u32; 3]>,
+    /// Numbers of its faces.
+    changed: Vec<u32>,
 }
 
 impl Stars {
-    pub(super) fn new(forest: &Forest) -> Self {
+    pub(crate) fn new(forest: &Forest) -> Self {
         let mut this = Self {
             faces: forest.faces.clone(),
             ends: vec![[NONE; 2]; forest.positions.len()],
             next: vec![NONE; 3 * forest.faces.len()],
             fine: Vec::new(),
+            changed: Vec::new(),
         };
         for (f, face) in forest.faces.iter().enumerate() {
             (0..3).for_each(|k| this.append(face[k], (3 * f + k) as u32));
@@ -33,8 +36,9 @@ impl Stars {
 
     /// Replaces two children by their parent node. Returns the faces around the children as they
     /// were before.
-    pub(super) fn contract(&mut self, children: [u32; 2], node: u32) -> &[[u32; 3]] {
+    pub(crate) fn contract(&mut self, children: [u32; 2], node: u32) -> &[[u32; 3]] {
         self.fine.clear();
+        self.changed.clear();
         for (child, other) in [(children[0], children[1]), (children[1], children[0])] {
             let mut next = self.ends[child as usize][0];
             while next != NONE {
@@ -45,6 +49,7 @@ impl Stars {
                     continue;
                 }
                 self.fine.push(*face);
+                self.changed.push(corner / 3);
                 if face.contains(&other) {
                     *face = [NONE; 3];
                 } else {
@@ -54,6 +59,16 @@ impl Stars {
             }
         }
         &self.fine
+    }
+
+    /// Returns the numbers of the faces that the last contraction removed or changed.
+    pub(crate) fn changed(&self) -> &[u32] {
+        &self.changed
+    }
+
+    /// Returns a face by its nodes, or `None` if it was removed.
+    pub(crate) fn face(&self, face: u32) -> Option<[u32; 3]> {
+        Some(self.faces[face as usize]).filter(|nodes| nodes[0] != NONE)
     }
 
     fn append(&mut self, node: u32, corner: u32) {
