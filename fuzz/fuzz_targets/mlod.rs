@@ -12,7 +12,7 @@ libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("mlod"), |bytes: &[u8]| {
     models::seal(&mut bytes);
     match ModelFile::open(bytes) {
         Ok(ModelFile::Contractions(archive)) => take_parts(&archive),
-        Ok(ModelFile::HeightField(field)) => walk_field(&field),
+        Ok(ModelFile::HeightField(field, _)) => walk_field(&field),
         Err(_) => {}
     }
 });

@@ -24,6 +24,9 @@ pub struct Fused {
     pub buried: usize,
     /// Number of edges along which the remaining surfaces were joined.
     pub joined: usize,
+    /// Number of components that intersect others but were left as they are, because they are open
+    /// or inside out.
+    pub left: usize,
 }
 
 impl Fused {
@@ -34,6 +37,7 @@ impl Fused {
         self.imprint.vertices += other.imprint.vertices;
         self.buried += other.buried;
         self.joined += other.joined;
+        self.left += other.left;
     }
 }
 
@@ -46,8 +50,8 @@ impl Fused {
 /// or on its surface. Of two coincident patches of equal orientation the first stays, of two of
 /// opposite orientation neither. Components that intersect nothing stay, even inside others.
 /// `solid` returns true for opaque faces of `mesh`: a shell with any other face hides nothing, nor
-/// does one that is inside out. Open components hide nothing either: they are cut and lose what is
-/// inside closed ones, but are not joined to them.
+/// does one that is inside out. Open components and those inside out are neither cut nor cut others:
+/// they would only be torn open along the cuts.
 ///
 /// Object labels of the result show where each face came from; with fewer than two objects they are
 /// named by component. If nothing intersects, the mesh is returned unchanged.
@@ -66,13 +70,15 @@ pub fn fuse(mesh: &Mesh, solid: impl Fn(FaceId) -> bool) -> (Mesh, Fused) {
 }
 
 fn fuse_scaled(mesh: &Mesh, solid: impl Fn(FaceId) -> bool) -> (Mesh, Fused) {
-    let Imprinted { mesh: mut fused, imprint, parents, contact_edges } = imprinted(mesh);
     let objects = Objects::of(mesh, ObjectsBy::Auto);
+    let is_closed = Solids::closed_components(mesh, &objects.component_of_face, objects.components);
+    let Imprinted { mesh: mut fused, imprint, parents, contact_edges, left } =
+        imprinted(mesh, |component| is_closed[component]);
     let component: Vec<u32> =
         parents.iter().map(|parent| objects.component_of_face[parent.index()]).collect();
     let patches = patches(&fused, &component, &contact_edges);
     if patches.is_empty() {
-        return (fused, Fused { imprint, ..Fused::default() });
+        return (fused, Fused { imprint, left, ..Fused::default() });
     }
     let mut solids = Solids::of(mesh, &objects.component_of_face, solid);
     let mut is_buried = vec![false; fused.faces.len()];
@@ -93,7 +99,7 @@ fn fuse_scaled(mesh: &Mesh, solid: impl Fn(FaceId) -> bool) -> (Mesh, Fused) {
     let joined = stitch(&mut fused, 0.0);
     fused.objects = labels;
     drop_unused(&mut fused);
-    (fused, Fused { imprint, buried, joined })
+    (fused, Fused { imprint, buried, joined, left })
 }
 
 /// Keeps all of the solid components that would not be closed together: if faces are coplanar only

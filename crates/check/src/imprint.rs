@@ -43,7 +43,7 @@ pub struct Imprint {
 /// points.
 pub fn imprint(mesh: &Mesh) -> (Mesh, Imprint) {
     let (mut done, imprint) = at_safe_scale(mesh, |mesh| {
-        let Imprinted { mesh, imprint, .. } = imprinted(mesh);
+        let Imprinted { mesh, imprint, .. } = imprinted(mesh, |_| true);
         (mesh, imprint)
     });
     done.positions[..mesh.positions.len()].copy_from_slice(&mesh.positions);
@@ -78,23 +78,40 @@ pub(crate) struct Imprinted {
     pub(crate) parents: Vec<FaceId>,
     /// Edges along which components intersect, as vertex pairs with the lower id first.
     pub(crate) contact_edges: FxHashSet<[VertexId; 2]>,
+    /// Number of components that intersect others but were not to take part.
+    pub(crate) left: usize,
 }
 
-/// Imprints like [`imprint`], and also returns the origin of faces and edges.
-pub(crate) fn imprinted(mesh: &Mesh) -> Imprinted {
+/// Imprints like [`imprint`], but only the components that `takes_part` chooses, and also returns
+/// the origin of faces and edges.
+pub(crate) fn imprinted(mesh: &Mesh, takes_part: impl Fn(usize) -> bool) -> Imprinted {
     let options = CheckOptions { objects: ObjectsBy::Components, ..CheckOptions::default() };
     let subject = Subject::of(mesh, &options);
-    let points = IntersectionPoints::of(&subject);
+    let component = &subject.objects().component_of_face;
+    let takes_part = |face: FaceId| takes_part(component[face.index()] as usize);
+    let points = IntersectionPoints::of(&subject, takes_part);
+    let mut left: Vec<u32> = Vec::new();
+    for faces in subject.intersecting_pairs().pairs() {
+        let of = faces.map(|face| component[face.index()]);
+        if of[0] != of[1] {
+            left.extend(
+                faces.iter().filter(|&&face| !takes_part(face)).map(|f| component[f.index()]),
+            );
+        }
+    }
+    left.sort_unstable();
+    left.dedup();
     let mut cut = CutMesh::new(mesh, subject.unique_positions(), &points);
     let mut parents = Vec::with_capacity(mesh.faces.len());
     let mut faces = 0;
     for face in (0..mesh.faces.len()).map(FaceId::new) {
-        let count = cut.add(face);
+        // Not along an edge that lies on one that is cut, either.
+        let count = if takes_part(face) { cut.add(face) } else { cut.keep(face) };
         parents.resize(parents.len() + count, face);
         faces += usize::from(count > 1);
     }
     let (imprinted, contact_edges) = cut.finish();
     let vertices = imprinted.positions.len() - mesh.positions.len();
     let imprint = Imprint { pairs: points.pairs, faces, vertices };
-    Imprinted { mesh: imprinted, imprint, parents, contact_edges }
+    Imprinted { mesh: imprinted, imprint, parents, contact_edges, left: left.len() }
 }

@@ -28,7 +28,7 @@ pub use fuse::{Fused, fuse};
 pub use imprint::{Imprint, imprint};
 pub use intersect::BroadPhase;
 pub use kinds::Kinds;
-pub use locks::{LockOptions, LockReason, VertexLocks, locks};
+pub use locks::{ContactPolicy, LockOptions, LockReason, VertexLocks, locks};
 pub use object_octree::{ObjectLeaf, ObjectOctree};
 pub use objects::{ObjectId, Objects, ObjectsBy};
 pub use repair::{HoleLimits, RepairOptions, RepairReport, RepairStep, repair};

@@ -15,26 +15,61 @@ use crate::unique_positions::UniquePositions;
 /// Options for choosing vertex locks; see [`locks`](locks()).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LockOptions {
-    /// True to hold the vertices where components meet, even components of one object, which could
-    /// otherwise drift apart.
-    pub contacts: bool,
+    /// Treatment of the vertices where components meet, even components of one object, which could
+    /// otherwise drift apart; `None` leaves them free.
+    pub contacts: Option<ContactPolicy>,
     /// Lock applied to the vertices of boundary edges; [`Lock::Free`] leaves them free.
     pub boundary: Lock,
+}
+
+/// Treatment of the vertices at contacts, where components meet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum ContactPolicy {
+    /// Vertices at one position are tied, and those where components cross, overlap or touch are
+    /// protected.
+    #[default]
+    Tie,
+    /// All of them are protected, so that they are contracted late. Vertices at one position may
+    /// separate.
+    Protect,
+    /// All of them are locked: no vertex of a contact is a candidate for contraction [CC05].
+    Exclude,
+}
+
+impl ContactPolicy {
+    /// All treatments of contacts, the default first.
+    pub const ALL: [Self; 3] = [Self::Tie, Self::Protect, Self::Exclude];
+
+    /// Returns the name of the policy on the command line and in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Tie => "tie",
+            Self::Protect => "protect",
+            Self::Exclude => "exclude",
+        }
+    }
+
+    /// Returns the lock on a vertex of a contact that is not tied.
+    fn lock(self) -> Lock {
+        match self {
+            Self::Tie | Self::Protect => Lock::Protected,
+            Self::Exclude => Lock::Locked,
+        }
+    }
 }
 
 /// Reason why a vertex is restricted during simplification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum LockReason {
-    /// A face at the vertex passes through a face of another component; the vertex is protected.
+    /// A face at the vertex passes through a face of another component.
     Crossing,
-    /// A face at the vertex overlaps a coplanar face of another component; the vertex is protected.
+    /// A face at the vertex overlaps a coplanar face of another component.
     Overlap,
-    /// The vertex or a face at it touches another component elsewhere than at its vertices; the
-    /// vertex is protected.
+    /// The vertex or a face at it touches another component elsewhere than at its vertices.
     Touching,
-    /// Faces of two objects share the vertex, which is protected.
+    /// Faces of two objects share the vertex.
     SharedVertex,
-    /// Other vertices are at the same position; the vertex is tied to them.
+    /// Other vertices are at the same position.
     SharedPosition,
     /// The vertex is on a boundary edge; it gets the lock [`LockOptions::boundary`].
     Boundary,
@@ -110,17 +145,22 @@ impl VertexLocks {
 /// Finds the vertices to lock, protect or tie when a mesh is simplified; the mesh must have passed
 /// [`Mesh::validate`].
 ///
-/// Vertices at one position are tied, whether of one component or of two. Vertices that named
-/// objects share are protected, as are those of faces that pass through, or overlap in a plane
-/// with, a face of another component, so that the contact line moves late and little. A vertex that
-/// touches another component elsewhere is protected together with what it touches. None of these is
-/// locked: if the target is tight, the rest of the mesh pays for locked vertices, and more
-/// components then break through there than the locks prevent.
+/// By [`ContactPolicy::Tie`], vertices at one position are tied, whether of one component or of
+/// two. Vertices that named objects share are protected, as are those of faces that pass through,
+/// or overlap in a plane with, a face of another component, so that the contact line moves late and
+/// little. A vertex that touches another component elsewhere is protected together with what it
+/// touches. None of these is locked: if the target is tight, the rest of the mesh pays for locked
+/// vertices, and more components then break through there than the locks prevent. The other
+/// policies protect or lock all these vertices alike.
 ///
 /// Cost: that of [`check`] for contacts if `contacts` is set; else linear.
+/// # References
+/// [CC05] section 3 for [`ContactPolicy::Exclude`]; differs: faces that meet are found exactly,
+/// not by the cubes of an octree.
 pub fn locks(mesh: &Mesh, options: &LockOptions) -> VertexLocks {
-    let mut hold = Hold { mesh, locking: VertexLocks::free(mesh.positions.len()) };
-    if options.contacts {
+    let policy = options.contacts.unwrap_or_default();
+    let mut hold = Hold { mesh, policy, locking: VertexLocks::free(mesh.positions.len()) };
+    if options.contacts.is_some() {
         let unique = UniquePositions::of(&mesh.positions);
         hold.contacts(&unique);
         hold.shared_vertices();
@@ -136,6 +176,7 @@ pub fn locks(mesh: &Mesh, options: &LockOptions) -> VertexLocks {
 /// Collects the locks.
 struct Hold<'m> {
     mesh: &'m Mesh,
+    policy: ContactPolicy,
     locking: VertexLocks,
 }
 
@@ -167,7 +208,7 @@ impl Hold<'_> {
             IntersectionKind::Crossing => LockReason::Crossing,
             IntersectionKind::Overlap if shared == 3 => return,
             IntersectionKind::Overlap => LockReason::Overlap,
-            // Ties hold what is shared at vertices.
+            // Shared vertices are held as such.
             IntersectionKind::Point if shared == 1 => return,
             IntersectionKind::Segment if shared == 2 => return,
             IntersectionKind::Point | IntersectionKind::Segment => {
@@ -175,10 +216,10 @@ impl Hold<'_> {
                 return;
             }
         };
-        corners.into_iter().flatten().for_each(|v| self.hold(v, reason, Lock::Protected));
+        corners.into_iter().flatten().for_each(|v| self.hold(v, reason, self.policy.lock()));
     }
 
-    /// Protects the corners with which each face touches the other; all three if its interior or an
+    /// Holds the corners with which each face touches the other; all three if its interior or an
     /// edge is touched.
     fn touch(&mut self, [a, b]: [[VertexId; 3]; 2], point: DVec3) {
         for (one, other) in [(a, b), (b, a)] {
@@ -191,32 +232,34 @@ impl Hold<'_> {
                 _ => true,
             };
             let held = if by_corners { &touching[..] } else { &one };
-            held.iter().for_each(|&v| self.hold(v, LockReason::Touching, Lock::Protected));
+            held.iter().for_each(|&v| self.hold(v, LockReason::Touching, self.policy.lock()));
         }
     }
 
-    /// Protects the vertices that faces of two named objects share.
+    /// Holds the vertices that faces of two named objects share.
     fn shared_vertices(&mut self) {
         let Some(objects) = &self.mesh.objects else { return };
         let mut of_vertex = vec![None; self.mesh.positions.len()];
         for (face, &object) in self.mesh.faces.iter().zip(&objects.of_face) {
             for &v in face {
                 if *of_vertex[v.index()].get_or_insert(object) != object {
-                    self.locking.hold(v, Lock::Protected, Some(LockReason::SharedVertex));
+                    self.locking.hold(v, self.policy.lock(), Some(LockReason::SharedVertex));
                 }
             }
         }
     }
 
-    /// Ties the used vertices at each position that has more than one.
+    /// Ties the used vertices at each position that has more than one, or holds each by itself.
     fn shared_positions(&mut self, unique: &UniquePositions) {
         let used = self.mesh.used_vertices();
         let ties = unique.groups(|v| used[v.index()]);
-        for &v in ties.iter().flatten() {
-            // Its tie decides the lock.
-            self.hold(v, LockReason::SharedPosition, Lock::Free);
+        let is_tied = self.policy == ContactPolicy::Tie;
+        // A tie decides the lock of its vertices.
+        let lock = if is_tied { Lock::Free } else { self.policy.lock() };
+        ties.iter().flatten().for_each(|&v| self.hold(v, LockReason::SharedPosition, lock));
+        if is_tied {
+            self.locking.locks.ties = ties;
         }
-        self.locking.locks.ties = ties;
     }
 
     fn boundary(&mut self, lock: Lock) {

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use meshlod::check::Fused;
-use meshlod::{Scene, Target, fuse_scene};
+use meshlod::{Constraints, Scene, Target};
 use serde_json::{Value, json};
 
 use crate::numbers::{count, faces, plural};
@@ -28,19 +28,20 @@ pub struct FuseReport {
 impl FuseArgs {
     /// Fuses intersecting objects of a scene if `--fuse` is given.
     pub fn apply(&self, scene: &mut Scene, session: &Session) -> Option<FuseReport> {
-        self.fuse.then(|| {
+        if self.fuse {
             session.progress.stage("fusing");
-            let before = shown_faces(scene);
-            let fused = fuse_scene(scene);
-            FuseReport { before, after: shown_faces(scene), fused }
-        })
+        }
+        let before = shown_faces(scene);
+        let constraints = Constraints { fuse: self.fuse, ..Constraints::default() };
+        let fused = constraints.fuse(scene)?;
+        Some(FuseReport { before, after: shown_faces(scene), fused })
     }
 }
 
 impl FuseReport {
     /// Returns true if fusing changed the scene.
     pub fn is_change(&self) -> bool {
-        self.fused != Fused::default()
+        self.fused != Fused { left: self.fused.left, ..Fused::default() }
     }
 
     /// Converts a target ratio to a number of faces, based on the faces before fusing.
@@ -59,14 +60,19 @@ impl FuseReport {
             "new_vertices": self.fused.imprint.vertices,
             "buried_faces": self.fused.buried,
             "joined_edges": self.fused.joined,
+            "open_components_left": self.fused.left,
         })
     }
 
     /// Formats the changes made by fusing as one line.
     pub fn to_text(&self) -> String {
-        let Fused { imprint, buried, joined } = self.fused;
+        let Fused { imprint, buried, joined, left } = self.fused;
+        let left = match left {
+            0 => String::new(),
+            left => format!(", {} open component{} left as is", count(left), plural(left)),
+        };
         format!(
-            "fused: {} to {} ({} cut, {} inner piece{} removed, {} edge{} joined)\n",
+            "fused: {} to {} ({} cut, {} inner piece{} removed, {} edge{} joined{left})\n",
             faces(self.before),
             count(self.after),
             count(imprint.faces),

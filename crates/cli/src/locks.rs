@@ -2,30 +2,59 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
-use meshlod::check::LockOptions;
-use meshlod::mesh::{Lock, Locks};
-use meshlod::{Options, Report, Scene, join_locks, scene_locks};
+use clap::builder::PossibleValue;
+use clap::{Args, ValueEnum};
+use meshlod::check::ContactPolicy;
+use meshlod::{Report, Scene, VertexLocking};
 use serde_json::{Value, json};
 
 use crate::args::ReadArgs;
 use crate::check::lock_file::{self, FileRows};
 use crate::failure::Failure;
-use crate::session::Session;
 
 /// Options that keep vertices in place.
 #[derive(Args)]
 pub struct LockArgs {
     /// Lock every vertex of a boundary edge in place
     #[arg(long)]
-    lock_boundary: bool,
-    /// Keep objects together where they meet: coincident vertices move together, and vertices where
-    /// objects cross or merely touch are contracted late
-    #[arg(long)]
-    lock_contacts: bool,
+    pub lock_boundary: bool,
+    /// Keep objects together where they meet; without a policy by tie
+    #[arg(long, value_name = "POLICY", num_args = 0..=1, require_equals = true,
+        default_missing_value = "tie")]
+    pub lock_contacts: Option<PolicyArg>,
     /// Apply the vertex locks in a file written by check --locks
     #[arg(long, value_name = "FILE.json", conflicts_with_all = ["lock_contacts", "fuse"])]
-    locks: Option<PathBuf>,
+    pub locks: Option<PathBuf>,
+}
+
+/// Policy for contacts on the command line.
+#[derive(Clone, Copy, Debug)]
+pub struct PolicyArg(pub ContactPolicy);
+
+impl ValueEnum for PolicyArg {
+    fn value_variants<'a>() -> &'a [Self] {
+        const ALL: [PolicyArg; 3] = [
+            PolicyArg(ContactPolicy::ALL[0]),
+            PolicyArg(ContactPolicy::ALL[1]),
+            PolicyArg(ContactPolicy::ALL[2]),
+        ];
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let help = match self.0 {
+            ContactPolicy::Tie => {
+                "Coincident vertices move together, and vertices where objects cross or merely touch are contracted late"
+            }
+            ContactPolicy::Protect => {
+                "All vertices at contacts are contracted late; coincident ones may separate"
+            }
+            ContactPolicy::Exclude => {
+                "All vertices at contacts are locked, which is safest and leaves most faces there"
+            }
+        };
+        Some(PossibleValue::new(self.0.name()).help(help))
+    }
 }
 
 /// A scene, with the path and the reading options it came from.
@@ -36,35 +65,16 @@ pub struct InputScene<'o> {
 }
 
 impl LockArgs {
-    /// Adds the locks of a scene to simplification options.
-    pub fn apply(
-        &self,
-        options: Options,
-        input: &InputScene<'_>,
-        session: &Session,
-    ) -> Result<Options, Failure> {
-        Ok(Options {
-            lock_boundary: self.lock_boundary,
-            locks: self.locks(input, session)?,
-            ..options
-        })
-    }
-
-    fn locks(&self, input: &InputScene<'_>, session: &Session) -> Result<Locks, Failure> {
-        let of_meshes = match &self.locks {
-            Some(path) => {
+    /// Returns the source of the locks of single vertices.
+    pub fn locking(&self, input: &InputScene<'_>) -> Result<VertexLocking, Failure> {
+        Ok(match (&self.locks, self.lock_contacts) {
+            (Some(path), _) => {
                 let rows = FileRows::of(input.path, input.scene, input.reading.options().weld)?;
-                lock_file::read(path, input.scene, &rows)?
+                VertexLocking::Given(lock_file::read(path, input.scene, &rows)?)
             }
-            None if self.lock_contacts => {
-                session.progress.stage("looking for contacts");
-                let contacts = LockOptions { contacts: true, boundary: Lock::Free };
-                let lockings = scene_locks(input.scene, &contacts);
-                lockings.into_iter().map(|locking| locking.locks).collect()
-            }
-            None => return Ok(Locks::default()),
-        };
-        join_locks(input.scene, &of_meshes).map_err(Failure::new)
+            (None, Some(PolicyArg(policy))) => VertexLocking::Contacts(policy),
+            (None, None) => VertexLocking::None,
+        })
     }
 }
 

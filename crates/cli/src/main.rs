@@ -9,6 +9,7 @@ mod args;
 mod check;
 mod command;
 mod compare;
+mod constraints;
 mod demo;
 mod distance;
 mod failure;

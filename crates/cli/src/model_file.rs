@@ -39,11 +39,15 @@ pub fn open(path: &Path, session: &Session) -> Result<ModelFile<File>, Failure> 
     session.progress.stage(&format!("reading {}", files::name(path)));
     let file = File::open(path).map_err(|error| Failure::at(path, error))?;
     let model = ModelFile::open(file).map_err(|error| Failure::at(path, error))?;
-    if let ModelFile::Contractions(archive) = &model
-        && archive.complete_chunks() < archive.chunk_count()
-    {
-        let (there, all) = (archive.complete_chunks(), archive.chunk_count());
-        let reason = format_args!("the file is truncated: {there} of its {all} chunks are present");
+    let (pieces, there, all) = match &model {
+        ModelFile::Contractions(archive) => {
+            ("chunks", archive.complete_chunks(), archive.chunk_count())
+        }
+        ModelFile::HeightField(_, parts) => ("parts", parts.complete as usize, parts.all as usize),
+    };
+    if there < all {
+        let reason =
+            format_args!("the file is truncated: {there} of its {all} {pieces} are present");
         session.warn(Failure::at(path, reason));
     }
     Ok(model)

@@ -1,6 +1,6 @@
 //! Arguments of a multiresolution query: error limit, focus and camera.
 
-use meshlod::multires::{Focus, Query, Tolerance, ViewCamera};
+use meshlod::multires::{Focus, Ground, GroundShape, Query, Tolerance, ViewCamera};
 
 use crate::failure::Failure;
 use crate::parse::{self, Bound};
@@ -19,6 +19,8 @@ pub enum FocusArg {
     Region(Focus),
     /// The view frustum of the camera.
     Frustum,
+    /// A shape on the ground.
+    Ground(GroundShape),
 }
 
 /// A multiresolution query as given on the command line.
@@ -27,6 +29,8 @@ pub struct QueryRequest {
     pub error: ErrorLimit,
     pub focus: Option<FocusArg>,
     pub camera: Option<ViewCamera>,
+    /// Vertical axis of shapes on the ground.
+    pub up: usize,
 }
 
 impl QueryRequest {
@@ -41,6 +45,7 @@ impl QueryRequest {
             None => Focus::Everything,
             Some(FocusArg::Region(focus)) => focus.clone(),
             Some(FocusArg::Frustum) => Focus::Frustum(camera()?),
+            Some(FocusArg::Ground(shape)) => Focus::Ground(Ground { up: self.up, shape: *shape }),
         };
         let tolerance = match self.error {
             ErrorLimit::Length(bound) => Tolerance::Uniform(bound.length(diagonal)),
@@ -66,11 +71,18 @@ pub fn focus(text: &str) -> Result<FocusArg, String> {
         ("frustum", _) if rest.is_empty() => return Ok(FocusArg::Frustum),
         ("point", Ok(&[x, y, z])) => Focus::Point([x, y, z]),
         ("segment", Ok(&[a, b, c, x, y, z])) => Focus::Segment([[a, b, c], [x, y, z]]),
+        ("ground-line", Ok(&[a, b, x, y])) => {
+            return Ok(FocusArg::Ground(GroundShape::Line([[a, b], [x, y]])));
+        }
+        ("ground-box", Ok(&[a, b, x, y])) => {
+            return Ok(FocusArg::Ground(GroundShape::Box([[a, b], [x, y]])));
+        }
         ("box", Ok(&[a, b, c, x, y, z])) => Focus::Box([[a, b, c], [x, y, z]]),
         ("sphere", Ok(&[x, y, z, radius])) => Focus::Sphere { center: [x, y, z], radius },
         _ => {
             return Err("expected point=x,y,z, segment=x,y,z,x,y,z, box=x,y,z,x,y,z with the \
-                        minimum corner first, sphere=x,y,z,r or frustum"
+                        minimum corner first, sphere=x,y,z,r, ground-line=x,y,x,y, ground-box=x,y,x,y \
+                        or frustum"
                 .into());
         }
     };
@@ -130,7 +142,13 @@ mod tests {
             Ok(FocusArg::Region(Focus::Point([1.0, 2.0, 3.0])))
         ));
         assert!(matches!(focus("sphere=1,2,3,4"), Ok(FocusArg::Region(Focus::Sphere { .. }))));
-        for bad in ["box=1,2,3", "ball=1,2,3,4", "", "point=1,2,x", "frustum=1"] {
+        assert!(matches!(
+            focus("ground-box=1,2,3,4"),
+            Ok(FocusArg::Ground(GroundShape::Box([[1.0, 2.0], [3.0, 4.0]])))
+        ));
+        for bad in
+            ["box=1,2,3", "ground-line=1,2,3", "ball=1,2,3,4", "", "point=1,2,x", "frustum=1"]
+        {
             assert!(focus(bad).is_err(), "{bad}");
         }
     }

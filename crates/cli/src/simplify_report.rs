@@ -14,6 +14,16 @@ pub fn refusals_json(report: &Report) -> Value {
     Value::Object(Refusal::ALL.into_iter().map(entry).collect::<Map<String, Value>>())
 }
 
+/// Returns the numbers of edges and faces contracted as JSON, with the share of edges.
+pub fn contractions_json(report: &Report) -> Value {
+    let contractions = report.contractions;
+    json!({
+        "edges": contractions.edges,
+        "faces": contractions.faces,
+        "edge_share": contractions.edge_share(),
+    })
+}
+
 /// Returns those fields of a simplification report that every command prints as JSON.
 pub fn report_json(report: &Report) -> Value {
     json!({

@@ -1,7 +1,7 @@
 //! Options for what may happen to the topology of a mesh.
 
 use clap::{Args, ValueEnum};
-use meshlod::{Borders, ConditionedScene, Options, Scene, Topology, world_bounds};
+use meshlod::{Borders, ConditionedScene, Scene, Topology, world_bounds};
 use serde_json::Value;
 
 use crate::failure::Failure;
@@ -42,17 +42,15 @@ enum TopologyArg {
 }
 
 impl TopologyArgs {
-    /// Adds what may happen to the topology to simplification options.
-    pub fn apply(&self, options: Options, scene: &Scene) -> Result<Options, Failure> {
+    /// Returns the limit of components that may vanish, as a length in world units.
+    pub fn vanish_below(&self, scene: &Scene) -> Result<Option<f64>, Failure> {
         let size = self.vanish_below.or(self.keep_objects);
         if self.topology == Some(TopologyArg::Keep) && self.vanish_below.is_some() {
             return Err(Failure::usage(
                 "--vanish-below does not go with --topology keep, with which nothing vanishes",
             ));
         }
-        let topology = self.kind();
-        let vanish_below = size.map(|size| size.length(world_bounds(scene).diagonal()));
-        Ok(Options { topology, vanish_below, ..options })
+        Ok(size.map(|size| size.length(world_bounds(scene).diagonal())))
     }
 
     /// Returns what may happen to the topology.
@@ -63,13 +61,14 @@ impl TopologyArgs {
         }
     }
 
-    /// Makes these the options for a run that is recorded, which keeps the topology.
-    pub fn keep(&mut self) -> Result<(), Failure> {
+    /// Makes these the options for an output that keeps the topology, and says why if they ask for
+    /// more.
+    pub fn keep(&mut self, reason: &str) -> Result<(), Failure> {
         let is_free = self.topology == Some(TopologyArg::Free) || self.vanish_below.is_some();
         if is_free {
-            return Err(Failure::usage(
-                "--sequence records a run with --topology keep; leave out --topology free and --vanish-below",
-            ));
+            return Err(Failure::usage(format_args!(
+                "{reason}: leave out --topology free and --vanish-below"
+            )));
         }
         self.topology = Some(TopologyArg::Keep);
         Ok(())

@@ -1,16 +1,73 @@
-//! Volume that a simplification could not conserve, as JSON and text.
+//! Volume of simplified meshes: its exact restoration, and its change as JSON and text.
 
-use meshlod::Method;
-use meshlod::simplify::{Unconserved, VolumeLoss};
+use clap::Args;
+use meshlod::simplify::{Digits, ExactVolumeError, Unconserved, VolumeLoss, VolumeResidual};
+use meshlod::{ConditionedScene, Mesh, Method, conserve_volumes};
 use serde_json::{Value, json};
 
-use crate::numbers::{count, plural, value};
+use crate::numbers::percent;
+use crate::session::Session;
 
-/// Returns the contractions that could not conserve the volume as JSON; `null` for a method that
-/// does not aim to.
+/// Relative change of volume up to which the text does not mention it.
+const UNSEEN: f64 = 1e-4;
+
+/// Option for levels of exactly the original volume.
+#[derive(Args)]
+pub struct ExactVolumeArgs {
+    /// Adjust the last digits of vertices until the closed parts of every mesh have their original
+    /// volume in the precision that is written
+    #[arg(long)]
+    pub exact_volume: bool,
+}
+
+impl ExactVolumeArgs {
+    /// Restores the volumes of the meshes of a level, if that is asked for. Returns the largest
+    /// relative deviation that is left, or `None` if no mesh has a volume.
+    pub fn restore(
+        &self,
+        scene: &ConditionedScene<'_>,
+        level: &mut [Mesh],
+        digits: Digits,
+        session: &Session,
+    ) -> Option<f64> {
+        if !self.exact_volume {
+            return None;
+        }
+        worst_residual(conserve_volumes(scene, level, digits), session)
+    }
+}
+
+/// Returns the largest relative deviation from the volumes of meshes; warns of those that could not
+/// be restored.
+pub fn worst_residual(
+    found: Vec<Result<VolumeResidual, ExactVolumeError>>,
+    session: &Session,
+) -> Option<f64> {
+    let several = found.len() > 1;
+    let mut worst: Option<f64> = None;
+    for (i, residual) in found.into_iter().enumerate() {
+        match residual {
+            Ok(residual) => worst = Some(residual.after.abs().max(worst.unwrap_or(0.0))),
+            Err(error) if several => {
+                session.warn(format_args!("--exact-volume: mesh {i}: {error}"));
+            }
+            Err(error) => session.warn(format_args!("--exact-volume: {error}")),
+        }
+    }
+    worst
+}
+
+/// Returns the contractions that could not conserve the volume as JSON, and what is still owed;
+/// `null` for a method that does not aim to.
 pub fn unconserved_json(method: Method, loss: &VolumeLoss) -> Value {
-    let json =
-        || json!({ "at_boundaries": with_bounds(&loss.open), "held": with_bounds(&loss.held) });
+    let json = || {
+        json!({
+            "at_boundaries": with_bounds(&loss.open),
+            "behind_boundary_cones": loss.at_boundaries,
+            "held": with_bounds(&loss.held),
+            "owed": loss.owed,
+        })
+    };
     method.conserves_volume().then(json).into()
 }
 
@@ -20,25 +77,20 @@ fn with_bounds(some: &Unconserved) -> Value {
     json!({ "contractions": some.contractions, "bounds": bounds })
 }
 
-/// Describes the contractions in which a volume-conserving method could not conserve the volume;
-/// `None` if there are none.
-pub fn unconserved_text(method: Method, loss: &VolumeLoss) -> Option<String> {
-    let kinds = [(&loss.open, "at boundaries"), (&loss.held, "constrained by seams or locks")];
-    let some = kinds.iter().filter(|(some, _)| some.contractions > 0);
-    let texts: Vec<String> = some.map(|(some, what)| place(some, what)).collect();
-    (method.conserves_volume() && !texts.is_empty())
-        .then(|| format!("volume not conserved by {}", texts.join("; ")))
-}
-
-fn place(some: &Unconserved, what: &str) -> String {
-    let point = |point: [f64; 3]| point.map(value).join(" ");
-    format!(
-        "{} contraction{} {what}, within the box from {} to {}",
-        count(some.contractions),
-        plural(some.contractions),
-        point(some.bounds.min),
-        point(some.bounds.max),
-    )
+/// Describes the volume that a volume-conserving method has lost in closed parts, relative to the
+/// `volume` of the input; `None` if it is not worth a line. What the level repays is not lost.
+pub fn lost_text(method: Method, loss: &VolumeLoss, volume: f64) -> Option<String> {
+    let lost = loss.lost() / volume;
+    if !method.conserves_volume() || lost.is_nan() || lost.abs() < UNSEEN {
+        return None;
+    }
+    let part = |relative: f64| percent(100.0 * relative);
+    let vanished = match loss.vanished / volume {
+        gone if gone < UNSEEN => String::new(),
+        gone => format!(", {} in parts that vanished", part(gone)),
+    };
+    let sign = if lost > 0.0 { "-" } else { "+" };
+    Some(format!("volume: {sign}{}{vanished}; --exact-volume restores it", part(lost.abs())))
 }
 
 #[cfg(test)]
@@ -48,17 +100,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_a_method_that_promises_to_conserve_says_where_it_could_not() {
+    fn a_method_that_promises_to_conserve_says_what_it_lost() {
         let bounds = Bounds { min: [0.0, -1.0, 0.5], max: [1.0; 3] };
-        let loss =
-            VolumeLoss { held: Unconserved { contractions: 1, bounds }, ..VolumeLoss::default() };
-        let text = "volume not conserved by 1 contraction constrained by seams or locks, within the \
-                    box from 0 -1 0.5 to 1 1 1";
-        assert_eq!(unconserved_text(Method::LeeJang, &loss).as_deref(), Some(text));
-        assert_eq!(unconserved_text(Method::Qem, &loss), None);
-        assert_eq!(unconserved_text(Method::LeeJang, &VolumeLoss::default()), None);
+        let held = Unconserved { contractions: 1, bounds };
+        let loss = VolumeLoss { running_sum: 0.03, owed: 0.01, held, ..VolumeLoss::default() };
+        let text = |method, loss: &VolumeLoss| lost_text(method, loss, 2.0);
+        let expected = "volume: -1.000%; --exact-volume restores it";
+        assert_eq!(text(Method::LeeJang, &loss).as_deref(), Some(expected));
+        assert_eq!(text(Method::Qem, &loss), None);
+        let vanished = VolumeLoss { vanished: 0.01, ..loss };
+        let expected =
+            "volume: -1.000%, 0.5000% in parts that vanished; --exact-volume restores it";
+        assert_eq!(text(Method::LeeJang, &vanished).as_deref(), Some(expected));
+        let repaid = VolumeLoss { owed: 0.03, ..loss };
+        assert_eq!(text(Method::LeeJang, &repaid), None);
         let json = |method| unconserved_json(method, &loss);
         assert_eq!(json(Method::LeeJang)["held"]["contractions"], 1);
+        assert_eq!(json(Method::LeeJang)["owed"], 0.01);
         assert!(json(Method::LeeJang)["at_boundaries"]["bounds"].is_null());
         assert!(json(Method::Qem).is_null());
     }

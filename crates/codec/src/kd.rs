@@ -68,8 +68,7 @@ impl Halving<'_> {
         }
         self.part(vertices, middle, best.1);
         let (first, second) = vertices.split_at_mut(middle);
-        self.halve(first);
-        self.halve(second);
+        rayon::join(|| self.halve(first), || self.halve(second));
     }
 
     fn place(&self, v: u32) -> DVec3 {

@@ -15,6 +15,7 @@
 mod attributes;
 mod bounds;
 mod buckets;
+mod closed;
 mod components;
 mod condition;
 mod connectivity;
@@ -29,6 +30,7 @@ mod weld;
 pub use attributes::{Attributes, Layer, LayerKind};
 pub use bounds::Bounds;
 pub use buckets::Buckets;
+pub use closed::closed_faces;
 pub use components::face_components;
 pub use condition::{
     Borders, ConditionOptions, Conditioned, Conditioning, NearBorders, Search, condition,

@@ -33,6 +33,22 @@ impl Locks {
     pub fn of(&self, v: VertexId) -> Lock {
         self.of_vertex.get(v.index()).copied().unwrap_or_default()
     }
+
+    /// Returns locks for a mesh of `vertices` vertices that lock every tied vertex in place of tying
+    /// it, where vertices cannot be moved together.
+    pub fn with_ties_locked(&self, vertices: usize) -> Self {
+        let mut of_vertex = self.of_vertex.clone();
+        if !self.ties.is_empty() && of_vertex.is_empty() {
+            of_vertex.resize(vertices, Lock::Free);
+        }
+        for v in self.ties.iter().flatten() {
+            // A tie of a vertex that is not there is left to the simplifier to refuse.
+            if let Some(lock) = of_vertex.get_mut(v.index()) {
+                *lock = Lock::Locked;
+            }
+        }
+        Self { of_vertex, ties: Vec::new() }
+    }
 }
 
 #[cfg(test)]
@@ -47,5 +63,17 @@ mod tests {
             [Lock::Free, Lock::Locked, Lock::Free]
         );
         assert_eq!(Locks::default().of(VertexId(0)), Lock::Free);
+    }
+
+    #[test]
+    fn ties_can_be_locked_instead() {
+        let ties = vec![[0, 2].map(VertexId).to_vec()];
+        let of_vertex = vec![Lock::Free, Lock::Protected, Lock::Protected];
+        let locks = Locks { of_vertex, ties: ties.clone() }.with_ties_locked(3);
+        assert_eq!(locks.of_vertex, [Lock::Locked, Lock::Protected, Lock::Locked]);
+        assert!(locks.ties.is_empty());
+        let bare = Locks { of_vertex: Vec::new(), ties }.with_ties_locked(4);
+        assert_eq!(bare.of_vertex, [Lock::Locked, Lock::Free, Lock::Locked, Lock::Free]);
+        assert_eq!(Locks::default().with_ties_locked(4), Locks::default());
     }
 }

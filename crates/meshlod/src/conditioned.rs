@@ -134,8 +134,13 @@ impl<'m> ConditionedMesh<'m> {
     }
 
     /// Returns the mesh as it is simplified.
-    fn mesh(&self) -> &Mesh {
+    pub(crate) fn mesh(&self) -> &Mesh {
         self.conditioned().map_or(self.input, |found| &found.mesh)
+    }
+
+    /// Returns the locks of the mesh as it is simplified.
+    pub(crate) fn locks(&self) -> &Locks {
+        self.conditioned().map_or(&self.options.locks, |found| &found.locks)
     }
 
     /// Returns what has been changed so far.
@@ -180,7 +185,7 @@ impl<'m> ConditionedMesh<'m> {
 
     /// Returns the current level in terms of the input.
     pub(crate) fn level(&self, simplifier: &Simplifier<'_>) -> Mesh {
-        let mut level = simplifier.level();
+        let mut level = simplifier.settled_level();
         if let Some(found) = self.conditioned() {
             found.rejoin(&mut level);
         }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::{DMat3, DMat4};
-use meshlod_check::{LockOptions, LockReason, VertexLocks, locks};
+use meshlod_check::{ContactPolicy, LockOptions, LockReason, VertexLocks, locks};
 use meshlod_io::{MeshInstance, Scene, SceneMesh};
 use meshlod_mesh::{Labels, Lock, Mesh, VertexId, first_near};
 
@@ -11,9 +11,9 @@ use meshlod_mesh::{Labels, Lock, Mesh, VertexId, first_near};
 /// space.
 ///
 /// A mesh shown by several nodes gets the strictest lock of all its instances. Vertices of two
-/// nodes at the same position are locked, since meshes are simplified independently. So are
-/// vertices that rounding to 32 bits may have separated: those within 2^-22 of their largest
-/// coordinate. Vertices of one mesh at the same position are tied.
+/// nodes at the same position are locked in place of tied, since meshes are simplified
+/// independently. So are vertices that rounding to 32 bits may have separated: those within 2^-22
+/// of their largest coordinate. By [`ContactPolicy::Protect`] both are protected instead.
 ///
 /// Meshes that no node shows stay free. So do instances that a transform flattens to a plane, a
 /// line or a point, which would meet themselves everywhere, and instances with infinite
@@ -38,18 +38,22 @@ pub fn scene_locks(scene: &Scene, options: &LockOptions) -> Vec<VertexLocks> {
             let tie = members.iter().map(|home| home.vertex).collect();
             of_meshes[members[0].mesh].locks.ties.push(tie);
         } else {
-            members.iter().for_each(|home| lock(&mut of_meshes, home));
+            members.iter().for_each(|home| hold(&mut of_meshes, home, Lock::Locked));
         }
     }
-    if options.contacts {
-        world.near_across_nodes().iter().for_each(|home| lock(&mut of_meshes, home));
+    if let Some(policy) = options.contacts {
+        let lock = match policy {
+            ContactPolicy::Protect => Lock::Protected,
+            ContactPolicy::Tie | ContactPolicy::Exclude => Lock::Locked,
+        };
+        world.near_across_nodes().iter().for_each(|home| hold(&mut of_meshes, home, lock));
     }
     of_meshes.iter_mut().for_each(VertexLocks::resolve_ties);
     of_meshes
 }
 
-fn lock(of_meshes: &mut [VertexLocks], home: &Home) {
-    of_meshes[home.mesh].hold(home.vertex, Lock::Locked, Some(LockReason::SharedPosition));
+fn hold(of_meshes: &mut [VertexLocks], home: &Home, lock: Lock) {
+    of_meshes[home.mesh].hold(home.vertex, lock, Some(LockReason::SharedPosition));
 }
 
 /// All instances of a scene in world space, without flattened ones.
@@ -166,7 +170,8 @@ mod tests {
 
     use super::*;
 
-    const CONTACTS: LockOptions = LockOptions { contacts: true, boundary: Lock::Free };
+    const CONTACTS: LockOptions =
+        LockOptions { contacts: Some(ContactPolicy::Tie), boundary: Lock::Free };
 
     fn at(x: f64, mesh: usize) -> Node {
         let mut transform = Node::default().transform;

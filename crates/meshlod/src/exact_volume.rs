@@ -1,10 +1,13 @@
 //! Exact conservation of volume for all meshes of a scene.
 
-use meshlod_io::{Format, Precision, Scene};
-use meshlod_mesh::{Locks, Mesh};
-use meshlod_simplify::{Digits, ExactVolumeError, SimplifyError, VolumeResidual, conserve_volume};
+use glam::DMat4;
+use meshlod_io::{Format, MeshInstance, Precision, Scene};
+use meshlod_measure::volume;
+use meshlod_mesh::Mesh;
+use meshlod_simplify::{Digits, ExactVolumeError, VolumeResidual, conserve_volume};
 
-use crate::locks;
+use crate::ConditionedScene;
+use crate::conditioned::ConditionedMesh;
 
 /// Returns the number format in which a mesh file stores positions, given its format and precision.
 pub fn digits_of(format: Format, precision: Precision) -> Digits {
@@ -20,19 +23,26 @@ pub fn digits_of(format: Format, precision: Precision) -> Digits {
 /// Adjusts the vertices of each simplified mesh until it has the volume of the original; see
 /// [`conserve_volume`].
 ///
-/// `levels` belong to the meshes of `scene`, in that order, and `locks` count vertices through all
-/// its meshes, see [`join_locks`](crate::join_locks). A level that cannot get the volume of its
-/// mesh is left as it is. Volumes are exact in the space of each mesh, before the transforms of
-/// nodes.
-/// # Errors
-/// Locks that do not match the scene.
+/// `levels` belong to the meshes of the scene, in that order; borders that conditioning has sewn
+/// count as closed. A level that cannot get the volume of its mesh is left as it is. Volumes are
+/// exact in the space of each mesh, before the transforms of nodes.
 pub fn conserve_volumes(
-    scene: &Scene,
+    scene: &ConditionedScene<'_>,
     levels: &mut [Mesh],
     digits: Digits,
-    locks: &Locks,
-) -> Result<Vec<Result<VolumeResidual, ExactVolumeError>>, SimplifyError> {
-    let locks = locks::split(scene, locks)?;
-    let pairs = levels.iter_mut().zip(&scene.meshes).zip(&locks);
-    Ok(pairs.map(|((level, of), locks)| conserve_volume(level, &of.mesh, digits, locks)).collect())
+) -> Vec<Result<VolumeResidual, ExactVolumeError>> {
+    let conserve = |(level, of): (&mut Mesh, &ConditionedMesh<'_>)| {
+        conserve_volume(level, of.mesh(), digits, of.locks())
+    };
+    levels.iter_mut().zip(&scene.meshes).map(conserve).collect()
+}
+
+/// Returns the volume of a scene in cubic world units: the sum over all instances of the absolute
+/// [volumes](volume) of their meshes. Open meshes count with the cones that close them.
+pub fn world_volume(scene: &Scene) -> f64 {
+    let volumes: Vec<f64> = scene.meshes.iter().map(|of| volume(&of.mesh).abs()).collect();
+    let scaled = |place: &MeshInstance| {
+        volumes[place.mesh] * DMat4::from_cols_array_2d(&place.transform).determinant().abs()
+    };
+    scene.instances().iter().map(scaled).sum()
 }

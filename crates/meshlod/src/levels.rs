@@ -1,19 +1,22 @@
 //! Multiresolution files in one call: all levels of a mesh to a file, or one mesh out of it.
 
+use std::borrow::Cow;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-use meshlod_io::{IoError, write_file};
+use meshlod_io::{IoError, Scene, write_file};
 use meshlod_mesh::Mesh;
 use meshlod_multires::{
-    Archive, Certificate, ErrorKind, FileError, Forest, Level, ModelFile, Query, Rtin,
-    RtinExtractor, Storage, StoredErrors,
+    Archive, Certificate, ErrorKind, FileError, Forest, Level, ModelFile, Query, Storage,
+    StoredErrors,
 };
-use meshlod_simplify::{Method, Options};
+use meshlod_simplify::{Method, Options, SimplifyError};
 use thiserror::Error;
 
+use crate::Constraints;
+
 /// Options for writing a multiresolution file with [`build`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct BuildOptions {
     /// Simplification method whose contractions define the levels.
     pub method: Method,
@@ -24,6 +27,9 @@ pub struct BuildOptions {
     pub lossless: bool,
     /// Precision of the stored vertices, and size of the chunks that are read one by one.
     pub storage: Storage,
+    /// Constraints that every level satisfies. The topology is kept whatever they say, so that no
+    /// component vanishes, and tied vertices are locked.
+    pub constraints: Constraints,
 }
 
 impl Default for BuildOptions {
@@ -33,6 +39,7 @@ impl Default for BuildOptions {
             errors: ErrorKind::Measured,
             lossless: false,
             storage: Storage::default(),
+            constraints: Constraints::default(),
         }
     }
 }
@@ -57,12 +64,13 @@ pub struct BuildReport {
 #[derive(Clone, Debug)]
 pub struct ExtractOptions<'f> {
     /// Region to refine, and the largest error allowed there; by default the whole model, without
-    /// error.
+    /// error. A point stands for the closest point of the finest surface.
     pub query: Query<'f>,
     /// Largest number of faces of the mesh. If set, the query only decides where errors matter
     /// most.
     pub max_faces: Option<usize>,
-    /// True to leave out faces entirely outside the focus region of the query.
+    /// True to leave out faces entirely outside the focus region of the query. Of a point only the
+    /// nearest faces are left.
     pub crop: bool,
 }
 
@@ -120,7 +128,10 @@ pub fn build(mesh: &Mesh, path: &Path, options: &BuildOptions) -> Result<BuildRe
 
 fn encode(mesh: &Mesh, options: &BuildOptions) -> Result<(Vec<u8>, BuildReport), FileError> {
     let record = if options.lossless { Forest::lossless } else { Forest::new };
-    let mut forest = record(mesh, &Options { method: options.method, ..Options::default() })?;
+    let simplify = Options { method: options.method, ..Options::default() };
+    let (mesh, simplify) = constrained(mesh, &options.constraints, simplify)
+        .map_err(|error| FileError::Build(error.into()))?;
+    let mut forest = record(&mesh, &simplify)?;
     match options.errors {
         ErrorKind::Estimate | ErrorKind::Measured => forest.smooth_errors(),
         ErrorKind::Bound => forest.measure_bounds(),
@@ -135,6 +146,21 @@ fn encode(mesh: &Mesh, options: &BuildOptions) -> Result<(Vec<u8>, BuildReport),
     let (full_faces, bytes) = (forest.full_faces(), archive.into_source());
     let report = BuildReport { full_faces, base_faces, updates, certificate, bytes: bytes.len() };
     Ok((bytes, report))
+}
+
+/// Returns the mesh to simplify, fused if that is asked for, with the constrained options.
+fn constrained<'m>(
+    mesh: &'m Mesh,
+    constraints: &Constraints,
+    options: Options,
+) -> Result<(Cow<'m, Mesh>, Options), SimplifyError> {
+    if *constraints == Constraints::default() {
+        return Ok((Cow::Borrowed(mesh), options));
+    }
+    let mut scene = Scene::from_mesh("", mesh.clone());
+    constraints.fuse(&mut scene);
+    let (mesh, options) = constraints.flatten(scene, options)?;
+    Ok((Cow::Owned(mesh), options))
 }
 
 /// Extracts a mesh at one level of detail from a `.mlod` file, reading only the parts needed.
@@ -167,21 +193,22 @@ pub fn extract(path: &Path, options: &ExtractOptions<'_>) -> Result<Mesh, Levels
 
 fn level(file: File, options: &ExtractOptions<'_>) -> Result<Level, FileError> {
     let ExtractOptions { query, max_faces, crop } = options;
-    let level = match (ModelFile::open(file)?, *max_faces) {
-        (ModelFile::Contractions(archive), None) => archive.extract(query)?.level,
-        (ModelFile::Contractions(archive), Some(faces)) => {
-            archive.extract_at_most(faces, query)?.level
-        }
-        (ModelFile::HeightField(field), None) => Rtin::new(&field).level(query)?,
-        (ModelFile::HeightField(field), Some(faces)) => {
-            RtinExtractor::new(&Rtin::new(&field)).at_most(faces, query)?.clone()
-        }
+    let file = ModelFile::open(file)?;
+    let (query, nearest) = file.at_surface(query, *max_faces)?;
+    let level = match *max_faces {
+        None => file.extract(&query)?.level,
+        Some(faces) => file.extract_at_most(faces, &query)?.level,
     };
-    Ok(if *crop { level.within(&query.focus)? } else { level })
+    Ok(match nearest {
+        _ if !*crop => level,
+        Some(point) => level.nearest(point)?,
+        None => level.within(&query.focus)?,
+    })
 }
 
 #[cfg(test)]
 mod tests {
+    use meshlod_mesh::{Connectivity, VertexId};
     use meshlod_multires::Focus;
     use meshlod_samples as samples;
 
@@ -219,6 +246,34 @@ mod tests {
         let cropped = ExtractOptions { crop: true, ..whole.clone() };
         let faces = |options| extract(&path, options).unwrap().faces.len();
         assert!(faces(&cropped) < faces(&whole));
+    }
+
+    #[test]
+    fn constraints_hold_in_every_level() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("terrain.mlod");
+        let mesh = samples::terrain(600);
+        let constraints = Constraints { lock_boundary: true, ..Constraints::default() };
+        let options = BuildOptions { lossless: true, constraints, ..Default::default() };
+        let free = BuildOptions { lossless: true, ..Default::default() };
+        let boundary = |options| {
+            build(&mesh, &path, options).unwrap();
+            let coarsest = ExtractOptions { query: Query::uniform(f64::MAX), ..Default::default() };
+            let level = extract(&path, &coarsest).unwrap();
+            let connectivity = Connectivity::new(&level.faces, level.positions.len());
+            let on = |v: &usize| connectivity.marks(VertexId::new(*v)).boundary();
+            let places = (0..level.positions.len()).filter(on).map(|v| level.positions[v]);
+            let mut bits: Vec<_> = places.map(|p| p.map(f64::to_bits)).collect();
+            bits.sort_unstable();
+            bits
+        };
+        let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
+        let on = |v: &usize| connectivity.marks(VertexId::new(*v)).boundary();
+        let places = (0..mesh.positions.len()).filter(on).map(|v| mesh.positions[v]);
+        let mut expected: Vec<_> = places.map(|p| p.map(f64::to_bits)).collect();
+        expected.sort_unstable();
+        assert_eq!(boundary(&options), expected);
+        assert!(boundary(&free).len() < expected.len());
     }
 
     #[test]

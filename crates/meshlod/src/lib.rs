@@ -219,6 +219,7 @@ mod appearance;
 mod check_report;
 mod compressed;
 mod conditioned;
+mod constraints;
 mod contacts;
 mod exact_volume;
 mod fuse;
@@ -249,8 +250,9 @@ pub use compressed::{
     CompressOptions, CompressReport, CompressedFileError, compress, decompress, decompress_bytes,
 };
 pub use conditioned::{ConditionedScene, simplify};
+pub use constraints::{Constraints, VertexLocking};
 pub use contacts::scene_locks;
-pub use exact_volume::{conserve_volumes, digits_of};
+pub use exact_volume::{conserve_volumes, digits_of, world_volume};
 pub use fuse::fuse_scene;
 pub use levels::{BuildOptions, BuildReport, ExtractOptions, LevelsError, build, extract};
 pub use locks::join_locks;

@@ -3,7 +3,8 @@
 use meshlod_io::Scene;
 use meshlod_mesh::{Borders, Mesh};
 use meshlod_simplify::{
-    Held, Method, Observe, Options, Refusals, Report, Simplifier, SimplifyError, Target, VolumeLoss,
+    Contractions, Held, Method, Observe, Options, Refusals, Report, Simplifier, SimplifyError,
+    Target, VolumeLoss,
 };
 use thiserror::Error;
 
@@ -225,6 +226,7 @@ impl<'s> SceneSimplifier<'s> {
             non_manifold_vertices: 0,
             held: Held::default(),
             output_faces: self.live_faces(),
+            contractions: Contractions::default(),
             vanished: 0,
             reached: true,
             error_estimate: 0.0,
@@ -245,6 +247,7 @@ impl<'s> SceneSimplifier<'s> {
             whole.vanished += part.copies * report.vanished;
             whole.held.add(&report.held, part.copies);
             whole.error_estimate = whole.error_estimate.max(part.scale * report.error_estimate);
+            whole.contractions += report.contractions;
             whole.refusals += report.refusals;
             // Parts are in the order of their meshes; other meshes have nothing to contract.
             while let Some(place) = places.next_if(|place| place.mesh <= part.mesh) {

@@ -2,6 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use meshlod_mesh::{Frame, Mesh, VertexId};
+use meshlod_spatial::closest_point;
 
 use crate::pack::ExactPositions;
 use crate::query::Region;
@@ -100,6 +101,30 @@ impl Level {
         // The faces were numbered by vertices of this level.
         level.nodes.iter_mut().for_each(|node| *node = self.nodes[*node as usize]);
         Ok(level)
+    }
+
+    /// Returns the point of the level that is closest to a point in model units; `None` if the level
+    /// has no faces.
+    ///
+    /// Cost: linear.
+    pub fn closest_point(&self, point: [f64; 3]) -> Option<[f64; 3]> {
+        let at = self.frame.local(point);
+        let on_face = |face: &[u32; 3]| closest_point(at, &face.map(|v| self.exact_stored(v)));
+        let order =
+            |a: &DVec3, b: &DVec3| at.distance_squared(*a).total_cmp(&at.distance_squared(*b));
+        self.faces.iter().map(on_face).min_by(order).map(|closest| self.frame.model(closest))
+    }
+
+    /// Returns the faces that contain the point of the level closest to a point in model units,
+    /// with their vertices: one face, the two at an edge or those at a vertex.
+    ///
+    /// Cost: linear.
+    /// # Errors
+    /// A coordinate is not finite.
+    pub fn nearest(&self, point: [f64; 3]) -> Result<Self, QueryError> {
+        let focus = Focus::Point(point);
+        focus.validate()?;
+        self.within(&self.closest_point(point).map_or(focus, Focus::Point))
     }
 
     /// Returns the position of a vertex in stored units, exact if the model is lossless.

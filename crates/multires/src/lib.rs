@@ -85,12 +85,12 @@ mod tests;
 pub use bounds::ErrorKind;
 pub use cut::{Certificate, CertifyError, Cut, CutChange, Flaw, Located, Patch, UpdateLimits};
 pub use explicit::{Explicit, ExplicitCut};
-pub use file::{Archive, Extract, FileError, ModelFile, Source, Storage, StoredErrors};
+pub use file::{Archive, Extract, FieldParts, FileError, ModelFile, Source, Storage, StoredErrors};
 pub use forest::{BuildError, Forest, Recorder};
 pub use implicit::{Extractor, Implicit, SplitRule};
 pub use level::Level;
 pub use model::{Model, ModelBytes};
-pub use query::{Focus, Query, QueryError, Tolerance, ViewCamera};
+pub use query::{Focus, Ground, GroundShape, Query, QueryError, Tolerance, ViewCamera};
 pub use rtin::{
     FieldBytesError, Fit, HeightField, HeightFieldError, HeightPrecision, Rtin, RtinCertifyError,
     RtinExtractor, RtinFlaw,

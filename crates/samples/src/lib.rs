@@ -18,6 +18,7 @@ mod fish;
 mod grid;
 mod gyroid;
 mod knot;
+mod plate;
 mod sphere;
 mod terrain;
 #[cfg(test)]
@@ -28,6 +29,7 @@ mod torus;
 pub use fish::fish;
 pub use gyroid::gyroid;
 pub use knot::knot;
+pub use plate::plate;
 pub use sphere::sphere;
 pub use terrain::terrain;
 pub use torus::{faceted_torus, torus};
@@ -35,8 +37,8 @@ pub use torus::{faceted_torus, torus};
 use meshlod_mesh::Mesh;
 
 /// Names of all sample meshes, as accepted by [`by_name`].
-pub const NAMES: [&str; 7] =
-    ["sphere", "torus", "faceted-torus", "knot", "gyroid", "terrain", "fish"];
+pub const NAMES: [&str; 8] =
+    ["sphere", "torus", "faceted-torus", "knot", "gyroid", "plate", "terrain", "fish"];
 
 /// Maximum number of faces of a sample made by [`by_name`]; larger requests are clamped to it.
 pub const MAX_FACES: usize = 500_000_000;
@@ -51,6 +53,7 @@ pub fn by_name(name: &str, faces: Option<usize>) -> Option<Mesh> {
         "faceted-torus" => (faceted_torus, 10_000),
         "knot" => (knot, 10_000),
         "gyroid" => (gyroid, 50_000),
+        "plate" => (plate, 10_000),
         "terrain" => (terrain, 20_000),
         "fish" => (fish, 4_000),
         _ => return None,

@@ -5,7 +5,7 @@ use meshlod_mesh::{Connectivity, VertexId, face_components};
 
 use super::*;
 
-const CLOSED: [&str; 6] = ["sphere", "torus", "faceted-torus", "knot", "gyroid", "fish"];
+const CLOSED: [&str; 7] = ["sphere", "torus", "faceted-torus", "knot", "gyroid", "plate", "fish"];
 
 fn named(name: &str, faces: usize) -> Mesh {
     by_name(name, Some(faces)).expect("a known name")
@@ -86,6 +86,7 @@ fn face_counts_come_near_the_wish() {
         ("faceted-torus", 0.05),
         ("knot", 0.01),
         ("gyroid", 0.05),
+        ("plate", 0.04),
         ("terrain", 0.01),
         ("fish", 0.02),
     ];
@@ -104,6 +105,7 @@ fn genus_is_what_the_shape_has() {
     for mesh in [torus(2_000), faceted_torus(2_000), knot(2_000)] {
         assert_eq!(euler(&mesh), 0);
     }
+    assert_eq!(euler(&plate(9 * 264)), 2 - 2 * 9);
 }
 
 #[test]

@@ -36,7 +36,9 @@ pub use history::exact_volume::{Digits, ExactVolumeError, VolumeResidual, conser
 pub use history::progressive::{Progressive, ProgressiveError};
 pub use history::volume::{Unconserved, VolumeLoss};
 pub use history::{Contraction, History};
-pub use options::{AttributeWeights, Method, Options, Report, SimplifyError, Target, Topology};
+pub use options::{
+    AttributeWeights, Contractions, Method, Options, Report, SimplifyError, Target, Topology,
+};
 pub use refusal::{Refusal, Refusals};
 pub use simplifier::Simplifier;
 pub use surface::contracted::{Contracted, Freedom};
@@ -57,5 +59,5 @@ pub fn simplify(
 ) -> Result<(Mesh, Report), SimplifyError> {
     let mut simplifier = Simplifier::new(mesh, options)?;
     let report = simplifier.run(target, &mut ())?;
-    Ok((simplifier.level(), report))
+    Ok((simplifier.settled_level(), report))
 }

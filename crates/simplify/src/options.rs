@@ -1,5 +1,7 @@
 //! Options, targets, errors and the report of a simplification.
 
+use std::ops::AddAssign;
+
 use meshlod_mesh::{Locks, MeshError, VertexId};
 use thiserror::Error;
 
@@ -15,6 +17,9 @@ pub enum Method {
     /// Quadric error metrics with half-edge contraction: every vertex of the result is a vertex of
     /// the input [GH97].
     QemEndpoint,
+    /// Quadric error metrics as first published [GH97]: planes of equal weight, nothing forgotten,
+    /// attributes not counted. A yardstick for comparisons.
+    QemPlain,
     /// Memoryless simplification: edge contraction by swept volume, conserving the volume [LT98].
     #[default]
     LindstromTurk,
@@ -36,9 +41,10 @@ pub enum Method {
 
 impl Method {
     /// All simplification methods, in a fixed order.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Qem,
         Self::QemEndpoint,
+        Self::QemPlain,
         Self::LindstromTurk,
         Self::LindstromTurkFaces,
         Self::LeeJang,
@@ -53,6 +59,7 @@ impl Method {
         match self {
             Self::Qem => "qem",
             Self::QemEndpoint => "qem-endpoint",
+            Self::QemPlain => "qem-plain",
             Self::LindstromTurk => "lindstrom-turk",
             Self::LindstromTurkFaces => "lindstrom-turk-faces",
             Self::LeeJang => "lee-jang",
@@ -66,14 +73,14 @@ impl Method {
     /// Returns the power of length in the unit of the method's costs: 2 for squared distances, 6
     /// for squared volumes.
     ///
-    /// Quadrics give squared distances times areas, swept volumes squared volumes, which
+    /// Quadrics give squared distances times areas, without areas in [`Method::QemPlain`], swept volumes squared volumes, which
     /// [`Method::LindstromTurk`] divides by the root of an area, and samples squared distances.
     pub fn cost_power(self) -> i32 {
         match self {
             Self::Qem | Self::QemEndpoint | Self::KimJang => 4,
             Self::LindstromTurk => 5,
             Self::LindstromTurkFaces => 6,
-            Self::Pm => 2,
+            Self::QemPlain | Self::Pm => 2,
             Self::LeeJang | Self::Wu | Self::Spr => 1,
         }
     }
@@ -88,19 +95,21 @@ impl Method {
     /// [`Options::boundary_weight`].
     pub fn weighs_boundaries(self) -> bool {
         match self {
-            Self::Qem | Self::QemEndpoint | Self::KimJang => true,
+            Self::Qem | Self::QemEndpoint | Self::QemPlain | Self::KimJang => true,
             Self::LindstromTurk | Self::LindstromTurkFaces => true,
             Self::LeeJang | Self::Wu | Self::Pm | Self::Spr => false,
         }
     }
 
     /// Returns true if the method places new vertices so as to conserve the volume, wherever the
-    /// ring of faces is closed and no lock, tie or seam fixes the position. [`Method::LindstromTurk`]
-    /// leaves a debt to the next contraction where the position would be too far away.
+    /// ring of faces is closed and no lock or tie fixes the position. [`Method::LindstromTurk`]
+    /// leaves a debt to the next contraction where the position would be too far away; see
+    /// [`Simplifier::settled_level`](crate::Simplifier::settled_level).
     pub fn conserves_volume(self) -> bool {
         match self {
             Self::LindstromTurk | Self::LindstromTurkFaces | Self::LeeJang | Self::KimJang => true,
-            Self::Qem | Self::QemEndpoint | Self::Wu | Self::Pm | Self::Spr => false,
+            Self::Qem | Self::QemEndpoint | Self::QemPlain => false,
+            Self::Wu | Self::Pm | Self::Spr => false,
         }
     }
 
@@ -335,6 +344,30 @@ pub enum SimplifyError {
     BadTarget(f64),
 }
 
+/// Numbers of contractions by kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Contractions {
+    /// Number of edges contracted by themselves.
+    pub edges: usize,
+    /// Number of faces contracted as a whole.
+    pub faces: usize,
+}
+
+impl Contractions {
+    /// Returns the share of edges among the contractions, from 0 to 1; `None` if there are none.
+    pub fn edge_share(self) -> Option<f64> {
+        let all = self.edges + self.faces;
+        (all > 0).then(|| self.edges as f64 / all as f64)
+    }
+}
+
+impl AddAssign for Contractions {
+    fn add_assign(&mut self, other: Self) {
+        self.edges += other.edges;
+        self.faces += other.faces;
+    }
+}
+
 /// Report of a mesh simplification.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
@@ -352,6 +385,8 @@ pub struct Report {
     pub held: Held,
     /// Number of faces of the simplified mesh.
     pub output_faces: usize,
+    /// Numbers of edges and faces contracted.
+    pub contractions: Contractions,
     /// Number of connected components that were removed as a whole.
     pub vanished: usize,
     /// True if the target number of faces or error was reached.

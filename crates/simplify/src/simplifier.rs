@@ -11,6 +11,7 @@ use crate::kernel::{self, PlaneDistance, SweptVolume};
 use crate::methods;
 use crate::options::{Method, Options, Report, SimplifyError, Target, Topology};
 use crate::surface::Surface;
+use crate::surface::rims::Rims;
 
 /// Bounding-box diagonals that can be worked with. Costs grow with up to the sixth power of a
 /// length and checks with the eighth; outside this range doubles would overflow or underflow.
@@ -122,7 +123,8 @@ impl<'m> Simplifier<'m> {
     /// Builds the report of the run so far.
     fn report(&self, target: Target, stop: &Stop) -> Report {
         let output_faces = self.live_faces();
-        let Tally { vanished, refusals, error_estimate, volume } = self.engine.tally();
+        let Tally { vanished, contractions, refusals, error_estimate, volume } =
+            self.engine.tally();
         let reached = matches!(target, Target::Error(_)) || output_faces <= stop.faces;
         Report {
             method: self.method,
@@ -132,6 +134,7 @@ impl<'m> Simplifier<'m> {
             non_manifold_vertices: self.input.non_manifold_vertices,
             held: self.input.held,
             output_faces,
+            contractions,
             vanished,
             reached,
             error_estimate,
@@ -151,6 +154,16 @@ impl<'m> Simplifier<'m> {
     /// the input.
     pub fn level(&self) -> Mesh {
         self.engine.level(self.mesh)
+    }
+
+    /// Returns the current mesh as [`Self::level`] does, but with the volume that
+    /// [`Method::LindstromTurk`] still owes repaid by vertices around, which move along their
+    /// normals by a small part of an edge.
+    ///
+    /// Locked and tied vertices and boundaries stay. A run to [`Target::Error`] owes its bound
+    /// more than its volume, and repays nothing. Histories have the levels without repayment.
+    pub fn settled_level(&self) -> Mesh {
+        self.engine.settled_level(self.mesh)
     }
 
     /// Returns the number of input faces without those left out as degenerate or duplicate.
@@ -197,6 +210,7 @@ fn by_policies<'m>(
         .filter(|&v| connectivity.marks(VertexId::new(v)).non_manifold())
         .count();
     let mut surface = Surface::new(mesh, &connectivity);
+    surface.rims = Rims::new(mesh, &connectivity);
     let held = locks::apply(options, &connectivity, &mut surface);
     let input = InputSummary { degenerate_faces, duplicate_faces, non_manifold_vertices, held };
     let below = options.vanish_below.filter(|_| options.topology == Topology::Free);

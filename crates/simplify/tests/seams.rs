@@ -2,7 +2,9 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use meshlod_fixtures::charted;
 use meshlod_mesh::{Attributes, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId};
+use meshlod_samples as samples;
 use meshlod_simplify::{
     History, Method, Options, Progressive, Simplifier, Target, Topology, simplify,
 };
@@ -255,6 +257,30 @@ fn runs_and_steps_release_seams_at_the_same_time() {
                     by_steps.step(cost, &mut ());
                 }
                 assert_eq!(drawn(&by_steps.level()), drawn(&by_runs.level()), "{name}");
+            }
+        }
+    }
+}
+
+fn volume(mesh: &Mesh) -> f64 {
+    let sixfold = |&face: &[VertexId; 3]| {
+        let [a, b, c] = mesh.triangle(face);
+        a.cross(b).dot(c)
+    };
+    mesh.faces.iter().map(sixfold).sum::<f64>() / 6.0
+}
+
+#[test]
+fn volume_is_conserved_across_seams() {
+    for mesh in [samples::knot(4000), samples::torus(4000), samples::gyroid(4000)] {
+        let mesh = charted(&mesh);
+        for method in Method::ALL.into_iter().filter(|method| method.conserves_volume()) {
+            let rounding = if KERNEL_METHODS.contains(&method) { 1e-6 } else { 1e-12 };
+            for ratio in [0.5, 0.1, 0.02] {
+                let options = options(method, Topology::Keep);
+                let (level, _) = simplify(&mesh, Target::Ratio(ratio), &options).unwrap();
+                let change = volume(&level) / volume(&mesh) - 1.0;
+                assert!(change.abs() < rounding, "{} to {ratio}: {change:e}", method.name());
             }
         }
     }

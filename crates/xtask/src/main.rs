@@ -16,6 +16,7 @@ const USAGE: &str = "usage: cargo xtask VERB
   check    check references, arrows between crates, imports, names of types, phrases, lengths of files
   doc      build the documentation of all crates; warnings are errors
   results [SECTION...]  remake docs/RESULTS.md, or only the sections with such titles
+  policies             draw and measure fish of several parts by each policy for contacts, in docs/notes/contacts
   textured [MODEL...]  compare image errors of levels with meshoptimizer's
   parts [--program PATH] [TABLE...]  measure models of many parts, or only these tables:
                        bare, textured, extent, maximum, scenes, hubs
@@ -31,6 +32,7 @@ fn main() -> ExitCode {
         Some("compare") => compare::run(&arguments.collect::<Vec<_>>()),
         Some("doc") => doc::run(&project),
         Some("results") => results::run(&project, &arguments.collect::<Vec<_>>()),
+        Some("policies") => results::policies(&project),
         Some("parts") => results::parts(&project, &arguments.collect::<Vec<_>>()),
         Some("textured") => results::textured(&arguments.collect::<Vec<_>>()),
         _ => {

@@ -22,6 +22,8 @@ use anyhow::{Context, Result, bail};
 
 use crate::project::Project;
 
+pub use contacts::policies;
+
 type Section = fn(&Project) -> Result<String>;
 
 /// Sections and their titles, in the order of the page.

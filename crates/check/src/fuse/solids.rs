@@ -57,6 +57,23 @@ impl Solids {
         Self { solids: slots.into_iter().flatten().collect(), budget: 1 << 28 }
     }
 
+    /// Returns a flag per component, true if it consists of closed shells that face outwards, opaque
+    /// or not.
+    pub fn closed_components(mesh: &Mesh, component: &[u32], count: usize) -> Vec<bool> {
+        let shells = Shells::of_mesh(mesh);
+        let is_closed: Vec<bool> = shells
+            .all
+            .iter()
+            .map(|shell| shell.volume().is_some_and(|volume| volume > 0.0))
+            .collect();
+        let mut closed = vec![true; count];
+        for (&shell, &component) in shells.of_face.iter().zip(component) {
+            // Faces of no shell are degenerate and bound nothing.
+            closed[component as usize] &= is_closed.get(shell as usize).is_none_or(|&is| is);
+        }
+        closed
+    }
+
     /// Returns a flag per component, true if it consists of closed opaque shells only.
     pub fn components(&self, component: &[u32]) -> Vec<bool> {
         let count = component.iter().max().map_or(0, |&most| most as usize + 1);

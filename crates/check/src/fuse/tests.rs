@@ -208,3 +208,20 @@ fn what_is_far_away_moves_nothing() {
     let (imprinted, _) = crate::imprint(&blocks);
     assert_eq!(imprinted.positions[19..], alone.positions[16..]);
 }
+
+#[test]
+fn open_components_are_neither_cut_nor_cut_others() {
+    // A block without its last two faces through one that is whole, and a whole one through that.
+    let mut open = block([1.0; 3], [3.0, 4.0, 2.5]);
+    open.faces.truncate(10);
+    let blocks = together([block([0.0; 3], [2.0; 3]), open.clone()]);
+    let (fused, report) = fuse(&blocks, |_| true);
+    assert_eq!(fused.faces, blocks.faces);
+    assert_eq!(report, Fused { left: 1, ..Fused::default() });
+    let three = together([block([0.0; 3], [2.0; 3]), open, block([-1.0; 3], [1.5, 0.5, 0.5])]);
+    let boundary =
+        |mesh: &Mesh| Connectivity::new(&mesh.faces, mesh.positions.len()).boundary_edges();
+    let (fused, report) = fuse(&three, |_| true);
+    assert_eq!((boundary(&fused), report.left), (boundary(&three), 1));
+    assert!(report.buried > 0 && report.joined > 0);
+}

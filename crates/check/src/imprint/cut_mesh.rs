@@ -109,6 +109,13 @@ impl<'a> CutMesh<'a> {
         Self { mesh, unique, points, done, vertices, wedges, contact_edges }
     }
 
+    /// Adds a face of the original mesh uncut; returns 1, the number of faces added.
+    pub fn keep(&mut self, face: FaceId) -> usize {
+        let wedges = self.mesh.attributes.as_ref().map(|all| all.corners[face.index()]);
+        self.push(face, self.mesh.faces[face.index()], wedges);
+        1
+    }
+
     /// Adds a face of the original mesh, or the pieces it is cut into; returns the number of faces
     /// added.
     pub fn add(&mut self, face: FaceId) -> usize {

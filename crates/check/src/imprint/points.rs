@@ -65,13 +65,15 @@ const ROUNDING: f64 = 4e-14;
 type Known = FxHashMap<[MeshFeature; 2], PointId>;
 
 impl IntersectionPoints {
-    /// Finds the points and segments in which faces of different objects intersect.
-    pub fn of(subject: &Subject) -> Self {
+    /// Finds the points and segments in which faces of different objects intersect, among the
+    /// faces that `takes_part` chooses.
+    pub fn of(subject: &Subject, takes_part: impl Fn(FaceId) -> bool) -> Self {
         let mut points = Self::default();
         let mut known = Known::default();
         let objects = &subject.objects().of_face;
         for &faces in subject.intersecting_pairs().pairs() {
-            if objects[faces[0].index()] != objects[faces[1].index()] {
+            let differ = objects[faces[0].index()] != objects[faces[1].index()];
+            if differ && faces.into_iter().all(&takes_part) {
                 points.pairs += usize::from(points.add_pair(subject, faces, &mut known));
             }
         }

@@ -2,7 +2,8 @@ use meshlod_samples as samples;
 
 use super::*;
 
-const CONTACTS: LockOptions = LockOptions { contacts: true, boundary: Lock::Free };
+const CONTACTS: LockOptions =
+    LockOptions { contacts: Some(ContactPolicy::Tie), boundary: Lock::Free };
 
 /// Merges two meshes as components of one.
 fn both(mut a: Mesh, b: &Mesh) -> Mesh {
@@ -102,7 +103,7 @@ fn boundaries_are_what_is_asked_for() {
     let mesh = samples::terrain(500);
     let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
     for lock in [Lock::Free, Lock::Protected, Lock::Locked] {
-        let locking = locks(&mesh, &LockOptions { contacts: false, boundary: lock });
+        let locking = locks(&mesh, &LockOptions { contacts: None, boundary: lock });
         for (v, of) in locking.locks.of_vertex.iter().enumerate() {
             let at = connectivity.marks(VertexId::new(v)).boundary();
             assert_eq!(*of, if at { lock } else { Lock::Free });
@@ -113,10 +114,34 @@ fn boundaries_are_what_is_asked_for() {
 #[test]
 fn a_tie_at_the_boundary_is_what_the_boundary_is() {
     let squares = both(square(0.0, 1.0, 0.0), &square(1.0, 1.0, 0.0));
-    let locking = locks(&squares, &LockOptions { contacts: true, boundary: Lock::Locked });
+    let at_boundary = |boundary| LockOptions { boundary, ..CONTACTS };
+    let locking = locks(&squares, &at_boundary(Lock::Locked));
     assert_eq!(locking.locks.of_vertex, [Lock::Locked; 8]);
     assert!(locking.locks.ties.is_empty());
-    let locking = locks(&squares, &LockOptions { contacts: true, boundary: Lock::Protected });
+    let locking = locks(&squares, &at_boundary(Lock::Protected));
     assert_eq!(locking.locks.of_vertex, [Lock::Protected; 8]);
     assert_eq!(locking.locks.ties.len(), 2);
+}
+
+#[test]
+fn policies_hold_the_same_vertices_by_other_means() {
+    let mut balls = both(samples::sphere(500), &moved(samples::sphere(500), [1.0, 0.0, 0.0]));
+    // Two squares beside them share an edge.
+    let base = balls.positions.len();
+    let squares = both(square(9.0, 1.0, 0.0), &square(10.0, 1.0, 0.0));
+    balls = both(balls, &squares);
+    let by = |contacts| locks(&balls, &LockOptions { contacts: Some(contacts), ..CONTACTS });
+    let tied = by(ContactPolicy::Tie);
+    for (policy, lock) in
+        [(ContactPolicy::Protect, Lock::Protected), (ContactPolicy::Exclude, Lock::Locked)]
+    {
+        let held = by(policy);
+        assert_eq!(held.reasons, tied.reasons);
+        assert!(held.locks.ties.is_empty());
+        for (of, reason) in held.locks.of_vertex.iter().zip(&held.reasons) {
+            assert_eq!(*of, if reason.is_some() { lock } else { Lock::Free });
+        }
+    }
+    let shared = [1, 2, 4, 7].map(|v| tied.reasons[base + v]);
+    assert_eq!(shared, [Some(LockReason::SharedPosition); 4]);
 }

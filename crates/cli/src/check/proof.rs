@@ -17,7 +17,7 @@ use crate::session::Session;
 pub fn prove(path: &Path, session: &Session) -> Result<Answer, Failure> {
     match model_file::open(path, session)? {
         ModelFile::Contractions(archive) => prove_contractions(path, &archive, session),
-        ModelFile::HeightField(field) => prove_field(path, &field, session),
+        ModelFile::HeightField(field, _) => prove_field(path, &field, session),
     }
 }
 

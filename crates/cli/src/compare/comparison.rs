@@ -7,7 +7,9 @@ use meshlod::picture::ReferenceImages;
 use meshlod::{Method, Options, Topology};
 
 use crate::compare::output::Output;
+use crate::constraints::ConstraintArgs;
 use crate::failure::Failure;
+use crate::fuse::FuseReport;
 use crate::page::chain::{Chain, ChainBuilder, ChainSetup, Level};
 use crate::page::renderer::{LevelPictures, SubjectRenderer};
 use crate::page::subject::Subject;
@@ -15,8 +17,7 @@ use crate::parse::LevelSize;
 use crate::session::Session;
 use crate::simplify_report;
 use crate::simplify_run::{self, ReadyScene};
-use crate::topology::{self, TopologyArgs};
-use crate::volume::unconserved_text;
+use crate::topology;
 
 /// A mesh, and the sizes and methods for which to compare simplifications of it.
 pub struct Comparison<'s> {
@@ -27,7 +28,10 @@ pub struct Comparison<'s> {
     pub sizes: Vec<LevelSize>,
     pub methods: Vec<Method>,
     pub pictures: bool,
-    pub topology: &'s TopologyArgs,
+    pub constraints: &'s ConstraintArgs,
+    pub fused: Option<&'s FuseReport>,
+    /// Options that all methods share.
+    pub base: &'s Options,
 }
 
 /// Measurements and pictures from a comparison of methods.
@@ -93,11 +97,10 @@ impl Comparison<'_> {
 
     /// Returns the scene ready for a method.
     fn ready(&self, method: Method, session: &Session) -> Result<ReadyScene<'_>, Failure> {
-        let Self { subject, topology, .. } = self;
-        let options = Options { method, ..Options::default() };
-        let options = topology.apply(options, &subject.scene)?;
-        let path = Path::new(&subject.name);
-        ReadyScene::new(&subject.scene, &options, topology.borders(), path, session)
+        let Self { subject, constraints, base, .. } = self;
+        let options = Options { method, ..(*base).clone() };
+        let (path, borders) = (Path::new(&subject.name), constraints.topology.borders());
+        ReadyScene::new(&subject.scene, &options, borders, path, session)
     }
 
     fn picture_tools(&self) -> Result<PictureTools<'_>, Failure> {
@@ -129,7 +132,8 @@ impl Comparison<'_> {
             }
         };
         for &size in &self.sizes {
-            let mut made = match builder.next_level(size, output.file(method, size)) {
+            let target = self.fused.map_or(size.target(), |fused| fused.target(size.target()));
+            let mut made = match builder.next_level(size, target, output.file(method, size)) {
                 Ok(made) => made,
                 Err(failure) => {
                     entry.failure = Some(failure);
@@ -156,16 +160,6 @@ impl ComparisonResult {
     /// Iterates over the methods that reached one size, with their simplified meshes.
     pub fn at(&self, size: usize) -> impl Iterator<Item = (&MethodResult, &Level)> + Clone {
         self.entries.iter().filter_map(move |entry| Some((entry, entry.chain.levels.get(size)?)))
-    }
-
-    /// Returns the volume-conserving methods that could not conserve the volume at one size, with a
-    /// description.
-    pub fn unconserved(&self, size: usize) -> Vec<(Method, String)> {
-        let line = |(entry, level): (&MethodResult, &Level)| {
-            let method = entry.chain.method;
-            Some((method, unconserved_text(method, &level.report.volume)?))
-        };
-        self.at(size).filter_map(line).collect()
     }
 
     /// Prints warnings about methods that failed and targets that were missed.

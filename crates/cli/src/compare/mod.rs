@@ -12,19 +12,21 @@ mod summary;
 use std::path::PathBuf;
 
 use clap::Args;
-use meshlod::Method;
 use meshlod::io::write_file;
 use meshlod::picture::View;
+use meshlod::{Method, Options};
 
 use crate::answer::Answer;
 use crate::args::{ReadArgs, SamplingArgs, ViewArgs};
+use crate::constraints::ConstraintArgs;
 use crate::failure::Failure;
 use crate::files;
+use crate::fuse::FuseReport;
+use crate::locks::InputScene;
 use crate::page::style::{self, OwnedPaint, SubjectStyle};
 use crate::page::subject::Subject;
 use crate::parse::{self, LevelSize};
 use crate::session::Session;
-use crate::topology::TopologyArgs;
 use comparison::Comparison;
 use output::Output;
 
@@ -46,7 +48,7 @@ pub struct Compare {
     #[arg(long)]
     no_pictures: bool,
     #[command(flatten)]
-    topology: TopologyArgs,
+    constraints: ConstraintArgs,
     #[command(flatten)]
     viewpoint: ViewArgs,
     #[command(flatten)]
@@ -89,7 +91,8 @@ impl Sizes {
 impl Compare {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         files::check_folder(&self.out)?;
-        let (subject, output) = self.read(session)?;
+        let (subject, output, fused) = self.read(session)?;
+        let base = self.base_options(&subject, session)?;
         let original = subject.surface()?;
         files::make_folder(&self.out)?;
         let comparison = Comparison {
@@ -99,7 +102,9 @@ impl Compare {
             sizes: self.sizes.sorted(),
             methods: self.methods(),
             pictures: !self.no_pictures,
-            topology: &self.topology,
+            constraints: &self.constraints,
+            fused: fused.as_ref(),
+            base: &base,
         };
         let outcome = comparison.run(&output, session)?;
 
@@ -108,12 +113,13 @@ impl Compare {
         write_file(&self.out.join("compare.json"), format!("{json:#}\n").as_bytes())?;
         let page = page::page(&comparison, &outcome).into_string();
         write_file(&self.out.join("index.html"), page.as_bytes())?;
-        outcome.warn(&subject.name, self.topology.kind(), session);
+        outcome.warn(&subject.name, self.constraints.topology.kind(), session);
         Ok(Answer::new(json, summary::text(&comparison, &outcome, &output)))
     }
 
-    fn read(&self, session: &Session) -> Result<(Subject, Output), Failure> {
-        let scene = files::read(&self.input, &self.reading, session)?;
+    fn read(&self, session: &Session) -> Result<(Subject, Output, Option<FuseReport>), Failure> {
+        let mut scene = files::read(&self.input, &self.reading, session)?;
+        let fused = self.constraints.fuse.apply(&mut scene, session);
         let output = Output::new(&self.out, &self.input, &scene, session);
         let materials = style::materials(&scene, &self.input, session);
         let View { direction, up, .. } = self.viewpoint.view();
@@ -122,7 +128,13 @@ impl Compare {
         let style = |mesh: &_| {
             SubjectStyle::new(OwnedPaint::comparison(mesh, materials), mesh, direction, up)
         };
-        Ok((Subject::new([&name, &title], scene, style), output))
+        Ok((Subject::new([&name, &title], scene, style), output, fused))
+    }
+
+    /// Returns the options that all methods share.
+    fn base_options(&self, subject: &Subject, session: &Session) -> Result<Options, Failure> {
+        let input = InputScene { scene: &subject.scene, path: &self.input, reading: &self.reading };
+        self.constraints.apply(Options::default(), &input, session)
     }
 
     /// Returns the methods without duplicates, in the order of [`Method::ALL`].

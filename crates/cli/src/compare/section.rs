@@ -20,7 +20,6 @@ pub fn section(comparison: &Comparison<'_>, outcome: &ComparisonResult, size: us
             h2 { "At " (comparison.sizes[size]) }
             (pictures(comparison, outcome, size))
             (figures(comparison, outcome, size))
-            (unconserved(outcome, size))
             div.measured {
                 (chart(&trade(outcome, size)))
                 div.scroll tabindex="0" role="region" aria-label="Refusals" {
@@ -100,18 +99,6 @@ fn figures(comparison: &Comparison<'_>, outcome: &ComparisonResult, size: usize)
                 }
             }
         } }
-    }
-}
-
-/// Lists where volume-conserving methods could not conserve the volume.
-fn unconserved(outcome: &ComparisonResult, size: usize) -> Markup {
-    let lines = outcome.unconserved(size);
-    html! {
-        @if !lines.is_empty() {
-            ul.verdict {
-                @for (method, line) in lines { li { (key(method)) (method.name()) ": " (line) } }
-            }
-        }
     }
 }
 

@@ -46,9 +46,6 @@ pub fn text(comparison: &Comparison<'_>, outcome: &ComparisonResult, output: &Ou
     let mut text = format!("{}: {}\n", comparison.subject.name, numbers::faces(input.faces));
     for (i, size) in comparison.sizes.iter().enumerate() {
         text += &format!("\n{size}\n{}", table(comparison, outcome, i));
-        for (method, line) in outcome.unconserved(i) {
-            text += &format!("{}: {line}\n", method.name());
-        }
     }
     let levels = outcome.entries.iter().flat_map(|entry| &entry.chain.levels);
     text.push('\n');

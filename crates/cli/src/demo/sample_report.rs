@@ -111,7 +111,8 @@ impl SampleFiles<'_> {
         let mut builder = ChainBuilder::start(setup, &ready, what)?;
         let level = |ratio| {
             let file = self.sample.level_file(method, LevelSize::Ratio(ratio));
-            let made = builder.next_level(LevelSize::Ratio(ratio), file)?;
+            let size = LevelSize::Ratio(ratio);
+            let made = builder.next_level(size, size.target(), file)?;
             let mut scene = setup.subject.scene.clone();
             simplify_run::replace(&mut scene, made.meshes.clone());
             self.write(&made.level.file, &scene)?;

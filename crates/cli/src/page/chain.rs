@@ -5,7 +5,7 @@ use std::time::Duration;
 use meshlod::measure::{
     Distance, DistanceOptions, PreparedSurface, Quality, quality, surface_distance,
 };
-use meshlod::{Mesh, Method, Report};
+use meshlod::{Mesh, Method, Report, Target};
 
 use crate::failure::Failure;
 use crate::page::counts::Counts;
@@ -81,11 +81,16 @@ impl<'s> ChainBuilder<'s> {
         Ok(Self { subject, original, options, run, session, what })
     }
 
-    /// Simplifies to the next size and measures the result; `file` is the name of the file to be
-    /// written.
-    pub fn next_level(&mut self, size: LevelSize, file: String) -> Result<LevelMesh, Failure> {
+    /// Simplifies to the next size, that of `target` for the mesh at hand, and measures the result;
+    /// `file` is the name of the file to be written.
+    pub fn next_level(
+        &mut self,
+        size: LevelSize,
+        target: Target,
+        file: String,
+    ) -> Result<LevelMesh, Failure> {
         self.run.set_label(format!("{} to {size}", self.what));
-        let report = self.run.simplify_to(size.target())?;
+        let report = self.run.simplify_to(target)?;
         let meshes = self.run.level();
         self.session.progress.stage(&format!("{}: measuring", self.what));
         let shown = self.subject.shown_with(&meshes);

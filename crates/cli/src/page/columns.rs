@@ -82,10 +82,10 @@ pub const COLUMNS: [Column; 11] = [
     },
     Column {
         head: "Sum",
-        about: "Sum: change of the volume summed over all contractions with a closed ring, in cubic \
-                units.",
-        // Signed like the column before; the report uses the paper's sign.
-        value: |_, level| Some(0.0 - level.report.volume.running_sum),
+        about: "Sum: volume lost, summed over all contractions with a closed ring, in cubic units; \
+                what the level has been repaid is not lost.",
+        // Before minus after, as in the JSON.
+        value: |_, level| Some(level.report.volume.lost()),
         text: power_of_ten,
         best: Some(Best::NearestZero { rounding: |input| ROUNDING * input.volume.abs() }),
     },

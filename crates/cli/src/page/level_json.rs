@@ -7,7 +7,7 @@ use crate::distance;
 use crate::page::chain::Level;
 use crate::page::counts::Counts;
 use crate::parse::LevelSize;
-use crate::simplify_report::refusals_json;
+use crate::simplify_report::{contractions_json, refusals_json};
 use crate::volume::unconserved_json;
 
 /// Returns the measurements of a level as JSON. The change of volume is `null` if the original mesh
@@ -28,7 +28,7 @@ pub fn level_json(method: Method, level: &Level, input: &Counts) -> Value {
         "area": level.counts.area,
         "volume": level.counts.volume,
         "volume_change_percent": level.volume_change(input),
-        "volume_running_sum": report.volume.running_sum,
+        "volume_running_sum": report.volume.lost(),
         "volume_not_conserved": unconserved_json(method, &report.volume),
         "quality_mean": level.quality.map(|quality| quality.mean),
         "quality_min": level.quality.map(|quality| quality.min),
@@ -37,6 +37,7 @@ pub fn level_json(method: Method, level: &Level, input: &Counts) -> Value {
         "error_measured": level.measured.as_ref().ok().map(distance::to_json),
         "not_measured": level.measured.as_ref().err(),
         "simplify_seconds": level.time.as_secs_f64(),
+        "contractions": contractions_json(report),
         "refusals": refusals_json(report),
     })
 }

@@ -6,23 +6,27 @@ use std::time::{Duration, Instant};
 use clap::{Args, ValueEnum};
 use meshlod::io::write_file;
 use meshlod::multires::{
-    Archive, BuildError, Certificate, Fit, HeightField, HeightPrecision, ModelFile, Recorder,
-    Storage, StoredErrors,
+    Archive, BuildError, Certificate, Fit, Forest, HeightField, HeightPrecision, ModelFile,
+    Recorder, Storage, StoredErrors,
 };
 use meshlod::simplify::Simplifier;
-use meshlod::{Mesh, Method, Options, Target, Topology};
+use meshlod::{Mesh, Method, Options, Target};
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
 use crate::args::ReadArgs;
+use crate::constraints::{ConstraintArgs, FlatInput};
 use crate::failure::Failure;
 use crate::files;
+use crate::fuse;
+use crate::locks;
 use crate::model_file;
 use crate::numbers::{count, faces, percent, value};
 use crate::parse::{self, Bound};
 use crate::session::Session;
 
-/// Write all levels of a mesh to one multiresolution file (.mlod). The topology of the mesh is kept
+/// Write all levels of a mesh to one multiresolution file (.mlod). The topology of the mesh is kept,
+/// and locks hold in every level: tied vertices are locked
 #[derive(Args)]
 pub struct Build {
     /// Mesh to read, or -
@@ -60,6 +64,8 @@ pub struct Build {
         allow_negative_numbers = true)]
     in_chunk: usize,
     #[command(flatten)]
+    constraints: ConstraintArgs,
+    #[command(flatten)]
     reading: ReadArgs,
 }
 
@@ -88,6 +94,8 @@ enum Levels {
         base_faces: usize,
         certificate: Certificate,
         error_kind: &'static str,
+        /// Numbers of vertices that were held, as JSON.
+        held: Value,
     },
     RightTriangles {
         size: [u32; 2],
@@ -96,28 +104,40 @@ enum Levels {
 }
 
 impl Build {
-    pub fn run(self, session: &Session) -> Result<Answer, Failure> {
+    pub fn run(mut self, session: &Session) -> Result<Answer, Failure> {
         model_file::check_output(&self.output)?;
+        let reason = "a multiresolution file keeps the topology, since every level must lead back to the mesh";
+        self.constraints.topology.keep(reason)?;
+        if self.model == ModelArg::RightTriangles && self.constraints.holds_or_fuses() {
+            return Err(Failure::usage(
+                "right-triangles takes neither locks nor --fuse: its levels consist of vertices of the grid, which never move",
+            ));
+        }
         if self.lossless && self.model == ModelArg::RightTriangles {
             return Err(Failure::usage(
                 "--lossless does not go with right-triangles, which move vertices to a grid; use --rounding 0 to keep the heights",
             ));
         }
-        let scene = files::read(&self.input, &self.reading, session)?;
-        let mesh = bare(scene.into_mesh(), session);
+        let options = Options { method: self.method, ..Options::default() };
+        let FlatInput { mesh, options, fused } =
+            self.constraints.read_flat(&self.input, &self.reading, options, session)?;
+        let mesh = bare(mesh, session);
         if mesh.faces.is_empty() {
             return Err(Failure::at(&self.input, "the mesh has no faces"));
         }
         let start = Instant::now();
         let built = match self.model {
-            ModelArg::Contractions => self.contractions(&mesh, session)?,
+            ModelArg::Contractions => self.contractions(&mesh, &options, session)?,
             ModelArg::RightTriangles => self.right_triangles(&mesh)?,
         };
         self.warn(&mesh, &built, session);
         session.progress.stage(&format!("writing {}", files::name(&self.output)));
         write_file(&self.output, &built.bytes)?;
         let time = start.elapsed();
-        Ok(Answer::new(self.json(&mesh, &built, time), self.text(&mesh, &built, time)))
+        let mut json = self.json(&mesh, &built, time);
+        json["fused"] = fuse::to_json(fused.as_ref());
+        let text = fuse::to_text(fused.as_ref()) + &self.text(&mesh, &built, time);
+        Ok(Answer::new(json, text))
     }
 
     /// Warns of vertices and faces that are not in the file.
@@ -135,16 +155,21 @@ impl Build {
         }
     }
 
-    fn contractions(&self, mesh: &Mesh, session: &Session) -> Result<Built, Failure> {
+    fn contractions(
+        &self,
+        mesh: &Mesh,
+        options: &Options,
+        session: &Session,
+    ) -> Result<Built, Failure> {
         let failed = |error: BuildError| Failure::at(&self.input, error);
-        let topology = Topology::Keep;
-        let options = Options { method: self.method, topology, ..Options::default() };
+        let options = Forest::options(mesh, options);
         let mut simplifier =
             Simplifier::new(mesh, &options).map_err(|error| failed(error.into()))?;
         let watch = session.progress.contractions("contracting", Some(mesh.faces.len()));
         let recorder = if self.lossless { Recorder::lossless } else { Recorder::new };
         let mut both = (recorder(&simplifier), watch);
-        simplifier.run(Target::Faces(0), &mut both).map_err(|error| failed(error.into()))?;
+        let report = simplifier.run(Target::Faces(0), &mut both);
+        let held = locks::to_json(&report.map_err(|error| failed(error.into()))?);
         let mut forest = both.0.into_forest().map_err(failed)?;
         session.progress.stage("measuring errors");
         if self.bounds {
@@ -167,6 +192,7 @@ impl Build {
             base_faces: archive.base_faces(),
             certificate,
             error_kind: model_file::error_kind(&archive),
+            held,
         };
         Ok(Built {
             faces: forest.full_faces(),
@@ -186,7 +212,7 @@ impl Build {
         };
         let bytes = field.to_file(precision).map_err(|error| failed(&error))?;
         let stored = ModelFile::open(bytes.clone()).map_err(|error| failed(&error))?;
-        let ModelFile::HeightField(field) = stored else { unreachable!("a field was written") };
+        let ModelFile::HeightField(field, _) = stored else { unreachable!("a field was written") };
         let rounding = field.fit().rounded;
         let part = percent(100.0 * rounding / mesh.bounds().diagonal());
         Ok(Built {
@@ -214,7 +240,8 @@ impl Build {
             "build_seconds": time.as_secs_f64(),
         });
         match &built.levels {
-            Levels::Contractions { updates, base_faces, certificate, error_kind } => {
+            Levels::Contractions { updates, base_faces, certificate, error_kind, held } => {
+                json["held"] = held.clone();
                 json["error_kind"] = (*error_kind).into();
                 json["model"] = "contractions".into();
                 json["method"] = self.method.name().into();
@@ -244,7 +271,7 @@ impl Build {
             built.moved,
         );
         text += &match &built.levels {
-            Levels::Contractions { updates, base_faces, certificate, error_kind } => format!(
+            Levels::Contractions { updates, base_faces, certificate, error_kind, .. } => format!(
                 "{} updates by {} down to {}, with {}; {}\n",
                 count(*updates),
                 self.method.name(),

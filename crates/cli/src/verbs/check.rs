@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use meshlod::check::{BroadPhase, CheckOptions, Kind, Kinds, LockOptions, ObjectsBy};
+use meshlod::check::{
+    BroadPhase, CheckOptions, ContactPolicy, Kind, Kinds, LockOptions, ObjectsBy,
+};
 use meshlod::io::write_file;
 use meshlod::mesh::Lock;
 use meshlod::{Scene, scene_locks};
@@ -155,7 +157,8 @@ impl Check {
     fn write_locks(&self, path: &Path, scene: &Scene) -> Result<String, Failure> {
         let rows = FileRows::of(&self.input, scene, self.reading.options().weld)?;
         let boundary = if self.lock_boundary { Lock::Locked } else { Lock::Free };
-        let lockings = scene_locks(scene, &LockOptions { contacts: true, boundary });
+        let lockings =
+            scene_locks(scene, &LockOptions { contacts: Some(ContactPolicy::Tie), boundary });
         let json = lock_file::to_json(&self.input, scene, &rows, &lockings);
         write_file(path, format!("{json}\n").as_bytes())?;
         Ok(files::name(path))

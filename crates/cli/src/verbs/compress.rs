@@ -1,5 +1,6 @@
 //! `compress`: writes a compressed mesh for rendering or transmission.
 
+mod constraints;
 mod gltf;
 mod resident;
 mod transport;
@@ -15,13 +16,16 @@ use serde_json::{Value, json};
 
 use crate::answer::Answer;
 use crate::args::ReadArgs;
+use crate::constraints::ConstraintArgs;
 use crate::failure::Failure;
 use crate::files;
+use crate::fuse;
 use crate::numbers::{count, faces, percent, value};
 use crate::parse::{self, Bound};
 use crate::session::Session;
 
-/// Compress a mesh for rendering or transmission
+/// Compress a mesh for rendering or transmission. No face is removed, and every vertex moves to a
+/// grid: --lock-contacts keeps vertices at one place together, and other locks are refused
 #[derive(Args)]
 pub struct Compress {
     /// Mesh to read, or -
@@ -47,6 +51,8 @@ pub struct Compress {
     /// Exit with 1 if the target is out of reach
     #[arg(long)]
     strict: bool,
+    #[command(flatten)]
+    constraints: ConstraintArgs,
     #[command(flatten)]
     reading: ReadArgs,
 }
@@ -113,10 +119,13 @@ struct CompressedFile {
 }
 
 impl Compress {
-    pub fn run(self, session: &Session) -> Result<Answer, Failure> {
+    pub fn run(mut self, session: &Session) -> Result<Answer, Failure> {
         let kind = self.check_output()?;
+        self.apply_locks(kind)?;
         files::check_apart(&self.output, &[&self.input])?;
-        let scene = files::read(&self.input, &self.reading, session)?;
+        let mut scene = files::read(&self.input, &self.reading, session)?;
+        self.check_scene(kind, &scene)?;
+        let fused = self.constraints.fuse.apply(&mut scene, session);
         session.progress.stage("compressing");
         let start = Instant::now();
         let packed = match kind {
@@ -135,10 +144,10 @@ impl Compress {
         }
         session.progress.stage(&format!("writing {}", files::name(&self.output)));
         write_file(&self.output, &packed.bytes)?;
-        Ok(Answer {
-            missed: self.strict && !packed.reached,
-            ..Answer::new(self.json(&packed, time), self.text(&packed, time))
-        })
+        let mut json = self.json(&packed, time);
+        json["fused"] = fuse::to_json(fused.as_ref());
+        let text = fuse::to_text(fused.as_ref()) + &self.text(&packed, time);
+        Ok(Answer { missed: self.strict && !packed.reached, ..Answer::new(json, text) })
     }
 
     /// Refuses an output that cannot be written and options that do not apply to it, before any

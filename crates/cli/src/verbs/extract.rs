@@ -4,11 +4,9 @@ use std::fs::File;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use meshlod::Scene;
-use meshlod::multires::{
-    Archive, FileError, HeightField, Level, ModelFile, Query, Rtin, RtinExtractor, ViewCamera,
-};
+use meshlod::multires::{FileError, Level, ModelFile, Query, ViewCamera};
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
@@ -36,15 +34,29 @@ pub struct Extract {
     /// with up=x,y,z unless y is up
     #[arg(long, value_name = "CAMERA", value_parser = query_args::camera)]
     camera: Option<ViewCamera>,
-    /// Region where the error counts, coarse elsewhere: point=x,y,z, segment=x,y,z,x,y,z,
-    /// box=x,y,z,x,y,z, sphere=x,y,z,r, or frustum for what the camera sees [default: everywhere]
+    /// Region where the error counts, coarse elsewhere: point=x,y,z for the point of the surface
+    /// closest to it, segment=x,y,z,x,y,z, box=x,y,z,x,y,z, sphere=x,y,z,r, ground-line=x,y,x,y and
+    /// ground-box=x,y,x,y for a line and a window on a map, or frustum for what the camera sees
+    /// [default: everywhere]
     #[arg(long, value_name = "FOCUS", value_parser = query_args::focus, allow_hyphen_values = true)]
     focus: Option<FocusArg>,
-    /// Leave out faces that do not intersect the focus
+    /// Vertical axis of ground-line and ground-box, which take the other two axes in the order x, y,
+    /// z [default: that of the heights of right triangles, otherwise y]
+    #[arg(long, value_name = "AXIS", requires = "focus")]
+    up: Option<VerticalAxis>,
+    /// Leave out faces that do not intersect the focus; of a point leave the nearest ones
     #[arg(long, requires = "focus")]
     only: bool,
     #[command(flatten)]
     writing: WriteArgs,
+}
+
+/// Vertical axis of a model.
+#[derive(Clone, Copy, ValueEnum)]
+enum VerticalAxis {
+    X,
+    Y,
+    Z,
 }
 
 /// Target of the extraction: an error or a number of faces.
@@ -63,6 +75,8 @@ struct ExtractTarget {
 /// Extracted level with the figures on what was read.
 struct Extracted {
     level: Level,
+    /// Number of faces of the level before faces outside the focus were left out.
+    whole_faces: usize,
     /// Largest displacement of its vertices when the file was built.
     rounding: f64,
     lossless: bool,
@@ -73,23 +87,31 @@ struct Extracted {
     bytes: u64,
 }
 
+impl Extracted {
+    /// Returns true if the level has no more than the number of faces asked for.
+    fn reaches(&self, max_faces: Option<usize>) -> bool {
+        max_faces.is_none_or(|most| self.whole_faces <= most)
+    }
+}
+
 impl Extract {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         let format = files::check_output(&self.output, session)?;
         files::check_apart(&self.output, &[&self.input])?;
         let start = Instant::now();
-        let taken = match model_file::open(&self.input, session)? {
-            ModelFile::Contractions(archive) => self.take_contractions(&archive)?,
-            ModelFile::HeightField(field) => self.take_field(&field)?,
-        };
+        let taken = self.take(&model_file::open(&self.input, session)?)?;
         let time = start.elapsed();
         let mesh = taken.level.mesh();
         if mesh.faces.is_empty() {
             return Err(Failure::at(&self.input, "no face intersects the focus"));
         }
         let counts = [mesh.positions.len(), mesh.faces.len()];
-        if self.target.faces.is_some_and(|most| taken.level.faces.len() > most) {
-            let reason = format_args!("its coarsest level has {}", faces(counts[1]));
+        if !taken.reaches(self.target.faces) {
+            let coarsest = faces(taken.whole_faces);
+            let reason = format_args!(
+                "--faces {} is out of reach: the coarsest level has {coarsest}, and that is what was extracted",
+                self.target.faces.unwrap_or_default(),
+            );
             session.warn(Failure::at(&self.input, reason));
         }
         let scene = Scene::from_mesh(name(&self.input), mesh);
@@ -104,62 +126,76 @@ impl Extract {
         Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
     }
 
-    fn take_contractions(&self, archive: &Archive<File>) -> Result<Extracted, Failure> {
-        let query = self.query(archive.diagonal())?;
-        let taken = match self.target.faces {
-            None => archive.extract(&query),
-            Some(faces) => archive.extract_at_most(faces, &query),
-        };
-        let taken = taken.map_err(|error| match error {
+    fn take(&self, file: &ModelFile<File>) -> Result<Extracted, Failure> {
+        let failed = |error| match error {
             FileError::Query(error) => Failure::usage(error),
             error => Failure::at(&self.input, error),
-        })?;
+        };
+        let query = self.query(file)?;
+        let (query, nearest) = file.at_surface(&query, self.target.faces).map_err(failed)?;
+        let taken = match self.target.faces {
+            None => file.extract(&query),
+            Some(faces) => file.extract_at_most(faces, &query),
+        };
+        let taken = taken.map_err(failed)?;
+        let (rounding, lossless, error_kind, chunks) = match file {
+            ModelFile::Contractions(archive) => (
+                model_file::rounding(archive),
+                archive.is_lossless(),
+                model_file::error_kind(archive),
+                [archive.complete_chunks(), archive.chunk_count()],
+            ),
+            ModelFile::HeightField(field, parts) => {
+                let chunks = [parts.complete, parts.all].map(|parts| parts as usize);
+                (field.fit().rounded, false, "bound", chunks)
+            }
+        };
         Ok(Extracted {
-            level: self.cut_out(taken.level, &query)?,
-            rounding: model_file::rounding(archive),
-            lossless: archive.is_lossless(),
-            error_kind: model_file::error_kind(archive),
-            chunks: [taken.chunks, archive.complete_chunks(), archive.chunk_count()],
+            whole_faces: taken.level.faces.len(),
+            level: self.cut_out(taken.level, &query, nearest)?,
+            rounding,
+            lossless,
+            error_kind,
+            chunks: [taken.chunks, chunks[0], chunks[1]],
             updates: taken.updates,
             bytes: taken.bytes,
         })
     }
 
-    fn take_field(&self, field: &HeightField) -> Result<Extracted, Failure> {
-        let query = self.query(field.bounds().diagonal())?;
-        let model = Rtin::new(field);
-        let level = match self.target.faces {
-            None => model.level(&query),
-            Some(faces) => RtinExtractor::new(&model).at_most(faces, &query).cloned(),
-        };
-        let level = level.map_err(Failure::usage)?;
-        let bytes = std::fs::metadata(&self.input).map_or(0, |data| data.len());
-        let updates = field.heights().len();
-        Ok(Extracted {
-            level: self.cut_out(level, &query)?,
-            rounding: field.fit().rounded,
-            lossless: false,
-            error_kind: "bound",
-            chunks: [1; 3],
-            updates,
-            bytes,
-        })
-    }
-
-    fn query(&self, diagonal: f64) -> Result<Query<'static>, Failure> {
+    fn query(&self, file: &ModelFile<File>) -> Result<Query<'static>, Failure> {
         // A number of faces is spread as for an error of one pixel, or evenly.
         let alike = match self.camera {
             Some(_) => ErrorLimit::Pixels(1.0),
             None => ErrorLimit::Length(Bound::OfDiagonal(1.0)),
         };
         let error = self.target.error.unwrap_or(alike);
-        QueryRequest { error, focus: self.focus.clone(), camera: self.camera }.query(diagonal)
+        let up = self.up_axis(file)?;
+        QueryRequest { error, focus: self.focus.clone(), camera: self.camera, up }
+            .query(file.diagonal())
     }
 
-    fn cut_out(&self, level: Level, query: &Query<'_>) -> Result<Level, Failure> {
-        match self.only {
-            true => level.within(&query.focus).map_err(Failure::usage),
-            false => Ok(level),
+    /// Returns the vertical axis for a focus on the ground.
+    fn up_axis(&self, file: &ModelFile<File>) -> Result<usize, Failure> {
+        let given = self.up.map(|up| up as usize);
+        match (file.up(), given) {
+            (Some(own), Some(given)) if own != given => Err(Failure::usage(format_args!(
+                "--up: the heights of this file are along {}",
+                ["x", "y", "z"][own]
+            ))),
+            (own, given) => Ok(own.or(given).unwrap_or(VerticalAxis::Y as usize)),
+        }
+    }
+
+    fn cut_out(
+        &self,
+        level: Level,
+        query: &Query<'_>,
+        nearest: Option<[f64; 3]>,
+    ) -> Result<Level, Failure> {
+        match nearest {
+            _ if !self.only => Ok(level),
+            Some(point) => level.nearest(point).map_err(Failure::usage),
+            None => level.within(&query.focus).map_err(Failure::usage),
         }
     }
 
@@ -168,6 +204,7 @@ impl Extract {
             "file": files::name(&self.output),
             "vertices": vertices,
             "faces": faces,
+            "reached": taken.reaches(self.target.faces),
             "error_kind": taken.error_kind,
             "lossless": taken.lossless,
             "chunks": taken.chunks[2],

@@ -7,7 +7,8 @@ use clap::Args;
 use meshlod::io::gltf::Level;
 use meshlod::io::write_lods;
 use meshlod::measure::Distance;
-use meshlod::{Format, Scene, Topology};
+use meshlod::simplify::Digits;
+use meshlod::{Format, Scene, Topology, digits_of};
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
@@ -25,6 +26,7 @@ use crate::simplify_run::{self, ReadyScene, Simplified, SimplifyRun};
 use crate::table::aligned;
 use crate::topology;
 use crate::verbs::simplify::MethodArgs;
+use crate::volume::ExactVolumeArgs;
 
 /// Write a chain of coarser levels, as glTF with MSFT_lod or one file per level
 #[derive(Args)]
@@ -41,6 +43,8 @@ pub struct Lods {
     levels: Vec<LevelSize>,
     #[command(flatten)]
     method: MethodArgs,
+    #[command(flatten)]
+    volume: ExactVolumeArgs,
     /// Exit with 1 if a level is out of reach
     #[arg(long)]
     strict: bool,
@@ -54,6 +58,8 @@ pub struct Lods {
 struct LodLevel {
     size: LevelSize,
     simplified: Simplified,
+    /// Largest relative deviation from the original volume, if it was restored.
+    volume_residual: Option<f64>,
     screen_coverage: f64,
     /// File that holds the level; `None` if it is the same as the level before and not written.
     file: Option<PathBuf>,
@@ -72,12 +78,13 @@ impl Lods {
             (1..=self.levels.len()).try_for_each(|i| files::check_place(&self.file_of(i)))?;
         }
         let mut scene = files::read(&self.input, &self.reading, session)?;
-        let fused = self.method.fuse.apply(&mut scene, session);
+        let fused = self.method.constraints.fuse.apply(&mut scene, session);
         let input = InputScene { scene: &scene, path: &self.input, reading: &self.reading };
         let options = self.method.options(&input, session)?;
-        let borders = self.method.topology.borders();
+        let borders = self.method.constraints.topology.borders();
         let ready = ReadyScene::new(&scene, &options, borders, &self.input, session)?;
-        let (mut chain, time) = self.chain(&scene, &ready, fused.as_ref(), session)?;
+        let digits = digits_of(format, self.writing.options().precision);
+        let (mut chain, time) = self.chain(&scene, &ready, fused.as_ref(), digits, session)?;
         if let Some(level) = chain.last() {
             self.method.warn(&level.simplified.report, &ready, session);
         }
@@ -111,6 +118,7 @@ impl Lods {
         scene: &Scene,
         ready: &ReadyScene<'_>,
         fused: Option<&fuse::FuseReport>,
+        digits: Digits,
         session: &Session,
     ) -> Result<(Vec<LodLevel>, Duration), Failure> {
         let original = distance::surface_of(scene, distance::meshes(scene));
@@ -123,7 +131,8 @@ impl Lods {
         for (i, &size) in self.levels.iter().enumerate() {
             let target = size.target();
             let report = run.simplify_to(fused.map_or(target, |fused| fused.target(target)))?;
-            let meshes = run.level();
+            let mut meshes = run.level();
+            let residual = self.volume.restore(&ready.scene, &mut meshes, digits, session);
             let measured = simplify_run::measure(surface.as_ref(), scene, &meshes, session);
             let finer = chain.last().map_or(1.0, |level| level.screen_coverage);
             let before = chain.last().map(|level| level.simplified.report.output_faces);
@@ -135,6 +144,7 @@ impl Lods {
             chain.push(LodLevel {
                 size,
                 simplified: Simplified { meshes, report, measured, sequence: None },
+                volume_residual: residual,
                 screen_coverage: measured.as_ref().map_or(finer, screen_coverage).min(finer),
                 file: (!is_same).then(|| self.file_of(i + 1)),
             });
@@ -189,6 +199,7 @@ impl Lods {
                 "reached": report.reached,
                 "error_estimate": report.error_estimate,
                 "error_measured": level.simplified.measured.as_ref().map(distance::to_json),
+                "volume_residual": level.volume_residual,
                 "screen_coverage": level.screen_coverage,
                 "file": level.file.as_deref().map(files::name),
             })

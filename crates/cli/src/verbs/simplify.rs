@@ -4,19 +4,18 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use meshlod::simplify::{AttributeWeights, Digits};
-use meshlod::{
-    Mesh, Method, Options, Report, Scene, Target, conserve_volumes, digits_of, world_bounds,
-};
+use meshlod::simplify::AttributeWeights;
+use meshlod::{Method, Options, Report, Scene, Target, digits_of, world_bounds, world_volume};
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
 use crate::args::{ReadArgs, WriteArgs};
+use crate::constraints::ConstraintArgs;
 use crate::distance;
 use crate::failure::Failure;
 use crate::files;
-use crate::fuse::{self, FuseArgs};
-use crate::locks::{self, InputScene, LockArgs};
+use crate::fuse;
+use crate::locks::{self, InputScene};
 use crate::measured_bound::BoundSearch;
 use crate::numbers::{count, faces, percent, value};
 use crate::parse::{self, Bound};
@@ -24,8 +23,8 @@ use crate::sequence;
 use crate::session::Session;
 use crate::simplify_report;
 use crate::simplify_run::{self, ReadyScene, Simplified, SimplifyRun};
-use crate::topology::{self, TopologyArgs};
-use crate::volume;
+use crate::topology;
+use crate::volume::{self, ExactVolumeArgs};
 
 /// Reduce a mesh to fewer faces
 #[derive(Args)]
@@ -46,12 +45,11 @@ pub struct Simplify {
     measured: bool,
     /// Record all levels on the way in FILE, for the verb replay, which needs --scene IN to restore
     /// nodes and materials; the input must hold exactly one mesh
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["measured", "fuse"])]
+    #[arg(long, value_name = "FILE",
+        conflicts_with_all = ["measured", "fuse", "exact_volume"])]
     sequence: Option<PathBuf>,
-    /// Adjust the last digits of vertices until every closed mesh has its original volume in the
-    /// precision that is written
-    #[arg(long, conflicts_with = "sequence")]
-    exact_volume: bool,
+    #[command(flatten)]
+    volume: ExactVolumeArgs,
     /// Exit with 1 if the target is out of reach
     #[arg(long)]
     strict: bool,
@@ -84,11 +82,7 @@ pub struct MethodArgs {
         value_parser = parse::method, help = parse::methods())]
     method: Method,
     #[command(flatten)]
-    pub fuse: FuseArgs,
-    #[command(flatten)]
-    locks: LockArgs,
-    #[command(flatten)]
-    pub topology: TopologyArgs,
+    pub constraints: ConstraintArgs,
     /// Cost weight of boundaries, where 0 means none [default: 9 for lindstrom-turk, 2 for qem]
     #[arg(long, value_name = "WEIGHT", value_parser = parse::weight, allow_negative_numbers = true)]
     boundary: Option<f64>,
@@ -127,8 +121,7 @@ impl MethodArgs {
             boundary_weight: self.boundary,
             ..Options::default()
         };
-        let options = self.topology.apply(options, input.scene)?;
-        self.locks.apply(options, input, session)
+        self.constraints.apply(options, input, session)
     }
 
     fn weights(&self) -> AttributeWeights {
@@ -180,19 +173,20 @@ impl Simplify {
     pub fn run(mut self, session: &Session) -> Result<Answer, Failure> {
         let format = files::check_output(&self.output, session)?;
         if let Some(path) = &self.sequence {
-            self.method.topology.keep()?;
+            let reason = "--sequence records a run with --topology keep";
+            self.method.constraints.topology.keep(reason)?;
             sequence::check(path, &self.input, &self.output)?;
         }
         let mut scene = files::read(&self.input, &self.reading, session)?;
         if self.sequence.is_some() {
             sequence::check_scene(&scene, &self.input, session)?;
         }
-        let fused = self.method.fuse.apply(&mut scene, session);
+        let fused = self.method.constraints.fuse.apply(&mut scene, session);
         let target = self.target.target(&scene);
         let target = fused.as_ref().map_or(target, |fused| fused.target(target));
         let input = InputScene { scene: &scene, path: &self.input, reading: &self.reading };
         let options = self.method.options(&input, session)?;
-        let borders = self.method.topology.borders();
+        let borders = self.method.constraints.topology.borders();
         let ready = ReadyScene::new(&scene, &options, borders, &self.input, session)?;
         let task = Task { scene: &scene, ready, target, options };
         let (mut done, mut time) = match target {
@@ -200,22 +194,18 @@ impl Simplify {
             _ if self.measured => self.measured_run(&task, session)?,
             _ => self.plain_run(&task, session)?,
         };
-        let residual = if self.exact_volume {
-            let start = Instant::now();
-            let digits = digits_of(format, self.writing.options().precision);
-            let residual = self.conserve(&task, &mut done.meshes, digits, session)?;
-            time += start.elapsed();
-            residual
-        } else {
-            None
-        };
+        let start = Instant::now();
+        let digits = digits_of(format, self.writing.options().precision);
+        let residual = self.volume.restore(&task.ready.scene, &mut done.meshes, digits, session);
+        time += start.elapsed();
         self.method.warn(&done.report, &task.ready, session);
         if !done.report.reached {
             let reason = simplify_report::why_not_reached(&done.report, task.options.topology);
             session.warn(Failure::at(&self.input, reason));
         }
         let mut json = self.json(&done, &task.ready, fused.as_ref(), time);
-        let mut text = self.text(&done, &task.ready, fused.as_ref(), time);
+        let volume = if residual.is_some() { f64::NAN } else { world_volume(&scene) };
+        let mut text = self.text(&done, &task.ready, fused.as_ref(), (volume, time));
         simplify_run::replace(&mut scene, std::mem::take(&mut done.meshes));
         let write = || files::write(&self.output, &scene, &self.writing, session);
         match (&self.sequence, &done.sequence) {
@@ -231,27 +221,6 @@ impl Simplify {
             missed: self.strict && !done.report.reached,
             ..Answer::new(json, text)
         })
-    }
-
-    /// Restores the volumes of the levels. Returns the largest relative deviation, or `None` if no
-    /// mesh has a volume.
-    fn conserve(
-        &self,
-        task: &Task<'_>,
-        levels: &mut [Mesh],
-        digits: Digits,
-        session: &Session,
-    ) -> Result<Option<f64>, Failure> {
-        let found = conserve_volumes(task.scene, levels, digits, &task.options.locks)
-            .map_err(|error| Failure::at(&self.input, error))?;
-        let mut worst: Option<f64> = None;
-        for (i, residual) in found.into_iter().enumerate() {
-            match residual {
-                Ok(residual) => worst = Some(residual.after.abs().max(worst.unwrap_or(0.0))),
-                Err(error) => session.warn(format_args!("--exact-volume: mesh {i}: {error}")),
-            }
-        }
-        Ok(worst)
     }
 
     fn plain_run(
@@ -309,7 +278,8 @@ impl Simplify {
             json[key] = value.clone();
         }
         json["error_measured"] = done.measured.as_ref().map(distance::to_json).into();
-        json["volume_running_sum"] = report.volume.running_sum.into();
+        json["volume_running_sum"] = report.volume.lost().into();
+        json["contractions"] = simplify_report::contractions_json(report);
         json["volume_not_conserved"] = volume::unconserved_json(report.method, &report.volume);
         json["simplify_seconds"] = time.as_secs_f64().into();
         json["degenerate_faces"] = report.degenerate_faces.into();
@@ -330,7 +300,7 @@ impl Simplify {
         done: &Simplified,
         ready: &ReadyScene<'_>,
         fused: Option<&fuse::FuseReport>,
-        time: Duration,
+        (volume, time): (f64, Duration),
     ) -> String {
         let report = &done.report;
         let input_faces = fused.map_or(report.input_faces, |fused| fused.before);
@@ -349,7 +319,7 @@ impl Simplify {
         if let Some(distance) = &done.measured {
             text += &format!("error_measured:\n{}", distance::to_table(distance));
         }
-        if let Some(line) = volume::unconserved_text(report.method, &report.volume) {
+        if let Some(line) = volume::lost_text(report.method, &report.volume, volume) {
             text += &format!("{line}\n");
         }
         text + &simplify_report::seconds_line(time)

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum};
-use meshlod::Mesh;
+use meshlod::Options;
 use meshlod::mesh::{Connectivity, VertexId};
 use meshlod::strip::{
     self, Difference, Filter, MergeTree, SkipStrip, StripEffort, StripStatistics, Strips,
@@ -17,8 +17,10 @@ use serde_json::{Value, json};
 
 use crate::answer::Answer;
 use crate::args::ReadArgs;
+use crate::constraints::{ConstraintArgs, FlatInput};
 use crate::failure::Failure;
 use crate::files;
+use crate::fuse;
 use crate::parse::{self, LevelSize};
 use crate::session::Session;
 
@@ -53,6 +55,8 @@ pub struct Strip {
     /// Exit with 1 if a level is out of reach
     #[arg(long)]
     strict: bool,
+    #[command(flatten)]
+    constraints: ConstraintArgs,
     #[command(flatten)]
     reading: ReadArgs,
 }
@@ -98,7 +102,7 @@ struct StrippedLevel {
 
 /// Mesh and contractions that all levels come from.
 struct StripSource {
-    mesh: Mesh,
+    input: FlatInput,
     tree: MergeTree,
     simplify_time: Duration,
     /// Strips of the whole mesh that filters shorten.
@@ -107,13 +111,16 @@ struct StripSource {
 }
 
 impl Strip {
-    pub fn run(self, session: &Session) -> Result<Answer, Failure> {
+    pub fn run(mut self, session: &Session) -> Result<Answer, Failure> {
+        let reason = "strips keep the topology, since all levels share the vertices of the mesh";
+        self.constraints.topology.keep(reason)?;
         if let Some(out) = &self.out {
             output::check(out, &self.input)?;
         }
-        let mesh = files::read(&self.input, &self.reading, session)?.into_mesh();
-        check_sizes(&self.levels, mesh.faces.len())?;
-        let mut source = self.prepare(mesh, session)?;
+        let input =
+            self.constraints.read_flat(&self.input, &self.reading, Options::default(), session)?;
+        check_sizes(&self.levels, input.input_faces())?;
+        let mut source = self.prepare(input, session)?;
         let mut levels = Vec::new();
         for &size in &self.levels {
             session.progress.stage(&format!("stripping {size}"));
@@ -121,7 +128,7 @@ impl Strip {
         }
         if self.verify {
             session.progress.stage("verifying");
-            verify::compare(&source.mesh, source.tree.faces(), &mut levels)
+            verify::compare(&source.input, source.tree.faces(), &mut levels)
                 .map_err(|error| Failure::at(&self.input, error))?;
         }
         for level in levels.iter().filter(|level| !level.reached) {
@@ -130,7 +137,7 @@ impl Strip {
         }
         if let Some(out) = &self.out {
             session.progress.stage(&format!("writing {}", files::name(out)));
-            output::write(out, &source.mesh.positions, &levels)?;
+            output::write(out, &source.input.mesh.positions, &levels)?;
         }
         let missed = self.strict && levels.iter().any(|level| !level.reached);
         let wrong = levels.iter().any(|level| level.is_wrong());
@@ -144,16 +151,15 @@ impl Strip {
     }
 
     /// Records the contractions down to the coarsest level, and strips the whole mesh for a filter.
-    fn prepare(&self, mesh: Mesh, session: &Session) -> Result<StripSource, Failure> {
-        let whole = MergeTree::new(&mesh);
-        let targets = self.levels.iter().map(|size| size.target());
-        let coarsest = targets.clone().map(|target| target.faces_of(mesh.faces.len())).min();
+    fn prepare(&self, input: FlatInput, session: &Session) -> Result<StripSource, Failure> {
+        let whole = MergeTree::new(&input.mesh);
+        let coarsest = self.levels.iter().map(|&size| faces_of(size, &input)).min();
         let is_coarser = coarsest.is_some_and(|faces| faces < whole.faces().len());
         let (tree, simplify_time) = if is_coarser {
             session.progress.stage("simplifying");
             let target = meshlod::Target::Faces(coarsest.unwrap_or(0));
             let start = Instant::now();
-            let tree = MergeTree::record(&mesh, target);
+            let tree = MergeTree::record_with(&input.mesh, target, &input.options);
             (tree.map_err(|error| Failure::at(&self.input, error))?, start.elapsed())
         } else {
             (whole, Duration::ZERO)
@@ -161,12 +167,12 @@ impl Strip {
         session.progress.stage("stripping");
         let start = Instant::now();
         let skip = self.filter.map(|_| SkipStrip::new(tree.clone(), self.stripify(tree.faces())));
-        Ok(StripSource { mesh, tree, simplify_time, skip, strip_time: start.elapsed() })
+        Ok(StripSource { input, tree, simplify_time, skip, strip_time: start.elapsed() })
     }
 
     fn level(&self, source: &mut StripSource, size: LevelSize) -> StrippedLevel {
-        let StripSource { mesh, tree, skip, .. } = source;
-        let faces = size.target().faces_of(mesh.faces.len());
+        let StripSource { input, tree, skip, .. } = source;
+        let faces = faces_of(size, input);
         let contractions = tree.contractions_to(faces);
         let own = skip.is_none().then(|| tree.level(contractions));
         let start = Instant::now();
@@ -199,15 +205,17 @@ impl Strip {
     }
 
     fn json(&self, source: &StripSource, levels: &[StrippedLevel]) -> Value {
-        let connectivity = Connectivity::new(&source.mesh.faces, source.mesh.positions.len());
+        let mesh = &source.input.mesh;
+        let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
         let degenerate = connectivity.degenerate_faces();
-        let left_out = source.mesh.faces.len() - source.tree.faces().len();
+        let left_out = mesh.faces.len() - source.tree.faces().len();
         let name = |value: &dyn Fn() -> Option<clap::builder::PossibleValue>| {
             value().map(|value| value.get_name().to_owned())
         };
         json!({
             "file": files::name(&self.input),
-            "input_faces": source.mesh.faces.len(),
+            "input_faces": source.input.input_faces(),
+            "fused": fuse::to_json(source.input.fused.as_ref()),
             "degenerate_faces": degenerate,
             "duplicate_faces": left_out - degenerate,
             "non_manifold_edges": connectivity.non_manifold_edges(),
@@ -255,6 +263,11 @@ impl From<EffortArg> for StripEffort {
             EffortArg::Thorough => Self::Thorough,
         }
     }
+}
+
+/// Returns the largest number of faces of a level.
+fn faces_of(size: LevelSize, input: &FlatInput) -> usize {
+    input.target(size.target()).faces_of(input.mesh.faces.len())
 }
 
 /// Refuses level sizes that are out of range.

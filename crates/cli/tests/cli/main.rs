@@ -3,12 +3,14 @@
 mod check;
 mod compare;
 mod compress;
+mod constraints;
 mod demo;
 mod flock;
 mod hostile;
 mod levels;
 mod models;
 mod pipes;
+mod queries;
 mod repair;
 mod run;
 mod strip;

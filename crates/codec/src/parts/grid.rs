@@ -24,7 +24,7 @@ pub(super) struct SharedGrid {
 }
 
 /// Cells of a part along an axis, from the first to the last.
-const ACROSS: f64 = 255.0;
+pub(super) const ACROSS: f64 = 255.0;
 /// Least side of a cell, relative to the mesh's largest absolute coordinate: `f32` cannot tell the
 /// middles of smaller cells apart.
 const FINEST: f64 = 1.0 / (1 << 22) as f64;

@@ -14,6 +14,8 @@ pub(super) struct Merges {
     faces: usize,
     /// One face of each of the two clusters that merge.
     pairs: Vec<[u32; 2]>,
+    /// Longest side of the largest box after each merge.
+    sides: Vec<f64>,
 }
 
 impl Merges {
@@ -29,7 +31,12 @@ impl Merges {
         let mut apart: Vec<u32> = faces.filter(|&f| forming.root(f) == f).collect();
         apart.sort_by_cached_key(|&f| graph.morton(forming.boxes[f as usize].center()));
         forming.merge(apart.windows(2).map(|pair| [pair[0], pair[1]]));
-        Self { faces: graph.faces(), pairs: forming.pairs }
+        Self { faces: graph.faces(), pairs: forming.pairs, sides: forming.sides }
+    }
+
+    /// Returns the number of clusters when no box may be longer than `side`.
+    pub(super) fn count_within(&self, side: f64) -> usize {
+        self.faces - self.sides.partition_point(|&of| of <= side)
     }
 
     /// Returns the cluster of each face, numbered by first faces, for `count` clusters or as many
@@ -60,6 +67,7 @@ struct Clusters {
     /// Box of each cluster, at the index of its least face.
     boxes: Vec<Bounds>,
     pairs: Vec<[u32; 2]>,
+    sides: Vec<f64>,
 }
 
 impl Clusters {
@@ -67,8 +75,9 @@ impl Clusters {
         let faces = 0..graph.faces() as u32;
         Self {
             parents: faces.clone().collect(),
-            boxes: faces.map(|f| Bounds::of(&graph.corners(f))).collect(),
+            boxes: faces.map(|f| *graph.face_box(f)).collect(),
             pairs: Vec::new(),
+            sides: Vec::new(),
         }
     }
 
@@ -96,6 +105,8 @@ impl Clusters {
             self.boxes[first as usize].merge(&other);
             self.parents[second as usize] = first;
             self.pairs.push([a, b]);
+            let longest = self.sides.last().copied().unwrap_or(0.0);
+            self.sides.push(longest.max(f64::from_bits(side)));
         }
     }
 
@@ -143,8 +154,9 @@ mod tests {
         let whole = Bounds::of(&mesh.positions);
         for cluster in 0..4 {
             let faces = (0..).zip(&clusters).filter(|(_, of)| **of == cluster);
-            let corners: Vec<_> = faces.flat_map(|(f, _)| graph.corners(f)).collect();
-            let side = super::super::longest_side(&Bounds::of(&corners));
+            let mut around = Bounds::EMPTY;
+            faces.for_each(|(f, _)| around.merge(graph.face_box(f)));
+            let side = super::super::longest_side(&around);
             assert!(side < 0.8 * super::super::longest_side(&whole), "{side}");
         }
     }

@@ -3,7 +3,7 @@
 use meshlod_mesh::{Mesh, VertexId};
 
 use super::face_graph::FaceGraph;
-use super::grid::{Reconstruction, SharedGrid};
+use super::grid::{ACROSS, Reconstruction, SharedGrid};
 use super::merge::Merges;
 use super::{Part, Parts, PartsError, lloyd};
 
@@ -19,6 +19,9 @@ const FIRST_COUNT: usize = 64;
 const MAX_TRIES: usize = 10;
 /// Ratio of cell to requested cell at which the search stops.
 const CLOSE_CELL: f64 = 0.97;
+/// Longest side of the largest box before relaxation, relative to the mean side after it, where it is
+/// large: the search should start from too few parts, since flat ones gain from more of them forever.
+const GAIN: f64 = 1.6;
 /// Factor on the next number of parts, so that it is more likely to meet the request.
 const SLIGHTLY_MORE: f64 = 1.01;
 /// Excess of the reduction at which the search stops.
@@ -107,7 +110,7 @@ impl<'m> Partitioner<'m> {
     /// Cost: that of several [`Partitioner::with_count`].
     pub fn within_cell(&self, cell: f64, cells: Reconstruction) -> Parts {
         let (mut few, mut many): (Option<Parts>, Option<Parts>) = (None, None);
-        let mut next = 1;
+        let mut next = self.merges.count_within(GAIN * ACROSS * cell);
         for _ in 0..MAX_TRIES {
             let parts = self.with_count(next, cells);
             let ratio = parts.mean_side() / cell;

@@ -1,6 +1,6 @@
 //! Building of the level table of a model.
 
-use meshlod_check::{LockOptions, locks};
+use meshlod_check::{ContactPolicy, LockOptions, locks};
 use meshlod_mesh::{Labels, Lock, Locks, Mesh, VertexId};
 use meshlod_simplify::{Method, Options, Simplifier, SimplifyError, Target};
 use meshlod_spatial::Bvh;
@@ -76,8 +76,10 @@ impl LevelTable {
             return Err(TableError::Option(message));
         }
         let model = in_member_frame(model, &options.axes)?;
-        let own_locks =
-            || locks(&model, &LockOptions { contacts: true, ..Default::default() }).locks;
+        let own_locks = || {
+            locks(&model, &LockOptions { contacts: Some(ContactPolicy::Tie), ..Default::default() })
+                .locks
+        };
         let locks = options.locks.clone().unwrap_or_else(own_locks);
         let kinds = [ChainKind::Whole, ChainKind::LeftCoarsened, ChainKind::RightCoarsened];
         let chains: Result<Vec<_>, _> =

@@ -1,5 +1,7 @@
 //! Reading of a `.mlod` file: the whole file, a prefix of it, or the chunks that a query needs.
 
+use meshlod_mesh::Bounds;
+
 use super::decoder_state::DecoderState;
 use super::header::{self, FIXED_LEN, Header, Section};
 use super::source::{Source, read_range};
@@ -10,8 +12,7 @@ use crate::forest::Forest;
 use crate::implicit::Implicit;
 use crate::level::Level;
 use crate::model::Model;
-use crate::query::Criterion;
-use crate::query::Query;
+use crate::query::{Criterion, Query, closest_point};
 
 /// Open `.mlod` file that stores all levels of a mesh as its contractions, coarsest level first.
 #[derive(Debug)]
@@ -241,6 +242,16 @@ impl<S: Source> Archive<S> {
         let model = self.assemble(state);
         let level = Cut::at(&model, query)?.level();
         Ok(Extract { level, chunks: chunks.len(), updates, bytes })
+    }
+
+    /// Returns the point of the finest surface in the file that is closest to a point in model
+    /// units; `None` if the surface is empty. Only chunks around the point are read.
+    /// # Errors
+    /// A coordinate that is not finite, or a damaged file.
+    pub fn closest_point(&self, point: [f64; 3]) -> Result<Option<[f64; 3]>, FileError> {
+        let (middle, half) = (self.header.about.frame.model([0.0; 3]), 0.5 * self.diagonal());
+        let bounds = Bounds { min: middle.map(|x| x - half), max: middle.map(|x| x + half) };
+        closest_point(point, &bounds, |query| self.extract(query).map(|found| found.level))
     }
 
     fn assemble(&self, state: DecoderState) -> Implicit {

@@ -38,8 +38,8 @@ pub(super) enum ChunkError {
 const OPEN: u8 = 1;
 const FUSED: u8 = 2;
 const NON_FAN: u8 = 4;
-/// Set if the first or the second child is a vertex of the finest mesh and has an exact position.
-/// Only in lossless files.
+/// Set if the first or the second child has an exact position: it is a vertex of the finest mesh, or
+/// where one is. Only in lossless files.
 const EXACT: [u8; 2] = [8, 16];
 
 /// Encodes a run of updates. Everything before it must be known to the decoder.
@@ -224,16 +224,18 @@ fn read_exact(
             added.map_err(|why| ChunkError::Update { update: at, why })?;
         }
     }
-    for at in 0..flags.len() {
-        let parent = state.updates[start + at].parent;
-        if parent != NONE && state.exact_position(parent).is_some() {
-            return Err(ChunkError::Update {
-                update: at,
-                why: "it splits a vertex of the finest mesh",
-            });
-        }
+    let is_lost = |at: &usize| {
+        let (parent, children) = (state.updates[start + at].parent, state.children(start + at));
+        let exact = (parent != NONE).then(|| state.exact_position(parent)).flatten();
+        exact.is_some() && !children.iter().any(|&child| state.exact_position(child) == exact)
+    };
+    match (0..flags.len()).find(is_lost) {
+        Some(update) => Err(ChunkError::Update {
+            update,
+            why: "it splits a vertex of the finest mesh, which no child continues",
+        }),
+        None => Ok(()),
     }
-    Ok(())
 }
 
 /// Decodes errors and levels; the caller checks their range.

@@ -29,7 +29,7 @@ use std::io;
 use thiserror::Error;
 
 pub use archive::{Archive, Extract};
-pub use container::ModelFile;
+pub use container::{FieldParts, ModelFile};
 pub use source::Source;
 pub use write::{Storage, StoredErrors};
 

@@ -43,7 +43,8 @@ pub struct Forest {
     pub(crate) vertices: usize,
     /// Position of every node, in stored units.
     pub(crate) positions: Vec<[f32; 3]>,
-    /// Exact positions of the leaves, if the forest is lossless.
+    /// Exact positions of the leaves, and of nodes that are where a leaf is, if the forest is
+    /// lossless.
     pub(crate) exact: ExactPositions,
     pub(crate) updates: Vec<Update>,
     /// Rings of all updates, concatenated: the nodes around an update's node just after its
@@ -116,7 +117,9 @@ impl Forest {
     /// Simplifies a mesh as far as possible and records every contraction.
     ///
     /// Only positions are kept; attributes are dropped. The topology is kept
-    /// ([`Topology::Keep`]) whatever the options say, since an update must be undone exactly.
+    /// ([`Topology::Keep`]) whatever the options say, since an update must be undone exactly. What
+    /// a lock forbids is in no update, so every level has the locked vertices in place. Tied
+    /// vertices are locked, since two updates may be undone apart.
     /// # Errors
     /// The mesh cannot be simplified.
     pub fn new(mesh: &Mesh, options: &Options) -> Result<Self, BuildError> {
@@ -126,8 +129,8 @@ impl Forest {
     /// Simplifies a mesh as far as possible, recording every contraction and the exact positions of
     /// all vertices.
     ///
-    /// Levels show an uncontracted input vertex exactly where it was, and rounded positions
-    /// elsewhere. No error is zero, so a tolerance of zero returns the input mesh. Costs 24 bytes
+    /// Levels show a vertex exactly where the input has it as long as it has not moved, and rounded
+    /// positions elsewhere. No error is zero, so a tolerance of zero returns the input mesh. Costs 24 bytes
     /// per vertex and two bits per node more.
     /// # Errors
     /// As for [`Forest::new`].
@@ -140,11 +143,17 @@ impl Forest {
         options: &Options,
         recorder: impl FnOnce(&Simplifier<'_>) -> Recorder,
     ) -> Result<Self, BuildError> {
-        let options = Options { topology: Topology::Keep, ..options.clone() };
-        let mut simplifier = Simplifier::new(mesh, &options)?;
+        let mut simplifier = Simplifier::new(mesh, &Self::options(mesh, options))?;
         let mut recorder = recorder(&simplifier);
         simplifier.run(Target::Faces(0), &mut recorder)?;
         recorder.into_forest()
+    }
+
+    /// Returns options by which [`Forest::new`] simplifies a mesh: those given, with the topology
+    /// kept and tied vertices locked.
+    pub fn options(mesh: &Mesh, options: &Options) -> Options {
+        let locks = options.locks.with_ties_locked(mesh.positions.len());
+        Options { topology: Topology::Keep, vanish_below: None, locks, ..options.clone() }
     }
 
     /// Returns the number of faces of the finest mesh.

@@ -137,6 +137,8 @@ impl Recorder {
         let radius = self.radius(hood, placed, &both);
         let Self { forest, live, .. } = self;
         let position = forest.frame.local(placed.position).as_vec3();
+        let is_at = |exact: &[f64; 3]| *exact == placed.position.to_array();
+        let unmoved = both.iter().find_map(|s| forest.exact.get(s.node).filter(is_at));
         let own = Length16::up(forest.frame.local_length(placed.error_estimate));
         let error = own.max(both[0].error).max(both[1].error);
         forest.rings.extend(ring().map(|v| live[v.index()].node));
@@ -161,6 +163,9 @@ impl Recorder {
         let node = forest.positions.len() as u32;
         forest.updates.push(update);
         forest.positions.push(position.into());
+        if let Some(exact) = unmoved {
+            forest.exact.push(node, exact);
+        }
         if update.fused_with_child {
             // The two contractions of a face are judged as one.
             let inner = forest.updates.len() - 2;

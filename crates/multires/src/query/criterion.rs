@@ -167,7 +167,9 @@ impl<'f> Criterion<'f> {
             && match &self.region {
                 Region::Box([low, high]) => low.cmple(max).all() && high.cmpge(min).all(),
                 Region::Sphere(middle, reach) => squared(*middle) <= reach * reach,
-                Region::Everything | Region::Segment(_) | Region::Planes(_) => true,
+                Region::Everything | Region::Segment(_) | Region::Planes(_) | Region::Wall(_) => {
+                    true
+                }
             }
     }
 

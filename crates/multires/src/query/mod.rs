@@ -1,12 +1,16 @@
 //! Queries: where a mesh must be fine, and how fine.
 
+mod closest;
 mod criterion;
+mod ground;
 mod region;
 
 use glam::DVec3;
 use thiserror::Error;
 
+pub(crate) use closest::closest_point;
 pub(crate) use criterion::{Area, Ball, Criterion, PackedBall, QueryKey, SLACK, Viewpoint};
+pub use ground::{Ground, GroundShape};
 pub(crate) use region::Region;
 
 /// A request for a mesh that, within a region, deviates from the surface by no more than a
@@ -40,6 +44,8 @@ pub enum Focus {
     },
     /// The view frustum of a camera, without a far plane.
     Frustum(ViewCamera),
+    /// A line or a box on the ground, unbounded along the vertical axis.
+    Ground(Ground),
 }
 
 /// Largest deviation from the surface that a query allows for a triangle.
@@ -98,6 +104,9 @@ pub enum QueryError {
     /// The range of tolerances to prepare nested balls for is empty, or not positive and finite.
     #[error("a range of tolerances must rise from above 0 to a finite end, not from {0} to {1}")]
     BadRange(f64, f64),
+    /// The number of the vertical axis is not 0, 1 or 2.
+    #[error("the vertical axis must be 0, 1 or 2, not {0}")]
+    NoAxis(usize),
     /// The hysteresis is negative or not finite.
     #[error("the hysteresis must be finite and at least 0, not {0}")]
     BadHysteresis(f64),
@@ -159,6 +168,7 @@ impl Focus {
                 length("the radius", *radius)
             }
             Self::Frustum(camera) => camera.validate(),
+            Self::Ground(ground) => ground.validate(),
         }
     }
 }

@@ -4,7 +4,8 @@ use glam::DVec3;
 use meshlod_mesh::Frame;
 use meshlod_spatial::closest_point;
 
-use crate::query::{Focus, ViewCamera};
+use crate::query::ground::Wall;
+use crate::query::{Focus, Ground, GroundShape, ViewCamera};
 
 /// A focus prepared for intersection tests.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,7 +16,13 @@ pub(crate) enum Region {
     Sphere(DVec3, f64),
     /// Half-spaces `normal · x >= offset` whose intersection is the region.
     Planes([(DVec3, f64); 5]),
+    /// A vertical wall over a line on the ground.
+    Wall(Wall),
 }
+
+/// Half the height of a region that is unbounded, in stored units, of which a model spans about
+/// one.
+const FAR: f64 = 1024.0;
 
 /// Slack of the triangle tests: positions are rounded to 2⁻²⁴ of the unit.
 const ROUNDING: f64 = 1.0 / (1u64 << 22) as f64;
@@ -33,6 +40,19 @@ impl Region {
                 Self::Sphere(point(*center), frame.local_length(*radius))
             }
             Focus::Frustum(camera) => Self::Planes(planes(camera, point(camera.eye))),
+            Focus::Ground(ground) => Self::over(ground, frame),
+        }
+    }
+
+    fn over(ground: &Ground, frame: &Frame) -> Self {
+        let (GroundShape::Line(ends) | GroundShape::Box(ends)) = ground.shape;
+        let mut places = ends.map(|place| frame.local(ground.over(place, 0.0)));
+        match ground.shape {
+            GroundShape::Line(_) => Self::Wall(Wall::new(ground.up, places)),
+            GroundShape::Box(_) => {
+                (places[0][ground.up], places[1][ground.up]) = (-FAR, FAR);
+                Self::Box(places)
+            }
         }
     }
 
@@ -43,6 +63,7 @@ impl Region {
             Self::Everything => return true,
             Self::Segment(ends) => center.distance_squared(closest(center, *ends)),
             Self::Box([min, max]) => center.distance_squared(center.clamp(*min, *max)),
+            Self::Wall(wall) => wall.distance_squared(center),
             Self::Sphere(middle, reach) => {
                 return center.distance_squared(*middle) <= (reach + radius) * (reach + radius);
             }
@@ -71,6 +92,7 @@ impl Region {
             Self::Sphere(middle, reach) => {
                 closest_point(*middle, &corners).distance(*middle) <= reach + ROUNDING
             }
+            Self::Wall(wall) => wall.meets_triangle(corners, ROUNDING),
             Self::Planes(planes) => planes.iter().all(|&(normal, least)| {
                 corners.iter().any(|&corner| normal.dot(corner) >= least - ROUNDING)
             }),

@@ -108,6 +108,27 @@ impl HeightField {
     /// # Errors
     /// The data are truncated or damaged.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, FieldBytesError> {
+        Self::decode(bytes, None).map(|(field, _)| field)
+    }
+
+    /// Decodes the start of a height field of `whole` bytes, and returns it with the number of parts
+    /// that are there and the number of all.
+    ///
+    /// A vertex of a part that is missing gets the height by which it would have been predicted,
+    /// from the middle of its hypotenuse. So the field is that of the last part that is there, up to
+    /// rounding to the cells of the heights.
+    /// # Errors
+    /// The header or the first part are truncated, or the data are damaged.
+    pub fn from_prefix(bytes: &[u8], whole: u64) -> Result<(Self, [u32; 2]), FieldBytesError> {
+        let (field, parts) = Self::decode(bytes, Some(whole))?;
+        let all = field.grid.depth() + 1;
+        Ok((field, [parts, all]))
+    }
+
+    /// Decodes a height field, or its start if the length of the whole is given. Returns the number
+    /// of parts that were there.
+    fn decode(bytes: &[u8], whole: Option<u64>) -> Result<(Self, u32), FieldBytesError> {
+        let is_prefix = whole.is_some_and(|whole| whole > bytes.len() as u64);
         let mut reader = ByteReader { bytes };
         let (mut this, scale) = read_header(&mut reader)?;
         let least = this.grid.count().div_ceil(MAX_PER_BYTE);
@@ -116,15 +137,26 @@ impl HeightField {
             return Err(FieldBytesError::Short { what: "heights", needed, found });
         }
         let mut codes = vec![0i64; this.grid.count()];
+        let mut parts = 0;
         for part in 0..=this.grid.depth() {
-            let residuals = read_part(&mut reader, this.grid.part(part).count(), part)?;
-            for (place, residual) in this.grid.part(part).zip(residuals) {
+            let residuals = match read_part(&mut reader, this.grid.part(part).count(), part) {
+                Err(FieldBytesError::Short { .. }) if is_prefix && part > 0 => {
+                    // What follows belongs to this part.
+                    reader.bytes = &[];
+                    None
+                }
+                read => Some(read?),
+            };
+            parts += u32::from(residuals.is_some());
+            let mut residuals = residuals.into_iter().flatten();
+            for place in this.grid.part(part) {
+                let residual = residuals.next().unwrap_or(0);
                 let code = this.grid.guess(place, &codes).wrapping_add(unzigzag(residual));
                 codes[this.grid.index(place)] = code;
             }
         }
         let is_padding = reader.bytes.iter().all(|&byte| byte == 0) && bytes.len() == least;
-        if !(is_padding || reader.bytes.is_empty()) {
+        if !(is_padding || reader.bytes.is_empty() || is_prefix) {
             return Err(FieldBytesError::Bad("length"));
         }
         this.heights = codes.iter().map(|&code| scale.height(code)).collect();
@@ -132,7 +164,7 @@ impl HeightField {
         {
             return Err(FieldBytesError::Bad("heights"));
         }
-        Ok(this)
+        Ok((this, parts))
     }
 }
 
@@ -292,7 +324,7 @@ fn read_part(
     reader: &mut ByteReader<'_>,
     count: usize,
     part: u32,
-) -> Result<impl Iterator<Item = u64>, FieldBytesError> {
+) -> Result<impl Iterator<Item = u64> + use<>, FieldBytesError> {
     let damaged = |why: &str| FieldBytesError::Heights { part, why: why.to_owned() };
     let [width] = reader.array("heights")?;
     let width = usize::from(width);

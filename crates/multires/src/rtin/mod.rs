@@ -16,12 +16,12 @@ mod recognize;
 #[cfg(test)]
 mod tests;
 
-use meshlod_mesh::Frame;
+use meshlod_mesh::{Bounds, Frame};
 
 use crate::length16::Length16;
 use crate::level::Level;
 use crate::query::Ball;
-use crate::query::{Query, QueryError};
+use crate::query::{Query, QueryError, closest_point};
 
 use self::field::GridPlacement;
 use self::grid::{Grid, GridPoint};
@@ -83,6 +83,28 @@ impl Rtin {
     /// The query is invalid.
     pub fn level(&self, query: &Query<'_>) -> Result<Level, QueryError> {
         RtinExtractor::new(self).exact(query).cloned()
+    }
+
+    /// Returns the point of the finest mesh that is closest to a point in model units.
+    ///
+    /// Cost: that of a query for a ball of up to four times the distance.
+    /// # Errors
+    /// A coordinate is not finite.
+    pub fn closest_point(&self, point: [f64; 3]) -> Result<Option<[f64; 3]>, QueryError> {
+        let mut extractor = RtinExtractor::new(self);
+        closest_point(point, &self.bounds(), |query| extractor.exact(query).cloned())
+    }
+
+    /// Returns the bounding box of the finest mesh, in model units.
+    fn bounds(&self) -> Bounds {
+        let heights = || self.vertices.iter().map(|vertex| f64::from(vertex.height));
+        let (low, high) =
+            (heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max));
+        let last = GridPoint { column: self.grid.columns - 1, row: self.grid.rows - 1 };
+        let ends = [(GridPoint::default(), low), (last, high)];
+        Bounds::of(
+            &ends.map(|(place, height)| self.frame.model(self.placement.point(place, height))),
+        )
     }
 
     /// Returns the number of grid columns and of grid rows.

@@ -27,6 +27,7 @@ use crate::engine::policy::{Candidates, Memory, Observe, Placement, Priority, St
 use crate::engine::queue::{Entry, Key};
 use crate::engine::vanishing::Vanishing;
 use crate::history::volume::VolumeLoss;
+use crate::options::Contractions;
 use crate::refusal::{Refusal, Refusals};
 use crate::surface::contracted::{Contracted, Freedom};
 use crate::surface::level::level;
@@ -54,6 +55,7 @@ pub(crate) struct Engine<C, M, P, L> {
     vanishing: Vanishing,
     /// Number of components that have vanished.
     vanished: usize,
+    contractions: Contractions,
     /// Scratch space for the candidates that a contraction opens.
     opened: Vec<CandidateId>,
     /// Scratch space for the entries of a bucket.
@@ -89,6 +91,7 @@ where
             waiting,
             vanishing,
             vanished: 0,
+            contractions: Contractions::default(),
             opened: Vec::new(),
             taken: Vec::new(),
             refusals: Refusals::default(),
@@ -184,12 +187,18 @@ where
 
     /// Contracts the gathered candidate and updates memory, candidates and error.
     fn apply(&mut self, placed: &Placed, observer: &mut dyn Observe) {
-        let Self { algorithm, surface, neighbourhood, part, volume, .. } = self;
+        let Self { algorithm, surface, neighbourhood, part, contractions, volume, .. } = self;
         let observer = &mut (volume, observer);
         algorithm.memory.merge(surface, neighbourhood, placed);
         match neighbourhood.contracted[..] {
-            [_, _] => contract_edge(surface, neighbourhood, placed, observer),
-            _ => contract_face(surface, neighbourhood, part, placed, observer),
+            [_, _] => {
+                contractions.edges += 1;
+                contract_edge(surface, neighbourhood, placed, observer);
+            }
+            _ => {
+                contractions.faces += 1;
+                contract_face(surface, neighbourhood, part, placed, observer);
+            }
         }
         algorithm.memory.renew(surface, neighbourhood, placed);
         if M::KNOWS_RING {
@@ -270,6 +279,10 @@ fn contract_face(
     for &gone in neighbourhood.contracted.iter().filter(|&&v| v != kept) {
         part.gather(surface, Contracted::edge([kept, gone]))
             .expect("a face that may be contracted can be contracted edge by edge");
+        if surface.position(kept) == placed.position && part.freedom == Freedom::AlongNormal(0) {
+            // The kept vertex has been moved along its normal by the first edge.
+            part.freedom = Freedom::Free;
+        }
         contract_edge(surface, part, &Placed { kept: 0, ..*placed }, observer);
     }
 }
@@ -290,6 +303,10 @@ pub(crate) trait Run {
     fn level(&self, mesh: &Mesh) -> Mesh {
         level(mesh, self.surface())
     }
+    /// Returns the input mesh in its current state, with the volume repaid that contractions owe.
+    fn settled_level(&self, mesh: &Mesh) -> Mesh {
+        self.level(mesh)
+    }
     fn tally(&self) -> Tally;
 }
 
@@ -298,6 +315,7 @@ pub(crate) trait Run {
 pub(crate) struct Tally {
     /// Number of connected components that have been removed as a whole.
     pub(crate) vanished: usize,
+    pub(crate) contractions: Contractions,
     pub(crate) refusals: Refusals,
     /// Greatest estimated distance of any contraction from the input, in model units.
     pub(crate) error_estimate: f64,
@@ -376,8 +394,8 @@ where
     }
 
     fn tally(&self) -> Tally {
-        let &Self { vanished, refusals, error_estimate, volume, .. } = self;
-        Tally { vanished, refusals, error_estimate, volume }
+        let &Self { vanished, contractions, refusals, error_estimate, volume, .. } = self;
+        Tally { vanished, contractions, refusals, error_estimate, volume }
     }
 }
 

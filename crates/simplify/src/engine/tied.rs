@@ -66,6 +66,8 @@ where
         if !are_apart(neighbourhood, tied) {
             return Err(Refusal::Tied);
         }
+        // Tied vertices would not stay together if each moved along its own normal.
+        let freedom = freedom.kept().map_or(Freedom::Free, Freedom::At);
         neighbourhood.freedom = freedom;
         tied.iter_mut().for_each(|partner| partner.freedom = freedom);
         Ok(())

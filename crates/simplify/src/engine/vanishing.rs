@@ -119,6 +119,7 @@ const SHRINKAGE: f64 = 0.3;
 pub(crate) fn cost(method: Method, size: f64, area: f64, faces: usize) -> f64 {
     let cost = match method {
         Method::Qem | Method::QemEndpoint | Method::KimJang => area * size * size,
+        Method::QemPlain => size * size,
         Method::LindstromTurk | Method::LindstromTurkFaces => (area * size).powi(2),
         // About one sample per face.
         Method::Pm => faces as f64 * size * size,

@@ -4,6 +4,7 @@ use glam::{DMat3, DMat4, DVec3};
 use meshlod_mesh::{Bounds, FaceId};
 
 use crate::engine::policy::Observe;
+use crate::methods::volume::VolumePlane;
 use crate::surface::contracted::Freedom;
 use crate::surface::neighbourhood::{Neighbourhood, Spoke};
 use crate::surface::{Flags, Placed, Surface};
@@ -15,14 +16,24 @@ pub struct VolumeLoss {
     /// Volume before minus volume after, summed over all contractions with a closed ring, in cubic
     /// model units: table 2 of [LJ05].
     pub running_sum: f64,
+    /// Part of the sum that [`Method::LindstromTurk`](crate::Method::LindstromTurk) still owes,
+    /// where a place that conserves the volume would have spoiled the shape, in cubic model units.
+    /// [`Simplifier::settled_level`](crate::Simplifier::settled_level) repays it.
+    pub owed: f64,
     /// Sum of the absolute volumes of the closed components that were removed as a whole, in cubic
     /// model units.
     pub vanished: f64,
-    /// Contractions at a boundary, and open components that were removed as a whole. No volume is
-    /// defined there, so the sum leaves them out.
+    /// Volume before minus volume after, summed over all contractions at a boundary, in cubic model
+    /// units: behind the faces and cones that close them, from each boundary loop to its middle in
+    /// the input. Zero by the kernel, which has no cones.
+    pub at_boundaries: f64,
+    /// Contractions at a boundary, and open components that were removed as a whole. `running_sum`
+    /// leaves them out.
     pub open: Unconserved,
     /// Contractions forced to one position by a lock, a tie or a seam, and closed components that
-    /// were removed as a whole, each counted once. The sum includes them.
+    /// were removed as a whole, each counted once. The sum includes them. At a seam, methods that
+    /// conserve the volume move the vertex along the surface's normal, and are forced only where
+    /// that would fold the surface.
     pub held: Unconserved,
 }
 
@@ -36,12 +47,20 @@ pub struct Unconserved {
 }
 
 impl VolumeLoss {
+    /// Returns the volume that a [settled level](crate::Simplifier::settled_level) has lost, in
+    /// cubic model units: the sum without what is owed, which the level has been repaid.
+    pub fn lost(&self) -> f64 {
+        self.running_sum - self.owed
+    }
+
     /// Adds the volume lost by another mesh, placed by the matrix `transform` (columns, as in
     /// glTF).
     pub fn add(&mut self, other: &Self, transform: &[[f64; 4]; 4]) {
         let transform = DMat4::from_cols_array_2d(transform);
         let scale = DMat3::from_mat4(transform).determinant().abs();
         self.running_sum += other.running_sum * scale;
+        self.owed += other.owed * scale;
+        self.at_boundaries += other.at_boundaries * scale;
         self.vanished += other.vanished * scale;
         self.open.count_in(&other.open, &transform);
         self.held.count_in(&other.held, &transform);
@@ -70,13 +89,16 @@ impl Unconserved {
 impl Observe for VolumeLoss {
     fn before(&mut self, surface: &Surface, neighbourhood: &Neighbourhood, placed: &Placed) {
         if !neighbourhood.is_closed(surface) {
+            let from = surface.position(neighbourhood.contracted()[placed.kept]);
+            let plane = VolumePlane::new(surface, neighbourhood, from);
+            self.at_boundaries += plane.loss(placed.position - from) / 6.0;
             return self.open.add(placed.position);
-        }
-        if neighbourhood.freedom() != Freedom::Free {
-            self.held.add(placed.position);
         }
         // Relative to the kept vertex, which is a corner of nearly all old faces.
         let kept = surface.position(neighbourhood.contracted()[placed.kept]);
+        if neighbourhood.freedom() != Freedom::Free && placed.position == kept {
+            self.held.add(placed.position);
+        }
         let to = placed.position - kept;
         let sixfold = |spoke: &Spoke| {
             let [a, b] =

@@ -24,7 +24,7 @@ use glam::{DVec3, Vec3};
 use crate::kernel::attributes::AttributeModel;
 use crate::kernel::bound::{BoundPart, BoundedStep};
 use crate::kernel::collapse::edge_ring::EdgeRing;
-use crate::kernel::collapse::{Collapse, Ends};
+use crate::kernel::collapse::{Collapse, Ends, Mobility};
 use crate::kernel::components::Components;
 use crate::kernel::contraction_log::{Logged, LoggedContraction};
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
@@ -70,6 +70,8 @@ pub(crate) struct CollapseLoop<'v, A> {
     pub(crate) error: f64,
     /// Error bound that every contraction must respect, if one is set.
     pub(crate) within: Option<BoundPart<'v>>,
+    /// Number of edges contracted.
+    pub(crate) contractions: usize,
     pub(crate) refusals: Refusals,
     pub(crate) volume: VolumeTally,
     /// Contractions done so far, if an observer wants them.
@@ -123,6 +125,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
             live_faces: 0,
             error: 0.0,
             within: None,
+            contractions: 0,
             refusals: Refusals::default(),
             volume: VolumeTally::default(),
             log: None,
@@ -301,18 +304,20 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         let Self { vertices, model, edge_ring, deferral, debts, .. } = self;
         let refused = |refusal| Rejection::Refused(refusal, front);
         let ends = model.orient(vertices, v, target).map_err(refused)?;
-        let Ends { v0, v1, free, .. } = ends;
+        let Ends { v0, v1, mobility, .. } = ends;
         edge_ring.gather(vertices, v0, v1).map_err(refused)?;
         let (end0, end1) = (vertices.get(v0), vertices.get(v1));
         let quadric = A::Metric::edge_quadric(edge_ring, end0, end1);
+        let free = ends.is_free();
         let whole = if free { model.with_attributes(&ends, quadric) } else { quadric };
-        let from_middle = match free {
-            true => {
-                let owed = debts.owed([v0, v1].map(|v| vertices.slot(v)));
-                let aim = EdgeQuadricF64 { level: whole.level + owed, ..whole };
-                A::Metric::optimum(&aim, deferral.allowed())
+        let owed = debts.owed(edge_ring.ids().iter().chain(&[v0, v1]).map(|&v| vertices.slot(v)));
+        let aim = EdgeQuadricF64 { level: whole.level + owed, ..whole };
+        let from_middle = match mobility {
+            Mobility::Free => A::Metric::optimum(&aim, deferral.allowed()),
+            Mobility::AlongNormal if !edge_ring.is_open(vertices, v0) => {
+                A::Metric::optimum_along_normal(&aim, end0, deferral.allowed())
             }
-            false => -quadric.half,
+            _ => -quadric.half,
         };
         let attributes = if free { 0.0 } else { f64::from(model.cost_onto(vertices, &ends)) };
         let cost = whole.at(from_middle) + attributes;
@@ -341,21 +346,27 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     #[inline(always)]
     fn contract(&mut self, v: u32, target: u32, front: u16) -> Result<u32, Rejection> {
         let PricedEdge { ends, quadric, from_middle, bucket } = self.price(v, target, front)?;
-        let Ends { v0, v1, free, .. } = ends;
+        let Ends { v0, v1, mobility, .. } = ends;
         let Self { vertices, model, edge_ring, deferral, room, .. } = self;
         let (end0, end1) = (vertices.get(v0), vertices.get(v1));
         let refused = |refusal| Rejection::Refused(refusal, bucket);
-        if free && from_middle.length_squared() > f64::from(edge_ring.reach()) {
-            return Err(refused(Refusal::Volume));
-        }
+        let is_far = from_middle.length_squared() > f64::from(edge_ring.reach());
         // The place as it is stored, so that the normals are those of the actual faces.
         let from = end0.place();
-        let place = match free {
-            true => within::<A::Metric>(*room, from.as_dvec3() + quadric.half + from_middle),
-            false => from,
+        let mut place = match mobility {
+            Mobility::Fixed => from,
+            Mobility::AlongNormal if is_far => from,
+            Mobility::Free if is_far => return Err(refused(Refusal::Volume)),
+            _ => within::<A::Metric>(*room, from.as_dvec3() + quadric.half + from_middle),
         };
+        if let Err(refusal) = edge_ring.try_place(place - from) {
+            if mobility != Mobility::AlongNormal || place == from {
+                return Err(refused(refusal));
+            }
+            place = from;
+            edge_ring.try_place(Vec3::ZERO).map_err(refused)?;
+        }
         let from_middle = (place - from).as_dvec3() - quadric.half;
-        edge_ring.try_place(place - from).map_err(refused)?;
         // A mean square distance: attributes do not count.
         let mean_square =
             quadric.at(from_middle).max(0.0) / quadric.weight().max(f64::MIN_POSITIVE);
@@ -392,17 +403,19 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         moved: f32,
         front: u16,
     ) {
-        let Ends { v0, v1, free, .. } = collapse.ends;
+        let Ends { v0, v1, mobility, .. } = collapse.ends;
         let Collapse { place, displacement, .. } = *collapse;
+        self.contractions += 1;
         self.error = self.error.max(moved.into());
         let lost = quadric.level - quadric.normal.dot(displacement.as_dvec3() - quadric.half);
         let is_open = self.edge_ring.is_open(&self.vertices, v0);
-        self.volume.add(place, lost, is_open, free);
-        let slots = [v0, v1].map(|v| self.vertices.slot(v));
-        let owed = self.debts.owed(slots);
-        let lost =
-            if free && !is_open && A::Metric::METHOD.conserves_volume() { lost } else { 0.0 };
-        let slot = (slots[0], self.vertices.all.len());
+        self.volume.add(place, lost, is_open, collapse.is_held());
+        let Self { vertices, edge_ring, debts, .. } = self;
+        let around = edge_ring.ids().iter().copied().chain([v0, v1]);
+        let owed = debts.take(around.map(|v| vertices.slot(v)));
+        let conserves = mobility != Mobility::Fixed && A::Metric::METHOD.conserves_volume();
+        let lost = if conserves && !is_open { lost } else { 0.0 };
+        let slot = (self.vertices.slot(v0), self.vertices.all.len());
         self.debts.settle(slot, (owed, lost), (quadric.normal, quadric.half));
         if let Some(log) = &mut self.log {
             let done = LoggedContraction { kept: v0, gone: v1, place, moved, front };

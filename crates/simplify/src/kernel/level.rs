@@ -5,15 +5,17 @@ use rayon::prelude::*;
 
 use crate::kernel::attributes::AttributeModel;
 use crate::kernel::contraction_log::InputNames;
+use crate::kernel::mesh::vertex::NO_VERTEX;
 use crate::kernel::setup::vertex_order::{is_face, numbers};
 
-/// Returns the faces that are left with the vertices they use, in the input's order. `split` are
-/// the faces with copies of vertices, if there are any.
+/// Returns the faces that are left with the vertices they use, in the input's order, and the id of
+/// each input vertex there; [`NO_VERTEX`] if no face uses it. `split` are the faces with copies of
+/// vertices, if there are any.
 pub(crate) fn level(
     names: InputNames<'_>,
     model: &impl AttributeModel,
     split: Option<&[[u32; 3]]>,
-) -> Mesh {
+) -> (Mesh, Vec<u32>) {
     let InputNames { mesh, order, store, .. } = names;
     let live = store.live_vertices();
     let of_input = |i: usize| match split {
@@ -21,14 +23,14 @@ pub(crate) fn level(
         None => order.face(&mesh.faces[i]),
     };
     let faces = live_faces(mesh.faces.len(), of_input, &live);
-    let mut ids = vec![u32::MAX; mesh.positions.len()];
+    let mut ids = vec![NO_VERTEX; mesh.positions.len()];
     let mut level = Mesh::default();
     for (_, corners) in &faces {
         for &v in corners {
             ids[names.input(v).index()] = v;
         }
     }
-    for (input, id) in ids.iter_mut().enumerate().filter(|(_, id)| **id != u32::MAX) {
+    for (input, id) in ids.iter_mut().enumerate().filter(|(_, id)| **id != NO_VERTEX) {
         let place = store.all[*id as usize].place();
         level.positions.push(names.position(VertexId::new(input), place));
         *id = level.positions.len() as u32 - 1;
@@ -39,7 +41,7 @@ pub(crate) fn level(
     level.attributes = model.attributes(kept.iter().map(|&i| (i, of_input(i as usize))));
     level.materials = mesh.materials.as_ref().map(|labels| labels.select(&kept));
     level.objects = mesh.objects.as_ref().map(|labels| labels.select(&kept));
-    level
+    (level, ids)
 }
 
 /// Returns all vertices and faces of the input in their current state. A removed face repeats a

@@ -39,6 +39,7 @@ mod mesh;
 mod metric;
 mod partition;
 mod prepare;
+mod repay;
 mod run;
 mod schedule;
 mod setup;

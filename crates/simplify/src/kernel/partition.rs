@@ -83,6 +83,8 @@ pub(crate) struct Partition<A> {
     pub(crate) live_faces: usize,
     /// Square of the largest error estimate so far, in the frame's units.
     pub(crate) error: f64,
+    /// Number of edges contracted.
+    pub(crate) contractions: usize,
     pub(crate) refusals: Refusals,
     pub(crate) volume: VolumeTally,
     pub(crate) whole: Whole,
@@ -126,6 +128,7 @@ impl<A: AttributeModel> Partition<A> {
             models: model.for_parts(count),
             live_faces,
             error: 0.0,
+            contractions: 0,
             refusals: Refusals::default(),
             volume: VolumeTally::default(),
             whole: Whole::default(),
@@ -177,6 +180,15 @@ impl<A: AttributeModel> Partition<A> {
         self.loops().into_par_iter().for_each(|(mut collapse_loop, _)| collapse_loop.wake_all());
     }
 
+    /// Returns the vertices that owe volume, and how much, six times, in the frame.
+    pub(crate) fn debts(&self) -> Vec<(u32, f64)> {
+        let of_part = |part: &PartState| {
+            let base = part.vertices.start;
+            part.debts.all().map(move |(v, debt)| ((base + v) as u32, debt)).collect::<Vec<_>>()
+        };
+        self.parts.iter().flat_map(of_part).collect()
+    }
+
     /// Merges all parts into one.
     pub(crate) fn unite(&mut self) {
         while self.parts.len() > 1 {
@@ -220,8 +232,10 @@ impl<A: AttributeModel> Partition<A> {
             }
             gone(before - live);
         }
-        let done: Vec<_> = loops.iter().map(|e| (e.error, e.refusals, e.volume)).collect();
-        for (error, refusals, volume) in done {
+        let done: Vec<_> =
+            loops.iter().map(|e| (e.error, e.contractions, e.refusals, e.volume)).collect();
+        for (error, contractions, refusals, volume) in done {
+            self.contractions += contractions;
             self.error = self.error.max(error);
             self.refusals += refusals;
             self.volume.merge(&volume);

@@ -2,7 +2,7 @@
 
 use std::cell::OnceCell;
 
-use meshlod_mesh::Mesh;
+use meshlod_mesh::{Mesh, VertexId};
 
 use crate::clean;
 use crate::engine::policy::{Observe, Stop};
@@ -14,12 +14,16 @@ use crate::kernel::contraction_log::{InputNames, replay};
 use crate::kernel::level::{level, workspace};
 use crate::kernel::mesh::local_frame::Frame;
 use crate::kernel::mesh::one_ring::VertexStore;
+use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
 use crate::kernel::metric::Metric;
 use crate::kernel::partition::Partition;
+use crate::kernel::repay::{Debt, repay};
 use crate::kernel::schedule::bucket_queue::{NONE, bucket, min_cost_in};
 use crate::kernel::setup::vertex_order::{Order, numbers};
+use crate::options::Contractions;
 use crate::refusal::Refusal;
 use crate::surface::Surface;
+use crate::surface::rims::Rims;
 
 /// The input mesh, and its correspondence with the kernel's vertices.
 pub(crate) struct KernelInput<'m> {
@@ -51,6 +55,20 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
     fn names(&self) -> InputNames<'_> {
         let KernelInput { mesh, frame, order, .. } = &self.source;
         InputNames { mesh, frame, order, store: &self.partition.store }
+    }
+
+    /// Returns the current mesh, and the id there of each input vertex.
+    fn numbered_level(&self) -> (Mesh, Vec<u32>) {
+        level(self.names(), &self.partition.models[0], self.source.faces.as_deref())
+    }
+
+    /// Returns for each vertex of a level whether a pin or a tie holds it, given the ids of the
+    /// input vertices.
+    fn held(&self, ids: &[u32]) -> Vec<bool> {
+        let KernelInput { order, .. } = &self.source;
+        let used = (0..).zip(ids).filter(|(_, id)| **id != NO_VERTEX);
+        let flags = |v: u32| self.partition.store.all[order.id(VertexId(v)) as usize].flags;
+        used.map(|(v, _)| flags(v).any(VertexFlags::HELD)).collect()
     }
 
     /// Returns the factor from the kernel's costs to model units.
@@ -153,7 +171,23 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
     }
 
     fn level(&self, _: &Mesh) -> Mesh {
-        level(self.names(), &self.partition.models[0], self.source.faces.as_deref())
+        self.numbered_level().0
+    }
+
+    fn settled_level(&self, _: &Mesh) -> Mesh {
+        let (mut level, ids) = self.numbered_level();
+        let names = self.names();
+        let unit = names.frame.unit.powi(3);
+        let debt = |(v, sixfold): (u32, f64)| Debt {
+            vertex: VertexId(ids[names.input(v).index()]),
+            sixfold: sixfold * unit,
+        };
+        // A bound of the error comes before the volume.
+        if self.input.get().is_none() {
+            let debts: Vec<Debt> = self.partition.debts().into_iter().map(debt).collect();
+            repay(&mut level, &debts, &self.held(&ids));
+        }
+        level
     }
 
     fn surface(&self) -> &Surface {
@@ -161,7 +195,9 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
             let mesh =
                 workspace(self.names(), &self.partition.models[0], self.source.faces.as_deref());
             let (connectivity, _) = clean::connect(&mesh);
-            Surface::new(&mesh, &connectivity)
+            let mut surface = Surface::new(&mesh, &connectivity);
+            surface.rims = Rims::new(&mesh, &connectivity);
+            surface
         })
     }
 
@@ -171,6 +207,7 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
     }
 
     fn tally(&self) -> Tally {
+        let owed = self.partition.debts().iter().map(|(_, sixfold)| sixfold).sum();
         Tally {
             vanished: self
                 .partition
@@ -178,9 +215,10 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
                 .components
                 .as_ref()
                 .map_or(0, |all| all.vanished().len()),
+            contractions: Contractions { edges: self.partition.contractions, faces: 0 },
             refusals: self.partition.refusals,
             error_estimate: self.partition.error.sqrt() * self.source.frame.unit,
-            volume: self.partition.volume.loss(&self.source.frame),
+            volume: self.partition.volume.loss(&self.source.frame, owed),
         }
     }
 }

@@ -6,7 +6,7 @@ use meshlod_mesh::VertexId;
 use crate::kernel::attributes::AttributeModel;
 use crate::kernel::bound::BoundedStep;
 use crate::kernel::collapse::edge_ring::EdgeRing;
-use crate::kernel::collapse::{Collapse, Ends};
+use crate::kernel::collapse::{Collapse, Ends, Mobility};
 use crate::kernel::collapse_loop::{
     CollapseLoop, Rejection, UV_FLIP_DELAY, is_out_of_proportion, within,
 };
@@ -79,7 +79,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         let refused = |refusal| Rejection::Refused(refusal, bucket);
         let first = &edges[0];
         let from = self.vertices.get(first.ends.v0).place();
-        let place = match first.ends.free {
+        let place = match first.ends.is_free() {
             true => {
                 within::<A::Metric>(self.room, from.as_dvec3() + first.quadric.half + from_middle)
             }
@@ -132,7 +132,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         let mut all = Vec::with_capacity(edges.len());
         for &[a, b] in &edges {
             let ends = model.orient(vertices, a, b)?;
-            let own = match ends.free {
+            let own = match ends.is_free() {
                 true => Freedom::Free,
                 false => Freedom::At(usize::from(ends.v0 == b)),
             };
@@ -143,7 +143,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         let is_seam = |v: &u32| vertices.get(*v).flags.any(VertexFlags::SEAM);
         let on_seam = all.iter().zip(&edges).find(|(_, edge)| edge.iter().any(is_seam));
         let (kept, free) = match (freedom, on_seam) {
-            (Freedom::At(kept), _) => (kept, false),
+            (Freedom::At(kept) | Freedom::AlongNormal(kept), _) => (kept, false),
             (Freedom::Free, Some((ends, edge))) => (usize::from(ends.v0 == edge[1]), true),
             (Freedom::Free, None) => (0, true),
         };
@@ -152,9 +152,11 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
             if ends.v0 != stays && edge.iter().any(is_seam) {
                 return Err(Refusal::Seam);
             }
+            // Tied vertices would not stay together if each moved along its own normal.
+            let mobility = Mobility::new(free, true);
             *ends = match ends.v0 == stays {
-                true => Ends { free, ..*ends },
-                false => Ends { free, ..Ends::free(stays, goes) },
+                true => Ends { mobility, ..*ends },
+                false => Ends { mobility, ..Ends::free(stays, goes) },
             };
         }
         Ok(all)
@@ -176,8 +178,9 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
             flags.set(end0.flags);
             flags.set(end1.flags);
             let quadric = A::Metric::edge_quadric(&ring, end0, end1);
-            let whole = if ends.free { model.with_attributes(&ends, quadric) } else { quadric };
-            if !ends.free {
+            let whole =
+                if ends.is_free() { model.with_attributes(&ends, quadric) } else { quadric };
+            if !ends.is_free() {
                 onto += whole.at(-quadric.half) + f64::from(model.cost_onto(vertices, &ends));
             }
             joint = Some(joint.map_or(whole, |joint| joint.with(&whole)));
@@ -187,9 +190,10 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
             return Err(refused(Refusal::Tied));
         }
         let Some(mut joint) = joint else { return Err(refused(Refusal::Tied)) };
-        let owed = |ends: &Ends| debts.owed([ends.v0, ends.v1].map(|v| vertices.slot(v)));
+        let owed =
+            |ends: &Ends| debts.owed([ends.v0, ends.v1].map(|v| vertices.slot(v)).into_iter());
         joint.level += ends.iter().map(owed).sum::<f64>();
-        let free = ends[0].free;
+        let free = ends[0].is_free();
         let from_middle =
             if free { A::Metric::optimum(&joint, deferral.allowed()) } else { -joint.half };
         let cost = if free { joint.at(from_middle) } else { onto };

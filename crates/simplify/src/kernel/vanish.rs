@@ -80,6 +80,8 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         let left: Vec<u32> = components.vertices(component).iter().copied().filter(live).collect();
         self.count_volume(&left, faces);
         self.live_faces -= faces.len();
+        // What has vanished owes nothing.
+        self.debts.take(left.iter().map(|&v| self.vertices.slot(v)));
         for &v in &left {
             let vertex = self.vertices.get_mut(v);
             vertex.bucket = NONE;

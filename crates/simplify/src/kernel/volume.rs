@@ -23,25 +23,36 @@ pub(crate) struct VolumeTally {
 const NO_DEBT: f64 = 1e-4;
 
 /// Volume that contractions at each vertex of a part still owe, six times, in the frame. The next
-/// contraction there that is free aims to repay it. What is beyond the end owes nothing.
+/// contraction whose ring has the vertex takes the debt over and aims to repay it, so that a debt
+/// goes where contractions go on. What is beyond the end owes nothing.
 ///
 /// Empty as long as nothing is owed, as on most scans.
 #[derive(Debug, Default)]
 pub(crate) struct VolumeDebts(Vec<f32>);
 
 impl VolumeDebts {
-    /// Returns what both ends of an edge owe, each given by its index in the part.
+    /// Returns the sum of what vertices owe, given by their indices in the part.
     #[inline(always)]
-    pub(crate) fn owed(&self, ends: [usize; 2]) -> f64 {
+    pub(crate) fn owed(&self, around: impl Iterator<Item = usize>) -> f64 {
         match &self.0[..] {
             [] => 0.0,
-            all => ends.into_iter().map(|v| all.get(v).map_or(0.0, |&debt| f64::from(debt))).sum(),
+            all => around.map(|v| all.get(v).map_or(0.0, |&debt| f64::from(debt))).sum(),
         }
     }
 
-    /// Sets what a vertex owes in a part of `len` vertices after a contraction that lost `lost`, of
-    /// an edge whose ends owed `owed`. Faces with the sum `normal` moved, and half the edge is as
-    /// long as `half`.
+    /// Takes what vertices owe, given by their indices in the part.
+    #[inline(always)]
+    pub(crate) fn take(&mut self, around: impl Iterator<Item = usize>) -> f64 {
+        match &mut self.0[..] {
+            [] => 0.0,
+            all => around
+                .map(|v| all.get_mut(v).map_or(0.0, |debt| f64::from(std::mem::take(debt))))
+                .sum(),
+        }
+    }
+
+    /// Sets what a vertex owes in a part of `len` vertices after a contraction that lost `lost` and
+    /// took over `owed`. Faces with the sum `normal` moved, and half the edge is as long as `half`.
     #[inline(always)]
     pub(crate) fn settle(
         &mut self,
@@ -54,6 +65,12 @@ impl VolumeDebts {
             self.0.resize(len, 0.0);
             self.0[vertex] = (owed + lost) as f32;
         }
+    }
+
+    /// Returns the vertices that owe volume, by their indices in the part, and how much.
+    pub(crate) fn all(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let owes = |&(_, &debt): &(usize, &f32)| debt != 0.0;
+        self.0.iter().enumerate().filter(owes).map(|(v, &debt)| (v, debt.into()))
     }
 
     /// Appends the debts of the next part. The parts have these numbers of vertices.
@@ -83,12 +100,12 @@ impl Default for Unchosen {
 impl VolumeTally {
     /// Counts a contraction to `place` that loses a sixth of `sixfold`.
     #[inline(always)]
-    pub(crate) fn add(&mut self, place: Vec3, sixfold: f64, is_open: bool, is_free: bool) {
+    pub(crate) fn add(&mut self, place: Vec3, sixfold: f64, is_open: bool, is_held: bool) {
         if is_open {
             return self.open.add(place);
         }
         self.sixfold += sixfold;
-        if !is_free {
+        if is_held {
             self.held.add(place);
         }
     }
@@ -114,12 +131,14 @@ impl VolumeTally {
         self.held.merge(&other.held);
     }
 
-    /// Converts the tally to model units.
-    pub(crate) fn loss(&self, frame: &Frame) -> VolumeLoss {
+    /// Converts the tally to model units. `owed` is six times the volume still owed.
+    pub(crate) fn loss(&self, frame: &Frame, owed: f64) -> VolumeLoss {
         let sixth = frame.unit.powi(3) / 6.0;
         VolumeLoss {
             running_sum: self.sixfold * sixth,
+            owed: owed * sixth,
             vanished: self.vanished * sixth,
+            at_boundaries: 0.0,
             open: self.open.to_model(frame),
             held: self.held.to_model(frame),
         }
@@ -159,11 +178,12 @@ mod tests {
         let mesh = cube();
         let frame = Frame::new(&mesh, &mesh.bounds());
         let mut volume = VolumeTally::default();
-        volume.add(Vec3::ZERO, 6.0, false, true);
-        volume.add(Vec3::ONE, 7.0, true, true);
-        volume.add(Vec3::ONE, 6.0, false, false);
-        let loss = volume.loss(&frame);
+        volume.add(Vec3::ZERO, 6.0, false, false);
+        volume.add(Vec3::ONE, 7.0, true, false);
+        volume.add(Vec3::ONE, 6.0, false, true);
+        let loss = volume.loss(&frame, 3.0);
         assert!((loss.running_sum / frame.unit.powi(3) - 2.0).abs() < 1e-12);
+        assert!((loss.owed / frame.unit.powi(3) - 0.5).abs() < 1e-12);
         assert_eq!([loss.open.contractions, loss.held.contractions], [1, 1]);
         assert_eq!(loss.held.bounds.min, frame.to_model(Vec3::ONE));
     }
@@ -171,17 +191,20 @@ mod tests {
     #[test]
     fn debts_are_those_of_both_ends_and_none_beyond_the_last_vertex() {
         let (mut debts, plane) = (VolumeDebts::default(), (DVec3::X, DVec3::X));
-        assert_eq!(debts.owed([0, 7]), 0.0);
+        assert_eq!(debts.owed([0, 7].into_iter()), 0.0);
         debts.settle((1, 3), (0.0, 0.5 * NO_DEBT), plane);
         assert!(debts.0.is_empty(), "rounding is no debt");
         debts.settle((1, 3), (0.0, 0.5), plane);
         debts.settle((2, 3), (0.0, -0.125), plane);
         assert_eq!(
-            [[1, 2], [0, 2], [1, 3], [3, 4]].map(|v| debts.owed(v)),
+            [[1, 2], [0, 2], [1, 3], [3, 4]].map(|v| debts.owed(v.into_iter())),
             [0.375, -0.125, 0.5, 0.0]
         );
         debts.settle((1, 3), (0.375, -0.375), plane);
-        assert_eq!(debts.owed([0, 1]), 0.0, "a debt that is repaid is gone");
+        assert_eq!(debts.owed([0, 1].into_iter()), 0.0, "a debt that is repaid is gone");
+        assert_eq!(debts.all().collect::<Vec<_>>(), [(2, -0.125)]);
+        assert_eq!(debts.take([2, 7].into_iter()), -0.125);
+        assert_eq!(debts.all().count(), 0, "a debt that is taken over is gone");
     }
 
     #[test]

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::engine::policy::Placement;
 use crate::methods::qem::{Optimal, Quadrics};
-use crate::methods::volume::VolumePlane;
+use crate::methods::volume::{VolumePlane, along_normal};
 use crate::refusal::Refusal;
 use crate::surface::contracted::Freedom;
 use crate::surface::neighbourhood::Neighbourhood;
@@ -16,7 +16,7 @@ const REACH: f64 = 0.5;
 
 /// Placement at the quadric optimum, moved along the line from the middle of the ring until the
 /// volume is conserved, or by the shortest way where that line is nearly parallel to the surface.
-/// An open ring has no volume and keeps the optimum.
+/// At a boundary the volume is that behind the cones that close it.
 pub(crate) struct VolumeConserving;
 
 impl Placement<Quadrics> for VolumeConserving {
@@ -27,10 +27,11 @@ impl Placement<Quadrics> for VolumeConserving {
         neighbourhood: &Neighbourhood,
     ) -> Result<Placed, Refusal> {
         let placed = Optimal.place(surface, memory, neighbourhood)?;
-        if neighbourhood.freedom() != Freedom::Free
-            || !neighbourhood.is_closed(surface)
-            || neighbourhood.ring().is_empty()
-        {
+        if let Freedom::AlongNormal(kept) = neighbourhood.freedom() {
+            let position = along_normal(surface, neighbourhood, kept)?;
+            return Ok(Placed { position, ..placed });
+        }
+        if neighbourhood.freedom() != Freedom::Free || neighbourhood.ring().is_empty() {
             return Ok(placed);
         }
         let ring = neighbourhood.ring();

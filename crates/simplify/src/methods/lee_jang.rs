@@ -49,7 +49,7 @@ fn constrict(
     let corners = [0, 1, 2].map(|i| surface.position(neighbourhood.contracted()[i]));
     let [a, b, c] = corners;
     let centroid = (a + b + c) / 3.0;
-    let depth = (a.distance(b) + b.distance(c) + c.distance(a)) / 3.0;
+    let depth = (a.distance(b) + b.distance(c) + c.distance(a)) / 2.0;
     let inward = direction(creases, neighbourhood, (b - a).cross(c - a).normalize_or_zero());
     let base = centroid - depth * inward;
     let mut volume = VolumePlane::default();

@@ -13,7 +13,7 @@ use crate::engine::policy::{Memory, Placement, Priority};
 use crate::methods::feature_edges::feature_edges;
 use crate::methods::qem::SHORT_FIRST;
 use crate::methods::quadric::{Quadric, Symmetric};
-use crate::methods::volume::{VolumePlane, old_faces};
+use crate::methods::volume::{VolumePlane, along_normal, old_faces};
 use crate::refusal::Refusal;
 use crate::surface::contracted::{Contracted, Freedom};
 use crate::surface::neighbourhood::Neighbourhood;
@@ -144,9 +144,9 @@ impl Priority<Stars> for Memoryless {
             level += star.normal.dot(d);
         }
         let swept = Quadric::new(squares, linear, constant);
-        let x = match freedom {
-            Freedom::At(i) => offset(of[i]),
-            Freedom::Free => swept.optimum_on(normal, level, middle(surface, of), PULL),
+        let x = match freedom.kept() {
+            Some(kept) => offset(of[kept]),
+            None => swept.optimum_on(normal, level, middle(surface, of), PULL),
         };
         Some(swept.at(x) + SHORT_FIRST * swept.mean_of(offset(of[1]).length_squared()))
     }
@@ -199,6 +199,10 @@ fn place_with(
             let position = surface.position(neighbourhood.contracted()[kept]);
             Ok(Placed { position, kept, error_estimate })
         }
+        Freedom::AlongNormal(kept) => {
+            let position = along_normal(surface, neighbourhood, kept)?;
+            Ok(Placed { position, kept, error_estimate })
+        }
         Freedom::Free if offset.distance(middle) > neighbourhood.radius(origin + middle) => {
             Err(Refusal::Volume)
         }
@@ -229,6 +233,7 @@ fn choose(
         volume.add(normal, corner);
         swept = swept + Quadric::squared_plane(normal, normal.dot(corner));
     });
+    volume.add_cones(surface, neighbourhood, origin);
     let mut boundary = BoundarySums::default();
     for feature_edge in feature_edges(surface, neighbourhood.contracted()) {
         let [from, to] = feature_edge.ends.map(|v| surface.position(v) - origin);
@@ -241,10 +246,13 @@ fn choose(
             boundary.add(from, to);
         }
     }
-    let offset = match neighbourhood.freedom() {
-        Freedom::At(i) => place(i) - origin,
-        Freedom::Free => match boundary.line() {
-            Some(line) => line.best(&volume, &swept, middle, neighbourhood.radius(origin + middle)),
+    let offset = match neighbourhood.freedom().kept() {
+        Some(kept) => place(kept) - origin,
+        None => match boundary.line() {
+            Some(line) => {
+                let reach = neighbourhood.radius(origin + middle);
+                volume.nearest_within(line.best(&volume, &swept, middle, reach), reach)
+            }
             None => swept.optimum_on(volume.normal, volume.level, middle, PULL),
         },
     };

@@ -6,7 +6,7 @@ mod channels;
 mod creases;
 mod face_order;
 mod fan;
-mod feature_edges;
+pub(crate) mod feature_edges;
 mod kim_jang;
 mod lee_jang;
 mod lindstrom_turk;
@@ -16,7 +16,7 @@ mod quadric;
 mod samples;
 mod slopes;
 mod spr;
-mod volume;
+pub(crate) mod volume;
 mod wu;
 
 use crate::engine::candidates::{EdgeCandidates, FaceAndEdgeCandidates};
@@ -30,7 +30,7 @@ use crate::methods::kim_jang::VolumeConserving;
 use crate::methods::lee_jang::Constriction;
 use crate::methods::lindstrom_turk::{Memoryless, Stars};
 use crate::methods::pm::Energy;
-use crate::methods::qem::{Endpoint, Optimal, PlacementRule, Quadrics};
+use crate::methods::qem::{Endpoint, Optimal, PlacementRule, Plain, Quadrics, Recipe};
 use crate::methods::samples::Samples;
 use crate::methods::spr::Turn;
 use crate::methods::wu::WeightedMean;
@@ -43,6 +43,13 @@ pub(crate) fn start(method: Method, options: &Options, ready: PreparedSurface) -
         #[cfg(feature = "oracle")]
         Method::Qem => by_quadrics(options, Optimal, ready),
         Method::QemEndpoint => by_quadrics(options, Endpoint, ready),
+        Method::QemPlain => Algorithm {
+            candidates: EdgeCandidates,
+            memory: quadrics(Recipe::PLAIN, options, &ready, ()),
+            priority: Plain,
+            placement: Plain,
+        }
+        .start(ready),
         #[cfg(feature = "oracle")]
         Method::LindstromTurk => Algorithm {
             candidates: EdgeCandidates,
@@ -76,7 +83,7 @@ pub(crate) fn start(method: Method, options: &Options, ready: PreparedSurface) -
         .start(ready),
         Method::KimJang => Algorithm {
             candidates: EdgeCandidates,
-            memory: Quadrics::new(surface, &ready.connectivity, options.boundary_weight, ()),
+            memory: quadrics(Recipe::OURS, options, &ready, ()),
             priority: Optimal,
             placement: VolumeConserving,
         }
@@ -118,7 +125,16 @@ fn with_attributes<A: AttributeMetric + 'static, R: PlacementRule + Copy + 'stat
     rule: R,
     ready: PreparedSurface,
 ) -> Box<dyn Run> {
-    let PreparedSurface { surface, connectivity, .. } = &ready;
-    let memory = Quadrics::new(surface, connectivity, options.boundary_weight, attributes);
+    let memory = quadrics(Recipe::OURS, options, &ready, attributes);
     Algorithm { candidates: EdgeCandidates, memory, priority: rule, placement: rule }.start(ready)
+}
+
+fn quadrics<A>(
+    recipe: Recipe,
+    options: &Options,
+    ready: &PreparedSurface,
+    attributes: A,
+) -> Quadrics<A> {
+    let recipe = recipe.weighing(options.boundary_weight);
+    Quadrics::new(&ready.surface, &ready.connectivity, recipe, attributes)
 }

@@ -133,20 +133,19 @@ impl SampleFit {
             before += sample.squared;
             self.points.push(Point { place: sample.point - v0, on_rim: sample.on_rim() });
         });
-        let (ends, kept) = ([DVec3::ZERO, v1 - v0], neighbourhood.freedom());
+        let (ends, kept) = ([DVec3::ZERO, v1 - v0], neighbourhood.freedom().kept());
         let view = match kept {
-            Freedom::At(kept) => self.evaluate(ends[kept]),
-            Freedom::Free => self.descend([ends[0], ends[1], ends[1] * 0.5]),
+            Some(kept) => self.evaluate(ends[kept]),
+            None => self.descend([ends[0], ends[1], ends[1] * 0.5]),
         };
         // An end keeps its position exactly.
         let position = match ends.iter().position(|&end| end == view.place) {
             Some(end) => [v0, v1][end],
             None => v0 + view.place,
         };
-        let kept = if let Freedom::At(kept) = kept { kept } else { 0 };
         Some(FittedPlace {
             position,
-            kept,
+            kept: kept.unwrap_or(0),
             cost: (view.energy - before).max(0.0),
             worst: view.worst,
         })

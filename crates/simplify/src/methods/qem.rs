@@ -53,9 +53,46 @@ pub(crate) const BOUNDARY_WEIGHT: f64 = 2.0;
 /// an area.
 const FEATURE_WEIGHT: f64 = 1.0;
 
+/// Weight of a constraint plane against planes of weight 1. The paper asks for a large penalty and
+/// names no figure.
+const PENALTY: f64 = 1000.0;
+
+/// Weights of planes, and how long they are remembered.
+#[derive(Clone, Copy)]
+pub(crate) struct Recipe {
+    /// True if planes weigh as much as their faces' areas, and constraint planes as squared
+    /// lengths; false if all weigh the same.
+    by_area: bool,
+    boundary_weight: f64,
+    feature_weight: f64,
+    /// Fraction of the summed quadrics that a new vertex keeps.
+    memory: f64,
+}
+
+impl Recipe {
+    /// Our own quadrics.
+    pub(crate) const OURS: Self = Self {
+        by_area: true,
+        boundary_weight: BOUNDARY_WEIGHT,
+        feature_weight: FEATURE_WEIGHT,
+        memory: MEMORY,
+    };
+
+    /// Quadrics as first published [GH97]: planes of equal weight, a large penalty on boundaries,
+    /// and nothing is forgotten. Seams, of which the paper has none, are treated like boundaries.
+    pub(crate) const PLAIN: Self =
+        Self { by_area: false, boundary_weight: PENALTY, feature_weight: PENALTY, memory: 1.0 };
+
+    /// Returns the recipe with another weight of boundaries, if one is given.
+    pub(crate) fn weighing(self, boundary: Option<f64>) -> Self {
+        Self { boundary_weight: boundary.unwrap_or(self.boundary_weight), ..self }
+    }
+}
+
 /// Quadrics of all vertices, and the attribute term.
 pub(crate) struct Quadrics<A = ()> {
     quadrics: Vec<Quadric>,
+    recipe: Recipe,
     attributes: A,
 }
 
@@ -63,18 +100,17 @@ impl<A> Quadrics<A> {
     pub(crate) fn new(
         surface: &Surface,
         connectivity: &Connectivity,
-        boundary_weight: Option<f64>,
+        recipe: Recipe,
         attributes: A,
     ) -> Self {
-        let boundary_weight = boundary_weight.unwrap_or(BOUNDARY_WEIGHT);
         let mut quadrics = vec![Quadric::default(); surface.vertex_count()];
         for f in 0..surface.face_count() {
             let face = FaceId(f as u32);
             if surface.is_alive(face) {
-                add_face(&mut quadrics, surface, (face, connectivity), boundary_weight);
+                add_face(&mut quadrics, surface, (face, connectivity), recipe);
             }
         }
-        Self { quadrics, attributes }
+        Self { quadrics, recipe, attributes }
     }
 
     /// Returns the sum of the contracted vertices' quadrics, relative to the first.
@@ -97,8 +133,9 @@ impl<A: AttributeMetric> Memory for Quadrics<A> {
         // Constraint planes cannot be rebuilt from the faces around, so vertices on feature edges
         // keep everything.
         let on_feature = |&v: &VertexId| surface.flags(v).any(Flags::FEATURE);
-        if !neighbourhood.contracted().iter().any(on_feature) {
-            merged = merged * MEMORY + star(neighbourhood, placed.position) * (1.0 - MEMORY);
+        let memory = self.recipe.memory;
+        if memory < 1.0 && !neighbourhood.contracted().iter().any(on_feature) {
+            merged = merged * memory + star(neighbourhood, placed.position) * (1.0 - memory);
         }
         self.quadrics[neighbourhood.contracted()[placed.kept].index()] = merged;
         self.attributes.merge(surface, neighbourhood, placed);
@@ -122,26 +159,31 @@ fn add_face(
     quadrics: &mut [Quadric],
     surface: &Surface,
     (face, connectivity): (FaceId, &Connectivity),
-    boundary_weight: f64,
+    recipe: Recipe,
 ) {
     let area_normal = surface.area_normal(face);
     let Some(normal) = area_normal.try_normalize() else { return };
-    let plane = Quadric::face(area_normal);
+    let plane = match recipe.by_area {
+        true => Quadric::face(area_normal),
+        false => Quadric::plane(normal, 1.0),
+    };
     let corners = surface.face(face);
     for v in corners {
         quadrics[v.index()] = quadrics[v.index()] + plane;
     }
     for k in 0..3 {
         let weight = match connectivity.twin(Side::new(face, k)) {
-            Twin::Boundary => boundary_weight,
-            Twin::Side(twin) if is_feature(surface, Side::new(face, k), twin) => FEATURE_WEIGHT,
+            Twin::Boundary => recipe.boundary_weight,
+            Twin::Side(twin) if is_feature(surface, Side::new(face, k), twin) => {
+                recipe.feature_weight
+            }
             _ => continue,
         };
         let ends = [corners[k], corners[(k + 1) % 3]];
         let along = surface.position(ends[1]) - surface.position(ends[0]);
         if let Some(across) = along.cross(normal).try_normalize() {
-            let constraint =
-                Quadric::plane(across, weight * along.length_squared()).as_constraint();
+            let weight = if recipe.by_area { weight * along.length_squared() } else { weight };
+            let constraint = Quadric::plane(across, weight).as_constraint();
             for v in ends {
                 quadrics[v.index()] = quadrics[v.index()] + constraint;
             }
@@ -164,6 +206,11 @@ pub(crate) struct Optimal;
 /// Placement at the better end of the edge, so that no vertex moves; priority and placement in one.
 #[derive(Clone, Copy)]
 pub(crate) struct Endpoint;
+
+/// Placement at the optimum itself where there is one, else at the best of both ends and the
+/// middle [GH97]; priority and placement in one.
+#[derive(Clone, Copy)]
+pub(crate) struct Plain;
 
 /// Sum of the quadrics of a candidate, for placement rules.
 pub(crate) struct EdgeSum<'a, A> {
@@ -199,7 +246,7 @@ pub(crate) trait PlacementRule: Sync {
 impl PlacementRule for Optimal {
     #[inline]
     fn choose<A: AttributeMetric>(sum: &EdgeSum<'_, A>, freedom: Freedom) -> CostedPlacement {
-        if let Freedom::At(kept) = freedom {
+        if let Some(kept) = freedom.kept() {
             return sum.at(kept);
         }
         let EdgeSum { geometry, surface, of, .. } = *sum;
@@ -215,13 +262,29 @@ impl PlacementRule for Optimal {
 impl PlacementRule for Endpoint {
     #[inline]
     fn choose<A: AttributeMetric>(sum: &EdgeSum<'_, A>, freedom: Freedom) -> CostedPlacement {
-        match freedom {
-            Freedom::At(kept) => sum.at(kept),
-            Freedom::Free => (0..sum.of.len())
+        match freedom.kept() {
+            Some(kept) => sum.at(kept),
+            None => (0..sum.of.len())
                 .map(|kept| sum.at(kept))
                 .min_by(|a, b| a.cost.total_cmp(&b.cost))
                 .expect("a candidate has vertices"),
         }
+    }
+}
+
+impl PlacementRule for Plain {
+    fn choose<A: AttributeMetric>(sum: &EdgeSum<'_, A>, freedom: Freedom) -> CostedPlacement {
+        if let Some(kept) = freedom.kept() {
+            return sum.at(kept);
+        }
+        let at = |offset| CostedPlacement { offset, kept: 0, cost: sum.geometry.at(offset) };
+        if let Some(offset) = sum.geometry.minimum() {
+            return at(offset);
+        }
+        let [origin, end] = [0, 1].map(|i| sum.surface.position(sum.of[i]));
+        let places = [at((end - origin) * 0.5), sum.at(0), sum.at(1)];
+        let [first, others @ ..] = places;
+        others.into_iter().fold(first, |best, next| if next.cost < best.cost { next } else { best })
     }
 }
 

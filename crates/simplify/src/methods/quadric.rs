@@ -7,6 +7,9 @@ use std::ops::{Add, Mul};
 
 use glam::{DMat3, DVec3};
 
+/// Determinant of a matrix of trace 1 above which it counts as invertible.
+const DETERMINED: f64 = 1e-10;
+
 /// Symmetric 3 × 3 matrix.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Symmetric {
@@ -61,6 +64,12 @@ impl Symmetric {
         let o = self.off_diagonal;
         self.diagonal * x
             + DVec3::new(o.z * x.y + o.y * x.z, o.z * x.x + o.x * x.z, o.y * x.x + o.x * x.y)
+    }
+
+    #[inline]
+    pub(crate) fn determinant(&self) -> f64 {
+        let (d, o) = (self.diagonal, self.off_diagonal);
+        d.element_product() + 2.0 * o.element_product() - (d * o * o).element_sum()
     }
 
     /// Returns PAP, where A is the matrix and P the projection along the unit vector `n`.
@@ -219,6 +228,13 @@ impl Quadric {
         if self.weight > 0.0 { (value / self.weight).sqrt() } else { 0.0 }
     }
 
+    /// Returns the offset at which Q is least; `None` if the planes leave it undetermined.
+    pub(crate) fn minimum(&self) -> Option<DVec3> {
+        let unit = self.a.trace();
+        let is_determined = self.a.determinant() > DETERMINED * unit * unit * unit;
+        is_determined.then(|| self.a.solve(-self.b)).filter(|x| x.is_finite())
+    }
+
     /// Returns the offset at which Q + `pull`·trace(A)·|x − toward|² is least.
     ///
     /// The pull matters only where the planes leave the point free, along a flat or an edge, and
@@ -305,6 +321,16 @@ mod tests {
         let quadric = corner().seen_from(DVec3::new(1.0, 2.0, 3.0));
         let found = quadric.optimum(DVec3::ZERO, 1e-9);
         assert!((found - DVec3::new(-1.0, -2.0, -3.0)).length() < 1e-6);
+    }
+
+    #[test]
+    fn three_planes_determine_a_minimum_and_two_do_not() {
+        let found = corner().seen_from(DVec3::new(1.0, 2.0, 3.0)).minimum().unwrap();
+        assert!((found - DVec3::new(-1.0, -2.0, -3.0)).length() < 1e-12);
+        let diagonal = DVec3::new(1.0, 1.0, 0.0).normalize();
+        let edge = Quadric::plane(diagonal, 1.0) + Quadric::plane(DVec3::X, 2.0);
+        assert_eq!(edge.minimum(), None);
+        assert_eq!(Quadric::default().minimum(), None);
     }
 
     #[test]

@@ -50,9 +50,9 @@ impl Placement<()> for Turn {
 /// Returns the end to keep, and the cost.
 fn cheaper(surface: &Surface, of: &Contracted, freedom: Freedom) -> (usize, f64) {
     let onto = |kept: usize| (kept, cost(surface, of[1 - kept], of[kept]));
-    match freedom {
-        Freedom::At(kept) => onto(kept),
-        Freedom::Free => {
+    match freedom.kept() {
+        Some(kept) => onto(kept),
+        None => {
             let (first, second) = (onto(0), onto(1));
             if second.1 < first.1 { second } else { first }
         }

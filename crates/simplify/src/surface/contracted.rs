@@ -40,6 +40,9 @@ pub enum Freedom {
     /// The new vertex may be anywhere.
     #[default]
     Free,
+    /// The new vertex must be at the contracted vertex with this index, or on the surface's normal
+    /// there: a seam holds it, and its texture must not slide.
+    AlongNormal(usize),
     /// The new vertex must be at the position of the contracted vertex with this index.
     At(usize),
 }
@@ -50,7 +53,19 @@ impl Freedom {
     pub(crate) fn and(self, other: Self) -> Option<Self> {
         match (self, other) {
             (Self::Free, only) | (only, Self::Free) => Some(only),
-            (a, b) => (a == b).then_some(a),
+            (Self::AlongNormal(a), Self::AlongNormal(b)) => (a == b).then_some(self),
+            (Self::At(a) | Self::AlongNormal(a), Self::At(b) | Self::AlongNormal(b)) => {
+                (a == b).then_some(Self::At(a))
+            }
+        }
+    }
+
+    /// Returns the index of the contracted vertex that must remain, if one must.
+    #[inline]
+    pub fn kept(self) -> Option<usize> {
+        match self {
+            Self::Free => None,
+            Self::AlongNormal(kept) | Self::At(kept) => Some(kept),
         }
     }
 }

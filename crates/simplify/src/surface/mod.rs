@@ -10,6 +10,7 @@ pub(crate) mod interpolate;
 pub(crate) mod level;
 pub(crate) mod nearest;
 pub(crate) mod neighbourhood;
+pub(crate) mod rims;
 pub(crate) mod ties;
 pub(crate) mod wedges;
 
@@ -18,6 +19,7 @@ use meshlod_mesh::{Connectivity, FaceId, Mesh, VertexId};
 
 use crate::engine::candidates::CandidateId;
 use crate::surface::neighbourhood::Neighbourhood;
+use crate::surface::rims::Rims;
 use crate::surface::ties::Ties;
 use crate::surface::wedges::Wedges;
 
@@ -138,6 +140,7 @@ pub struct Surface {
     live_faces: usize,
     pub(crate) wedges: Option<Wedges>,
     pub(crate) ties: Ties,
+    pub(crate) rims: Rims,
     /// Factor on the cost of a contraction that involves a protected vertex.
     pub(crate) protection: f64,
 }
@@ -179,9 +182,9 @@ impl Surface {
             })
             .collect();
         let live_faces = faces.iter().filter(|face| face.alive).count();
-        let (wedges, ties) = (Wedges::new(mesh), Ties::default());
+        let (wedges, ties, rims) = (Wedges::new(mesh), Ties::default(), Rims::default());
         let mut surface =
-            Self { vertices, faces, stars, live_faces, wedges, ties, protection: 1.0 };
+            Self { vertices, faces, stars, live_faces, wedges, ties, rims, protection: 1.0 };
         surface.flag_seams();
         surface
     }
@@ -342,6 +345,7 @@ impl Surface {
                 self.ties.leave(gone);
             }
         }
+        self.rims.join(kept, &neighbourhood.contracted);
         self.join(neighbourhood, kept, placed);
     }
 

@@ -242,7 +242,7 @@ pub(crate) fn freedom(
     let mut seam = false;
     let mut tied = false;
     // A face has no edge to slide along a boundary or a tie, so it is contracted onto its corner
-    // there.
+    // there, which may still move along the surface's normal at a boundary.
     let pins = if contracted.len() == 2 { Flags::PINNED } else { PINS_OF_FACE };
     for (i, &v) in contracted.iter().enumerate() {
         let flags = surface.flags(v);
@@ -256,7 +256,13 @@ pub(crate) fn freedom(
             });
         }
     }
-    let by_pin = pinned.map_or(Freedom::Free, Freedom::At);
+    let by_pin = match pinned {
+        None => Freedom::Free,
+        Some(i) if surface.flags(contracted[i]).any(Flags::PINNED.or(Flags::TIED)) => {
+            Freedom::At(i)
+        }
+        Some(i) => Freedom::AlongNormal(i),
+    };
     let by_tie = match contracted[..] {
         [v0, v1] if tied => ties::partners(surface, [v0, v1], partners)?,
         _ => Freedom::Free,

@@ -121,8 +121,8 @@ impl Wedges {
         };
         match (gives_up(0), gives_up(1)) {
             (true, true) => Ok(Freedom::Free),
-            (true, false) => Ok(Freedom::At(1)),
-            (false, true) => Ok(Freedom::At(0)),
+            (true, false) => Ok(Freedom::AlongNormal(1)),
+            (false, true) => Ok(Freedom::AlongNormal(0)),
             (false, false) => Err(Refusal::Seam),
         }
     }
@@ -142,12 +142,12 @@ impl Wedges {
             room.clear();
             let ends = [corners[stays], v];
             self.pair(surface, ends, room);
-            if on_seam(&corners[i]) || self.freedom(surface, ends, room)? == Freedom::At(1) {
+            if on_seam(&corners[i]) || self.freedom(surface, ends, room)?.kept() == Some(1) {
                 return Err(Refusal::Seam);
             }
         }
         room.clear();
-        Ok(Freedom::At(stays))
+        Ok(Freedom::AlongNormal(stays))
     }
 
     /// Iterates over the wedges whose values a contraction changes, possibly with repetitions.
@@ -175,8 +175,9 @@ impl Wedges {
         placed: &Placed,
     ) {
         let (pairs, kept) = (&neighbourhood.wedge_pairs, placed.kept);
-        // An end that stays in place keeps its values exactly.
-        if placed.position != surface.position(neighbourhood.contracted[kept]) {
+        // An end that stays in place or moves along its normal keeps its values exactly.
+        let moves = placed.position != surface.position(neighbourhood.contracted[kept]);
+        if moves && neighbourhood.freedom == Freedom::Free {
             self.take_values(&Nearby::new(self, surface, neighbourhood, placed), pairs, kept);
         }
         for spoke in &neighbourhood.spokes {

@@ -23,6 +23,9 @@ pub struct MergeTree {
     turns: Vec<u32>,
     /// Number of faces left after 0, 1, 2, … contractions.
     faces_left: Vec<u32>,
+    /// Rising numbers of contractions after which tied vertices are apart, because only some of
+    /// those that move them together have been made.
+    torn: Vec<u32>,
 }
 
 /// Rank of a vertex that never vanishes.
@@ -56,6 +59,7 @@ impl MergeTree {
             turns: vec![STAYS; vertices],
             faces_left: vec![faces.len() as u32],
             faces,
+            torn: Vec::new(),
         }
     }
 
@@ -64,11 +68,49 @@ impl MergeTree {
     /// # Errors
     /// If simplification refuses the mesh or the target.
     pub fn record(mesh: &Mesh, target: Target) -> Result<Self, SimplifyError> {
+        Self::record_with(mesh, target, &Options::default())
+    }
+
+    /// Simplifies a mesh as [`MergeTree::record`] does, with the locks, ties and weights of some
+    /// options; the method and the topology stay.
+    ///
+    /// [`MergeTree::contractions_to`] then gives levels whose tied vertices are together.
+    /// # Errors
+    /// If simplification refuses the mesh, the target or the locks.
+    pub fn record_with(
+        mesh: &Mesh,
+        target: Target,
+        options: &Options,
+    ) -> Result<Self, SimplifyError> {
+        let options = Self::options(options);
+        let mut simplifier = Simplifier::new(mesh, &options)?;
+        let (mut history, mut torn) = (History::default(), Vec::new());
+        match target.valid()? {
+            target if options.locks.ties.is_empty() => {
+                simplifier.run(target, &mut history)?;
+            }
+            target => {
+                let faces = target.faces_of(mesh.faces.len());
+                let made = |history: &History| history.contractions().len() as u32;
+                // A step makes the contractions of tied edges together.
+                while simplifier.live_faces() > faces {
+                    let before = made(&history);
+                    if !simplifier.step(f64::INFINITY, &mut history) {
+                        break;
+                    }
+                    torn.extend(before + 1..made(&history));
+                }
+            }
+        }
+        let tree = Self::from_history(mesh, &history).expect("just recorded from this mesh");
+        Ok(Self { torn, ..tree })
+    }
+
+    /// Returns options by which [`MergeTree::record_with`] simplifies: those given, with the method
+    /// and the topology that strips need.
+    pub fn options(options: &Options) -> Options {
         let (method, topology) = (Method::QemEndpoint, Topology::Keep);
-        let options = Options { method, topology, ..Options::default() };
-        let mut history = History::default();
-        Simplifier::new(mesh, &options)?.run(target, &mut history)?;
-        Ok(Self::from_history(mesh, &history).expect("just recorded from this mesh"))
+        Options { method, topology, vanish_below: None, ..options.clone() }
     }
 
     /// Builds the merge tree of a mesh from the recorded history of its simplification.
@@ -123,11 +165,15 @@ impl MergeTree {
         self.faces_left[contractions.min(self.contractions())] as usize
     }
 
-    /// Returns the least number of contractions that leaves at most `faces` faces, or the number of
-    /// all contractions if none suffices.
+    /// Returns the least number of contractions that leaves at most `faces` faces and tied vertices
+    /// together, or the number of all contractions if none suffices.
     pub fn contractions_to(&self, faces: usize) -> usize {
         let found = self.faces_left.partition_point(|&left| left as usize > faces);
-        found.min(self.contractions())
+        let mut found = found.min(self.contractions());
+        while self.torn.binary_search(&(found as u32)).is_ok() {
+            found += 1;
+        }
+        found
     }
 
     /// Returns the faces of the full-resolution mesh.
@@ -186,6 +232,7 @@ fn whole_faces(faces: &[[VertexId; 3]]) -> Vec<[VertexId; 3]> {
 #[cfg(test)]
 mod tests {
     use meshlod_fixtures::{grid, tetrahedron};
+    use meshlod_mesh::Locks;
     use meshlod_samples as samples;
 
     use super::*;
@@ -226,6 +273,36 @@ mod tests {
             assert!(is_enough(made) || made == tree.contractions(), "{faces}");
             assert!(made == 0 || !is_enough(made - 1), "{faces}");
         }
+    }
+
+    #[test]
+    fn tied_tiles_fit_together_at_every_level() {
+        // Two terrains side by side: the second is the mirror image of the first.
+        let mut mesh = samples::terrain(800);
+        let (vertices, right) = (mesh.positions.len(), mesh.bounds().max[0]);
+        let mirrored = mesh.positions.clone();
+        mesh.positions.extend(mirrored.iter().map(|&[x, y, z]| [2.0 * right - x, y, z]));
+        let other = |face: &[VertexId; 3]| face.map(|v| VertexId::new(vertices + v.index()));
+        let faces: Vec<_> = mesh.faces.iter().map(other).map(|[a, b, c]| [a, c, b]).collect();
+        mesh.faces.extend(faces);
+        let border = (0..vertices).filter(|&v| mesh.positions[v][0] == right);
+        let ties: Vec<_> = border.map(|v| [v, vertices + v].map(VertexId::new).to_vec()).collect();
+        let locks = Locks { of_vertex: Vec::new(), ties: ties.clone() };
+        let options = Options { locks, ..Options::default() };
+        let tree = MergeTree::record_with(&mesh, Target::Ratio(0.1), &options).unwrap();
+        let is_whole = |made: usize| {
+            let shown = |v: VertexId| {
+                let mut v = v;
+                while tree.turns[v.index()] < made as u32 {
+                    v = tree.parents[v.index()];
+                }
+                mesh.positions[v.index()]
+            };
+            ties.iter().all(|tie| shown(tie[0]) == shown(tie[1]))
+        };
+        assert!((0..=mesh.faces.len()).all(|faces| is_whole(tree.contractions_to(faces))));
+        assert!(!(0..tree.contractions()).all(is_whole), "ties are contracted");
+        assert!(tree.faces_left(tree.contractions()) <= mesh.faces.len() / 10);
     }
 
     #[test]

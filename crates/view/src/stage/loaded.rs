@@ -170,7 +170,7 @@ fn levels(path: &Path) -> Result<Loaded, LoadError> {
             let cut = Cut::at(&model, &finest).map_err(|error| damaged(error.into()))?;
             (cut.level().mesh(), LoadedContent::Levels(Arc::new(model)))
         }
-        ModelFile::HeightField(field) => {
+        ModelFile::HeightField(field, _) => {
             let model = Rtin::new(&field);
             let level = model.level(&finest).map_err(|error| damaged(error.into()))?;
             (level.mesh(), LoadedContent::HeightField(Arc::new(model)))

@@ -1,8 +1,12 @@
 //! Measures pixels that show through where components meet, and edges that open, for meshlod and
 //! meshoptimizer.
 
+mod fish_in_parts;
 mod open;
+mod policies;
 mod ways;
+
+pub use policies::run as policies;
 
 use anyhow::Result;
 use meshlod::mesh::Mesh;

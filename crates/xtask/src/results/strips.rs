@@ -105,6 +105,7 @@ fn by_level(all: &[Levels]) -> String {
             "rebuilt",
             "DTFF over independent triangles, %",
             "repair",
+            "DTFF, odd starts free",
         ]);
         levels.rows().for_each(|row| table.row(row));
         text += &table.markdown();

@@ -35,7 +35,7 @@ impl Strip {
                 text += "verified: the strips draw exactly the faces of each level\n";
             }
         }
-        let left_out = source.mesh.faces.len() - source.tree.faces().len();
+        let left_out = source.input.mesh.faces.len() - source.tree.faces().len();
         if left_out > 0 {
             text += &format!(
                 "left out: {}, degenerate or duplicate\n",

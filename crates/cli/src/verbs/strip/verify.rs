@@ -4,15 +4,16 @@ use std::cmp::Reverse;
 
 use meshlod::mesh::{FaceId, VertexId};
 use meshlod::simplify::Simplifier;
-use meshlod::strip::difference;
-use meshlod::{Mesh, Method, Options, SimplifyError, Target, Topology};
+use meshlod::strip::{MergeTree, difference};
+use meshlod::{SimplifyError, Target};
 
 use super::StrippedLevel;
+use crate::constraints::FlatInput;
 
 /// Compares the triangles drawn at each level with the faces left by simplifying to it, and at full
 /// size with `whole`, the cleaned faces of the mesh.
 pub(super) fn compare(
-    mesh: &Mesh,
+    input: &FlatInput,
     whole: &[[VertexId; 3]],
     levels: &mut [StrippedLevel],
 ) -> Result<(), SimplifyError> {
@@ -26,9 +27,8 @@ pub(super) fn compare(
     if coarser.is_empty() {
         return Ok(());
     }
-    let (method, topology) = (Method::QemEndpoint, Topology::Keep);
-    let options = Options { method, topology, ..Options::default() };
-    let mut simplifier = Simplifier::new(mesh, &options)?;
+    let options = MergeTree::options(&input.options);
+    let mut simplifier = Simplifier::new(&input.mesh, &options)?;
     for level in coarser {
         simplifier.run(Target::Faces(level.triangles), &mut ())?;
         let surface = simplifier.surface();

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use glam::DVec3;
 use meshlod_fixtures as fixtures;
-use meshlod_mesh::{Mesh, VertexId};
+use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId};
 use meshlod_samples as samples;
 use meshlod_simplify::{Method, Options};
 
@@ -282,4 +283,43 @@ fn a_lossless_file_that_is_damaged_is_refused() {
         }
     }
     assert!(refused > 100 && passed > 20, "{refused} refused, {passed} passed");
+}
+
+/// Tiles of a terrain that are coarsened apart fit together where their borders are locked.
+#[test]
+fn locked_vertices_are_in_every_cut() {
+    let mesh = placed(samples::terrain(800), |x, k| [431_234.1, 5_412_345.7, 0.3][k] + x / 3.0);
+    let border = Connectivity::new(&mesh.faces, mesh.positions.len());
+    let is_border = |v: usize| border.marks(VertexId::new(v)).boundary();
+    let locked: Vec<usize> = (0..mesh.positions.len()).filter(|&v| is_border(v)).collect();
+    // One vertex inside is locked, two are tied and so locked here.
+    let inside: Vec<usize> = (0..mesh.positions.len()).filter(|&v| !is_border(v)).collect();
+    let mut of_vertex = vec![Lock::Free; mesh.positions.len()];
+    of_vertex[inside[3]] = Lock::Locked;
+    let locks = Locks { of_vertex, ties: vec![vec![VertexId::new(inside[40])]] };
+    let held: Vec<[f64; 3]> =
+        locked.iter().chain([&inside[3], &inside[40]]).map(|&v| mesh.positions[v]).collect();
+    for method in [Method::LindstromTurk, Method::Qem, Method::LeeJang, Method::QemEndpoint] {
+        let options =
+            Options { method, lock_boundary: true, locks: locks.clone(), ..Options::default() };
+        let lossless = Forest::lossless(&mesh, &options).unwrap();
+        let rounded = Forest::new(&mesh, &options).unwrap();
+        for (forest, storage) in [(lossless, small()), (rounded, Storage::default())] {
+            let archive = Archive::open(Archive::write(&forest, &storage).unwrap().0).unwrap();
+            // Rounding is stated for the recorded positions, which are single precision.
+            let most = if archive.is_lossless() { 0.0 } else { 1.001 * archive.rounding() };
+            let model = archive.read().unwrap().0;
+            for i in 0..12 {
+                let error = if i == 0 { f64::MAX } else { 0.2 * f64::from(i) };
+                let level = Cut::at(&model, &Query::uniform(error)).unwrap().level().mesh();
+                let far = |p: &[f64; 3]| {
+                    let to = |q: &[f64; 3]| DVec3::from(*p).distance(DVec3::from(*q));
+                    level.positions.iter().map(to).fold(f64::INFINITY, f64::min)
+                };
+                let worst = held.iter().map(far).fold(0.0, f64::max);
+                assert!(worst <= most, "{}, {error}: {worst} of {most}", method.name());
+                assert!(i > 0 || level.faces.len() < mesh.faces.len() / 2);
+            }
+        }
+    }
 }

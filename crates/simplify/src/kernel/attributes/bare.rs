@@ -4,7 +4,7 @@ use meshlod_mesh::Attributes;
 
 use crate::kernel::attributes::{AttributeModel, RecordedValues};
 use crate::kernel::collapse::edge_ring::EdgeRing;
-use crate::kernel::collapse::{Collapse, Ends};
+use crate::kernel::collapse::{Collapse, Ends, Mobility};
 use crate::kernel::mesh::one_ring::Vertices;
 use crate::kernel::mesh::vertex::VertexQuadric;
 use crate::kernel::metric::Metric;
@@ -89,8 +89,8 @@ pub(crate) fn by_pins(vertices: &Vertices, v: u32, target: u32) -> Result<Ends, 
     let [first, second] = [v, target].map(|v| vertices.get(v).flags);
     match (first.stays_beside(second), second.stays_beside(first)) {
         (false, false) => Ok(Ends::free(v, target)),
-        (true, false) => Ok(Ends { free: false, ..Ends::free(v, target) }),
-        (false, true) => Ok(Ends { free: false, ..Ends::free(target, v) }),
+        (true, false) => Ok(Ends { mobility: Mobility::Fixed, ..Ends::free(v, target) }),
+        (false, true) => Ok(Ends { mobility: Mobility::Fixed, ..Ends::free(target, v) }),
         (true, true) => Err(Refusal::Locked),
     }
 }

@@ -4,8 +4,6 @@
 //! several wedges in one chart, creases in the shading, the unpaired ones stay with their faces:
 //! each takes the normal that fits it best, and all share one place in uv.
 
-use glam::Vec3;
-
 use crate::kernel::attributes::attribute_quadric::{AttributeQuadric, best_values};
 use crate::kernel::attributes::scratch::NewValues;
 use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
@@ -17,7 +15,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     pub(crate) fn values(&self, collapse: &Collapse, [s0, s1]: [u32; 2]) -> [f32; K] {
         let (f0, f1) = (self.quadric(s0), self.quadric(s1));
         let before = f0.values();
-        if collapse.displacement == Vec3::ZERO {
+        if collapse.keeps_values() {
             return before;
         }
         let mut values = best_values(f0, f1, collapse.half, collapse.from_middle);
@@ -27,13 +25,13 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
 
     /// Computes the new attribute values at all slots of both ends of an edge.
     ///
-    /// If `v0` stays where it is, its values do. But if unpaired slots of `v1` join it, all are
+    /// If `v0` stays where it is or moves along its normal, its values stay. But if unpaired slots of `v1` join it, all are
     /// written again, because a value converted to channels and back may differ in its last digit.
     pub(crate) fn find_values(&mut self, collapse: &Collapse) {
         let mut renewed = std::mem::take(&mut self.scratch.renewed);
         renewed.clear();
         let (ends, wedge_pairs) = (&collapse.ends, &collapse.ends.wedge_pairs);
-        let stays = collapse.displacement == Vec3::ZERO;
+        let stays = collapse.keeps_values();
         if !stays || self.unpaired(ends, 1).next().is_some() {
             let weight = |quadric: &AttributeQuadric<K>| if stays { 0.0 } else { quadric.weight() };
             for (i, &[s0, s1]) in wedge_pairs.pairs().iter().enumerate() {

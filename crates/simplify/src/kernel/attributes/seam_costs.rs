@@ -81,7 +81,7 @@ impl<M: Metric, const K: usize> SimdTask for CostsAtSeams<'_, '_, '_, M, K> {
 enum Motion {
     Not,
     Free,
-    /// The second end is contracted onto the first.
+    /// The second end is contracted onto the first, which may then move along its normal.
     Onto,
 }
 
@@ -152,19 +152,19 @@ impl SeamBatch {
 
     #[inline(always)]
     fn put_ends(&mut self, lane: usize, ends: &Ends) {
-        let Ends { v0, v1, free, cuts_seam, wedge_pairs } = ends;
+        let Ends { v0, v1, cuts_seam, wedge_pairs, .. } = ends;
         self.cuts_seam[lane] = *cuts_seam;
         self.put(
             lane,
             [*v0, *v1],
             wedge_pairs.pairs()[0],
-            if *free { Motion::Free } else { Motion::Onto },
+            if ends.is_free() { Motion::Free } else { Motion::Onto },
         );
         if let Some(other) = wedge_pairs.other() {
             self.others[self.others_len] = (lane, other);
             self.others_len += 1;
         }
-        if wedge_pairs.has_unpaired[1] || (*free && wedge_pairs.has_unpaired[0]) {
+        if wedge_pairs.has_unpaired[1] || (ends.is_free() && wedge_pairs.has_unpaired[0]) {
             self.unpaired[lane] = Some(*ends);
         }
     }
@@ -266,7 +266,7 @@ impl SeamBatch {
         for (lane, ends) in self.unpaired.iter().enumerate() {
             let Some(ends) = ends else { continue };
             let half = edges.half.get(lane);
-            if !ends.free {
+            if !ends.is_free() {
                 onto[lane] += wedges.unpaired_onto(ends, -2.0 * half);
                 continue;
             }

@@ -21,7 +21,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         collapse: &Collapse,
         slots: Option<&FaceWedges>,
     ) {
-        let moves = collapse.displacement != Vec3::ZERO || collapse.ends.cuts_seam;
+        let moves = !collapse.keeps_values() || collapse.ends.cuts_seam;
         if self.layers.has_uncosted() && moves {
             self.move_all_uncosted(edge_ring, collapse, slots);
         }
@@ -67,7 +67,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     /// are paired with themselves.
     fn collect_merged(&self, collapse: &Collapse, merged: &mut Vec<[u32; 2]>) {
         let ends = &collapse.ends;
-        let stays = collapse.displacement == Vec3::ZERO;
+        let stays = collapse.keeps_values();
         if !stays {
             merged.extend(ends.wedge_pairs.pairs());
         }

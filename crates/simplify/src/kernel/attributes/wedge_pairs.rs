@@ -3,7 +3,7 @@
 use crate::kernel::attributes::bare::by_pins;
 use crate::kernel::attributes::seam_sectors::Sector;
 use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
-use crate::kernel::collapse::{Ends, WedgePairs};
+use crate::kernel::collapse::{Ends, Mobility, WedgePairs};
 use crate::kernel::mesh::one_ring::{Vertices, is_seam};
 use crate::kernel::metric::Metric;
 use crate::refusal::Refusal;
@@ -19,16 +19,15 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         let at0 = self.seams.sides(vertices, v, target);
         let at1 = self.seams.sides(vertices, target, v);
         let mut wedge_pairs = WedgePairs::new(at0, at1, [false; 2]);
-        let leaves = self.may_leave(&mut wedge_pairs, (0, v)) && !flags[0].stays_beside(flags[1]);
-        let goes =
-            self.may_leave(&mut wedge_pairs, (1, target)) && !flags[1].stays_beside(flags[0]);
+        let moves = [!flags[0].stays_beside(flags[1]), !flags[1].stays_beside(flags[0])];
+        let leaves = self.may_leave(&mut wedge_pairs, (0, v)) && moves[0];
+        let goes = self.may_leave(&mut wedge_pairs, (1, target)) && moves[1];
         if leaves || goes {
-            return Ok(self.turned([v, target], wedge_pairs, [leaves, goes]));
+            return Ok(self.turned([v, target], wedge_pairs, [leaves, goes], moves));
         }
         if !self.release.is_done() {
             return Err(Refusal::Seam);
         }
-        let moves = [!flags[0].stays_beside(flags[1]), !flags[1].stays_beside(flags[0])];
         self.ends_across_seams([v, target], wedge_pairs, moves)
     }
 
@@ -57,18 +56,23 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         if !leaves && !goes {
             return Err(Refusal::Seam);
         }
-        let free = leaves && goes && parts == [false; 2];
-        let ends = self.turned(ends, wedge_pairs, [leaves, goes]);
-        Ok(Ends { free: ends.free && free, cuts_seam: true, ..ends })
+        let ends = self.turned(ends, wedge_pairs, [leaves, goes], moves);
+        let mobility = match ends.mobility {
+            Mobility::Free if parts != [false; 2] => Mobility::AlongNormal,
+            mobility => mobility,
+        };
+        Ok(Ends { mobility, cuts_seam: true, ..ends })
     }
 
     /// Turns an edge such that an end that may go is contracted into the other. At least one may.
+    /// `moves` are the ends that no pin holds.
     #[inline(always)]
     fn turned(
         &self,
         [v, target]: [u32; 2],
         wedge_pairs: WedgePairs,
         [leaves, goes]: [bool; 2],
+        moves: [bool; 2],
     ) -> Ends {
         // Where two slots of one end meet one of the other, not all can become one: that other end
         // goes.
@@ -78,7 +82,8 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         let (v0, v1) = if turns { (target, v) } else { (v, target) };
         let wedge_pairs = if turns { wedge_pairs.turned() } else { wedge_pairs };
         let wedge_pairs = self.one_each(wedge_pairs);
-        Ends { v0, v1, free: leaves && goes, cuts_seam: false, wedge_pairs }
+        let mobility = Mobility::new(leaves && goes, !moves[usize::from(turns)]);
+        Ends { v0, v1, mobility, cuts_seam: false, wedge_pairs }
     }
 
     /// Resolves a slot of `v1` in two pairs: it is merged into the slot of the lower wedge.

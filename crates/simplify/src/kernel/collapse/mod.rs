@@ -10,8 +10,7 @@ use glam::{DVec3, Vec3};
 pub(crate) struct Ends {
     pub(crate) v0: u32,
     pub(crate) v1: u32,
-    /// True if the new vertex may be anywhere, false if it stays at `v0`.
-    pub(crate) free: bool,
+    pub(crate) mobility: Mobility,
     /// True if a seam gives way: a chart at `v0` or `v1` does not go on along the edge.
     pub(crate) cuts_seam: bool,
     /// Slots of the two ends that become one.
@@ -23,7 +22,37 @@ impl Ends {
     #[inline(always)]
     pub(crate) fn free(v0: u32, v1: u32) -> Self {
         let wedge_pairs = WedgePairs::smooth(v0, v1);
-        Self { v0, v1, free: true, cuts_seam: false, wedge_pairs }
+        Self { v0, v1, mobility: Mobility::Free, cuts_seam: false, wedge_pairs }
+    }
+
+    /// Returns true if the new vertex may be anywhere.
+    #[inline(always)]
+    pub(crate) fn is_free(&self) -> bool {
+        self.mobility == Mobility::Free
+    }
+}
+
+/// Positions allowed for the new vertex of a contraction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Mobility {
+    /// Any position.
+    Free,
+    /// Positions on the surface's normal at `v0`: a seam holds the vertex, and its texture must not
+    /// slide.
+    AlongNormal,
+    /// The position of `v0` alone: a pin or a tie holds the vertex.
+    Fixed,
+}
+
+impl Mobility {
+    /// Returns the mobility of two ends, of which one stays with a pin or a tie where `fixed`.
+    #[inline(always)]
+    pub(crate) fn new(free: bool, fixed: bool) -> Self {
+        match (free, fixed) {
+            (true, _) => Self::Free,
+            (false, false) => Self::AlongNormal,
+            (false, true) => Self::Fixed,
+        }
     }
 }
 
@@ -39,6 +68,20 @@ pub(crate) struct Collapse {
     pub(crate) place: Vec3,
     /// Position of the new vertex relative to `v0`.
     pub(crate) displacement: Vec3,
+}
+
+impl Collapse {
+    /// Returns true if the new vertex could be at the position of `v0` alone.
+    pub(crate) fn is_held(&self) -> bool {
+        !self.ends.is_free() && self.displacement == Vec3::ZERO
+    }
+
+    /// Returns true if the wedges of `v0` keep their values: it stays where it is, or moves along
+    /// the surface's normal only.
+    #[inline(always)]
+    pub(crate) fn keeps_values(&self) -> bool {
+        self.displacement == Vec3::ZERO || !self.ends.is_free()
+    }
 }
 
 /// Slots that meet along an edge, each pair from `v0` and `v1`.

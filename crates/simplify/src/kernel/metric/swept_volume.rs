@@ -178,8 +178,20 @@ impl Metric for SweptVolume {
         let is_far = place.length_squared() > quadric.half.length_squared();
         let allowed = allowed * quadric.weight();
         match is_far && quadric.at(place) > allowed {
-            true => towards(quadric, place, allowed),
+            true => towards(quadric, quadric.minimum(), place, allowed),
             false => place,
+        }
+    }
+
+    /// The place lies where the normal meets the plane of equal volume, or as near to it as
+    /// `allowed` permits.
+    fn optimum_along_normal(quadric: &EdgeQuadricF64, end0: &Vertex, allowed: f64) -> DVec3 {
+        let &EdgeQuadricF64 { normal, level, half, .. } = quadric;
+        let direction = end0.quadric.vector().as_dvec3();
+        let step = direction * ((level + normal.dot(half)) / normal.dot(direction));
+        match step.is_finite() {
+            true => towards(quadric, -half, step - half, allowed * quadric.weight()),
+            false => -half,
         }
     }
 
@@ -235,14 +247,13 @@ fn on_plane_of_equal_volume(quadric: &EdgeQuadricF64) -> DVec3 {
         + e2 * ((m11 * r2 - m12 * r1) / determinant)
 }
 
-/// Goes from where the quadric is smallest at all towards a place on the plane of equal volume,
-/// until the quadric has grown by what is allowed.
+/// Goes from `best` towards a place on the plane of equal volume, until the quadric has grown by
+/// what is allowed.
 ///
 /// At a corner of a box, or at the end of a bar, the plane is farther away than half the edge: there
 /// the volume is not preserved. On a scan this is very rare.
 #[cold]
-fn towards(quadric: &EdgeQuadricF64, place: DVec3, allowed: f64) -> DVec3 {
-    let best = quadric.minimum();
+fn towards(quadric: &EdgeQuadricF64, best: DVec3, place: DVec3, allowed: f64) -> DVec3 {
     let allowed = allowed.max(VOLUME_SHARE * quadric.at(best));
     let step = place - best;
     let growth = step.dot(quadric.sum * step);

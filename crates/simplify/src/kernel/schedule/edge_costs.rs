@@ -145,7 +145,7 @@ fn correct<A: AttributeModel>(
         if flags.any(VertexFlags::HELD) && !flags.any(VertexFlags::SEAM) {
             *cost = match model.orient(vertices, u, v) {
                 Err(_) => f32::INFINITY,
-                Ok(ends) if ends.free => *cost,
+                Ok(ends) if ends.is_free() => *cost,
                 Ok(ends) => {
                     let (end0, end1) = (vertices.get(ends.v0), vertices.get(ends.v1));
                     let weight = SymmetricMatrix(end1.quadric.squares()).trace();

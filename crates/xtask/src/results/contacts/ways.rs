@@ -1,7 +1,7 @@
 //! Ways to simplify a mesh of many components, for comparison.
 
 use anyhow::Result;
-use meshlod::check::{LockOptions, fuse, locks};
+use meshlod::check::{ContactPolicy, LockOptions, fuse, locks};
 use meshlod::mesh::{Labels, Lock, Locks, Mesh, VertexId, face_components};
 use meshlod::simplify::{History, Options, Simplifier, Target};
 use meshlod_bench::peer::simplify_with_border_lock;
@@ -98,11 +98,11 @@ pub fn by_component(mut mesh: Mesh) -> Mesh {
 }
 
 fn contacts(mesh: &Mesh) -> Locks {
-    locks(mesh, &LockOptions { contacts: true, boundary: Lock::Free }).locks
+    locks(mesh, &LockOptions { contacts: Some(ContactPolicy::Tie), boundary: Lock::Free }).locks
 }
 
 /// Makes the levels in one run; the sides in `open` may stay open.
-fn ours(
+pub fn ours(
     mesh: &Mesh,
     values: Values,
     locks: Locks,

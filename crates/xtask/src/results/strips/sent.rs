@@ -2,8 +2,8 @@
 
 use meshlod::mesh::VertexId;
 use meshlod::strip::{
-    Difference, Filter, MergeTree, SkipStrip, StripEffort, StripOptions, StripQuality, Strips,
-    difference, stripify,
+    Difference, Filter, MergeTree, SkipStrip, StripEffort, StripOptions, StripQuality,
+    StripStatistics, Strips, difference, stripify,
 };
 use meshlod_bench::peer::meshopt_strips;
 
@@ -65,6 +65,8 @@ pub struct SentLevel {
     pub triangles: usize,
     /// Number of vertices sent with STSS, DTFF, quick repair, thorough repair, and rebuilt strips.
     pub sent: [usize; 5],
+    /// Number of strips by DTFF that begin odd, each of which costs a vertex; [KY05] counts none.
+    pub odd_starts: usize,
 }
 
 impl Levels {
@@ -116,6 +118,7 @@ impl Levels {
             let mut row = vec![format!("{} %", level.percent), level.triangles.to_string()];
             row.extend((0..5).map(|way| format!("{:.3}", level.each(way))));
             row.extend([1, 3].map(|way| format!("{:.1}", level.over_independent(way))));
+            row.push(format!("{:.1}", level.as_published()));
             row
         })
     }
@@ -131,6 +134,12 @@ impl SentLevel {
     pub fn over_independent(&self, way: usize) -> f64 {
         100.0 * (1.0 - self.each(way) / 3.0)
     }
+
+    /// Returns the percentage that DTFF saves relative to sending independent triangles if odd
+    /// starts cost nothing.
+    fn as_published(&self) -> f64 {
+        100.0 * (1.0 - (self.sent[1] - self.odd_starts) as f64 / (3 * self.triangles) as f64)
+    }
 }
 
 fn level(skip: &mut SkipStrip, percent: usize, anew: usize) -> SentLevel {
@@ -142,11 +151,17 @@ fn level(skip: &mut SkipStrip, percent: usize, anew: usize) -> SentLevel {
         skip.repaired(StripEffort::Quick),
         skip.repaired(StripEffort::Thorough),
     ];
+    let odd_starts = StripStatistics::new(&ways[1]).odd_starts;
     let [stss, dtff, quick, repair] = ways.map(|strips| {
         assert_eq!(difference(&strips, &faces), Difference::default());
         strips.vertices().len()
     });
-    SentLevel { percent, triangles: faces.len(), sent: [stss, dtff, quick, repair, anew] }
+    SentLevel {
+        percent,
+        triangles: faces.len(),
+        sent: [stss, dtff, quick, repair, anew],
+        odd_starts,
+    }
 }
 
 fn contractions_to(tree: &MergeTree, percent: usize) -> usize {

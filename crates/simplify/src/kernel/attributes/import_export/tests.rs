@@ -3,7 +3,7 @@ use meshlod_samples as samples;
 
 use super::*;
 use crate::kernel::attributes::AttributeModel;
-use crate::kernel::collapse::Ends;
+use crate::kernel::collapse::{Ends, Mobility};
 use crate::kernel::mesh::local_frame::Frame;
 use crate::kernel::mesh::one_ring::is_seam;
 use crate::kernel::metric::edge_quadric::EdgeSide;
@@ -173,7 +173,7 @@ fn cost_of(vertices: &Vertices, wedges: &WedgeQuadrics<'_, SweptVolume, 5>, u: u
     let Ok(ends) = wedges.orient(vertices, u, v) else { return f64::INFINITY };
     let (end0, end1) = (vertices.get(ends.v0), vertices.get(ends.v1));
     let price = if ends.cuts_seam { seam_price::<SweptVolume>() } else { 1.0 };
-    if !ends.free {
+    if !ends.is_free() {
         let cost = SweptVolume::cost_onto(end0, end1) + wedges.cost_onto(vertices, &ends);
         return (cost * price).into();
     }
@@ -197,8 +197,8 @@ fn eight_edges_at_seams_cost_the_same_as_one_by_one() {
                 let found = costs(&vertices, &wedges, EdgeSide::Of(v), &[w; 8])[0];
                 let wanted = cost_of(&vertices, &wedges, v, w);
                 if let Ok(ends) = wedges.orient(&vertices, v, w) {
-                    free += usize::from(ends.free);
-                    held += usize::from(!ends.free);
+                    free += usize::from(ends.is_free());
+                    held += usize::from(!ends.is_free());
                     cut += usize::from(ends.cuts_seam);
                 }
                 // The pull to the middle is computed differently, and floats round.
@@ -245,7 +245,8 @@ fn a_crease_that_ends_keeps_both_normals() {
     for v in vertices.ids().filter(|&v| is_seam(&vertices, v)) {
         for &w in vertices.neighbours(v).iter() {
             for (v, w) in [(v, w), (w, v)] {
-                let Ok(Ends { free: true, wedge_pairs, .. }) = wedges.orient(&vertices, v, w)
+                let Ok(Ends { mobility: Mobility::Free, wedge_pairs, .. }) =
+                    wedges.orient(&vertices, v, w)
                 else {
                     continue;
                 };

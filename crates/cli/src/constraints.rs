@@ -1,0 +1,99 @@
+//! Options for what simplification must keep, for every verb that simplifies.
+
+use std::path::Path;
+
+use clap::Args;
+use meshlod::{Constraints, Mesh, Options, Target, VertexLocking};
+
+use crate::args::ReadArgs;
+use crate::failure::Failure;
+use crate::files;
+use crate::fuse::{FuseArgs, FuseReport};
+use crate::locks::{InputScene, LockArgs};
+use crate::session::Session;
+use crate::topology::TopologyArgs;
+
+/// Options for what simplification must keep.
+#[derive(Args)]
+pub struct ConstraintArgs {
+    #[command(flatten)]
+    pub fuse: FuseArgs,
+    #[command(flatten)]
+    pub locks: LockArgs,
+    #[command(flatten)]
+    pub topology: TopologyArgs,
+}
+
+/// A scene merged into one mesh, with the options to simplify it by.
+pub struct FlatInput {
+    pub mesh: Mesh,
+    pub options: Options,
+    pub fused: Option<FuseReport>,
+}
+
+impl ConstraintArgs {
+    /// Adds the constraints to the options for the simplification of a scene.
+    pub fn apply(
+        &self,
+        options: Options,
+        input: &InputScene<'_>,
+        session: &Session,
+    ) -> Result<Options, Failure> {
+        let constraints = self.constraints(input)?;
+        note_search(&constraints, session);
+        constraints.options(input.scene, options).map_err(Failure::new)
+    }
+
+    /// Reads a scene, fuses it if that is asked for and merges it into one mesh, with the
+    /// constraints added to the options.
+    pub fn read_flat(
+        &self,
+        path: &Path,
+        reading: &ReadArgs,
+        options: Options,
+        session: &Session,
+    ) -> Result<FlatInput, Failure> {
+        let mut scene = files::read(path, reading, session)?;
+        let fused = self.fuse.apply(&mut scene, session);
+        let constraints = self.constraints(&InputScene { scene: &scene, path, reading })?;
+        note_search(&constraints, session);
+        let (mesh, options) = constraints.flatten(scene, options).map_err(Failure::new)?;
+        Ok(FlatInput { mesh, options, fused })
+    }
+
+    /// Returns true if vertices are to be held or objects to be fused.
+    pub fn holds_or_fuses(&self) -> bool {
+        let LockArgs { lock_boundary, lock_contacts, locks } = &self.locks;
+        *lock_boundary || lock_contacts.is_some() || locks.is_some() || self.fuse.fuse
+    }
+
+    /// Returns the constraints on a scene that is already fused.
+    fn constraints(&self, input: &InputScene<'_>) -> Result<Constraints, Failure> {
+        Ok(Constraints {
+            topology: self.topology.kind(),
+            vanish_below: self.topology.vanish_below(input.scene)?,
+            borders: self.topology.borders(),
+            fuse: self.fuse.fuse,
+            lock_boundary: self.locks.lock_boundary,
+            locks: self.locks.locking(input)?,
+        })
+    }
+}
+
+impl FlatInput {
+    /// Returns a target for the faces before fusing as a target for the mesh.
+    pub fn target(&self, target: Target) -> Target {
+        self.fused.as_ref().map_or(target, |fused| fused.target(target))
+    }
+
+    /// Returns the number of faces before fusing.
+    pub fn input_faces(&self) -> usize {
+        self.fused.as_ref().map_or(self.mesh.faces.len(), |fused| fused.before)
+    }
+}
+
+fn note_search(constraints: &Constraints, session: &Session) {
+    if matches!(constraints.locks, VertexLocking::Contacts(_)) {
+        session.progress.stage("looking for contacts");
+    }
+}

@@ -1,0 +1,169 @@
+//! Repays, when a level is made, the volume that contractions still owe.
+//!
+//! Where a place of equal volume would spoil the shape, a contraction leaves a debt, which a later
+//! one repays. What is still owed where contractions end is repaid in the level alone: the vertices
+//! around move along their normals, by a common factor and by no more than a small part of an edge.
+//! The smallest number of rings around the debt that can afford it takes part.
+
+use glam::DVec3;
+use meshlod_mesh::{Connectivity, FaceId, Mesh, VertexId};
+use rustc_hash::{FxHashMap, FxHashSet};
+
+/// Largest displacement of a vertex, as a part of the root of its area normal, which is about two
+/// edges long.
+const FARTHEST: f64 = 0.02;
+
+/// Smallest cosine by which a face may turn.
+const MIN_COSINE: f64 = 0.9;
+
+/// Number of steps of Newton's method, which converges quadratically from a step this small.
+const NEWTON_STEPS: usize = 4;
+
+/// Largest number of rings around a debt. A debt that they cannot repay stays.
+const MOST_RINGS: usize = 16;
+
+/// Volume owed at a vertex of a level.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Debt {
+    pub(crate) vertex: VertexId,
+    /// Six times the volume that is missing, in cubic model units.
+    pub(crate) sixfold: f64,
+}
+
+/// Repays debts one after the other as far as possible. Vertices that are `held` stay, and so do
+/// boundaries.
+pub(crate) fn repay(level: &mut Mesh, debts: &[Debt], held: &[bool]) {
+    if debts.is_empty() {
+        return;
+    }
+    let connectivity = Connectivity::new(&level.faces, level.positions.len());
+    let stays = |v: VertexId| connectivity.marks(v).boundary() || held[v.index()];
+    for debt in debts {
+        let mut patch = Patch::new(debt.vertex);
+        for _ in 0..MOST_RINGS {
+            let inflation = patch.inflation(level, &connectivity, &stays, debt.sixfold);
+            if let Some(motion) = &inflation {
+                motion.apply(level);
+            }
+            if inflation.is_some() || !patch.grow(level, &connectivity) {
+                break;
+            }
+        }
+    }
+}
+
+/// A vertex and some rings around it.
+struct Patch {
+    vertices: Vec<VertexId>,
+    contained: FxHashSet<VertexId>,
+    /// Number of vertices before the outermost ring.
+    inner: usize,
+}
+
+impl Patch {
+    fn new(center: VertexId) -> Self {
+        Self { vertices: vec![center], contained: FxHashSet::from_iter([center]), inner: 0 }
+    }
+
+    /// Adds a ring. Returns false if there is none.
+    fn grow(&mut self, level: &Mesh, connectivity: &Connectivity) -> bool {
+        let outer = self.inner..self.vertices.len();
+        self.inner = outer.end;
+        for i in outer {
+            for face in connectivity.star(self.vertices[i]) {
+                for v in level.faces[face.index()] {
+                    if self.contained.insert(v) {
+                        self.vertices.push(v);
+                    }
+                }
+            }
+        }
+        self.vertices.len() > self.inner
+    }
+
+    /// Returns the motion that lets the patch gain a sixth of `sixfold`; `None` if that takes it too
+    /// far.
+    fn inflation(
+        &self,
+        level: &Mesh,
+        connectivity: &Connectivity,
+        stays: &impl Fn(VertexId) -> bool,
+        sixfold: f64,
+    ) -> Option<Motion> {
+        let moving: Vec<VertexId> = self.vertices.iter().copied().filter(|&v| !stays(v)).collect();
+        let mut motion = Motion::along_normals(level, connectivity, &moving);
+        let slope: f64 = motion.normals.iter().map(|(_, n)| n.length_squared()).sum();
+        motion.factor = sixfold / slope;
+        for _ in 0..NEWTON_STEPS {
+            motion.factor += (sixfold - motion.gain()) / slope;
+        }
+        motion.is_small().then_some(motion)
+    }
+}
+
+/// Motion of vertices along their normals by a common factor.
+struct Motion {
+    factor: f64,
+    /// Area normals of the vertices that move: sums over their faces, each twice its area long.
+    normals: Vec<(VertexId, DVec3)>,
+    /// Positions of the corners of all faces that move, with their normals, zero where they stay.
+    faces: Vec<[(DVec3, DVec3); 3]>,
+}
+
+impl Motion {
+    fn along_normals(level: &Mesh, connectivity: &Connectivity, moving: &[VertexId]) -> Self {
+        let origin = moving.first().map_or(DVec3::ZERO, |v| level.positions[v.index()].into());
+        let at = |v: VertexId| DVec3::from(level.positions[v.index()]) - origin;
+        let area_normal = |face: &FaceId| normal(level.faces[face.index()].map(at));
+        let mut faces = Vec::new();
+        let mut normals = Vec::with_capacity(moving.len());
+        for &v in moving {
+            faces.extend_from_slice(connectivity.star(v));
+            normals.push((v, connectivity.star(v).iter().map(area_normal).sum()));
+        }
+        faces.sort_unstable();
+        faces.dedup();
+        let of: FxHashMap<VertexId, DVec3> = normals.iter().copied().collect();
+        let corner = |v: VertexId| (at(v), of.get(&v).copied().unwrap_or_default());
+        let faces = faces.iter().map(|face| level.faces[face.index()].map(corner)).collect();
+        Self { factor: 0.0, normals, faces }
+    }
+
+    /// Returns six times the volume gained.
+    fn gain(&self) -> f64 {
+        let sixfold = |[a, b, c]: [DVec3; 3]| a.cross(b).dot(c);
+        let gain = |face: &[(DVec3, DVec3); 3]| {
+            sixfold(face.map(|corner| self.moved(corner))) - sixfold(face.map(|(from, _)| from))
+        };
+        self.faces.iter().map(gain).sum()
+    }
+
+    fn moved(&self, (from, normal): (DVec3, DVec3)) -> DVec3 {
+        from + self.factor * normal
+    }
+
+    /// Returns true if no vertex goes far and no face turns far.
+    fn is_small(&self) -> bool {
+        let is_near = |n: &DVec3| self.factor.abs() * n.length() <= FARTHEST * n.length().sqrt();
+        let keeps = |face: &[(DVec3, DVec3); 3]| {
+            let (old, new) =
+                (normal(face.map(|(from, _)| from)), normal(face.map(|c| self.moved(c))));
+            old.dot(new) >= MIN_COSINE * old.length() * new.length()
+        };
+        self.factor.is_finite()
+            && self.normals.iter().all(|(_, n)| is_near(n))
+            && self.faces.iter().all(keeps)
+    }
+
+    fn apply(&self, level: &mut Mesh) {
+        for &(v, normal) in &self.normals {
+            let position = &mut level.positions[v.index()];
+            *position = self.moved((DVec3::from(*position), normal)).into();
+        }
+    }
+}
+
+/// Returns the normal of a triangle, twice its area long.
+fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a)
+}
