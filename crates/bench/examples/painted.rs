@@ -46,8 +46,7 @@ fn main() -> Result<()> {
             single_sided: &single_sided,
             ..Style::comparison()
         };
-        let portrait =
-            (side > 0).then(|| ReferenceImages::with_style(&mesh, style)).transpose()?;
+        let portrait = (side > 0).then(|| ReferenceImages::with_style(&mesh, style)).transpose()?;
         for ratio in [0.25, 0.1, 0.01] {
             print!("{name} {ratio}");
             if rounds > 0 {

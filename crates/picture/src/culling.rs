@@ -4,10 +4,9 @@ use meshlod_mesh::{Labels, Mesh};
 
 use crate::project::Point;
 use crate::raster::is_clockwise;
+use crate::{BackFaces, Style};
 
 /// Faces of a mesh that are seen from the front only; see [`Style::single_sided`].
-///
-/// [`Style::single_sided`]: crate::Style::single_sided
 #[derive(Clone, Copy)]
 pub(crate) struct Culling<'a> {
     labels: Option<&'a Labels>,
@@ -16,9 +15,14 @@ pub(crate) struct Culling<'a> {
 }
 
 impl<'a> Culling<'a> {
-    pub(crate) fn new(mesh: &'a Mesh, single_sided: &'a [bool]) -> Self {
-        let labels = mesh.materials.as_ref().filter(|_| single_sided.contains(&true));
-        Self { labels, single_sided }
+    /// Culling of no face.
+    pub(crate) const NONE: Self = Self { labels: None, single_sided: &[] };
+
+    /// Returns the culling that a style asks for. Backs that are tinted are there to be seen.
+    pub(crate) fn of_style(mesh: &'a Mesh, style: &Style<'a>) -> Self {
+        let single_sided = style.single_sided;
+        let culls = style.back_faces == BackFaces::Same && single_sided.contains(&true);
+        Self { labels: mesh.materials.as_ref().filter(|_| culls), single_sided }
     }
 
     /// Reports whether a projected triangle of a face is not drawn, because the face is

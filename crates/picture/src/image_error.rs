@@ -5,7 +5,8 @@ use std::ops::Range;
 
 use meshlod_mesh::Mesh;
 
-use crate::visibility::visibility_of_sides;
+use crate::culling::Culling;
+use crate::visibility::culled_visibility;
 use crate::{Camera, Paint, Picture, PictureError, Style, flip, render, ssim};
 
 /// Visual difference between a level of detail and its original, measured on pictures from twelve
@@ -140,7 +141,7 @@ fn draw(
     style: &Style<'_>,
 ) -> Result<(Picture, Vec<bool>), PictureError> {
     let picture = render(mesh, camera, style)?;
-    let seen = visibility_of_sides(mesh, camera, style.size, style.single_sided)?;
+    let seen = culled_visibility(mesh, camera, style.size, Culling::of_style(mesh, style))?;
     Ok((picture, seen.faces().map(|face| face.is_some()).collect()))
 }
 

@@ -18,6 +18,8 @@ pub struct Style<'a> {
     /// Whether each material label of the mesh is single-sided: its faces are seen only from the
     /// front, where their corners run counterclockwise, as glTF says. Labels beyond the last entry,
     /// and all faces of a mesh without labels, are seen from both sides.
+    ///
+    /// Faces are not culled if their backs are [tinted](BackFaces::Tint).
     pub single_sided: &'a [bool],
     /// Appearance of faces seen from behind.
     pub back_faces: BackFaces,

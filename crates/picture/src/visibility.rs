@@ -47,23 +47,21 @@ pub fn visibility(
     camera: &Camera,
     size: [u32; 2],
 ) -> Result<Visibility, PictureError> {
-    visibility_of_sides(mesh, camera, size, &[])
+    culled_visibility(mesh, camera, size, Culling::NONE)
 }
 
-/// Finds visible faces as [`visibility`] does, of single-sided materials only those seen from the
-/// front; see [`Style::single_sided`](crate::Style::single_sided).
-pub(crate) fn visibility_of_sides(
+/// Finds visible faces as [`visibility`] does, without those that are culled.
+pub(crate) fn culled_visibility(
     mesh: &Mesh,
     camera: &Camera,
     size: [u32; 2],
-    single_sided: &[bool],
+    culling: Culling<'_>,
 ) -> Result<Visibility, PictureError> {
     let [width, height] = size;
     check_size(width.into(), height.into())?;
     mesh.validate()?;
     let lens = camera.lens(width, height);
     let tiling = Tiling { size, side: 64 };
-    let culling = Culling::new(mesh, single_sided);
     let copy = |window, samples: &[Sample]| (window, samples.to_vec());
     let tiles = draw_tiles(mesh, &lens, tiling, culling, copy);
     let mut samples = vec![Sample::NOTHING; width as usize * height as usize];

@@ -168,6 +168,9 @@ fn single_sided_materials_are_seen_from_the_front_only() {
         assert_eq!(seen(&mesh, behind, both_sides), PLAIN, "{both_sides:?}");
     }
     assert_eq!(seen(&unlabelled, behind, &[true]), PLAIN, "no label, no material");
+    let back_faces = BackFaces::Tint([9, 8, 7]);
+    let tinted = Style { single_sided: &[true], back_faces, ..bare(9) };
+    assert_eq!(rgb(&render(&mesh, &behind, &tinted).unwrap(), 4, 4), [9, 8, 7]);
 }
 
 #[test]

@@ -3,9 +3,7 @@
 use anyhow::Result;
 use meshlod::mesh::Mesh;
 use meshlod::picture::{Materials, Paint, ReferenceImages, Style};
-use meshlod::{
-    Options, Scene, Target, materials_of, simplify_scene, single_sided_materials,
-};
+use meshlod::{Options, Scene, Target, materials_of, simplify_scene, single_sided_materials};
 use meshlod_bench::peer::{Settings, SimplifyOptions, Update, simplify_with_attributes};
 use serde_json::{Value, json};
 
