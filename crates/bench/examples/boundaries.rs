@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                     method.name(),
                     report.output_faces,
                     report.volume.open.contractions,
-                    seen.at_boundaries / whole,
+                    seen.at_boundaries.unwrap_or(0.0) / whole,
                     measured.percent(measured.mean()),
                     measured.percent(measured.max()),
                 );

@@ -9,10 +9,10 @@
 //! names of shared models. Models without attributes get smooth normals.
 
 use anyhow::{Context, Result};
-use meshlod::materials_of;
 use meshlod::mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId};
-use meshlod::picture::{Paint, ReferenceImages};
+use meshlod::picture::{Paint, ReferenceImages, Style};
 use meshlod::simplify::{Method, Options, Target, simplify};
+use meshlod::{materials_of, single_sided_materials};
 use meshlod_bench::peer::{GpuMesh, Settings, SimplifyOptions, Update, simplify_with_attributes};
 use meshlod_bench::{alternate, one_core, read_scene};
 
@@ -39,9 +39,14 @@ fn main() -> Result<()> {
         if mesh.attributes.is_none() {
             mesh.attributes = Some(smooth_normals(&mesh));
         }
-        let paint = Paint::comparison(&mesh, &materials);
-        let portrait =
-            (side > 0).then(|| ReferenceImages::of_side(&mesh, &paint, side)).transpose()?;
+        let single_sided = single_sided_materials(&scene);
+        let style = Style {
+            size: [side; 2],
+            paint: Paint::comparison(&mesh, &materials),
+            single_sided: &single_sided,
+            ..Style::comparison()
+        };
+        let portrait = (side > 0).then(|| ReferenceImages::with_style(&mesh, style)).transpose()?;
         for ratio in [0.25, 0.1, 0.01] {
             print!("{name} {ratio}");
             if rounds > 0 {

@@ -72,7 +72,6 @@ impl ConstraintArgs {
         Ok(Constraints {
             topology: self.topology.kind(),
             vanish_below: self.topology.vanish_below(input.scene)?,
-            borders: self.topology.borders(),
             fuse: self.fuse.fuse,
             lock_boundary: self.locks.lock_boundary,
             locks: self.locks.locking(input)?,

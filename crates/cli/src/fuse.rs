@@ -69,7 +69,9 @@ impl FuseReport {
         let Fused { imprint, buried, joined, left } = self.fused;
         let left = match left {
             0 => String::new(),
-            left => format!(", {} open component{} left as is", count(left), plural(left)),
+            left => {
+                format!(", {} component{} not fused: open or inside out", count(left), plural(left))
+            }
         };
         format!(
             "fused: {} to {} ({} cut, {} inner piece{} removed, {} edge{} joined{left})\n",

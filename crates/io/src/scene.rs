@@ -54,7 +54,7 @@ pub struct Node {
     pub children: Vec<usize>,
 }
 
-/// Material of a scene, reduced to its base colour; other properties are kept only in the glTF
+/// Material of a scene, reduced to its base colour and sides; other properties are kept only in the glTF
 /// source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
@@ -64,6 +64,9 @@ pub struct Material {
     pub base_color: [f32; 4],
     /// Texture that multiplies the base colour, by index into [`Scene::images`].
     pub base_color_image: Option<usize>,
+    /// False if faces of this material are seen from the front only, where their corners run
+    /// counterclockwise. Only glTF has such materials.
+    pub is_double_sided: bool,
 }
 
 /// Image of a scene, still encoded as PNG, JPEG and the like.
@@ -87,7 +90,12 @@ impl Default for Node {
 
 impl Default for Material {
     fn default() -> Self {
-        Self { name: String::new(), base_color: [1.0; 4], base_color_image: None }
+        Self {
+            name: String::new(),
+            base_color: [1.0; 4],
+            base_color_image: None,
+            is_double_sided: true,
+        }
     }
 }
 

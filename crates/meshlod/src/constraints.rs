@@ -2,7 +2,7 @@
 
 use meshlod_check::{ContactPolicy, Fused, LockOptions};
 use meshlod_io::Scene;
-use meshlod_mesh::{Borders, Lock, Locks, Mesh, VertexId};
+use meshlod_mesh::{Lock, Locks, Mesh, VertexId};
 use meshlod_simplify::{Options, SimplifyError, Topology};
 
 use crate::contacts::scene_locks;
@@ -34,8 +34,6 @@ pub struct Constraints {
     /// Largest component that may vanish, by the diagonal of its bounding box in world units; see
     /// [`Options::vanish_below`].
     pub vanish_below: Option<f64>,
-    /// Treatment of boundary edges that lie exactly on each other.
-    pub borders: Borders,
     /// True to unite closed components that intersect before anything else; see [`fuse_scene`].
     pub fuse: bool,
     /// True to lock every vertex of a boundary edge.

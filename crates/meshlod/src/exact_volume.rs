@@ -3,7 +3,7 @@
 use glam::DMat4;
 use meshlod_io::{Format, MeshInstance, Precision, Scene};
 use meshlod_measure::volume;
-use meshlod_mesh::Mesh;
+use meshlod_mesh::{Mesh, closed_faces};
 use meshlod_simplify::{Digits, ExactVolumeError, VolumeResidual, conserve_volume};
 
 use crate::ConditionedScene;
@@ -38,11 +38,20 @@ pub fn conserve_volumes(
 }
 
 /// Returns the volume of a scene in cubic world units: the sum over all instances of the absolute
-/// [volumes](volume) of their meshes. Open meshes count with the cones that close them.
-pub fn world_volume(scene: &Scene) -> f64 {
-    let volumes: Vec<f64> = scene.meshes.iter().map(|of| volume(&of.mesh).abs()).collect();
+/// volumes of the [closed components](closed_faces) of their meshes.
+///
+/// Cost: O(n), n = faces, and a copy of the positions.
+pub fn closed_volume(scene: &Scene) -> f64 {
+    let volumes: Vec<f64> = scene.meshes.iter().map(|of| of_closed(&of.mesh).abs()).collect();
     let scaled = |place: &MeshInstance| {
         volumes[place.mesh] * DMat4::from_cols_array_2d(&place.transform).determinant().abs()
     };
     scene.instances().iter().map(scaled).sum()
+}
+
+fn of_closed(mesh: &Mesh) -> f64 {
+    let is_closed = closed_faces(&mesh.faces, mesh.positions.len());
+    let closed = mesh.faces.iter().zip(is_closed).filter(|(_, is_closed)| *is_closed);
+    let faces = closed.map(|(face, _)| *face).collect();
+    volume(&Mesh::new(mesh.positions.clone(), faces))
 }

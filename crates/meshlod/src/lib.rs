@@ -252,11 +252,11 @@ pub use compressed::{
 pub use conditioned::{ConditionedScene, simplify};
 pub use constraints::{Constraints, VertexLocking};
 pub use contacts::scene_locks;
-pub use exact_volume::{conserve_volumes, digits_of, world_volume};
+pub use exact_volume::{closed_volume, conserve_volumes, digits_of};
 pub use fuse::fuse_scene;
 pub use levels::{BuildOptions, BuildReport, ExtractOptions, LevelsError, build, extract};
 pub use locks::join_locks;
-pub use materials::{UnreadImage, materials_of};
+pub use materials::{UnreadImage, materials_of, single_sided_materials};
 pub use meshlod_io::{Format, IoError, ReadOptions, Scene, WriteOptions, read, write};
 pub use meshlod_mesh::{Borders, Mesh};
 pub use meshlod_simplify::{Method, Options, Report, SimplifyError, Target, Topology};

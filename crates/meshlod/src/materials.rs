@@ -40,6 +40,15 @@ pub fn materials_of(scene: &Scene) -> (Materials, Vec<UnreadImage>) {
     (Materials { materials, textures }, unread)
 }
 
+/// Returns whether each material of a scene is single-sided, for the mesh made by
+/// [`Scene::flatten`]; see [`Style::single_sided`](meshlod_picture::Style::single_sided).
+///
+/// Only glTF has single-sided materials. Nodes that mirror need nothing: flattening turns their
+/// faces over.
+pub fn single_sided_materials(scene: &Scene) -> Vec<bool> {
+    scene.materials.iter().map(|material| !material.is_double_sided).collect()
+}
+
 /// A texture image of a scene that could not be decoded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnreadImage {

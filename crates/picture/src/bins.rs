@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use crate::camera::Lens;
 use crate::clip::clip;
+use crate::culling::Culling;
 use crate::project::{Point, Projected, outcode, project};
 use crate::raster::SampleRect;
 
@@ -46,7 +47,7 @@ impl Tiling {
     }
 }
 
-/// Faces of a mesh, projected and binned by tile.
+/// Faces of a mesh, projected and binned by tile, without those that are culled.
 ///
 /// Memory: 16 bytes a vertex, 4 bytes per face and tile for small faces, 40 bytes for a large one.
 pub(crate) struct Bins<'a> {
@@ -66,13 +67,13 @@ struct Chunk {
 }
 
 impl<'a> Bins<'a> {
-    pub(crate) fn new(mesh: &'a Mesh, lens: &Lens, tiling: Tiling) -> Self {
+    pub(crate) fn new(mesh: &'a Mesh, lens: &Lens, tiling: Tiling, culling: Culling<'_>) -> Self {
         let vertices = project(&mesh.positions, lens, tiling.size);
         // At least as many faces as tiles, so that `starts` stays small beside `faces`.
         let length = CHUNK.max(tiling.count());
         let chunk_of = |i: usize| {
             let faces = i * length..mesh.faces.len().min((i + 1) * length);
-            Chunk::new(mesh, &vertices, lens, tiling, faces)
+            Chunk::new(mesh, &vertices, lens, tiling, culling, faces)
         };
         let chunks = mesh.faces.len().div_ceil(length);
         let chunks = (0..chunks).into_par_iter().map(chunk_of).collect();
@@ -103,6 +104,7 @@ impl Chunk {
         vertices: &[Projected],
         lens: &Lens,
         tiling: Tiling,
+        culling: Culling<'_>,
         faces: std::ops::Range<usize>,
     ) -> Self {
         let whole = tiling.whole();
@@ -115,12 +117,16 @@ impl Chunk {
             }
             if (a.outcode | b.outcode | c.outcode) & outcode::CLIP != 0 {
                 let corners = mesh.triangle(corners).map(|p| lens.project(p));
-                clip(corners, lens.near(), |piece| loose.push((face as u32, piece)));
+                clip(corners, lens.near(), |piece| {
+                    if !culling.hides(face, &piece) {
+                        loose.push((face as u32, piece));
+                    }
+                });
                 continue;
             }
             let triangle = [a.point, b.point, c.point];
             let samples = whole.clipped_to(&triangle);
-            if samples.is_empty() {
+            if samples.is_empty() || culling.hides(face, &triangle) {
                 continue;
             }
             let side = tiling.side as i32;

@@ -5,7 +5,9 @@ use std::ops::Range;
 
 use meshlod_mesh::Mesh;
 
-use crate::{Camera, Paint, Picture, PictureError, Style, flip, render, ssim, visibility};
+use crate::culling::Culling;
+use crate::visibility::culled_visibility;
+use crate::{Camera, Paint, Picture, PictureError, Style, flip, render, ssim};
 
 /// Visual difference between a level of detail and its original, measured on pictures from twelve
 /// sides.
@@ -82,7 +84,13 @@ impl<'a> ReferenceImages<'a> {
         Self::with_style(original, style)
     }
 
-    fn with_style(original: &Mesh, style: Style<'a>) -> Result<Self, PictureError> {
+    /// Draws the pictures of an original mesh from twelve sides, in a style of their own; it must
+    /// suit the levels too. Figures are comparable only if the style is [`Style::comparison`], but
+    /// for its paint and its [single-sided](Style::single_sided) materials.
+    ///
+    /// # Errors
+    /// Errors of [`render`].
+    pub fn with_style(original: &Mesh, style: Style<'a>) -> Result<Self, PictureError> {
         let view = |camera| {
             let (picture, shown) = draw(original, &camera, &style)?;
             Ok(ReferenceImage { camera, picture, shown })
@@ -133,8 +141,8 @@ fn draw(
     style: &Style<'_>,
 ) -> Result<(Picture, Vec<bool>), PictureError> {
     let picture = render(mesh, camera, style)?;
-    let shown = visibility(mesh, camera, style.size)?.faces().map(|face| face.is_some()).collect();
-    Ok((picture, shown))
+    let seen = culled_visibility(mesh, camera, style.size, Culling::of_style(mesh, style))?;
+    Ok((picture, seen.faces().map(|face| face.is_some()).collect()))
 }
 
 /// Rectangle of pixels in a picture.

@@ -42,6 +42,7 @@ mod camera;
 mod cards;
 mod clip;
 mod color_map;
+mod culling;
 mod decode;
 mod error;
 mod facet;

@@ -82,6 +82,12 @@ pub(crate) fn cover(
     }
 }
 
+/// Reports whether the corners of a triangle run clockwise on screen: its front faces away.
+#[inline]
+pub(crate) fn is_clockwise(&[a, b, c]: &[Point; 3]) -> bool {
+    cross(a, b, c) > 0
+}
+
 /// Returns twice the area of a triangle, in square substeps; positive if clockwise on screen.
 #[inline]
 fn cross(a: Point, b: Point, c: Point) -> i64 {

@@ -6,6 +6,7 @@ use meshlod_mesh::Mesh;
 use crate::albedo::Albedo;
 use crate::bins::Tiling;
 use crate::camera::Lens;
+use crate::culling::Culling;
 use crate::error::check_size;
 use crate::facet::Facet;
 use crate::light::Lights;
@@ -40,7 +41,8 @@ pub fn render(mesh: &Mesh, camera: &Camera, style: &Style) -> Result<Picture, Pi
     // A tile is 64 to 128 samples wide: at 8 bytes a sample, it stays in the L2 cache.
     let tiling = Tiling { size: samples, side: across * if across == 1 { 64 } else { 32 } };
     let lens = camera.lens(samples[0], samples[1]);
-    let tiles = draw_tiles(mesh, &lens, tiling, |window, samples| {
+    let culling = Culling::of_style(mesh, style);
+    let tiles = draw_tiles(mesh, &lens, tiling, culling, |window, samples| {
         let grid = TileSamples { samples, window, across: across as usize };
         (grid.pixels(), scene.shade(&grid))
     });

@@ -15,6 +15,12 @@ pub struct Style<'a> {
     pub normals: Normals,
     /// Lighting of the surface.
     pub lighting: Lighting,
+    /// Whether each material label of the mesh is single-sided: its faces are seen only from the
+    /// front, where their corners run counterclockwise, as glTF says. Labels beyond the last entry,
+    /// and all faces of a mesh without labels, are seen from both sides.
+    ///
+    /// Faces are not culled if their backs are [tinted](BackFaces::Tint).
+    pub single_sided: &'a [bool],
     /// Appearance of faces seen from behind.
     pub back_faces: BackFaces,
     /// Lines drawn along the edges of all faces; `None` for no wireframe.
@@ -32,6 +38,7 @@ impl Default for Style<'_> {
             paint: Paint::default(),
             normals: Normals::default(),
             lighting: Lighting::default(),
+            single_sided: &[],
             back_faces: BackFaces::default(),
             wireframe: None,
             background: Background::default(),

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use crate::bins::{Bins, Tiling};
 use crate::camera::Lens;
+use crate::culling::Culling;
 use crate::error::check_size;
 use crate::project::Point;
 use crate::raster::{SampleRect, cover};
@@ -46,12 +47,23 @@ pub fn visibility(
     camera: &Camera,
     size: [u32; 2],
 ) -> Result<Visibility, PictureError> {
+    culled_visibility(mesh, camera, size, Culling::NONE)
+}
+
+/// Finds visible faces as [`visibility`] does, without those that are culled.
+pub(crate) fn culled_visibility(
+    mesh: &Mesh,
+    camera: &Camera,
+    size: [u32; 2],
+    culling: Culling<'_>,
+) -> Result<Visibility, PictureError> {
     let [width, height] = size;
     check_size(width.into(), height.into())?;
     mesh.validate()?;
     let lens = camera.lens(width, height);
     let tiling = Tiling { size, side: 64 };
-    let tiles = draw_tiles(mesh, &lens, tiling, |window, samples| (window, samples.to_vec()));
+    let copy = |window, samples: &[Sample]| (window, samples.to_vec());
+    let tiles = draw_tiles(mesh, &lens, tiling, culling, copy);
     let mut samples = vec![Sample::NOTHING; width as usize * height as usize];
     for (window, tile) in tiles {
         let tile_width = (window.end[0] - window.start[0]) as usize;
@@ -103,9 +115,10 @@ pub(crate) fn draw_tiles<T: Send>(
     mesh: &Mesh,
     lens: &Lens,
     tiling: Tiling,
+    culling: Culling<'_>,
     finish: impl Fn(SampleRect, &[Sample]) -> T + Sync,
 ) -> Vec<T> {
-    let bins = Bins::new(mesh, lens, tiling);
+    let bins = Bins::new(mesh, lens, tiling, culling);
     let draw = |samples: &mut Vec<Sample>, tile| {
         let window = tiling.window(tile);
         let [width, height] = [0, 1].map(|axis| (window.end[axis] - window.start[axis]) as usize);

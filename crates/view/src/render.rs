@@ -22,7 +22,8 @@ pub fn render(
 ) -> Result<Picture, ViewError> {
     let renderer = Renderer::new(gpu, TargetFormat::CANVAS);
     let canvas = Canvas::new(gpu, style.size)?;
-    let drawn = GpuMesh::new(&renderer, mesh, &style.paint, style.normals)?;
+    let Style { paint, normals, single_sided, .. } = style;
+    let drawn = GpuMesh::with_sides(&renderer, mesh, paint, *normals, single_sided)?;
     let shade = Shade::of(style);
     let placement = renderer.placement();
     placement.set(camera, style.size, drawn.origin(), &shade);

@@ -96,13 +96,38 @@ fn wireframes_are_the_same() {
     }
 }
 
-#[test]
-fn faces_from_behind_are_tinted() {
+/// The lower half of a ball, whose inner side is seen too.
+fn bowl() -> Mesh {
     let mut bowl = samples::sphere(2_000);
     let height = |face: &[meshlod::mesh::VertexId; 3]| bowl.positions[face[0].index()][1];
     let kept: Vec<_> = bowl.faces.iter().copied().filter(|face| height(face) < 0.0).collect();
     bowl.faces = kept;
     bowl.attributes = None;
+    bowl
+}
+
+#[test]
+fn single_sided_faces_from_behind_are_not_drawn() {
+    let mut bowl = bowl();
+    let left = |face: &[meshlod::mesh::VertexId; 3]| bowl.positions[face[0].index()][0] < 0.0;
+    let of_face = bowl.faces.iter().map(|face| u32::from(left(face))).collect();
+    let names = vec!["right".into(), "left".into()];
+    bowl.materials = Some(meshlod::mesh::Labels { names, of_face });
+    let red = PaintMaterial { base_color: [0.8, 0.1, 0.1], texture: None };
+    let materials = Materials { materials: vec![red; 2], textures: Vec::new() };
+    for (name, paint, wireframe) in [
+        ("sides", Paint::Materials(&materials), None),
+        ("sides-plain", Paint::default(), None),
+        ("sides-lines", Paint::default(), Some(Wireframe::default())),
+    ] {
+        let style = Style { paint, wireframe, normals: Normals::Flat, ..Style::default() };
+        assert_like_picture(name, &bowl, &Style { single_sided: &[false, true], ..style });
+    }
+}
+
+#[test]
+fn faces_from_behind_are_tinted() {
+    let bowl = bowl();
     let style = Style {
         back_faces: BackFaces::RED,
         background: Background::Plain([128; 3]),

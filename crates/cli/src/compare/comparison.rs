@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use meshlod::measure::{DistanceOptions, PreparedSurface};
-use meshlod::picture::ReferenceImages;
+use meshlod::picture::{ReferenceImages, Style};
 use meshlod::{Method, Options, Topology};
 
 use crate::compare::output::Output;
@@ -105,10 +105,14 @@ impl Comparison<'_> {
 
     fn picture_tools(&self) -> Result<PictureTools<'_>, Failure> {
         let Self { subject, original, .. } = self;
-        let reference =
-            ReferenceImages::of_side(&subject.mesh, &subject.style.paint.as_paint(), COMPARED_SIDE);
-        let reference =
-            reference.map_err(|error| Failure::new(format_args!("{}: {error}", subject.name)))?;
+        let style = Style {
+            size: [COMPARED_SIDE; 2],
+            paint: subject.style.paint.as_paint(),
+            single_sided: &subject.style.single_sided,
+            ..Style::comparison()
+        };
+        let reference = ReferenceImages::with_style(&subject.mesh, style)
+            .map_err(|error| Failure::new(format_args!("{}: {error}", subject.name)))?;
         Ok(PictureTools { renderer: SubjectRenderer::new(subject, original), reference })
     }
 

@@ -14,7 +14,7 @@ use std::path::PathBuf;
 use clap::Args;
 use meshlod::io::write_file;
 use meshlod::picture::View;
-use meshlod::{Method, Options};
+use meshlod::{Method, Options, single_sided_materials};
 
 use crate::answer::Answer;
 use crate::args::{ReadArgs, SamplingArgs, ViewArgs};
@@ -125,8 +125,10 @@ impl Compare {
         let View { direction, up, .. } = self.viewpoint.view();
         let name = files::name(&self.input);
         let title = self.input.file_name().unwrap_or_default().to_string_lossy();
+        let single_sided = single_sided_materials(&scene);
         let style = |mesh: &_| {
-            SubjectStyle::new(OwnedPaint::comparison(mesh, materials), mesh, direction, up)
+            let paint = OwnedPaint::comparison(mesh, materials);
+            SubjectStyle { single_sided, ..SubjectStyle::new(paint, mesh, direction, up) }
         };
         Ok((Subject::new([&name, &title], scene, style), output, fused))
     }

@@ -82,6 +82,7 @@ impl DemoSample {
         SubjectStyle {
             paint: self.paint.clone(),
             normals: self.normals,
+            single_sided: Vec::new(),
             wire_paint: self.paint.clone(),
             wireframe: Wireframe {
                 color: self.line_color,

@@ -1,7 +1,7 @@
 //! Subdivision of a mesh, so that colours at its vertices represent the whole surface.
 
 use meshlod::Mesh;
-use meshlod::mesh::VertexId;
+use meshlod::mesh::{Labels, VertexId};
 
 /// Limit of cuts along a side of a face, so that one face gives at most a million.
 const MOST_CUTS: usize = 1000;
@@ -9,10 +9,12 @@ const MOST_CUTS: usize = 1000;
 /// Subdivides the faces until no edge is longer than `step`, in model units, or a limit on the
 /// number of cuts is reached.
 ///
-/// Every face is cut by itself, so vertices on shared edges are duplicated. Attributes are dropped.
+/// Every face is cut by itself, so vertices on shared edges are duplicated. Of the attributes,
+/// material labels are kept.
 pub fn refined(mesh: &Mesh, step: f64) -> Mesh {
     let (mut positions, mut faces) = (Vec::new(), Vec::new());
-    for &face in &mesh.faces {
+    let mut label_of_face = Vec::new();
+    for (index, &face) in mesh.faces.iter().enumerate() {
         let [a, b, c] = mesh.triangle(face);
         let longest = (b - a).length().max((c - b).length()).max((a - c).length());
         let cuts = ((longest / step).ceil() as usize).clamp(1, MOST_CUTS);
@@ -24,8 +26,12 @@ pub fn refined(mesh: &Mesh, step: f64) -> Mesh {
             }
         }
         faces.extend(pieces(first, cuts));
+        if let Some(labels) = &mesh.materials {
+            label_of_face.resize(faces.len(), labels.of(index));
+        }
     }
-    Mesh::new(positions, faces)
+    let relabel = |labels: &Labels| Labels { names: labels.names.clone(), of_face: label_of_face };
+    Mesh { materials: mesh.materials.as_ref().map(relabel), ..Mesh::new(positions, faces) }
 }
 
 /// Returns the faces between rows of vertices: row `r` begins `r (r + 1) / 2` after the first.

@@ -85,6 +85,7 @@ impl<'s> SubjectRenderer<'s> {
             paint: Paint::VertexValues(heat::scale(&values)),
             lighting: Lighting::Soft,
             normals: Normals::Flat,
+            single_sided: &self.subject.style.single_sided,
             ..Style::default()
         };
         let title = &self.subject.title;

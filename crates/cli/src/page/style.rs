@@ -12,6 +12,8 @@ use crate::session::Session;
 pub struct SubjectStyle {
     pub paint: OwnedPaint,
     pub normals: Normals,
+    /// Whether each material is single-sided; see [`Style::single_sided`].
+    pub single_sided: Vec<bool>,
     /// Colouring of the surface under the wireframe.
     pub wire_paint: OwnedPaint,
     pub wireframe: Wireframe,
@@ -21,12 +23,13 @@ pub struct SubjectStyle {
 }
 
 impl SubjectStyle {
-    /// Returns the drawing style of a mesh: with `paint`, and in the colour of clay under the
-    /// wireframe.
+    /// Returns the drawing style of a mesh: with `paint`, in the colour of clay under the wireframe,
+    /// and from both sides.
     pub fn new(paint: OwnedPaint, mesh: &Mesh, direction: [f64; 3], up: [f64; 3]) -> Self {
         Self {
             paint,
             normals: normals_of(mesh),
+            single_sided: Vec::new(),
             wire_paint: OwnedPaint::CLAY,
             wireframe: Wireframe { width_px: 0.9, ..Wireframe::default() },
             direction,
@@ -36,7 +39,12 @@ impl SubjectStyle {
 
     /// Returns the drawing style for shaded pictures.
     pub fn shaded(&self) -> Style<'_> {
-        Style { paint: self.paint.as_paint(), normals: self.normals, ..Style::default() }
+        Style {
+            paint: self.paint.as_paint(),
+            normals: self.normals,
+            single_sided: &self.single_sided,
+            ..Style::default()
+        }
     }
 
     /// Returns the drawing style for pictures with a wireframe.
@@ -44,6 +52,7 @@ impl SubjectStyle {
         Style {
             paint: self.wire_paint.as_paint(),
             normals: Normals::Flat,
+            single_sided: &self.single_sided,
             wireframe: Some(self.wireframe),
             ..Style::default()
         }

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use meshlod::Mesh;
 use meshlod::measure::vertex_errors;
 use meshlod::picture::{
     Camera, ColorMap, Lighting, Normals, Paint, Picture, Style, Values, View, Wireframe, render,
 };
+use meshlod::{Mesh, single_sided_materials};
 use serde_json::json;
 
 use crate::answer::Answer;
@@ -81,13 +81,15 @@ impl Render {
         }
         let scene = files::read(&self.input, &self.reading, session)?;
         let paint = OwnedPaint::of(&scene, style::materials(&scene, &self.input, session));
+        let single_sided = single_sided_materials(&scene);
         let mesh = scene.into_mesh();
         if mesh.faces.is_empty() {
             return Err(Failure::at(&self.input, "the mesh has no faces"));
         }
         let heat = self.heat(&mesh, session)?;
         session.progress.stage("drawing");
-        let style = self.style(&mesh, &paint, heat.as_ref());
+        let style =
+            Style { single_sided: &single_sided, ..self.style(&mesh, &paint, heat.as_ref()) };
         let picture = self.draw(&mesh, &style)?;
         files::write_picture(&self.output, &picture.png())?;
 

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use meshlod::simplify::AttributeWeights;
-use meshlod::{Method, Options, Report, Scene, Target, digits_of, world_bounds, world_volume};
+use meshlod::{Method, Options, Report, Scene, Target, digits_of, world_bounds};
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
@@ -204,8 +204,7 @@ impl Simplify {
             session.warn(Failure::at(&self.input, reason));
         }
         let mut json = self.json(&done, &task.ready, fused.as_ref(), time);
-        let volume = if residual.is_some() { f64::NAN } else { world_volume(&scene) };
-        let mut text = self.text(&done, &task.ready, fused.as_ref(), (volume, time));
+        let mut text = self.text(&done, &task, fused.as_ref(), time);
         simplify_run::replace(&mut scene, std::mem::take(&mut done.meshes));
         let write = || files::write(&self.output, &scene, &self.writing, session);
         match (&self.sequence, &done.sequence) {
@@ -300,9 +299,9 @@ impl Simplify {
     fn text(
         &self,
         done: &Simplified,
-        ready: &ReadyScene<'_>,
+        task: &Task<'_>,
         fused: Option<&fuse::FuseReport>,
-        (volume, time): (f64, Duration),
+        time: Duration,
     ) -> String {
         let report = &done.report;
         let input_faces = fused.map_or(report.input_faces, |fused| fused.before);
@@ -314,14 +313,16 @@ impl Simplify {
             faces(input_faces),
             count(report.output_faces),
             percent(part),
-            topology::to_text(&ready.scene),
+            topology::to_text(&task.ready.scene),
             simplify_report::mesh_notes(report),
         );
         text += &format!("error_estimate: {}\n", value(report.error_estimate));
         if let Some(distance) = &done.measured {
             text += &format!("error_measured:\n{}", distance::to_table(distance));
         }
-        if let Some(line) = volume::lost_text(report.method, &report.volume, volume) {
+        if !self.volume.exact_volume
+            && let Some(line) = volume::lost_text(report.method, &report.volume, task.scene)
+        {
             text += &format!("{line}\n");
         }
         text + &simplify_report::seconds_line(time)

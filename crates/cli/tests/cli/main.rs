@@ -13,6 +13,7 @@ mod pipes;
 mod queries;
 mod repair;
 mod run;
+mod sides;
 mod strip;
 mod topology;
 mod usage;

@@ -24,7 +24,7 @@ pub(super) struct Neighbourhood<'s> {
     faces: Vec<u32>,
 }
 
-/// What [`Neighbourhood::deviation`] need not tell apart: distances up to `enough`, and distances
+/// Limits of [`Neighbourhood::deviation`]: it need not tell distances up to `enough` apart, nor those
 /// of `most` and more.
 #[derive(Clone, Copy)]
 pub(super) struct Limits {

@@ -1,4 +1,4 @@
-//! Reading the base colours and images of a glTF document.
+//! Reading the base colours, sides and images of a glTF document.
 
 use serde_json::Value;
 
@@ -28,6 +28,7 @@ pub(super) fn materials(json: &Value, images: usize) -> Result<Vec<Material>, Pa
             name: material.name.unwrap_or_default(),
             base_color: surface.base_color_factor.unwrap_or([1.0; 4]),
             base_color_image,
+            is_double_sided: material.double_sided,
         })
     };
     materials.into_iter().map(read).collect()

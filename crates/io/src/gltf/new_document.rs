@@ -91,6 +91,9 @@ fn material(material: &Material, texture: Option<usize>) -> Value {
     if material.base_color[3] < 1.0 {
         json.insert("alphaMode".into(), "BLEND".into());
     }
+    if material.is_double_sided {
+        json.insert("doubleSided".into(), true.into());
+    }
     json.into()
 }
 

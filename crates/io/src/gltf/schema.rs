@@ -154,6 +154,8 @@ pub(super) struct GltfMaterial {
     pub name: Option<String>,
     #[serde(default)]
     pub pbr_metallic_roughness: MetallicRoughness,
+    #[serde(default)]
+    pub double_sided: bool,
 }
 
 /// `materials[i].pbrMetallicRoughness`.

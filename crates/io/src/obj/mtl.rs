@@ -181,7 +181,12 @@ pub(super) fn materials(
             })
         });
         resolved.labels.push(Some(resolved.materials.len()));
-        resolved.materials.push(Material { name: name.clone(), base_color, base_color_image });
+        resolved.materials.push(Material {
+            name: name.clone(),
+            base_color,
+            base_color_image,
+            ..Material::default()
+        });
     }
     resolved
 }

@@ -34,13 +34,16 @@ pub(crate) fn closest_point<E: From<QueryError>>(
     loop {
         // Positions are rounded, so the surface may be a little outside of the bounds.
         let radius = away * (1.0 + 1e-9) + reach;
+        if !radius.is_finite() {
+            return Ok(None);
+        }
         let focus = Focus::Sphere { center: point, radius };
         let query = Query { focus, tolerance: Tolerance::Uniform(0.0) };
         let near = extract(&query)?.within(&query.focus)?;
         if let Some(closest) = near.closest_point(point) {
             return Ok(Some(closest));
         }
-        if radius > 2.0 * (farthest + diagonal) || !radius.is_finite() {
+        if radius > 2.0 * (farthest + diagonal) {
             return Ok(None);
         }
         reach *= GROWTH;

@@ -154,6 +154,59 @@ fn inner_sides_take_the_tint() {
 }
 
 #[test]
+fn single_sided_materials_are_seen_from_the_front_only() {
+    let mut mesh = stack(&[0.0]);
+    mesh.materials = Some(Labels { names: vec!["a".into()], of_face: vec![0; mesh.faces.len()] });
+    let unlabelled = Mesh { materials: None, ..mesh.clone() };
+    let behind = Camera::look_at([0.0, 0.0, -3.0], [0.0; 3], [0.0, 1.0, 0.0], 0.8);
+    let seen = |mesh: &Mesh, camera, single_sided: &[bool]| {
+        rgb(&render(mesh, &camera, &Style { single_sided, ..bare(9) }).unwrap(), 4, 4)
+    };
+    assert_eq!(seen(&mesh, from_front(3.0), &[true]), PLAIN);
+    assert_eq!(seen(&mesh, behind, &[true]), [0; 3]);
+    for both_sides in [&[false][..], &[false, true], &[]] {
+        assert_eq!(seen(&mesh, behind, both_sides), PLAIN, "{both_sides:?}");
+    }
+    assert_eq!(seen(&unlabelled, behind, &[true]), PLAIN, "no label, no material");
+    let back_faces = BackFaces::Tint([9, 8, 7]);
+    let tinted = Style { single_sided: &[true], back_faces, ..bare(9) };
+    assert_eq!(rgb(&render(&mesh, &behind, &tinted).unwrap(), 4, 4), [9, 8, 7]);
+}
+
+#[test]
+fn faces_through_the_eye_are_culled_by_their_side_too() {
+    // A floor below the eye, much of it behind the eye: every face is clipped.
+    let mut floor = sheet(1);
+    floor.positions.iter_mut().for_each(|p| *p = [9.0 * p[0], -1.0, -9.0 * p[1]]);
+    let labels = Labels { names: vec!["a".into()], of_face: vec![0; floor.faces.len()] };
+    floor.materials = Some(labels);
+    let mut ceiling = floor.clone();
+    ceiling.positions.iter_mut().for_each(|p| p[1] = 1.0);
+    let camera = Camera::look_at([0.0; 3], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0], 1.2);
+    let style = Style { single_sided: &[true], ..bare(40) };
+    let covered = |mesh: &Mesh, style: &Style| {
+        let picture = render(mesh, &camera, style).unwrap();
+        picture.rgba().chunks_exact(4).filter(|p| p[..3] != [0; 3]).count()
+    };
+    assert!(covered(&floor, &style) > 300);
+    assert_eq!(covered(&floor, &style), covered(&floor, &bare(40)));
+    assert!(covered(&ceiling, &bare(40)) > 300);
+    assert_eq!(covered(&ceiling, &style), 0, "its upper side faces away");
+}
+
+#[test]
+fn the_front_half_of_a_ball_hides_all_of_it() {
+    let mut ball = ball(4);
+    let labels = Labels { names: vec!["a".into()], of_face: vec![0; ball.faces.len()] };
+    ball.materials = Some(labels);
+    let camera = Camera::fit_mesh(&ball, &View::default());
+    let draw = |single_sided: &[bool]| {
+        render(&ball, &camera, &Style { single_sided, ..bare(200) }).unwrap()
+    };
+    assert!(draw(&[]) == draw(&[true]), "culling opens no crack");
+}
+
+#[test]
 fn light_falls_off_with_the_angle_and_is_the_same_on_both_sides() {
     let style = Style::comparison();
     let level = |camera: Camera| {

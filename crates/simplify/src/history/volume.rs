@@ -18,15 +18,16 @@ pub struct VolumeLoss {
     pub running_sum: f64,
     /// Part of the sum that [`Method::LindstromTurk`](crate::Method::LindstromTurk) still owes,
     /// where a place that conserves the volume would have spoiled the shape, in cubic model units.
-    /// [`Simplifier::settled_level`](crate::Simplifier::settled_level) repays it.
+    /// [`Simplifier::settled_level`](crate::Simplifier::settled_level) repays it; zero for a run to an
+    /// error bound, after which it repays nothing.
     pub owed: f64,
     /// Sum of the absolute volumes of the closed components that were removed as a whole, in cubic
     /// model units.
     pub vanished: f64,
     /// Volume before minus volume after, summed over all contractions at a boundary, in cubic model
     /// units: behind the faces and cones that close them, from each boundary loop to its middle in
-    /// the input. Zero by the kernel, which has no cones.
-    pub at_boundaries: f64,
+    /// the input. `None` without such contractions, and by the kernel, which has no cones.
+    pub at_boundaries: Option<f64>,
     /// Contractions at a boundary, and open components that were removed as a whole. `running_sum`
     /// leaves them out.
     pub open: Unconserved,
@@ -60,7 +61,9 @@ impl VolumeLoss {
         let scale = DMat3::from_mat4(transform).determinant().abs();
         self.running_sum += other.running_sum * scale;
         self.owed += other.owed * scale;
-        self.at_boundaries += other.at_boundaries * scale;
+        if let Some(lost) = other.at_boundaries {
+            *self.at_boundaries.get_or_insert(0.0) += lost * scale;
+        }
         self.vanished += other.vanished * scale;
         self.open.count_in(&other.open, &transform);
         self.held.count_in(&other.held, &transform);
@@ -91,7 +94,7 @@ impl Observe for VolumeLoss {
         if !neighbourhood.is_closed(surface) {
             let from = surface.position(neighbourhood.contracted()[placed.kept]);
             let plane = VolumePlane::new(surface, neighbourhood, from);
-            self.at_boundaries += plane.loss(placed.position - from) / 6.0;
+            *self.at_boundaries.get_or_insert(0.0) += plane.loss(placed.position - from) / 6.0;
             return self.open.add(placed.position);
         }
         // Relative to the kept vertex, which is a corner of nearly all old faces.

@@ -97,13 +97,14 @@ pub(crate) fn replay(
         };
         let [kept, gone] = [done.kept, done.gone].map(|v| names.input(v));
         let position = names.position(kept, done.place).into();
-        // So that the surface leaves the values of wedges to the kernel, whose own follow below.
-        let freedom = Freedom::AlongNormal(0);
+        let stays = position == surface.position(kept);
+        let freedom = if stays { Freedom::At(0) } else { Freedom::Free };
         edge_ring.gather_decided(surface, [kept, gone], freedom);
         let error_estimate = f64::from(done.moved).sqrt() * names.frame.unit;
         let placed = Placed { position, kept: 0, error_estimate };
         observer.before(surface, &edge_ring, &placed);
         surface.contract(&edge_ring, &placed);
+        // The surface has left the values of wedges to the kernel.
         while let Some(next) = values.next_if(|next| next.number == number) {
             surface.wedges.iter_mut().for_each(|all| all.restore(next.wedge, &next.values));
         }

@@ -32,6 +32,8 @@ pub(crate) struct Debt {
 
 /// Repays debts one after the other as far as possible. Vertices that are `held` stay, and so do
 /// boundaries.
+///
+/// Cost: O(n) for n faces, if there are debts, and for each debt the size of its patch.
 pub(crate) fn repay(level: &mut Mesh, debts: &[Debt], held: &[bool]) {
     if debts.is_empty() {
         return;
@@ -42,8 +44,8 @@ pub(crate) fn repay(level: &mut Mesh, debts: &[Debt], held: &[bool]) {
         let mut patch = Patch::new(debt.vertex);
         for _ in 0..MOST_RINGS {
             let inflation = patch.inflation(level, &connectivity, &stays, debt.sixfold);
-            if let Some(motion) = &inflation {
-                motion.apply(level);
+            if let Some(inflation) = &inflation {
+                inflation.apply(level);
             }
             if inflation.is_some() || !patch.grow(level, &connectivity) {
                 break;
@@ -81,7 +83,7 @@ impl Patch {
         self.vertices.len() > self.inner
     }
 
-    /// Returns the motion that lets the patch gain a sixth of `sixfold`; `None` if that takes it too
+    /// Returns the displacement that lets the patch gain a sixth of `sixfold`; `None` if that takes it too
     /// far.
     fn inflation(
         &self,
@@ -89,20 +91,20 @@ impl Patch {
         connectivity: &Connectivity,
         stays: &impl Fn(VertexId) -> bool,
         sixfold: f64,
-    ) -> Option<Motion> {
+    ) -> Option<Inflation> {
         let moving: Vec<VertexId> = self.vertices.iter().copied().filter(|&v| !stays(v)).collect();
-        let mut motion = Motion::along_normals(level, connectivity, &moving);
-        let slope: f64 = motion.normals.iter().map(|(_, n)| n.length_squared()).sum();
-        motion.factor = sixfold / slope;
+        let mut inflation = Inflation::along_normals(level, connectivity, &moving);
+        let slope: f64 = inflation.normals.iter().map(|(_, n)| n.length_squared()).sum();
+        inflation.factor = sixfold / slope;
         for _ in 0..NEWTON_STEPS {
-            motion.factor += (sixfold - motion.gain()) / slope;
+            inflation.factor += (sixfold - inflation.gain()) / slope;
         }
-        motion.is_small().then_some(motion)
+        inflation.is_small().then_some(inflation)
     }
 }
 
-/// Motion of vertices along their normals by a common factor.
-struct Motion {
+/// Displacement of vertices along their normals by a common factor.
+struct Inflation {
     factor: f64,
     /// Area normals of the vertices that move: sums over their faces, each twice its area long.
     normals: Vec<(VertexId, DVec3)>,
@@ -110,7 +112,7 @@ struct Motion {
     faces: Vec<[(DVec3, DVec3); 3]>,
 }
 
-impl Motion {
+impl Inflation {
     fn along_normals(level: &Mesh, connectivity: &Connectivity, moving: &[VertexId]) -> Self {
         let origin = moving.first().map_or(DVec3::ZERO, |v| level.positions[v.index()].into());
         let at = |v: VertexId| DVec3::from(level.positions[v.index()]) - origin;

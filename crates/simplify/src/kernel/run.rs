@@ -207,7 +207,10 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
     }
 
     fn tally(&self) -> Tally {
-        let owed = self.partition.debts().iter().map(|(_, sixfold)| sixfold).sum();
+        // A level within a bound is not repaid.
+        let repays = self.input.get().is_none();
+        let debts = self.partition.debts();
+        let owed = debts.iter().filter(|_| repays).map(|(_, sixfold)| sixfold).sum();
         Tally {
             vanished: self
                 .partition

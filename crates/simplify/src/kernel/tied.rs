@@ -153,7 +153,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
                 return Err(Refusal::Seam);
             }
             // Tied vertices would not stay together if each moved along its own normal.
-            let mobility = Mobility::new(free, true);
+            let mobility = if free { Mobility::Free } else { Mobility::Fixed };
             *ends = match ends.v0 == stays {
                 true => Ends { mobility, ..*ends },
                 false => Ends { mobility, ..Ends::free(stays, goes) },

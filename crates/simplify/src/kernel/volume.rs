@@ -138,7 +138,7 @@ impl VolumeTally {
             running_sum: self.sixfold * sixth,
             owed: owed * sixth,
             vanished: self.vanished * sixth,
-            at_boundaries: 0.0,
+            at_boundaries: None,
             open: self.open.to_model(frame),
             held: self.held.to_model(frame),
         }

@@ -84,6 +84,8 @@ pub struct RingVertex {
 pub struct Neighbourhood {
     pub(crate) contracted: Contracted,
     pub(crate) freedom: Freedom,
+    /// True if the contraction was decided elsewhere, which also gives the values of wedges.
+    pub(crate) is_decided: bool,
     pub(crate) spokes: Vec<Spoke>,
     pub(crate) removed_faces: Vec<RemovedFace>,
     pub(crate) ring: Vec<RingVertex>,
@@ -152,7 +154,7 @@ impl Neighbourhood {
     }
 
     /// Gathers the faces and vertices around an edge whose contraction was decided elsewhere;
-    /// nothing is refused.
+    /// nothing is refused, and the values of wedges are left to the caller.
     pub(crate) fn gather_decided(
         &mut self,
         surface: &Surface,
@@ -160,6 +162,7 @@ impl Neighbourhood {
         freedom: Freedom,
     ) {
         self.clear(Contracted::edge(edge));
+        self.is_decided = true;
         self.freedom = freedom;
         self.partners.clear();
         self.wedge_pairs.clear();
@@ -171,6 +174,7 @@ impl Neighbourhood {
 
     fn clear(&mut self, contracted: Contracted) {
         self.contracted = contracted;
+        self.is_decided = false;
         self.spokes.clear();
         self.removed_faces.clear();
         self.ring.clear();

@@ -177,7 +177,7 @@ impl Wedges {
         let (pairs, kept) = (&neighbourhood.wedge_pairs, placed.kept);
         // An end that stays in place or moves along its normal keeps its values exactly.
         let moves = placed.position != surface.position(neighbourhood.contracted[kept]);
-        if moves && neighbourhood.freedom == Freedom::Free {
+        if moves && neighbourhood.freedom == Freedom::Free && !neighbourhood.is_decided {
             self.take_values(&Nearby::new(self, surface, neighbourhood, placed), pairs, kept);
         }
         for spoke in &neighbourhood.spokes {

@@ -13,10 +13,13 @@ pub(crate) struct Surface<'a> {
     pub face_colors: Option<Cow<'a, [[u8; 3]]>>,
 }
 
-/// Linear colour and texture.
+/// Linear colour, texture and sides.
+#[derive(Clone)]
 pub(crate) struct SurfaceMaterial<'a> {
     pub base_color: [f32; 3],
     pub texture: Option<Cow<'a, Texture>>,
+    /// Faces are seen only from the front.
+    pub is_single_sided: bool,
 }
 
 /// sRGB colours of vertices.
@@ -39,6 +42,7 @@ impl<'a> Surface<'a> {
             materials: vec![SurfaceMaterial {
                 base_color: crate::placement::linear(color),
                 texture: None,
+                is_single_sided: false,
             }],
             vertex_colors: VertexColors::White,
             face_colors: None,
@@ -68,6 +72,7 @@ impl<'a> Surface<'a> {
                     materials: vec![SurfaceMaterial {
                         base_color: [1.0; 3],
                         texture: Some(Cow::Owned(Texture::checker(squares))),
+                        is_single_sided: false,
                     }],
                     ..white()
                 },
@@ -84,13 +89,28 @@ impl<'a> Surface<'a> {
                 };
                 let material = |material: &meshlod::picture::PaintMaterial| {
                     let texture = material.texture.filter(|_| has_uv).map(texture).transpose()?;
-                    Ok(SurfaceMaterial { base_color: material.base_color, texture })
+                    let base_color = material.base_color;
+                    Ok(SurfaceMaterial { base_color, texture, is_single_sided: false })
                 };
                 let materials =
                     all.materials.iter().map(material).collect::<Result<_, PictureError>>()?;
                 Self { materials, ..white() }
             }
         })
+    }
+
+    /// Gives each material label its own material, single-sided where it says so; see
+    /// [`Style::single_sided`](meshlod::picture::Style::single_sided).
+    pub(crate) fn with_sides(mut self, mesh: &Mesh, single_sided: &[bool]) -> Self {
+        let labels = mesh.materials.as_ref().filter(|_| single_sided.contains(&true));
+        let Some(labels) = labels else { return self };
+        if let [only] = &self.materials[..] {
+            self.materials = vec![only.clone(); labels.names.len().max(1)];
+        }
+        for (material, &is_single_sided) in self.materials.iter_mut().zip(single_sided) {
+            material.is_single_sided = is_single_sided;
+        }
+        self
     }
 }
 

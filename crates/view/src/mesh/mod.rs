@@ -66,9 +66,24 @@ impl GpuMesh {
         paint: &Paint<'_>,
         normals: Normals,
     ) -> Result<Self, ViewError> {
+        Self::with_sides(renderer, mesh, paint, normals, &[])
+    }
+
+    /// Uploads a mesh as [`GpuMesh::new`] does, with the material labels that are
+    /// [single-sided](meshlod::picture::Style::single_sided).
+    ///
+    /// # Errors
+    /// As [`GpuMesh::new`].
+    pub fn with_sides(
+        renderer: &Renderer,
+        mesh: &Mesh,
+        paint: &Paint<'_>,
+        normals: Normals,
+        single_sided: &[bool],
+    ) -> Result<Self, ViewError> {
         mesh.validate().map_err(PictureError::from)?;
         let gpu = renderer.gpu();
-        let surface = Surface::new(mesh, paint)?;
+        let surface = Surface::new(mesh, paint)?.with_sides(mesh, single_sided);
         let origin = middle(mesh);
         let (order, ranges) = face_order(mesh, surface.materials.len());
         let vertices = CornerVertices::new(mesh, &surface, normals, origin);

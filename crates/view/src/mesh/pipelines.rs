@@ -47,7 +47,8 @@ pub(crate) struct MaterialBinding {
 struct MaterialUniforms {
     base_color: [f32; 4],
     has_texture: u32,
-    padding: [u32; 3],
+    is_single_sided: u32,
+    padding: [u32; 2],
 }
 
 impl Renderer {
@@ -97,7 +98,8 @@ impl MaterialBinding {
         let uniforms = MaterialUniforms {
             base_color: [r, g, b, 1.0],
             has_texture: material.texture.is_some().into(),
-            padding: [0; 3],
+            is_single_sided: material.is_single_sided.into(),
+            padding: [0; 2],
         };
         let buffer =
             buffer_of(gpu, "material", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM);
@@ -120,6 +122,7 @@ impl MaterialBinding {
 
     /// Creates a material of one linear colour.
     pub(crate) fn plain(renderer: &Renderer, base_color: [f32; 3]) -> Self {
-        Self::new(renderer, &SurfaceMaterial { base_color, texture: None })
+        let material = SurfaceMaterial { base_color, texture: None, is_single_sided: false };
+        Self::new(renderer, &material)
     }
 }

@@ -4,6 +4,7 @@
 struct Material {
     base_color: vec4f,
     has_texture: u32,
+    is_single_sided: u32,
 }
 
 @group(1) @binding(0) var<uniform> material: Material;
@@ -55,6 +56,10 @@ fn pulled(@builtin(vertex_index) at: u32) -> Fragment {
 @fragment
 fn shaded(in: Fragment, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     dissolve(in.clip);
+    // Backs that are tinted are there to be seen.
+    if material.is_single_sided != 0u && !front && !has(TINT_BACK) {
+        discard;
+    }
     let to_eye = normalize(draw.eye - in.place);
     let normal = seen_normal(in.normal, in.place, to_eye, front);
     let color_of_corner = decode_srgb(in.color.rgb);

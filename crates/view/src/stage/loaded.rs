@@ -9,7 +9,10 @@ use meshlod::codec::{Compressed, Malformed};
 use meshlod::mesh::Bounds;
 use meshlod::multires::{Cut, FileError, Implicit, ModelFile, Query, Rtin};
 use meshlod::picture::Normals;
-use meshlod::{IoError, Mesh, OwnedPaint, ReadOptions, decompress_bytes, materials_of, normals_of};
+use meshlod::{
+    IoError, Mesh, OwnedPaint, ReadOptions, decompress_bytes, materials_of, normals_of,
+    single_sided_materials,
+};
 use thiserror::Error;
 
 /// File in memory, ready to be shown: a mesh with its appearance, and what the file holds beside it.
@@ -23,6 +26,9 @@ pub struct Loaded {
     pub mesh: Arc<Mesh>,
     /// Colours of the surface.
     pub paint: Arc<OwnedPaint>,
+    /// Whether each material is single-sided; see
+    /// [`Style::single_sided`](meshlod::picture::Style::single_sided).
+    pub single_sided: Arc<[bool]>,
     /// Normals with which the surface is shaded.
     pub normals: Normals,
     /// Box around all faces.
@@ -119,6 +125,7 @@ impl Loaded {
             normals: normals_of(&mesh),
             mesh: Arc::new(mesh),
             paint,
+            single_sided: Arc::new([]),
             content: LoadedContent::Mesh,
             time: Duration::ZERO,
             warnings: Vec::new(),
@@ -143,7 +150,9 @@ fn mesh_file(path: &Path, options: &ReadOptions) -> Result<Loaded, LoadError> {
     let paint = OwnedPaint::of(&scene, materials);
     let warning = |image: meshlod::UnreadImage| format!("image {}: {}", image.name, image.reason);
     let warnings = unread.into_iter().map(warning).collect();
-    Ok(Loaded { warnings, ..Loaded::of(path, scene.into_mesh(), paint, LoadedContent::Mesh) })
+    let single_sided = single_sided_materials(&scene).into();
+    let loaded = Loaded::of(path, scene.into_mesh(), paint, LoadedContent::Mesh);
+    Ok(Loaded { warnings, single_sided, ..loaded })
 }
 
 fn compressed(path: &Path) -> Result<Loaded, LoadError> {

@@ -1,6 +1,7 @@
 //! Subjects: things on the GPU that a stage shows.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use meshlod::check::{Objects, ObjectsBy};
 use meshlod::mesh::{Bounds, LayerKind, VertexId};
@@ -28,6 +29,8 @@ pub enum Subject {
 #[derive(Clone, Debug)]
 pub struct MeshSubject {
     mesh: GpuMesh,
+    /// Whether each material is single-sided.
+    single_sided: Arc<[bool]>,
     /// Copy of the surface in the colours of its distance from another.
     heat: Option<GpuMesh>,
     bounds: Bounds,
@@ -171,7 +174,14 @@ impl MeshSubject {
         let has_uv =
             mesh.attributes.as_ref().is_some_and(|all| all.layer(LayerKind::Uv(0)).is_some());
         Ok(Self {
-            mesh: GpuMesh::new(renderer, mesh, &loaded.paint.as_paint(), loaded.normals)?,
+            mesh: GpuMesh::with_sides(
+                renderer,
+                mesh,
+                &loaded.paint.as_paint(),
+                loaded.normals,
+                &loaded.single_sided,
+            )?,
+            single_sided: Arc::clone(&loaded.single_sided),
             heat: None,
             bounds: loaded.bounds,
             vertices: mesh.positions.len(),
@@ -196,7 +206,9 @@ impl MeshSubject {
     ) -> Result<(), ViewError> {
         let range = [0.0, if most > 0.0 { most } else { 1.0 }];
         let values = Values { values: distances, map: ColorMap::Heat, range };
-        self.heat = Some(GpuMesh::new(renderer, mesh, &Paint::VertexValues(values), normals)?);
+        let paint = Paint::VertexValues(values);
+        let sides = &self.single_sided;
+        self.heat = Some(GpuMesh::with_sides(renderer, mesh, &paint, normals, sides)?);
         Ok(())
     }
 

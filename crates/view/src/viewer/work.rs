@@ -174,7 +174,10 @@ pub(crate) fn simplify(
         return Err("nothing to simplify".into());
     };
     let seconds = start.elapsed().as_secs_f64();
-    let level = Loaded::from_mesh("level", level, Arc::clone(&loaded.paint));
+    let level = Loaded {
+        single_sided: Arc::clone(&loaded.single_sided),
+        ..Loaded::from_mesh("level", level, Arc::clone(&loaded.paint))
+    };
     if level.mesh.faces.is_empty() {
         return Err("no face is left at this level".into());
     }

@@ -3,9 +3,9 @@
 
 use anyhow::{Context, Result};
 use meshlod::mesh::Mesh;
-use meshlod::picture::{ImageError, Paint, ReferenceImages};
+use meshlod::picture::{ImageError, Paint, ReferenceImages, Style};
 use meshlod::simplify::{Method, Options, Target};
-use meshlod::{Scene, materials_of, simplify_scene};
+use meshlod::{Scene, materials_of, simplify_scene, single_sided_materials};
 use meshlod_bench::peer::{Settings, SimplifyOptions, Update, simplify_with_attributes};
 
 use crate::project::Project;
@@ -58,7 +58,13 @@ fn table(models: &[&str]) -> Result<String> {
         let Some(scene) = meshlod_bench::read_scene(model)? else { continue };
         let (materials, _) = materials_of(&scene);
         let mesh = scene.flatten();
-        let portrait = ReferenceImages::new(&mesh, &Paint::comparison(&mesh, &materials))?;
+        let single_sided = single_sided_materials(&scene);
+        let style = Style {
+            paint: Paint::comparison(&mesh, &materials),
+            single_sided: &single_sided,
+            ..Style::comparison()
+        };
+        let portrait = ReferenceImages::with_style(&mesh, style)?;
         for ratio in RATIOS {
             for (method, level) in levels(&scene, &mesh, ratio)? {
                 let ImageError { flip, ssim, .. } =

@@ -148,6 +148,7 @@ fn a_plain_scene_comes_back_with_seams_materials_and_images() {
     scene.meshes[0].mesh.materials = Some(Labels { names: names.clone().into(), of_face });
     scene.meshes[0].materials = vec![Some(1), Some(0)];
     let [back, front] = names.map(|name| Material {
+        is_double_sided: name == "back",
         name,
         base_color: [0.5, 0.25, 1.0, 1.0],
         base_color_image: Some(0),

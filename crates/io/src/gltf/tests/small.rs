@@ -373,3 +373,15 @@ fn bytes_per_triangle_of_the_bunny() {
     assert!(per_face(&how) < 3.2);
     per_face(&PACKED);
 }
+
+#[test]
+fn materials_have_one_side_unless_they_say_otherwise() {
+    let (mut json, buffer) = super::square();
+    let sides = [json!({}), json!({ "doubleSided": false }), json!({ "doubleSided": true })];
+    json["materials"] = sides.to_vec().into();
+    let scene = super::read_parts(&json, &buffer).unwrap();
+    let is_double: Vec<bool> = scene.materials.iter().map(|m| m.is_double_sided).collect();
+    assert_eq!(is_double, [false, false, true]);
+    json["materials"] = json!([{ "doubleSided": "both" }]);
+    assert!(super::read_parts(&json, &buffer).is_err());
+}

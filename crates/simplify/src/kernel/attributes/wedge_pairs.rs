@@ -82,7 +82,11 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         let (v0, v1) = if turns { (target, v) } else { (v, target) };
         let wedge_pairs = if turns { wedge_pairs.turned() } else { wedge_pairs };
         let wedge_pairs = self.one_each(wedge_pairs);
-        let mobility = Mobility::new(leaves && goes, !moves[usize::from(turns)]);
+        let mobility = match moves[usize::from(turns)] {
+            _ if leaves && goes => Mobility::Free,
+            true => Mobility::AlongNormal,
+            false => Mobility::Fixed,
+        };
         Ends { v0, v1, mobility, cuts_seam: false, wedge_pairs }
     }
 

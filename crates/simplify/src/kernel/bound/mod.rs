@@ -22,6 +22,12 @@ use crate::kernel::mesh::one_ring::{GHOST, VertexStore};
 /// 1.00; .7 1.40, 1.09, 1.40.
 const SURE: f32 = 0.5;
 
+/// Part of the bound that contractions may use, as distances are probed at points and are larger in
+/// between. Without a margin the proved maximum of eighteen runs (bunny, horse-97k, igea, dragon,
+/// armadillo-173k and fandisk-32k at .3, .1 and .03 %) was 1.04 to 1.21 times the bound, 1.35, 1.50
+/// and 2.0 times in three of them.
+const MARGIN: f32 = 0.9;
+
 /// A single step that goes this many times as far as the bound is refused without measuring.
 const TOO_FAR: f32 = 2.0;
 
@@ -66,6 +72,7 @@ impl<'m> ErrorBound<'m> {
             }
         }
         let travelled = store.all.iter().map(|vertex| vertex.moved.sqrt()).collect();
+        let max_error = MARGIN * max_error;
         Self { input, between: input.between(max_error), max_error, next, travelled }
     }
 

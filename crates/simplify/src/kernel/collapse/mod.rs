@@ -44,18 +44,6 @@ pub(crate) enum Mobility {
     Fixed,
 }
 
-impl Mobility {
-    /// Returns the mobility of two ends, of which one stays with a pin or a tie where `fixed`.
-    #[inline(always)]
-    pub(crate) fn new(free: bool, fixed: bool) -> Self {
-        match (free, fixed) {
-            (true, _) => Self::Free,
-            (false, false) => Self::AlongNormal,
-            (false, true) => Self::Fixed,
-        }
-    }
-}
-
 /// An edge contraction about to be carried out.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Collapse {

@@ -2,8 +2,8 @@
 
 use anyhow::Result;
 use meshlod::mesh::Mesh;
-use meshlod::picture::{Materials, Paint, ReferenceImages};
-use meshlod::{Options, Scene, Target, materials_of, simplify_scene};
+use meshlod::picture::{Materials, Paint, ReferenceImages, Style};
+use meshlod::{Options, Scene, Target, materials_of, simplify_scene, single_sided_materials};
 use meshlod_bench::peer::{Settings, SimplifyOptions, Update, simplify_with_attributes};
 use serde_json::{Value, json};
 
@@ -42,8 +42,13 @@ pub fn table(tools: &Tools<'_>) -> Result<String> {
     let (mut count, mut reached, mut short) = (0, 0, 0);
     for name in MODELS {
         let Some(model) = TexturedModel::read(name)? else { continue };
-        let paint = Paint::comparison(&model.mesh, &model.materials);
-        let references = ReferenceImages::new(&model.mesh, &paint)?;
+        let single_sided = single_sided_materials(&model.scene);
+        let style = Style {
+            paint: Paint::comparison(&model.mesh, &model.materials),
+            single_sided: &single_sided,
+            ..Style::comparison()
+        };
+        let references = ReferenceImages::with_style(&model.mesh, style)?;
         for percent in PERCENTS {
             eprintln!("  {name}, {percent} % …");
             let wanted = model.mesh.faces.len() * percent / 100;
