@@ -16,6 +16,9 @@ const FARTHEST: f64 = 0.02;
 /// Smallest cosine by which a face may turn.
 const MIN_COSINE: f64 = 0.9;
 
+/// Number of attempts at one size, each without the vertices of faces that have turned too far.
+const ATTEMPTS: usize = 4;
+
 /// Number of steps of Newton's method, which converges quadratically from a step this small.
 const NEWTON_STEPS: usize = 4;
 
@@ -60,11 +63,18 @@ struct Patch {
     contained: FxHashSet<VertexId>,
     /// Number of vertices before the outermost ring.
     inner: usize,
+    /// Vertices that stay because a thin face of theirs would turn too far.
+    fixed: FxHashSet<VertexId>,
 }
 
 impl Patch {
     fn new(center: VertexId) -> Self {
-        Self { vertices: vec![center], contained: FxHashSet::from_iter([center]), inner: 0 }
+        Self {
+            vertices: vec![center],
+            contained: FxHashSet::from_iter([center]),
+            inner: 0,
+            fixed: FxHashSet::default(),
+        }
     }
 
     /// Adds a ring. Returns false if there is none.
@@ -86,33 +96,63 @@ impl Patch {
     /// Returns the displacement that lets the patch gain a sixth of `sixfold`; `None` if that takes it too
     /// far.
     fn inflation(
-        &self,
+        &mut self,
         level: &Mesh,
         connectivity: &Connectivity,
         stays: &impl Fn(VertexId) -> bool,
         sixfold: f64,
     ) -> Option<Inflation> {
-        let moving: Vec<VertexId> = self.vertices.iter().copied().filter(|&v| !stays(v)).collect();
-        let mut inflation = Inflation::along_normals(level, connectivity, &moving);
-        let slope: f64 = inflation.normals.iter().map(|(_, n)| n.length_squared()).sum();
-        inflation.factor = sixfold / slope;
-        for _ in 0..NEWTON_STEPS {
-            inflation.factor += (sixfold - inflation.gain()) / slope;
+        for _ in 0..ATTEMPTS {
+            let moves = |v: &VertexId| !stays(*v) && !self.fixed.contains(v);
+            let moving: Vec<VertexId> = self.vertices.iter().copied().filter(moves).collect();
+            let inflation = Inflation::gaining(sixfold, level, connectivity, &moving);
+            if !inflation.is_near() {
+                return None;
+            }
+            let turned = self.fixed.len();
+            self.fixed.extend(inflation.turned());
+            if self.fixed.len() == turned {
+                return Some(inflation);
+            }
         }
-        inflation.is_small().then_some(inflation)
+        None
     }
 }
-
 /// Displacement of vertices along their normals by a common factor.
 struct Inflation {
     factor: f64,
     /// Area normals of the vertices that move: sums over their faces, each twice its area long.
     normals: Vec<(VertexId, DVec3)>,
-    /// Positions of the corners of all faces that move, with their normals, zero where they stay.
-    faces: Vec<[(DVec3, DVec3); 3]>,
+    /// Corners of all faces that move.
+    faces: Vec<[Corner; 3]>,
+}
+
+/// Corner of a face.
+#[derive(Clone, Copy)]
+struct Corner {
+    vertex: VertexId,
+    from: DVec3,
+    /// Area normal of the vertex; zero if it stays.
+    normal: DVec3,
 }
 
 impl Inflation {
+    /// Returns the displacement of vertices that gains a sixth of `sixfold`.
+    fn gaining(
+        sixfold: f64,
+        level: &Mesh,
+        connectivity: &Connectivity,
+        moving: &[VertexId],
+    ) -> Self {
+        let mut inflation = Self::along_normals(level, connectivity, moving);
+        let slope: f64 = inflation.normals.iter().map(|(_, n)| n.length_squared()).sum();
+        inflation.factor = sixfold / slope;
+        for _ in 0..NEWTON_STEPS {
+            inflation.factor += (sixfold - inflation.gain()) / slope;
+        }
+        inflation
+    }
+
     fn along_normals(level: &Mesh, connectivity: &Connectivity, moving: &[VertexId]) -> Self {
         let origin = moving.first().map_or(DVec3::ZERO, |v| level.positions[v.index()].into());
         let at = |v: VertexId| DVec3::from(level.positions[v.index()]) - origin;
@@ -126,7 +166,11 @@ impl Inflation {
         faces.sort_unstable();
         faces.dedup();
         let of: FxHashMap<VertexId, DVec3> = normals.iter().copied().collect();
-        let corner = |v: VertexId| (at(v), of.get(&v).copied().unwrap_or_default());
+        let corner = |vertex: VertexId| Corner {
+            vertex,
+            from: at(vertex),
+            normal: of.get(&vertex).copied().unwrap_or_default(),
+        };
         let faces = faces.iter().map(|face| level.faces[face.index()].map(corner)).collect();
         Self { factor: 0.0, normals, faces }
     }
@@ -134,33 +178,36 @@ impl Inflation {
     /// Returns six times the volume gained.
     fn gain(&self) -> f64 {
         let sixfold = |[a, b, c]: [DVec3; 3]| a.cross(b).dot(c);
-        let gain = |face: &[(DVec3, DVec3); 3]| {
-            sixfold(face.map(|corner| self.moved(corner))) - sixfold(face.map(|(from, _)| from))
+        let gain = |face: &[Corner; 3]| {
+            sixfold(face.map(|corner| self.moved(corner))) - sixfold(face.map(|c| c.from))
         };
         self.faces.iter().map(gain).sum()
     }
 
-    fn moved(&self, (from, normal): (DVec3, DVec3)) -> DVec3 {
+    fn moved(&self, Corner { from, normal, .. }: Corner) -> DVec3 {
         from + self.factor * normal
     }
 
-    /// Returns true if no vertex goes far and no face turns far.
-    fn is_small(&self) -> bool {
+    /// Returns true if no vertex goes far.
+    fn is_near(&self) -> bool {
         let is_near = |n: &DVec3| self.factor.abs() * n.length() <= FARTHEST * n.length().sqrt();
-        let keeps = |face: &[(DVec3, DVec3); 3]| {
-            let (old, new) =
-                (normal(face.map(|(from, _)| from)), normal(face.map(|c| self.moved(c))));
-            old.dot(new) >= MIN_COSINE * old.length() * new.length()
+        self.factor.is_finite() && self.normals.iter().all(|(_, n)| is_near(n))
+    }
+
+    /// Returns the vertices of faces that turn too far.
+    fn turned(&self) -> impl Iterator<Item = VertexId> + '_ {
+        let turns = |face: &&[Corner; 3]| {
+            let old = normal(face.map(|corner| corner.from));
+            let new = normal(face.map(|corner| self.moved(corner)));
+            old.dot(new) < MIN_COSINE * old.length() * new.length()
         };
-        self.factor.is_finite()
-            && self.normals.iter().all(|(_, n)| is_near(n))
-            && self.faces.iter().all(keeps)
+        self.faces.iter().filter(turns).flatten().map(|corner| corner.vertex)
     }
 
     fn apply(&self, level: &mut Mesh) {
         for &(v, normal) in &self.normals {
             let position = &mut level.positions[v.index()];
-            *position = self.moved((DVec3::from(*position), normal)).into();
+            *position = (DVec3::from(*position) + self.factor * normal).into();
         }
     }
 }
