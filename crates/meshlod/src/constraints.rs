@@ -19,11 +19,11 @@ use crate::locks::join_locks;
 /// use meshlod::check::ContactPolicy;
 /// use meshlod::{Constraints, Options, Scene, Target, VertexLocking, samples, simplify};
 ///
-/// let fish = Scene::from_mesh("fish", samples::fish(4_000));
+/// let ground = Scene::from_mesh("ground", samples::terrain(4_000));
 /// let locks = VertexLocking::Contacts(ContactPolicy::Exclude);
 /// let constraints = Constraints { locks, lock_boundary: true, ..Constraints::default() };
-/// let (fish, options) = constraints.flatten(fish, Options::default())?;
-/// let (_, report) = simplify(&fish, Target::Ratio(0.25), &options)?;
+/// let (ground, options) = constraints.flatten(ground, Options::default())?;
+/// let (_, report) = simplify(&ground, Target::Ratio(0.25), &options)?;
 /// assert!(report.held.locked > 0);
 /// # Ok::<(), meshlod::SimplifyError>(())
 /// ```

@@ -18,7 +18,8 @@ pub struct VolumeLoss {
     pub running_sum: f64,
     /// Part of the sum that [`Method::LindstromTurk`](crate::Method::LindstromTurk) still owes,
     /// where a place that conserves the volume would have spoiled the shape, in cubic model units.
-    /// [`Simplifier::settled_level`](crate::Simplifier::settled_level) repays it; zero for a run to an
+    /// [`Simplifier::settled_level`](crate::Simplifier::settled_level) repays it, as far as the shape
+    /// allows; zero for a run to an
     /// error bound, after which it repays nothing.
     pub owed: f64,
     /// Sum of the absolute volumes of the closed components that were removed as a whole, in cubic
