@@ -118,18 +118,19 @@ impl Patch {
         None
     }
 }
+
 /// Displacement of vertices along their normals by a common factor.
 struct Inflation {
     factor: f64,
     /// Area normals of the vertices that move: sums over their faces, each twice its area long.
     normals: Vec<(VertexId, DVec3)>,
     /// Corners of all faces that move.
-    faces: Vec<[Corner; 3]>,
+    faces: Vec<[MovingCorner; 3]>,
 }
 
-/// Corner of a face.
+/// MovingCorner of a face.
 #[derive(Clone, Copy)]
-struct Corner {
+struct MovingCorner {
     vertex: VertexId,
     from: DVec3,
     /// Area normal of the vertex; zero if it stays.
@@ -166,7 +167,7 @@ impl Inflation {
         faces.sort_unstable();
         faces.dedup();
         let of: FxHashMap<VertexId, DVec3> = normals.iter().copied().collect();
-        let corner = |vertex: VertexId| Corner {
+        let corner = |vertex: VertexId| MovingCorner {
             vertex,
             from: at(vertex),
             normal: of.get(&vertex).copied().unwrap_or_default(),
@@ -178,13 +179,13 @@ impl Inflation {
     /// Returns six times the volume gained.
     fn gain(&self) -> f64 {
         let sixfold = |[a, b, c]: [DVec3; 3]| a.cross(b).dot(c);
-        let gain = |face: &[Corner; 3]| {
+        let gain = |face: &[MovingCorner; 3]| {
             sixfold(face.map(|corner| self.moved(corner))) - sixfold(face.map(|c| c.from))
         };
         self.faces.iter().map(gain).sum()
     }
 
-    fn moved(&self, Corner { from, normal, .. }: Corner) -> DVec3 {
+    fn moved(&self, MovingCorner { from, normal, .. }: MovingCorner) -> DVec3 {
         from + self.factor * normal
     }
 
@@ -196,7 +197,7 @@ impl Inflation {
 
     /// Returns the vertices of faces that turn too far.
     fn turned(&self) -> impl Iterator<Item = VertexId> + '_ {
-        let turns = |face: &&[Corner; 3]| {
+        let turns = |face: &&[MovingCorner; 3]| {
             let old = normal(face.map(|corner| corner.from));
             let new = normal(face.map(|corner| self.moved(corner)));
             old.dot(new) < MIN_COSINE * old.length() * new.length()
