@@ -60,7 +60,7 @@ impl FuseReport {
             "new_vertices": self.fused.imprint.vertices,
             "buried_faces": self.fused.buried,
             "joined_edges": self.fused.joined,
-            "open_components_left": self.fused.left,
+            "components_not_fused": self.fused.left,
         })
     }
 

@@ -94,6 +94,19 @@ impl<'m> Simplifier<'m> {
         self.engine.step(&stop, observer)
     }
 
+    /// Makes the next contraction on the way to a target. Returns false if the target is reached or
+    /// there was no such contraction.
+    /// # Errors
+    /// An invalid target.
+    pub fn step_to(
+        &mut self,
+        target: Target,
+        observer: &mut dyn Observe,
+    ) -> Result<bool, SimplifyError> {
+        let stop = self.stop(target)?;
+        Ok(self.live_faces() > stop.faces && self.engine.step(&stop, observer))
+    }
+
     /// Returns the cost of the next candidate for contraction in the units of the method, see
     /// [`Method::cost_power`](crate::Method::cost_power); `None` if no candidate is left.
     ///

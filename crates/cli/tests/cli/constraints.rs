@@ -132,9 +132,7 @@ fn levels(run: &Run, file: &str, options: &[&str]) -> Vec<(&'static str, Mesh)> 
     ]);
     go(&["compare", file, "--ratio", "10%", "--methods", "qem", "--no-pictures", "--out", "c"]);
     let positions = read(run, file).positions;
-    let files =
-        ["s.ply", "l_LOD1.ply", "l_LOD2.ply", "b-fine.ply", "b-coarse.ply", "c/qem-10%.ply"];
-    let files = files.map(|file| if run.path(file).exists() { file } else { "c/qem-10.ply" });
+    let files = ["s.ply", "l_LOD1.ply", "l_LOD2.ply", "b-fine.ply", "b-coarse.ply", "c/qem-10.ply"];
     let mut levels: Vec<_> = files.into_iter().map(|file| (file, read(run, file))).collect();
     levels.extend(strip_levels(run, "t.json", &positions).into_iter().map(|mesh| ("strip", mesh)));
     levels

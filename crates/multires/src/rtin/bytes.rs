@@ -57,6 +57,9 @@ const HEADER: usize = 72;
 /// file from requesting much memory, while flat fields of millions of heights still take only
 /// kilobytes.
 const MAX_PER_BYTE: usize = 256;
+/// Number of heights that a prefix of any length may announce, since a short one says as little as
+/// its first few parts.
+const FREE_HEIGHTS: usize = 1 << 24;
 /// Zstandard level. Exact heights of the shared terrain take the same space at 3, 9, 15 and 19, to
 /// a third of a percent; in cells of 4 m they take 2 % more at 3 and 7 % less at 19.
 const EFFORT: i32 = 9;
@@ -117,6 +120,9 @@ impl HeightField {
     /// A vertex of a part that is missing gets the height by which it would have been predicted,
     /// from the middle of its hypotenuse. So the field is that of the last part that is there, up to
     /// rounding to the cells of the heights.
+    ///
+    /// Memory use is proportional to the number of bytes, or that of 16 million heights if they are
+    /// few.
     /// # Errors
     /// The header or the first part are truncated, or the data are damaged.
     pub fn from_prefix(bytes: &[u8], whole: u64) -> Result<(Self, [u32; 2]), FieldBytesError> {
@@ -132,7 +138,8 @@ impl HeightField {
         let mut reader = ByteReader { bytes };
         let (mut this, scale) = read_header(&mut reader)?;
         let least = this.grid.count().div_ceil(MAX_PER_BYTE);
-        if bytes.len() < least {
+        let is_small = is_prefix && this.grid.count() <= FREE_HEIGHTS;
+        if bytes.len() < least && !is_small {
             let (needed, found) = (least - HEADER, reader.bytes.len());
             return Err(FieldBytesError::Short { what: "heights", needed, found });
         }

@@ -85,21 +85,15 @@ impl MergeTree {
         let options = Self::options(options);
         let mut simplifier = Simplifier::new(mesh, &options)?;
         let (mut history, mut torn) = (History::default(), Vec::new());
-        match target.valid()? {
-            target if options.locks.ties.is_empty() => {
-                simplifier.run(target, &mut history)?;
-            }
-            target => {
-                let faces = target.faces_of(mesh.faces.len());
-                let made = |history: &History| history.contractions().len() as u32;
-                // A step makes the contractions of tied edges together.
-                while simplifier.live_faces() > faces {
-                    let before = made(&history);
-                    if !simplifier.step(f64::INFINITY, &mut history) {
-                        break;
-                    }
-                    torn.extend(before + 1..made(&history));
-                }
+        if options.locks.ties.is_empty() {
+            simplifier.run(target, &mut history)?;
+        } else {
+            // A step makes the contractions of tied edges together.
+            let mut before = 0;
+            while simplifier.step_to(target, &mut history)? {
+                let made = history.contractions().len() as u32;
+                torn.extend(before + 1..made);
+                before = made;
             }
         }
         let tree = Self::from_history(mesh, &history).expect("just recorded from this mesh");
@@ -303,6 +297,23 @@ mod tests {
         assert!((0..=mesh.faces.len()).all(|faces| is_whole(tree.contractions_to(faces))));
         assert!(!(0..tree.contractions()).all(is_whole), "ties are contracted");
         assert!(tree.faces_left(tree.contractions()) <= mesh.faces.len() / 10);
+    }
+
+    #[test]
+    fn an_error_bounds_contractions_with_and_without_ties() {
+        let mesh = samples::terrain(800);
+        let ties = vec![[0, 1].map(VertexId::new).to_vec()];
+        for ties in [Vec::new(), ties] {
+            let options =
+                Options { locks: Locks { of_vertex: Vec::new(), ties }, ..Options::default() };
+            let faces_at = |error| {
+                let target = Target::Error(error);
+                let tree = MergeTree::record_with(&mesh, target, &options).unwrap();
+                tree.faces_left(tree.contractions())
+            };
+            let [fine, coarse] = [faces_at(1e-3), faces_at(1e-2)];
+            assert!(mesh.faces.len() > fine && fine > coarse && coarse > 20, "{fine} {coarse}");
+        }
     }
 
     #[test]

@@ -102,4 +102,12 @@ fn a_header_cannot_ask_for_more_than_its_bytes_are_worth() {
         wide[12..16].copy_from_slice(&rows.to_le_bytes());
         assert!(HeightField::from_bytes(&wide).is_err());
     }
+    // A prefix may be short of that, but not ask for any number.
+    let prefix =
+        |bytes: &[u8], whole| HeightField::from_prefix(bytes, whole).map(|(_, parts)| parts);
+    let [parts, all] = prefix(&bytes[..300], bytes.len() as u64).unwrap();
+    assert!(parts <= all);
+    let mut wide = bytes[..300].to_vec();
+    wide[8..16].copy_from_slice(&[(1u32 << 15).to_le_bytes(); 2].concat());
+    assert!(matches!(prefix(&wide, 1 << 40), Err(FieldBytesError::Short { .. })));
 }
