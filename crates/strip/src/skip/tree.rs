@@ -301,8 +301,11 @@ mod tests {
 
     #[test]
     fn an_error_bounds_contractions_with_and_without_ties() {
-        let mesh = samples::terrain(800);
-        let ties = vec![[0, 1].map(VertexId::new).to_vec()];
+        let mut mesh = samples::terrain(800);
+        // Two vertices far apart at one place.
+        let tied = [0, mesh.positions.len() - 1].map(VertexId::new);
+        mesh.positions[tied[1].index()] = mesh.positions[tied[0].index()];
+        let ties = vec![tied.to_vec()];
         for ties in [Vec::new(), ties] {
             let options =
                 Options { locks: Locks { of_vertex: Vec::new(), ties }, ..Options::default() };
