@@ -7,6 +7,7 @@ use meshlod_spatial::closest_point;
 use crate::pack::ExactPositions;
 use crate::query::Region;
 use crate::query::{Focus, QueryError};
+use crate::wedges::LevelWedges;
 
 /// Cosine of the angle between two face normals below which their common edge counts as folded.
 const FOLD: f64 = -0.7;
@@ -33,6 +34,8 @@ pub struct Level {
     pub faces: Vec<[u32; 3]>,
     /// Exact positions by node of the model, if the model is lossless.
     pub(crate) exact: ExactPositions,
+    /// Wedges at the corners of the faces, if the model has attributes, materials or objects.
+    pub(crate) wedges: Option<LevelWedges>,
 }
 
 impl Level {
@@ -43,6 +46,7 @@ impl Level {
             positions: Vec::new(),
             faces: Vec::new(),
             exact: ExactPositions::default(),
+            wedges: None,
         }
     }
 
@@ -52,6 +56,7 @@ impl Level {
         self.positions.clear();
         self.faces.clear();
         self.exact = ExactPositions::default();
+        self.wedges = None;
     }
 
     /// Builds a level from faces over `count` nodes, whose positions `place` returns.
@@ -61,19 +66,9 @@ impl Level {
         place: impl Fn(u32) -> [f32; 3],
         mut faces: Vec<[u32; 3]>,
     ) -> Self {
-        let mut nodes: Vec<u32> = faces.iter().flatten().copied().collect();
-        nodes.sort_unstable();
-        nodes.dedup();
-        if nodes.len() < count / SPARSE {
-            let number = |node: u32| nodes.binary_search(&node).unwrap_or_default() as u32;
-            faces.iter_mut().flatten().for_each(|node| *node = number(*node));
-        } else {
-            let mut number = vec![0; count];
-            (0..).zip(&nodes).for_each(|(i, &node)| number[node as usize] = i);
-            faces.iter_mut().flatten().for_each(|node| *node = number[*node as usize]);
-        }
+        let nodes = renumber(&mut faces, count);
         let positions = nodes.iter().map(|&node| place(node)).collect();
-        Self { frame, nodes, positions, faces, exact: ExactPositions::default() }
+        Self { frame, nodes, positions, faces, exact: ExactPositions::default(), wedges: None }
     }
 
     /// Attaches the exact positions of the model's nodes.
@@ -94,10 +89,15 @@ impl Level {
         focus.validate()?;
         let region = Region::new(focus, &self.frame);
         let corners = |face: &&[u32; 3]| face.map(|v| self.exact_stored(v));
-        let faces = self.faces.iter().filter(|face| region.meets_triangle(corners(face)));
+        let kept = (0..self.faces.len()).filter(|&f| region.meets_triangle(corners(&&self.faces[f])));
+        let kept: Vec<usize> = kept.collect();
+        let faces = kept.iter().map(|&f| self.faces[f]).collect();
         let (count, place) = (self.positions.len(), |v: u32| self.positions[v as usize]);
-        let level = Self::from_nodes(self.frame, count, place, faces.copied().collect());
-        let mut level = level.with_exact(&self.exact);
+        let mut level = Self::from_nodes(self.frame, count, place, faces).with_exact(&self.exact);
+        level.wedges = self.wedges.as_ref().map(|wedges| LevelWedges {
+            corners: kept.iter().map(|&f| wedges.corners[f]).collect(),
+            all: wedges.all.clone(),
+        });
         // The faces were numbered by vertices of this level.
         level.nodes.iter_mut().for_each(|node| *node = self.nodes[*node as usize]);
         Ok(level)
@@ -136,15 +136,20 @@ impl Level {
 
     /// Converts the level to a mesh in model units.
     ///
-    /// Vertices of the input come back exactly if the model is [lossless](crate::Forest::lossless).
+    /// Faces have the attributes, materials and objects of the model, if there are any. Vertices of
+    /// the input come back exactly if the model is [lossless](crate::Forest::lossless).
     pub fn mesh(&self) -> Mesh {
         let position = |(&node, &rounded): (&u32, &[f32; 3])| {
             self.exact.get(node).unwrap_or_else(|| self.frame.model(Vec3::from(rounded)))
         };
-        Mesh::new(
+        let mut mesh = Mesh::new(
             self.nodes.iter().zip(&self.positions).map(position).collect(),
             self.faces.iter().map(|face| face.map(VertexId)).collect(),
-        )
+        );
+        if let Some(wedges) = &self.wedges {
+            wedges.add_to(&mut mesh);
+        }
+        mesh
     }
 
     /// Counts the folded edges: those whose two faces have normals more than 134° apart.
@@ -181,6 +186,23 @@ impl Level {
         faces.sort_unstable();
         faces
     }
+}
+
+/// Numbers the nodes that faces use, or their wedges, from 0 on in rising order, out of `count`, and
+/// returns them.
+pub(crate) fn renumber(faces: &mut [[u32; 3]], count: usize) -> Vec<u32> {
+    let mut used: Vec<u32> = faces.iter().flatten().copied().collect();
+    used.sort_unstable();
+    used.dedup();
+    if used.len() < count / SPARSE {
+        let number = |node: u32| used.binary_search(&node).unwrap_or_default() as u32;
+        faces.iter_mut().flatten().for_each(|node| *node = number(*node));
+    } else {
+        let mut number = vec![0; count];
+        (0..).zip(&used).for_each(|(i, &node)| number[node as usize] = i);
+        faces.iter_mut().flatten().for_each(|node| *node = number[*node as usize]);
+    }
+    used
 }
 
 #[cfg(test)]

@@ -78,6 +78,7 @@ mod model;
 mod pack;
 mod query;
 mod rtin;
+mod wedges;
 
 #[cfg(test)]
 mod tests;

@@ -1,5 +1,6 @@
 //! Properties that every encoding must have, on random walks through queries.
 
+mod attributes;
 mod certificates;
 mod locate;
 mod long;

@@ -73,6 +73,11 @@ impl<'m> Simplifier<'m> {
         Ok(Self { mesh, engine, method, input })
     }
 
+    /// Returns the mesh that is being simplified, as it was given.
+    pub fn input(&self) -> &'m Mesh {
+        self.mesh
+    }
+
     /// Contracts edges or faces until the target is reached or no contraction is allowed any more.
     ///
     /// # Errors

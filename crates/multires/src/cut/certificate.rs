@@ -6,11 +6,12 @@
 
 use thiserror::Error;
 
+use super::coarse_wedges::{self, CoarseWedges};
 use super::front::Front;
 use super::triangles::Spoke;
 use crate::forest::MAX_LEVELS;
 use crate::forest::by_level;
-use crate::implicit::{Implicit, Wing, has_three_corners};
+use crate::implicit::{Implicit, has_three_corners};
 
 /// Result of certifying a multiresolution model: what has been proved about its updates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -39,6 +40,9 @@ pub enum CertifyError {
         /// Flaw of the update.
         why: Flaw,
     },
+    /// A face of the base mesh has a wedge that does not belong to it.
+    #[error("a face of the coarsest mesh has a wedge of another vertex, or of another material or object")]
+    BaseWedges,
     /// The finest mesh does not have the number of faces that the model states.
     #[error("the finest mesh has {found} faces where the model says {expected}")]
     FullFaces {
@@ -80,6 +84,9 @@ pub enum Flaw {
     /// The update opens a crack: its coarse and its fine side have different boundaries.
     #[error("its two sides have different boundaries")]
     Crack,
+    /// The update gives a face a wedge that is not its own, so that attributes depend on the cut.
+    #[error("it gives a face a wedge of another vertex, or of another material or object")]
+    BadWedge,
 }
 
 impl Implicit {
@@ -91,6 +98,9 @@ impl Implicit {
     /// The first update that fails.
     pub fn certify(&self) -> Result<Certificate, CertifyError> {
         let mut proof = Proof::new(self);
+        if !coarse_wedges::are_of_their_nodes(&proof.front, 0..self.base_faces() as u32) {
+            return Err(CertifyError::BaseWedges);
+        }
         let mut certificate = Certificate::default();
         for update in by_level(self.update_count(), |update| MAX_LEVELS - self.level(update)) {
             match proof.check(update) {
@@ -112,6 +122,7 @@ struct Proof<'m> {
     front: Front<'m>,
     coarse: Side,
     fine: Side,
+    wedges: CoarseWedges,
     /// Slots of the coarse side's triangles.
     around: Vec<u32>,
     /// Missing dependencies; stays empty if the update may be applied.
@@ -124,6 +135,7 @@ impl<'m> Proof<'m> {
             front: Front::new(mt),
             coarse: Side::default(),
             fine: Side::default(),
+            wedges: CoarseWedges::default(),
             around: Vec::new(),
             first: Vec::new(),
         }
@@ -140,7 +152,7 @@ impl<'m> Proof<'m> {
         }
         let has_both = |t: &&[u32; 3]| children.iter().all(|child| t.contains(child));
         let between = fine.triangles.iter().filter(has_both).count();
-        let created = created(mt, update);
+        let created = mt.created_count(update);
         if fine.triangles.len() != coarse.triangles.len() + created || between != created {
             return Err(Flaw::NoWing);
         }
@@ -178,7 +190,7 @@ impl<'m> Proof<'m> {
 
     /// Applies an update if its dependencies are met, and keeps the triangles of both sides.
     fn apply(&mut self, update: u32) -> Result<(), Flaw> {
-        let Self { front, coarse, fine, around, first } = self;
+        let Self { front, coarse, fine, wedges, around, first } = self;
         let mt = front.mt;
         let (node, level) = (mt.parent(update), mt.level(update));
         if !front.is_active(node) {
@@ -202,10 +214,14 @@ impl<'m> Proof<'m> {
         };
         around.extend(star.iter().filter(is_first).map(Spoke::triangle));
         coarse.take(front, around.iter().copied());
+        wedges.take(front, around);
         let created = front.triangles.slots() as u32;
         front.apply(update);
         let created = created..front.triangles.slots() as u32;
-        fine.take(front, around.iter().copied().chain(created));
+        fine.take(front, around.iter().copied().chain(created.clone()));
+        if !wedges.continue_in(front, update, around, created) {
+            return Err(Flaw::BadWedge);
+        }
         if mt.is_fused_with_child(update) {
             let is_next = mt.update_of(mt.children(update)[0]) == Some(update + 1);
             let are_two = !mt.is_fused_with_parent(update) && !mt.is_fused_with_child(update + 1);
@@ -215,12 +231,6 @@ impl<'m> Proof<'m> {
         }
         Ok(())
     }
-}
-
-/// Returns the number of faces that an update creates.
-fn created(mt: &Implicit, update: u32) -> usize {
-    let wings = || mt.wings(update).iter().filter(|&&wing| wing != Wing::None).count();
-    mt.non_fan_split(update).map_or_else(wings, |non_fan| non_fan.created_faces.len())
 }
 
 /// One side of an update.

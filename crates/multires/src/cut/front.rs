@@ -1,5 +1,6 @@
 //! The surface of a cut, with guarded splits and merges.
 
+use super::split_wedges::SplitWedges;
 use super::triangles::{MAX_SEARCHED, NEXT, Spoke, Triangles};
 use crate::forest::MAX_RANKED;
 use crate::forest::{MAX_LEVELS, NONE};
@@ -21,6 +22,8 @@ pub(super) struct Front<'m> {
     active: usize,
     /// Scratch memory for the star of a vertex.
     star: Vec<Spoke>,
+    /// Scratch memory for the faces that a split creates.
+    created: Vec<[u32; 3]>,
     /// Scratch memory for the neighbours of a vertex.
     ring: Vec<u32>,
 }
@@ -57,7 +60,8 @@ impl<'m> Front<'m> {
         let mut this = Self {
             mt,
             vertices: vec![absent; mt.node_count()],
-            triangles: Triangles::default(),
+            triangles: Triangles::new(mt.wedges().is_some()),
+            created: Vec::new(),
             active: 0,
             star: Vec::new(),
             ring: Vec::new(),
@@ -65,8 +69,9 @@ impl<'m> Front<'m> {
         for (root, _) in mt.roots() {
             this.activate(root, u16::MAX);
         }
-        for &face in mt.base() {
-            this.add(face);
+        let corners = mt.wedges().map_or(&[][..], |wedges| &wedges.base);
+        for (i, &face) in mt.base().iter().enumerate() {
+            this.add(face, corners.get(i).copied());
         }
         this
     }
@@ -135,23 +140,33 @@ impl<'m> Front<'m> {
         self.active -= 1;
         self.activate(first, level);
         self.activate(second, level);
-        let (run, created) = self.partition_star(update);
+        let (run, fan) = self.partition_star(update);
+        let mut created = std::mem::take(&mut self.created);
+        created.clear();
+        created.extend(fan.into_iter().flatten());
+        if fan == [None; 2]
+            && let Some(non_fan) = self.mt.non_fan_split(update)
+        {
+            created.extend(&non_fan.created_faces);
+        }
+        let wedges = self.mt.wedges().map(|all| SplitWedges::new(all, self.mt, update));
         for i in 0..self.star.len() {
             let child = if i < run { second } else { first };
+            if let Some(wedges) = &wedges {
+                self.triangles.set_wedge(self.star[i].corner, wedges.around(child, &self.star, i));
+            }
             let Vertex { corner, .. } = &mut self.vertices[child as usize];
             self.triangles.attach(self.star[i].corner, child, corner);
         }
-        created.into_iter().flatten().for_each(|face| self.add(face));
-        if created == [None; 2]
-            && let Some(non_fan) = self.mt.non_fan_split(update)
-        {
-            for &face in &non_fan.created_faces {
-                // In an uncertified file a face may have any nodes.
-                if face.iter().all(|&node| self.is_active(node)) {
-                    self.add(face);
-                }
+        for (k, &face) in created.iter().enumerate() {
+            // In an uncertified file a face may have any nodes.
+            if face.iter().all(|&node| self.is_active(node)) {
+                let corners = wedges.as_ref();
+                let corners = corners.map(|w| w.created(face, k, &self.star, &self.triangles));
+                self.add(face, corners);
             }
         }
+        self.created = created;
     }
 
     /// Moves the triangles of the second child to the front of the star. Returns their number and
@@ -222,10 +237,18 @@ impl<'m> Front<'m> {
         let node = self.mt.parent(update);
         let [first, second] = self.mt.children(update);
         let above = self.mt.creator(node).map_or(u16::MAX, |up| self.mt.level(up));
+        let wedges = self.mt.wedges().map(|all| SplitWedges::new(all, self.mt, update));
         self.star.clear();
         for child in [first, second] {
+            let start = self.star.len();
             self.triangles.gather(self.vertices[child as usize].corner, &mut self.star);
             self.vertices[child as usize].corner = ABSENT;
+            if let Some(wedges) = &wedges {
+                for spoke in &self.star[start..] {
+                    let merged = wedges.merged(child, self.triangles.wedge(spoke.corner));
+                    self.triangles.set_wedge(spoke.corner, merged);
+                }
+            }
         }
         self.active -= 2;
         self.activate(node, above);
@@ -265,6 +288,7 @@ impl<'m> Front<'m> {
         };
         let at = triangles.nodes(t).iter().position(|&node| node == wing);
         let (mut to, mut from) = (at.expect("a wing is a corner"), other as usize % 3);
+        triangles.set_wedge(3 * t + to as u32, triangles.wedge(other));
         for _ in 0..2 {
             (to, from) = (NEXT[to], NEXT[from]);
             let node = triangles.nodes(other / 3)[from];
@@ -318,8 +342,11 @@ impl<'m> Front<'m> {
         self.active += 1;
     }
 
-    fn add(&mut self, face: [u32; 3]) {
+    fn add(&mut self, face: [u32; 3], corners: Option<[u32; 3]>) {
         let t = self.triangles.add();
+        for (k, wedge) in (0..).zip(corners.into_iter().flatten()) {
+            self.triangles.set_wedge(3 * t + k, wedge);
+        }
         for (k, &node) in face.iter().enumerate() {
             let Vertex { corner, .. } = &mut self.vertices[node as usize];
             self.triangles.attach(3 * t + k as u32, node, corner);

@@ -63,9 +63,8 @@ impl Cut<'_> {
         let mut met: Vec<u32> = star.iter().map(Spoke::triangle).collect();
         met.sort_unstable();
         met.dedup();
-        let nodes = met.into_iter().map(|t| self.front.triangles.nodes(t));
-        let faces = nodes.filter(|&nodes| region.meets_triangle(self.corners(nodes)));
-        Ok(mt.level_from_faces(faces.collect()))
+        met.retain(|&t| region.meets_triangle(self.corners(self.front.triangles.nodes(t))));
+        Ok(self.level_of(&met))
     }
 
     /// Returns the triangle of the cut closest to a point in model units, or `None` if the cut has

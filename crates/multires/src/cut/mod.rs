@@ -1,14 +1,17 @@
 //! A cut that follows a sequence of queries, refined and coarsened only where the query has moved.
 
 mod certificate;
+mod coarse_wedges;
 mod each_triangle;
 mod front;
 mod inspect;
 mod locate;
 mod refine;
 mod schedule;
+mod split_wedges;
 mod to_forest;
 mod triangles;
+mod unpack_wedges;
 
 pub use certificate::{Certificate, CertifyError, Flaw};
 pub use locate::Located;
@@ -183,6 +186,12 @@ impl<'m> Cut<'m> {
         self.front.triangles.real(slot)
     }
 
+    /// Returns the wedges at the corners of the triangle in a slot, in the numbers of
+    /// [`Implicit::layers`]; `None` if the slot is empty or the model has no wedges.
+    pub fn wedges(&self, slot: u32) -> Option<[u32; 3]> {
+        self.triangle(slot).and_then(|_| self.front.triangles.wedges(slot))
+    }
+
     /// Iterates over the triangle slots that the last update changed, in no particular order.
     pub fn patches(&self) -> impl Iterator<Item = Patch> + '_ {
         self.front.triangles.changes().map(|(slot, old, new)| Patch { slot, old, new })
@@ -190,9 +199,15 @@ impl<'m> Cut<'m> {
 
     /// Returns a copy of the current mesh.
     pub fn level(&self) -> Level {
-        self.front
-            .mt
-            .level_from_faces(self.front.triangles.iter().map(|(_, nodes)| nodes).collect())
+        self.level_of(&self.triangles().map(|(slot, _)| slot).collect::<Vec<_>>())
+    }
+
+    /// Returns the triangles in the given slots as a level.
+    fn level_of(&self, slots: &[u32]) -> Level {
+        let Front { mt, triangles, .. } = &self.front;
+        let faces = slots.iter().map(|&slot| triangles.nodes(slot)).collect();
+        let corners = slots.iter().filter_map(|&slot| triangles.wedges(slot)).collect();
+        mt.level_from_faces(faces, corners)
     }
 }
 

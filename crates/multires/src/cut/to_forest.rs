@@ -2,6 +2,7 @@
 
 use super::front::{Front, resolve_wings};
 use super::triangles::Spoke;
+use super::unpack_wedges::NodeNumbers;
 use crate::forest::by_level;
 use crate::forest::{Forest, NONE, Update};
 use crate::implicit::Implicit;
@@ -38,7 +39,12 @@ impl Forest {
             faces: Vec::with_capacity(mt.full_faces()),
             created_by: vec![NONE; mt.base_faces()],
             non_fan_splits: Default::default(),
+            wedges: None,
         };
+        let in_model = numbers.leaves.iter().copied();
+        let in_model = in_model.chain(numbers.updates.iter().map(|&update| mt.parent(update)));
+        let names = NodeNumbers { in_model: in_model.collect(), in_forest: &numbers.nodes };
+        let mut wedges = mt.wedges().map(|all| (names.unpacked(all), all));
         let mut front = Front::new(mt);
         // Refinement meets the updates in reverse.
         let (mut rings, mut room, mut first) = (Vec::new(), Default::default(), Vec::new());
@@ -46,6 +52,10 @@ impl Forest {
             let is_split = front.split(update, &mut first);
             assert!(is_split, "levels are in the order of needs, or there is no certificate");
             let of = numbers.update(mt, update, front.last_star());
+            if let Some((wedges, all)) = &mut wedges {
+                let created = this.created_by.len() as u32;
+                names.unpack((wedges, all), &front, (update, u as u32), created);
+            }
             this.updates.push(Update { ring: rings.len() as u32, ..of });
             numbers.append_ring(front.last_star(), &mut room, &mut rings);
             this.created_by.resize(front.triangles.slots(), u as u32);
@@ -63,6 +73,12 @@ impl Forest {
         }
         let leaf = |node: u32| numbers.nodes[node as usize];
         this.faces.extend(front.triangles.iter().map(|(_, nodes)| nodes.map(leaf)));
+        this.wedges = wedges.map(|(mut wedges, all)| {
+            let faces = front.triangles.iter();
+            let corners = |(t, _)| names.corners((&wedges, all), &front.triangles, t);
+            wedges.corners = faces.map(corners).collect();
+            wedges
+        });
         this
     }
 }

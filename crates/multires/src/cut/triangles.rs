@@ -16,6 +16,8 @@ pub(super) const MAX_SEARCHED: usize = 128;
 pub(super) struct Triangles {
     all: Vec<Triangle>,
     holes: Vec<u32>,
+    /// Wedges at the corners of each slot's triangle, if the model has any.
+    wedges: Option<Vec<[u32; 3]>>,
     mark: u32,
     /// Slots changed since the mark, with their content at that time.
     changed: Vec<(u32, [u32; 3])>,
@@ -49,6 +51,11 @@ impl Spoke {
 }
 
 impl Triangles {
+    /// Creates an empty list, with room for wedges if there are to be any.
+    pub(super) fn new(has_wedges: bool) -> Self {
+        Self { wedges: has_wedges.then(Vec::new), ..Self::default() }
+    }
+
     /// Returns the number of triangles.
     pub(super) fn len(&self) -> usize {
         self.all.len() - self.holes.len()
@@ -57,6 +64,25 @@ impl Triangles {
     /// Returns the nodes of a triangle.
     pub(super) fn nodes(&self, t: u32) -> [u32; 3] {
         self.all[t as usize].nodes
+    }
+
+    /// Returns the wedges at the corners of a triangle; `None` if the model has none.
+    pub(super) fn wedges(&self, t: u32) -> Option<[u32; 3]> {
+        self.wedges.as_ref().map(|wedges| wedges[t as usize])
+    }
+
+    /// Returns the wedge at a corner of a model that has wedges.
+    #[inline]
+    pub(super) fn wedge(&self, corner: u32) -> u32 {
+        self.wedges.as_ref().map_or(NONE, |wedges| wedges[corner as usize / 3][corner as usize % 3])
+    }
+
+    /// Sets the wedge at a corner of a triangle that is being changed.
+    #[inline]
+    pub(super) fn set_wedge(&mut self, corner: u32, wedge: u32) {
+        if let Some(wedges) = &mut self.wedges {
+            wedges[corner as usize / 3][corner as usize % 3] = wedge;
+        }
     }
 
     /// Returns the nodes of a triangle; `None` for an empty slot or one that does not exist.
@@ -124,6 +150,7 @@ impl Triangles {
         }
         let changed_at = self.mark.wrapping_sub(1);
         self.all.push(Triangle { nodes: HOLE, next: HOLE, changed_at });
+        self.wedges.iter_mut().for_each(|wedges| wedges.push(HOLE));
         self.all.len() as u32 - 1
     }
 
@@ -182,6 +209,7 @@ impl Triangles {
         let triangle = self.record(by / 3);
         triangle.nodes[by as usize % 3] = node;
         triangle.next[by as usize % 3] = next;
+        self.set_wedge(by, self.wedge(corner));
     }
 
     /// Returns the next corner at the same vertex.

@@ -17,6 +17,7 @@ use crate::length16::Length16;
 use crate::pack::ExactPositions;
 use crate::pack::MIN_ERROR;
 use crate::query::{Ball, PackedBall};
+use crate::wedges::ForestWedges;
 
 pub(crate) use by_level::by_level;
 pub(crate) use recorder::MAX_RANKED;
@@ -54,6 +55,8 @@ pub struct Forest {
     pub(crate) faces: Vec<[u32; 3]>,
     /// Update whose refinement creates each face; [`NONE`] for faces of the base mesh.
     pub(crate) created_by: Vec<u32>,
+    /// Wedges of all nodes, if the mesh has attributes, materials or objects.
+    pub(crate) wedges: Option<ForestWedges>,
     /// Splits that wings cannot describe, by update.
     pub(crate) non_fan_splits: BTreeMap<u32, NonFanSplit>,
 }
@@ -105,6 +108,9 @@ pub enum BuildError {
     /// The mesh has more vertices than can be numbered.
     #[error("the mesh has too many vertices: about 2^29 are supported")]
     TooLarge,
+    /// A vertex has too many wedges.
+    #[error("a vertex has too many sets of attributes: 65,534 are supported")]
+    TooManyWedges,
     /// Connected components vanished during simplification, which no update could undo.
     #[error("components vanished, which no update can undo: simplify with `Topology::Keep`")]
     Vanished,
@@ -116,7 +122,7 @@ pub enum BuildError {
 impl Forest {
     /// Simplifies a mesh as far as possible and records every contraction.
     ///
-    /// Only positions are kept; attributes are dropped. The topology is kept
+    /// Attributes, materials and objects are recorded with the positions. The topology is kept
     /// ([`Topology::Keep`]) whatever the options say, since an update must be undone exactly. What
     /// a lock forbids is in no update, so every level has the locked vertices in place. Tied
     /// vertices are locked, since two updates may be undone apart.

@@ -14,11 +14,14 @@ use crate::forest::{BuildError, Forest, MAX_LEVELS, NONE, NonFanSplit, Update};
 use crate::length16::Length16;
 use crate::pack::ExactPositions;
 use crate::query::SLACK;
+use crate::wedges::WedgeRecorder;
 
 /// Observer that records the contractions of a [`Simplifier`], from the first one on.
 #[derive(Debug)]
 pub struct Recorder {
     forest: Forest,
+    /// Wedges, if the mesh has attributes, materials or objects.
+    wedges: Option<WedgeRecorder>,
     /// Live node by input vertex.
     live: Vec<LiveNode>,
     /// Index among the forest's faces by input face, or [`NONE`].
@@ -66,6 +69,7 @@ impl Recorder {
         let mut positions = Vec::with_capacity(2 * vertices);
         positions.extend((0..vertices).map(at));
         Self {
+            wedges: WedgeRecorder::new(simplifier, &alive),
             live: (0..vertices).map(standing).collect(),
             forest_face,
             live_faces: faces.len(),
@@ -81,6 +85,7 @@ impl Recorder {
                 rings: Vec::with_capacity(7 * vertices),
                 created_by: vec![NONE; faces.len()],
                 faces,
+                wedges: None,
                 non_fan_splits: BTreeMap::new(),
             },
         }
@@ -102,7 +107,8 @@ impl Recorder {
     /// # Errors
     /// What made the record unusable on the way.
     pub fn into_forest(self) -> Result<Forest, BuildError> {
-        self.failure.map_or(Ok(self.forest), Err)
+        let wedges = self.wedges.map(WedgeRecorder::finish);
+        self.failure.map_or(Ok(Forest { wedges, ..self.forest }), Err)
     }
 
     fn is_complete(&mut self, surface: &Surface) -> bool {
@@ -223,6 +229,9 @@ impl Observe for Recorder {
             return;
         }
         self.live_faces -= hood.removed_faces().len();
+        if let Some(wedges) = &mut self.wedges {
+            wedges.before(surface, hood, |v| self.live[v.index()].node);
+        }
         let fan = open_end(hood);
         let run = fan.and_then(|_| Run::of(surface, hood, placed.kept));
         if run.is_none() {
@@ -230,6 +239,14 @@ impl Observe for Recorder {
         }
         self.record(hood, placed, run.as_ref(), fan.flatten());
         self.face_edges_left = self.face_edges_left.saturating_sub(1);
+    }
+
+    fn after(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
+        let Self { forest, wedges: Some(wedges), failure: None, .. } = self else { return };
+        let number = forest.updates.len() as u32 - 1;
+        let is_fan = !forest.non_fan_splits.contains_key(&number);
+        let children = forest.updates[number as usize].children;
+        wedges.after(surface, hood, placed, (number, children, is_fan));
     }
 
     fn vanish(&mut self, _: &Surface, _: &[FaceId]) {

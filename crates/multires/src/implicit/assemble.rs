@@ -137,6 +137,7 @@ impl Implicit {
             positions: StoredPositions::Float(places),
             splits: Splits::Full(splits),
             base: base.faces,
+            wedges: None,
             non_fan_splits: non_fans,
             full_faces,
         }

@@ -6,14 +6,17 @@ use crate::level::Level;
 use crate::model::Model;
 use crate::query::Criterion;
 use crate::query::{Query, QueryError};
+use crate::wedges::LevelWedges;
 
 /// Extracts meshes from a [`Model`], answering each query from scratch but reusing its buffers.
 #[derive(Clone, Debug)]
 pub struct Extractor<'m> {
     pub(super) model: &'m Model,
     level: Level,
-    /// Vertex of the level that shows each leaf.
+    /// Vertex of the level that shows each leaf, or set of attributes if the model has wedges.
     above: Vec<u32>,
+    /// Vertex and wedge of each set of attributes of the level, if the model has wedges.
+    wedges: Vec<[u32; 2]>,
     /// Updates to apply, in the order in which the descent meets them.
     made: Vec<u32>,
     stack: Vec<Subtree>,
@@ -33,6 +36,7 @@ impl<'m> Extractor<'m> {
             model,
             level: Level::new(*model.implicit().frame()),
             above: vec![0; model.faces().leaves()],
+            wedges: Vec::new(),
             made: Vec::new(),
             stack: Vec::new(),
             chosen: Vec::new(),
@@ -130,21 +134,37 @@ impl<'m> Extractor<'m> {
             std::mem::take(&mut self.above),
             std::mem::take(&mut self.made),
         );
+        let (mut wedges, faces) = (std::mem::take(&mut self.wedges), self.model.faces());
         level.clear();
         made.clear();
+        wedges.clear();
         self.descend(is_made, |below, is_made| {
             if is_made {
                 made.push(below.start);
                 return;
             }
-            let leaves = below.leaf as usize..(below.leaf + below.end - below.start + 1) as usize;
-            above[leaves].fill(level.nodes.len() as u32);
+            let vertex = level.nodes.len() as u32;
+            if let Some(all) = mt.wedges() {
+                for wedge in all.of(below.node) {
+                    above[faces.below(wedge)].fill(wedges.len() as u32);
+                    wedges.push([vertex, wedge]);
+                }
+            } else {
+                let end = below.leaf + below.end - below.start + 1;
+                above[below.leaf as usize..end as usize].fill(vertex);
+            }
             level.nodes.push(below.node);
             level.positions.push(mt.stored_position(below.node));
         });
         level.exact = mt.exact().clone();
-        self.model.faces().write(&made, &above, &mut level.faces);
-        (self.level, self.above, self.made) = (level, above, made);
+        faces.write(&made, &above, &mut level.faces);
+        if let Some(all) = mt.wedges() {
+            let at = |face: &[u32; 3], k: usize| face.map(|wedge| wedges[wedge as usize][k]);
+            let corners = level.faces.iter().map(|face| at(face, 1)).collect();
+            level.faces.iter_mut().for_each(|face| *face = at(face, 0));
+            level.wedges = Some(LevelWedges { corners, all: all.clone() });
+        }
+        (self.level, self.above, self.made, self.wedges) = (level, above, made, wedges);
         &self.level
     }
 

@@ -6,13 +6,19 @@
 //! notes for each run of leaves the vertex that shows it, the other looks up three leaves for each
 //! face of each applied update.
 
+use std::ops::Range;
+
 use super::Order;
 use crate::forest::{Forest, NONE};
 
 /// Faces of the finest mesh, in 16 bytes per update up to two million vertices and 24 beyond.
+///
+/// If the model has wedges, the leaves here are those of the forest of wedges.
 #[derive(Clone, Debug)]
 pub(crate) struct Faces {
     leaves: u32,
+    /// Leaves below each wedge, as one range, if the model has wedges.
+    below: Vec<Range<u32>>,
     /// Faces of the base mesh.
     base: Vec<[u32; 3]>,
     created: CreatedFaces,
@@ -34,13 +40,30 @@ const NO_FACE: u64 = 1 << 63;
 impl Faces {
     /// Collects the faces of a forest, in the order of the model.
     pub(crate) fn in_order(forest: &Forest, order: &Order) -> Self {
-        let mut leaf_of = vec![NONE; forest.vertices];
-        let leaves = order.leaves.len() as u32;
-        (0..).zip(&order.leaves).for_each(|(number, &leaf)| leaf_of[leaf as usize] = number);
+        let Some(wedges) = &forest.wedges else {
+            let mut leaf_of = vec![NONE; forest.vertices];
+            (0..).zip(&order.leaves).for_each(|(number, &leaf)| leaf_of[leaf as usize] = number);
+            let faces = forest.faces.iter().map(|face| face.map(|leaf| leaf_of[leaf as usize]));
+            return Self::new(forest, order, faces, order.leaves.len() as u32);
+        };
+        let below = wedges.leaves_below(forest.vertices, order);
+        let first = |wedge: u32| below[wedge as usize].start;
+        let faces = wedges.corners.iter().map(|face| face.map(first));
+        let leaves = below.iter().map(|leaves| leaves.end).max().unwrap_or(0);
+        let in_order = order.nodes.iter().flat_map(|&node| wedges.of(node));
+        let below_packed = in_order.map(|wedge| below[wedge as usize].clone()).collect();
+        Self { below: below_packed, ..Self::new(forest, order, faces, leaves) }
+    }
+
+    fn new(
+        forest: &Forest,
+        order: &Order,
+        faces: impl Iterator<Item = [u32; 3]>,
+        leaves: u32,
+    ) -> Self {
         let mut base = Vec::new();
         let mut created = vec![[[NONE; 3]; 2]; order.updates.len()];
-        for (face, &by) in forest.faces.iter().zip(&forest.created_by) {
-            let face = face.map(|leaf| leaf_of[leaf as usize]);
+        for (face, &by) in faces.zip(&forest.created_by) {
             if by == NONE {
                 base.push(face);
                 continue;
@@ -54,12 +77,13 @@ impl Faces {
         } else {
             CreatedFaces::Large(created)
         };
-        Self { leaves, base, created }
+        Self { leaves, below: Vec::new(), base, created }
     }
 
     /// Returns the memory used.
     pub(crate) fn bytes(&self) -> usize {
         size_of_val(&self.base[..])
+            + size_of_val(&self.below[..])
             + match &self.created {
                 CreatedFaces::Small(faces) => size_of_val(&faces[..]),
                 CreatedFaces::Large(faces) => size_of_val(&faces[..]),
@@ -105,6 +129,13 @@ impl Faces {
                 }
             }
         }
+    }
+
+    /// Returns the leaves below a wedge of a model that has wedges.
+    #[inline]
+    pub(super) fn below(&self, wedge: u32) -> Range<usize> {
+        let Range { start, end } = self.below[wedge as usize];
+        start as usize..end as usize
     }
 
     /// Returns the number of leaves.

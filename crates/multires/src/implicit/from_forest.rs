@@ -1,18 +1,20 @@
 //! Packs a contraction forest into the implicit model.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use super::positions::StoredPositions;
 use super::splits::{Local, Split, Splits};
 use super::{FLAG, Implicit, LAST_WING, NO_WING, OPEN, Order};
 use crate::forest::{BuildError, Forest, NONE, NonFanSplit};
+use crate::wedges::Wedges;
 
 impl Implicit {
     /// Builds the packed model of all levels from a recorded simplification.
     ///
     /// Cost: linear.
     /// # Errors
-    /// More than 2³¹ nodes, which is half as many vertices.
+    /// More than 2³¹ nodes, which is half as many vertices, or a vertex of more than 65,534 wedges.
     pub fn new(forest: &Forest) -> Result<Self, BuildError> {
         Self::in_order(forest, &Order::new(forest))
     }
@@ -44,6 +46,8 @@ impl Implicit {
                 non_fans.insert(at as u32, non_fan(forest, order, update));
             }
         }
+        let wedges = forest.wedges.as_ref();
+        let wedges = wedges.map(|wedges| Wedges::in_order(forest, wedges, order)).transpose()?;
         let positions = order.nodes.iter().map(|&n| forest.positions[n as usize]);
         Ok(Self {
             frame: forest.frame,
@@ -54,6 +58,7 @@ impl Implicit {
             positions: StoredPositions::Float(positions.collect()),
             splits: Splits::Full(splits),
             base: base(forest, order),
+            wedges: wedges.map(Arc::new),
             non_fan_splits: non_fans,
             full_faces: forest.faces.len(),
         })

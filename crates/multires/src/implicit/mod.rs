@@ -28,9 +28,10 @@ mod saturated;
 mod splits;
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
-use meshlod_mesh::Frame;
+use meshlod_mesh::{Frame, Layer};
 
 use crate::bounds::ErrorKind;
 use crate::forest::{MAX_LEVELS, NonFanSplit};
@@ -38,6 +39,7 @@ use crate::length16::Length16;
 use crate::level::Level;
 use crate::pack::ExactPositions;
 use crate::query::{Ball, PackedBall};
+use crate::wedges::{LevelWedges, Wedges};
 
 pub(crate) use assemble::{BaseMesh, DetachedUpdate, ModelInfo, has_three_corners};
 pub(crate) use budget::Weight;
@@ -70,6 +72,8 @@ pub struct Implicit {
     base: Vec<[u32; 3]>,
     /// Splits that wings cannot describe, by update, in nodes of this model.
     non_fan_splits: BTreeMap<u32, NonFanSplit>,
+    /// Wedges, if the mesh has attributes, materials or objects.
+    wedges: Option<Arc<Wedges>>,
     full_faces: usize,
 }
 
@@ -144,6 +148,13 @@ impl Implicit {
         self.positions.len()
     }
 
+    /// Returns the attribute layers, with the values of the wedges of all nodes.
+    ///
+    /// [`Cut::wedges`](crate::Cut::wedges) has the wedges of a cut's triangles.
+    pub fn layers(&self) -> &[Layer] {
+        self.wedges.as_ref().map_or(&[], |wedges| &wedges.layers)
+    }
+
     /// Returns a compact form of the model with 22 bytes per vertex, or `None` if the numbers would
     /// change.
     ///
@@ -158,8 +169,8 @@ impl Implicit {
         let (positions, splits) = (self.positions.compacted()?, self.splits.compacted(self.roots)?);
         let (trees, base, non_fan_splits) =
             (self.trees.clone(), self.base.clone(), self.non_fan_splits.clone());
-        let exact = self.exact.clone();
-        Some(Self { positions, splits, trees, base, non_fan_splits, exact, ..*self })
+        let (exact, wedges) = (self.exact.clone(), self.wedges.clone());
+        Some(Self { positions, splits, trees, base, non_fan_splits, exact, wedges, ..*self })
     }
 
     /// Returns the memory used by the model, in bytes.
@@ -175,6 +186,7 @@ impl Implicit {
             + self.splits.bytes()
             + size_of_val(&self.base[..])
             + self.non_fan_splits.values().map(non_fan).sum::<usize>()
+            + self.wedges.as_ref().map_or(0, |wedges| wedges.bytes())
     }
 
     pub(crate) fn frame(&self) -> &Frame {
@@ -193,10 +205,19 @@ impl Implicit {
         self.exact.get(node).map_or_else(rounded, |exact| self.frame.local(exact))
     }
 
-    /// Builds a level from faces over the model's nodes.
-    pub(crate) fn level_from_faces(&self, faces: Vec<[u32; 3]>) -> Level {
-        Level::from_nodes(self.frame, self.node_count(), |node| self.stored_position(node), faces)
-            .with_exact(&self.exact)
+    /// Builds a level from faces over the model's nodes, with the wedges at their corners.
+    pub(crate) fn level_from_faces(&self, faces: Vec<[u32; 3]>, corners: Vec<[u32; 3]>) -> Level {
+        let place = |node: u32| self.stored_position(node);
+        let mut level = Level::from_nodes(self.frame, self.node_count(), place, faces);
+        level.exact = self.exact.clone();
+        level.wedges = self.wedges.clone().map(|all| LevelWedges { corners, all });
+        level
+    }
+
+    /// Returns the wedges, if the mesh has attributes, materials or objects.
+    #[inline]
+    pub(crate) fn wedges(&self) -> Option<&Arc<Wedges>> {
+        self.wedges.as_ref()
     }
 
     /// Returns the exact positions by node.
@@ -314,6 +335,12 @@ impl Implicit {
     /// Returns the explicit faces of a split that wings cannot describe.
     pub(crate) fn non_fan_split(&self, update: u32) -> Option<&NonFanSplit> {
         self.non_fan_splits.get(&update)
+    }
+
+    /// Returns the number of faces that an update creates.
+    pub(crate) fn created_count(&self, update: u32) -> usize {
+        let wings = || self.wings(update).iter().filter(|&&wing| wing != Wing::None).count();
+        self.non_fan_split(update).map_or_else(wings, |non_fan| non_fan.created_faces.len())
     }
 
     /// Returns each root with the range of updates below it.

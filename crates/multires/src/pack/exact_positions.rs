@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use super::RankedSet;
+
 /// Exact positions of some nodes in model units, or a note that the model keeps none. A
 /// rank-indexed bit set finds them at two bits per node. Clones share the table.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -9,19 +11,9 @@ pub(crate) struct ExactPositions(Option<Arc<Table>>);
 
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Table {
-    /// One block per 64 nodes.
-    blocks: Vec<Block>,
+    nodes: RankedSet,
     /// Positions of the nodes that have one, by rising node.
     positions: Vec<[f64; 3]>,
-}
-
-/// Bit set over 64 nodes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Block {
-    /// Set bits mark the nodes with a position.
-    nodes: u64,
-    /// Number of positions before this block.
-    before: u32,
 }
 
 impl ExactPositions {
@@ -37,24 +29,16 @@ impl ExactPositions {
 
     /// Adds the position of a node; nodes must come in rising order.
     pub(crate) fn push(&mut self, node: u32, position: [f64; 3]) {
-        let (block, bit) = place(node);
-        let Table { blocks, positions } = Arc::make_mut(self.0.get_or_insert_default());
-        debug_assert!(blocks.len() <= block + 1, "node {node} comes late");
-        let before = positions.len() as u32;
-        blocks.resize(blocks.len().max(block + 1), Block { nodes: 0, before });
-        debug_assert!(blocks[block].nodes < bit, "node {node} comes late");
-        blocks[block].nodes |= bit;
+        let Table { nodes, positions } = Arc::make_mut(self.0.get_or_insert_default());
+        nodes.push(node);
         positions.push(position);
     }
 
     /// Returns the exact position of a node, if it has one.
     #[inline]
     pub(crate) fn get(&self, node: u32) -> Option<[f64; 3]> {
-        let Table { blocks, positions } = &**self.0.as_ref()?;
-        let (block, bit) = place(node);
-        let Block { nodes, before } = *blocks.get(block)?;
-        let rank = before + (nodes & (bit - 1)).count_ones();
-        (nodes & bit != 0).then(|| positions[rank as usize])
+        let Table { nodes, positions } = &**self.0.as_ref()?;
+        nodes.rank(node).map(|rank| positions[rank])
     }
 
     /// Returns the positions of the listed nodes, renumbered by their indices in the list.
@@ -74,14 +58,9 @@ impl ExactPositions {
     /// Returns the memory used.
     pub(crate) fn bytes(&self) -> usize {
         let bytes =
-            |table: &Arc<Table>| size_of_val(&table.blocks[..]) + size_of_val(&table.positions[..]);
+            |table: &Arc<Table>| table.nodes.bytes() + size_of_val(&table.positions[..]);
         self.0.as_ref().map_or(0, bytes)
     }
-}
-
-/// Returns the block of a node and its bit there.
-fn place(node: u32) -> (usize, u64) {
-    (node as usize / 64, 1 << (node % 64))
 }
 
 #[cfg(test)]

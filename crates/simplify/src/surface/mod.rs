@@ -15,7 +15,7 @@ pub(crate) mod ties;
 pub(crate) mod wedges;
 
 use glam::DVec3;
-use meshlod_mesh::{Connectivity, FaceId, Mesh, VertexId};
+use meshlod_mesh::{Connectivity, FaceId, Layer, Mesh, VertexId, WedgeId};
 
 use crate::engine::candidates::CandidateId;
 use crate::surface::neighbourhood::Neighbourhood;
@@ -218,6 +218,22 @@ impl Surface {
     #[inline]
     pub fn face(&self, face: FaceId) -> [VertexId; 3] {
         self.faces[face.index()].vertices
+    }
+
+    /// Returns the wedges at the corners of a face, or those it had when it was removed; `None` if
+    /// the input has neither attributes nor several materials or objects.
+    ///
+    /// Wedges are those of the input, split further where the material or the object changes: the
+    /// ones up to the input's count keep their numbers. Each is used at one vertex only. When a
+    /// contraction merges wedges, one of the numbers remains.
+    #[inline]
+    pub fn wedges(&self, face: FaceId) -> Option<[WedgeId; 3]> {
+        self.wedges.as_ref().map(|wedges| wedges.of(face))
+    }
+
+    /// Returns the current attribute values of all wedges, layer by layer.
+    pub fn layers(&self) -> &[Layer] {
+        self.wedges.as_ref().map_or(&[], |wedges| wedges.layers())
     }
 
     /// Returns the state of a candidate for contraction.

@@ -1,0 +1,80 @@
+//! Wedges of the faces around a vertex that is split or merged.
+
+use super::triangles::{Spoke, Triangles};
+use crate::implicit::Implicit;
+use crate::wedges::{SplitRecord, Wedges};
+
+/// An update, by what it does to wedges.
+pub(super) struct SplitWedges<'m> {
+    all: &'m Wedges,
+    node: u32,
+    children: [u32; 2],
+    /// `None` if each child has one wedge.
+    record: Option<SplitRecord<'m>>,
+}
+
+impl<'m> SplitWedges<'m> {
+    #[inline]
+    pub(super) fn new(all: &'m Wedges, mt: &Implicit, update: u32) -> Self {
+        let children = mt.children(update);
+        let record = all.split(update, children, || mt.created_count(update));
+        Self { all, node: mt.parent(update), children, record }
+    }
+
+    /// Returns the wedge that the `at`-th face of a star gets at a child.
+    #[inline]
+    pub(super) fn around(&self, child: u32, star: &[Spoke], at: usize) -> u32 {
+        let local = self.record.as_ref().map_or(0, |record| {
+            let rank = star.iter().filter(|s| [s.a, s.b] < [star[at].a, star[at].b]).count();
+            record.around.get(rank).copied().unwrap_or(0)
+        });
+        self.all.first(child) + u32::from(local)
+    }
+
+    /// Returns the wedges at the corners of the `at`-th face that the split creates.
+    pub(super) fn created(
+        &self,
+        face: [u32; 3],
+        at: usize,
+        star: &[Spoke],
+        triangles: &Triangles,
+    ) -> [u32; 3] {
+        if let Some(record) = &self.record {
+            let local = record.created.get(at).copied().unwrap_or_default();
+            return std::array::from_fn(|k| self.all.first(face[k]) + u32::from(local[k]));
+        }
+        face.map(|node| match self.children.contains(&node) {
+            true => self.all.first(node),
+            false => continued(node, star, triangles).unwrap_or_else(|| self.all.first(node)),
+        })
+    }
+
+    /// Returns the wedge of the split node that a child's becomes when they are merged.
+    #[inline]
+    pub(super) fn merged(&self, child: u32, wedge: u32) -> u32 {
+        let Some(record) = &self.record else { return self.all.first(self.node) };
+        let before = if child == self.children[1] { self.all.count(self.children[0]) } else { 0 };
+        let at = before + wedge.wrapping_sub(self.all.first(child));
+        self.all.first(self.node) + u32::from(record.parent(at as usize).unwrap_or(0))
+    }
+}
+
+impl SplitWedges<'_> {
+    /// Returns true if a record, if there is one, is of this many faces around and created.
+    pub(super) fn is_complete(&self, around: usize, created: usize) -> bool {
+        let count = |child: u32| self.all.count(child) as usize;
+        self.record.is_none_or(|record| {
+            record.parents.len() == self.children.map(count).iter().sum::<usize>()
+                && (record.around.len(), record.created.len()) == (around, created)
+        })
+    }
+}
+
+/// Returns the wedge at a neighbour of the split node in the face that it precedes there, or else
+/// in the one that it follows.
+fn continued(node: u32, star: &[Spoke], triangles: &Triangles) -> Option<u32> {
+    let before = star.iter().find(|spoke| spoke.a == node).map(|spoke| (spoke, 1));
+    let after = || star.iter().find(|spoke| spoke.b == node).map(|spoke| (spoke, 2));
+    let (Spoke { corner, .. }, ahead) = before.or_else(after)?;
+    Some(triangles.wedge(corner / 3 * 3 + (corner % 3 + ahead) % 3))
+}

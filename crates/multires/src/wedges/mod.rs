@@ -1,0 +1,189 @@
+//! Wedges of all levels: which one a face has at a corner, in any cut, and their values.
+//!
+//! A contraction merges wedges as it merges vertices, so the wedges of all nodes form a forest of
+//! their own: each belongs to a node, and its parent to the node above. A face of a cut has at each
+//! corner the wedge of the active node that is above its wedge in the finest mesh, whatever is
+//! refined elsewhere. Nodes without seams have one wedge, and then nothing is stored but its values:
+//! only updates next to seams record which wedges their faces get. docs/notes/multires.md has more.
+
+mod labels;
+mod level;
+mod pack;
+mod record;
+
+pub(crate) use labels::WedgeLabels;
+pub(crate) use level::{LevelWedges, select};
+pub(crate) use record::{ForestWedges, WedgeRecorder, WedgeSplit};
+
+use meshlod_mesh::Layer;
+
+use crate::pack::RankedSet;
+
+/// Wedges of a packed model, numbered by node: first those of the roots, then those of the children
+/// of update 0, of update 1…
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Wedges {
+    of_nodes: NodeWedges,
+    /// Wedges at the corners of the base mesh's faces.
+    pub(crate) base: Vec<[u32; 3]>,
+    splits: RecordedSplits,
+    pub(crate) layers: Vec<Layer>,
+    pub(crate) labels: WedgeLabels,
+}
+
+/// First wedge of each node. Only nodes of several wedges take memory.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct NodeWedges {
+    several: RankedSet,
+    /// Number of wedges beyond the first of each node, before each node of several and in the end.
+    extra: Vec<u32>,
+}
+
+/// What updates next to seams record, in local numbers: wedges are counted from the first of their
+/// node.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct RecordedSplits {
+    updates: RankedSet,
+    /// Start of each record, and the end of the last.
+    starts: Vec<u32>,
+    numbers: Vec<u16>,
+}
+
+/// Marks a wedge that has lost all its faces, so that it has no parent.
+pub(crate) const LOST: u16 = u16::MAX;
+
+/// Record of an update next to a seam, in local numbers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SplitRecord<'w> {
+    /// Parent of each wedge of the first child, then of the second; or [`LOST`].
+    pub(crate) parents: &'w [u16],
+    /// Wedge that each face around the node has after the split, in the order of its other two
+    /// nodes.
+    pub(crate) around: &'w [u16],
+    /// Wedges at the corners of the faces that the split creates.
+    pub(crate) created: &'w [[u16; 3]],
+}
+
+impl SplitRecord<'_> {
+    /// Returns the parent of one of the children's wedges, counted from the first child's; `None` if
+    /// it has none.
+    #[inline]
+    pub(crate) fn parent(&self, wedge: usize) -> Option<u16> {
+        self.parents.get(wedge).copied().filter(|&parent| parent != LOST)
+    }
+}
+
+impl NodeWedges {
+    /// Numbers the wedges of nodes that have these numbers of them, each at least one.
+    pub(crate) fn new(counts: impl Iterator<Item = u32>) -> Self {
+        let mut this = Self { several: RankedSet::default(), extra: vec![0] };
+        let mut extra = 0;
+        for (node, count) in (0..).zip(counts).filter(|&(_, count)| count > 1) {
+            this.several.push(node);
+            extra += count - 1;
+            this.extra.push(extra);
+        }
+        this
+    }
+
+    /// Returns the first wedge of a node, or for the number of nodes that of all wedges.
+    #[inline]
+    pub(crate) fn first(&self, node: u32) -> u32 {
+        node + self.extra.get(self.several.below(node)).copied().unwrap_or(0)
+    }
+
+    /// Returns the number of wedges of a node.
+    #[inline]
+    pub(crate) fn count(&self, node: u32) -> u32 {
+        self.several.rank(node).map_or(1, |rank| 1 + self.extra[rank + 1] - self.extra[rank])
+    }
+
+    fn bytes(&self) -> usize {
+        self.several.bytes() + size_of_val(&self.extra[..])
+    }
+}
+
+impl Wedges {
+    /// Returns the first wedge of a node.
+    #[inline]
+    pub(crate) fn first(&self, node: u32) -> u32 {
+        self.of_nodes.first(node)
+    }
+
+    /// Returns the wedges of a node.
+    #[inline]
+    pub(crate) fn of(&self, node: u32) -> std::ops::Range<u32> {
+        let first = self.of_nodes.first(node);
+        first..first + self.of_nodes.count(node)
+    }
+
+    /// Returns the number of wedges of a node.
+    #[inline]
+    pub(crate) fn count(&self, node: u32) -> u32 {
+        self.of_nodes.count(node)
+    }
+
+    /// Returns the record of an update, given its children and the number of faces that it creates;
+    /// `None` if each child has one wedge and created faces continue those around.
+    #[inline]
+    pub(crate) fn split(
+        &self,
+        update: u32,
+        children: [u32; 2],
+        created: impl FnOnce() -> usize,
+    ) -> Option<SplitRecord<'_>> {
+        let rank = self.splits.updates.rank(update)?;
+        let numbers = &self.splits.numbers
+            [self.splits.starts[rank] as usize..self.splits.starts[rank + 1] as usize];
+        let parents = children.map(|child| self.count(child)).iter().sum::<u32>() as usize;
+        let (parents, faces) = numbers.split_at_checked(parents).unwrap_or((numbers, &[]));
+        let around = faces.len().saturating_sub(3 * created());
+        let (around, created) = faces.split_at(around);
+        Some(SplitRecord { parents, around, created: created.as_chunks().0 })
+    }
+
+    /// Returns true if an update has a record.
+    pub(crate) fn is_recorded(&self, update: u32) -> bool {
+        self.splits.updates.rank(update).is_some()
+    }
+
+    /// Returns the memory used, in bytes.
+    pub(crate) fn bytes(&self) -> usize {
+        let RecordedSplits { updates, starts, numbers } = &self.splits;
+        let values: usize = self.layers.iter().map(|layer| size_of_val(&layer.values[..])).sum();
+        self.of_nodes.bytes()
+            + size_of_val(&self.base[..])
+            + updates.bytes()
+            + size_of_val(&starts[..])
+            + size_of_val(&numbers[..])
+            + values
+            + self.labels.bytes()
+    }
+}
+
+impl RecordedSplits {
+    /// Adds the record of an update; updates must come in rising order.
+    fn push(&mut self, update: u32, numbers: impl IntoIterator<Item = u16>) {
+        if self.starts.is_empty() {
+            self.starts.push(0);
+        }
+        self.updates.push(update);
+        self.numbers.extend(numbers);
+        self.starts.push(self.numbers.len() as u32);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nodes_of_one_wedge_take_no_number_of_their_own() {
+        let counts = [1, 3, 1, 1, 2, 1];
+        let all = NodeWedges::new(counts.into_iter());
+        let firsts: Vec<u32> = (0..=6).map(|node| all.first(node)).collect();
+        assert_eq!(firsts, [0, 1, 4, 5, 6, 8, 9]);
+        assert!((0..6).all(|node| all.count(node) == counts[node as usize]));
+        assert_eq!(NodeWedges::default().first(7), 7);
+    }
+}
