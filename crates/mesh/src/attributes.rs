@@ -36,6 +36,38 @@ impl LayerKind {
             Self::Color(_) | Self::Other => None,
         }
     }
+
+    /// Returns true for layers of unit directions: normals and tangents.
+    pub fn is_direction(self) -> bool {
+        matches!(self, Self::Normal | Self::Tangent)
+    }
+
+    /// Returns two bytes that stand for the type in files: its code and the number of its set.
+    pub fn tag(self) -> (u8, u8) {
+        match self {
+            Self::Normal => (0, 0),
+            Self::Uv(set) => (1, set),
+            Self::Color(set) => (2, set),
+            Self::Tangent => (3, 0),
+            Self::Joints(set) => (4, set),
+            Self::Weights(set) => (5, set),
+            Self::Other => (6, 0),
+        }
+    }
+
+    /// Returns the type that two bytes of a file stand for; `None` if there is none.
+    pub fn from_tag(code: u8, set: u8) -> Option<Self> {
+        let kinds = [
+            Self::Normal,
+            Self::Uv(set),
+            Self::Color(set),
+            Self::Tangent,
+            Self::Joints(set),
+            Self::Weights(set),
+            Self::Other,
+        ];
+        kinds.into_iter().nth(code.into())
+    }
 }
 
 /// Attribute layer: the values of one attribute, such as normals, for all wedges of a mesh.
@@ -85,5 +117,60 @@ impl Attributes {
     /// Returns the first layer of a type, such as the normals; `None` if there is no such layer.
     pub fn layer(&self, kind: LayerKind) -> Option<&Layer> {
         self.layers.iter().find(|layer| layer.kind == kind)
+    }
+}
+
+/// Largest errors allowed for the attributes of a mesh.
+///
+/// A bound below the resolution of `f32` is met as closely as `f32` allows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AttributeBounds {
+    /// Largest error of normals and tangents, in radians, down to .00004 (16 bits for each of two
+    /// coordinates).
+    ///
+    /// A direction of zero length decodes to an arbitrary one.
+    pub direction_rad: f64,
+    /// Largest error of texture coordinates, where 1 is the whole texture.
+    pub uv: f64,
+    /// Largest error of colours, whose values range from 0 to 1.
+    pub color: f64,
+    /// Largest error of joint weights, whose values range from 0 to 1.
+    pub weight: f64,
+    /// Largest error of all other attributes, as a fraction of the range of their values.
+    pub other: f64,
+}
+
+impl Default for AttributeBounds {
+    /// Directions to a third of a degree, texture coordinates to half a texel of 4096, colours and
+    /// weights to 8 bits, all others to 16 bits.
+    fn default() -> Self {
+        Self {
+            direction_rad: 0.006,
+            uv: 1.0 / 8192.0,
+            color: 1.0 / 512.0,
+            weight: 1.0 / 512.0,
+            other: 1.0 / 65_536.0,
+        }
+    }
+}
+
+impl AttributeBounds {
+    /// Returns the bound of a layer over these wedges, in the layer's unit.
+    pub fn of(&self, layer: &Layer, wedges: impl Iterator<Item = WedgeId>) -> f64 {
+        match layer.kind {
+            LayerKind::Normal | LayerKind::Tangent => self.direction_rad,
+            LayerKind::Uv(_) => self.uv,
+            LayerKind::Color(_) => self.color,
+            LayerKind::Weights(_) => self.weight,
+            // Integers.
+            LayerKind::Joints(_) => 0.5,
+            LayerKind::Other => {
+                let values = wedges.flat_map(|wedge| layer.of(wedge));
+                let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[min, max], &x| {
+                    [min.min(x.into()), max.max(x.into())]
+                });
+                self.other * (range[1] - range[0]).max(0.0)
+            }
+        }
     }
 }

@@ -24,10 +24,11 @@ mod ids;
 mod labels;
 mod locks;
 mod mesh;
+pub mod octahedral;
 mod union_find;
 mod weld;
 
-pub use attributes::{Attributes, Layer, LayerKind};
+pub use attributes::{AttributeBounds, Attributes, Layer, LayerKind};
 pub use bounds::Bounds;
 pub use buckets::Buckets;
 pub use closed::closed_faces;

@@ -89,7 +89,8 @@ impl Level {
         focus.validate()?;
         let region = Region::new(focus, &self.frame);
         let corners = |face: &&[u32; 3]| face.map(|v| self.exact_stored(v));
-        let kept = (0..self.faces.len()).filter(|&f| region.meets_triangle(corners(&&self.faces[f])));
+        let kept =
+            (0..self.faces.len()).filter(|&f| region.meets_triangle(corners(&&self.faces[f])));
         let kept: Vec<usize> = kept.collect();
         let faces = kept.iter().map(|&f| self.faces[f]).collect();
         let (count, place) = (self.positions.len(), |v: u32| self.positions[v as usize]);

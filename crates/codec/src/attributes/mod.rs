@@ -1,39 +1,19 @@
 //! Attributes as integers, in the same rows as positions, each within an error bound.
 
-mod octahedral;
 mod packed;
 mod quantizer;
 #[cfg(test)]
 mod tests;
 
 use glam::DVec3;
+pub use meshlod_mesh::AttributeBounds;
+use meshlod_mesh::octahedral::{self, fold, unfold};
 use meshlod_mesh::{Layer, LayerKind, WedgeId};
 
-use self::octahedral::{fold, max_error_rad, unfold};
 pub(crate) use self::packed::PackedRows;
 use self::quantizer::UniformQuantizer;
 use crate::bytes::{Malformed, Reader};
 use crate::patch::Rows;
-
-/// Largest errors allowed for the attributes of a mesh.
-///
-/// A bound below the resolution of `f32` is met as closely as `f32` allows.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AttributeBounds {
-    /// Largest error of normals and tangents, in radians, down to .00004 (16 bits for each of two
-    /// coordinates).
-    ///
-    /// A direction of zero length decodes to an arbitrary one.
-    pub direction_rad: f64,
-    /// Largest error of texture coordinates, where 1 is the whole texture.
-    pub uv: f64,
-    /// Largest error of colours, whose values range from 0 to 1.
-    pub color: f64,
-    /// Largest error of joint weights, whose values range from 0 to 1.
-    pub weight: f64,
-    /// Largest error of all other attributes, as a fraction of the range of their values.
-    pub other: f64,
-}
 
 /// Compressed attribute layer.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,22 +49,8 @@ pub struct LayerReport {
     pub max_error: f64,
 }
 
-impl Default for AttributeBounds {
-    /// Directions to a third of a degree, texture coordinates to half a texel of 4096, colours and
-    /// weights to 8 bits, all others to 16 bits.
-    fn default() -> Self {
-        Self {
-            direction_rad: 0.006,
-            uv: 1.0 / 8192.0,
-            color: 1.0 / 512.0,
-            weight: 1.0 / 512.0,
-            other: 1.0 / 65_536.0,
-        }
-    }
-}
-
 /// Least and greatest number of bits, twice, of a direction.
-const DIRECTION_BITS: [u32; 2] = [3, 16];
+const DIRECTION_BITS: [u32; 2] = octahedral::BITS;
 
 impl PackedLayer {
     /// Compresses a layer; `wedges` are those of the nodes, in the order of the rows.
@@ -94,9 +60,9 @@ impl PackedLayer {
         rows: Rows,
         bounds: &AttributeBounds,
     ) -> Self {
-        let bound = bounds.of(layer, wedges);
-        let coding = if is_direction(layer.kind) {
-            Coding::Directions { bits: direction_bits(bound) }
+        let bound = bounds.of(layer, wedges.iter().copied());
+        let coding = if layer.kind.is_direction() {
+            Coding::Directions { bits: octahedral::bits_within(bound) }
         } else {
             let values = wedges.iter().map(|&wedge| layer.of(wedge));
             Coding::Values(UniformQuantizer::new(values, layer.width, bound))
@@ -164,7 +130,7 @@ impl PackedLayer {
     }
 
     pub(crate) fn store(&self, out: &mut Vec<u8>) {
-        let (kind, set) = tag(self.kind);
+        let (kind, set) = self.kind.tag();
         out.extend([kind, set, self.width as u8]);
         out.extend(self.max_error.to_le_bytes());
         out.extend((self.name.len() as u16).to_le_bytes());
@@ -178,7 +144,7 @@ impl PackedLayer {
 
     pub(crate) fn restore(rows: Rows, reader: &mut Reader) -> Result<Self, Malformed> {
         let (kind, set, width) = (reader.u8()?, reader.u8()?, usize::from(reader.u8()?));
-        let kind = untag(kind, set);
+        let kind = LayerKind::from_tag(kind, set);
         let kind = kind.ok_or_else(|| reader.wrong("a layer has an unknown kind"))?;
         if width == 0 || kind.width().is_some_and(|only| only != width) {
             return Err(
@@ -189,7 +155,7 @@ impl PackedLayer {
         let name = usize::from(reader.u16()?);
         let name = String::from_utf8(reader.take(name)?.to_vec());
         let name = name.map_err(|_| reader.wrong("the name of a layer is not UTF-8"))?;
-        let coding = if is_direction(kind) {
+        let coding = if kind.is_direction() {
             let bits = u32::from(reader.u8()?);
             if !(DIRECTION_BITS[0]..=DIRECTION_BITS[1]).contains(&bits) {
                 return Err(reader.wrong(format!("directions cannot have {bits} bits")));
@@ -237,72 +203,15 @@ impl Coding {
     }
 }
 
-impl AttributeBounds {
-    /// Returns the bound of a layer over these wedges, in the layer's unit.
-    fn of(&self, layer: &Layer, wedges: &[WedgeId]) -> f64 {
-        match layer.kind {
-            LayerKind::Normal | LayerKind::Tangent => self.direction_rad,
-            LayerKind::Uv(_) => self.uv,
-            LayerKind::Color(_) => self.color,
-            LayerKind::Weights(_) => self.weight,
-            // Integers.
-            LayerKind::Joints(_) => 0.5,
-            LayerKind::Other => {
-                let values = wedges.iter().flat_map(|&wedge| layer.of(wedge));
-                let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[min, max], &x| {
-                    [min.min(x.into()), max.max(x.into())]
-                });
-                self.other * (range[1] - range[0]).max(0.0)
-            }
-        }
-    }
-}
-
-/// Returns the least number of bits that keep directions within a bound.
-fn direction_bits(bound_rad: f64) -> u32 {
-    let [least, most] = DIRECTION_BITS;
-    (least..most).find(|&bits| max_error_rad(bits) <= bound_rad).unwrap_or(most)
-}
-
-fn is_direction(kind: LayerKind) -> bool {
-    matches!(kind, LayerKind::Normal | LayerKind::Tangent)
-}
-
 fn direction(values: &[f32]) -> DVec3 {
     DVec3::new(values[0].into(), values[1].into(), values[2].into())
 }
 
 /// Returns the error of a decoded value; 0 for a direction of zero length.
 fn error(kind: LayerKind, was: &[f32], is: &[f32]) -> f64 {
-    if is_direction(kind) {
+    if kind.is_direction() {
         let was = direction(was);
         return if was.length() > 0.0 { was.angle_between(direction(is)) } else { 0.0 };
     }
     was.iter().zip(is).map(|(&was, &is)| (f64::from(was) - f64::from(is)).abs()).fold(0.0, f64::max)
-}
-
-/// Returns the bytes that encode a kind.
-fn tag(kind: LayerKind) -> (u8, u8) {
-    match kind {
-        LayerKind::Normal => (0, 0),
-        LayerKind::Uv(set) => (1, set),
-        LayerKind::Color(set) => (2, set),
-        LayerKind::Tangent => (3, 0),
-        LayerKind::Joints(set) => (4, set),
-        LayerKind::Weights(set) => (5, set),
-        LayerKind::Other => (6, 0),
-    }
-}
-
-fn untag(kind: u8, set: u8) -> Option<LayerKind> {
-    let kinds = [
-        LayerKind::Normal,
-        LayerKind::Uv(set),
-        LayerKind::Color(set),
-        LayerKind::Tangent,
-        LayerKind::Joints(set),
-        LayerKind::Weights(set),
-        LayerKind::Other,
-    ];
-    kinds.into_iter().nth(kind.into())
 }

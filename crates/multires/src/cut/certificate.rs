@@ -41,7 +41,9 @@ pub enum CertifyError {
         why: Flaw,
     },
     /// A face of the base mesh has a wedge that does not belong to it.
-    #[error("a face of the coarsest mesh has a wedge of another vertex, or of another material or object")]
+    #[error(
+        "a face of the coarsest mesh has a wedge of another vertex, or of another material or object"
+    )]
     BaseWedges,
     /// The finest mesh does not have the number of faces that the model states.
     #[error("the finest mesh has {found} faces where the model says {expected}")]

@@ -43,10 +43,7 @@ impl CoarseWedges {
 }
 
 /// Returns true if faces have wedges of their own nodes, all of one material and object.
-pub(super) fn are_of_their_nodes(
-    front: &Front<'_>,
-    mut faces: impl Iterator<Item = u32>,
-) -> bool {
+pub(super) fn are_of_their_nodes(front: &Front<'_>, mut faces: impl Iterator<Item = u32>) -> bool {
     let Some(all) = front.mt.wedges() else { return true };
     faces.all(|t| {
         let (nodes, wedges) = (front.triangles.nodes(t), front.triangles.wedges(t));

@@ -28,7 +28,7 @@ impl<'m> SplitWedges<'m> {
             let rank = star.iter().filter(|s| [s.a, s.b] < [star[at].a, star[at].b]).count();
             record.around.get(rank).copied().unwrap_or(0)
         });
-        self.all.first(child) + u32::from(local)
+        self.all.at(child, local)
     }
 
     /// Returns the wedges at the corners of the `at`-th face that the split creates.
@@ -41,7 +41,7 @@ impl<'m> SplitWedges<'m> {
     ) -> [u32; 3] {
         if let Some(record) = &self.record {
             let local = record.created.get(at).copied().unwrap_or_default();
-            return std::array::from_fn(|k| self.all.first(face[k]) + u32::from(local[k]));
+            return std::array::from_fn(|k| self.all.at(face[k], local[k]));
         }
         face.map(|node| match self.children.contains(&node) {
             true => self.all.first(node),
@@ -55,7 +55,7 @@ impl<'m> SplitWedges<'m> {
         let Some(record) = &self.record else { return self.all.first(self.node) };
         let before = if child == self.children[1] { self.all.count(self.children[0]) } else { 0 };
         let at = before + wedge.wrapping_sub(self.all.first(child));
-        self.all.first(self.node) + u32::from(record.parent(at as usize).unwrap_or(0))
+        self.all.at(self.node, record.parent(at as usize).unwrap_or(0))
     }
 }
 

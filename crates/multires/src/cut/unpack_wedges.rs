@@ -26,7 +26,11 @@ impl NodeNumbers<'_> {
         ForestWedges {
             parents: vec![NONE; all.first(self.in_model.len() as u32) as usize],
             first,
-            layers: all.layers.iter().map(|layer| crate::wedges::select(layer, wedges.clone())).collect(),
+            layers: all
+                .layers
+                .iter()
+                .map(|layer| crate::wedges::select(layer, wedges.clone()))
+                .collect(),
             labels: all.labels.renumbered(wedges),
             ..ForestWedges::default()
         }

@@ -161,7 +161,7 @@ impl<S: Source> Archive<S> {
     pub fn read_chunks(&self, count: usize) -> Result<(Implicit, Certificate), FileError> {
         let state = self.load(&(0..count.min(self.complete)).collect::<Vec<_>>())?;
         let updates = state.updates.len();
-        let model = self.assemble(state);
+        let model = state.assemble(self.header.about)?;
         if model.update_count() != updates {
             return Err(FileError::Section {
                 section: "the updates".into(),
@@ -239,7 +239,7 @@ impl<S: Source> Archive<S> {
         let stored = chunks.iter().map(|&chunk| u64::from(self.header.chunks[chunk].stored.bytes));
         let bytes = self.chunk_ends().next().unwrap_or(0) + stored.sum::<u64>();
         let updates = state.updates.len();
-        let model = self.assemble(state);
+        let model = state.assemble(self.header.about)?;
         let level = Cut::at(&model, query)?.level();
         Ok(Extract { level, chunks: chunks.len(), updates, bytes })
     }
@@ -252,11 +252,6 @@ impl<S: Source> Archive<S> {
         let (middle, half) = (self.header.about.frame.model([0.0; 3]), 0.5 * self.diagonal());
         let bounds = Bounds { min: middle.map(|x| x - half), max: middle.map(|x| x + half) };
         closest_point(point, &bounds, |query| self.extract(query).map(|found| found.level))
-    }
-
-    fn assemble(&self, state: DecoderState) -> Implicit {
-        let (base, updates, exact) = state.into_parts();
-        Implicit::assemble(self.header.about, base, &updates, &exact)
     }
 
     /// Decodes the base and the given chunks, which are in ascending order.

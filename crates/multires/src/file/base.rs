@@ -8,6 +8,8 @@ use super::decoder_state::{DecoderState, is_finite};
 use super::exact_coding::{self, Deltas};
 use super::header::{Header, UNKNOWN_FLAGS};
 use super::streams::{Packer, Unpacker};
+use super::wedge_names;
+use super::wedge_state::WedgeError;
 use crate::implicit::{BaseMesh, has_three_corners};
 use crate::pack::ExactPositions;
 
@@ -19,6 +21,15 @@ pub(super) enum BaseError {
     Decompress(#[from] io::Error),
     #[error("{0}")]
     Invalid(&'static str),
+}
+
+impl From<WedgeError> for BaseError {
+    fn from(error: WedgeError) -> Self {
+        match error {
+            WedgeError::Io(error) => Self::Decompress(error),
+            WedgeError::Invalid(why) => Self::Invalid(why),
+        }
+    }
 }
 
 pub(super) fn write(state: &DecoderState) -> io::Result<Vec<u8>> {
@@ -41,6 +52,10 @@ pub(super) fn write(state: &DecoderState) -> io::Result<Vec<u8>> {
             &(0..state.root_count()).filter_map(pair).collect::<Vec<_>>(),
             &mut packer,
         )?;
+    }
+    if let Some(wedges) = &state.wedges {
+        wedge_names::write(wedges, &mut packer)?;
+        wedges.write_base(state.root_count(), &mut packer)?;
     }
     packer.finish()
 }
@@ -69,6 +84,11 @@ pub(super) fn read(header: &Header, bytes: &[u8]) -> Result<DecoderState, BaseEr
     let mut state = DecoderState::new(about.frame, lattice, BaseMesh { positions, faces }, exact);
     if lossless {
         read_exact(&mut state, &mut input)?;
+    }
+    if header.has_wedges {
+        let mut wedges = wedge_names::read(&mut input)?;
+        wedges.read_base(roots, state.base.faces.len(), &mut input)?;
+        state.wedges = Some(wedges);
     }
     Ok(state)
 }

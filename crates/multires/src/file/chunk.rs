@@ -15,6 +15,7 @@ use super::decoder_state::DecoderState;
 use super::exact_coding::{self, Deltas};
 use super::header::UNKNOWN_FLAGS;
 use super::streams::{Packer, Unpacker};
+use super::wedge_state::WedgeError;
 use crate::forest::{NONE, NonFanSplit};
 use crate::implicit::{DetachedUpdate, has_three_corners};
 use crate::length16::Length16;
@@ -29,6 +30,9 @@ pub(super) enum ChunkError {
     /// An update has an invalid field.
     #[error("its update {update} is invalid: {why}")]
     Update { update: usize, why: &'static str },
+    /// The wedges of the updates are invalid.
+    #[error("{0}")]
+    Wedges(&'static str),
     /// Data follows the last update.
     #[error("unexpected data after its last update")]
     TrailingData,
@@ -41,6 +45,8 @@ const NON_FAN: u8 = 4;
 /// Set if the first or the second child has an exact position: it is a vertex of the finest mesh, or
 /// where one is. Only in lossless files.
 const EXACT: [u8; 2] = [8, 16];
+/// Set if the update records the wedges of its faces. Only in files with wedges.
+const RECORDED: u8 = 32;
 
 /// Encodes a run of updates. Everything before it must be known to the decoder.
 pub(super) fn write(state: &DecoderState, run: Range<usize>) -> io::Result<Vec<u8>> {
@@ -55,7 +61,9 @@ pub(super) fn write(state: &DecoderState, run: Range<usize>) -> io::Result<Vec<u
     let flags = |(at, u): (usize, &DetachedUpdate)| {
         let own = [(OPEN, u.is_open), (FUSED, u.fused_with_child), (NON_FAN, u.non_fan.is_some())];
         let exact = state.children(at).map(|child| state.exact_position(child).is_some());
+        let recorded = state.wedges.as_ref().is_some_and(|wedges| wedges.is_recorded(at));
         let all = own.into_iter().chain(EXACT.into_iter().zip(exact));
+        let all = all.chain([(RECORDED, recorded)]);
         all.filter(|(_, is_so)| *is_so).map(|(flag, _)| flag).sum::<u8>()
     };
     packer.bytes(&run.clone().zip(updates).map(flags).collect::<Vec<_>>())?;
@@ -70,8 +78,11 @@ pub(super) fn write(state: &DecoderState, run: Range<usize>) -> io::Result<Vec<u
     if state.is_lossless() {
         let pair =
             |node| state.exact_position(node).map(|exact| [exact, state.predicted_position(node)]);
-        let pairs = run.flat_map(|at| state.children(at)).filter_map(pair);
+        let pairs = run.clone().flat_map(|at| state.children(at)).filter_map(pair);
         exact_coding::write(&pairs.collect::<Vec<_>>(), &mut packer)?;
+    }
+    if let Some(wedges) = &state.wedges {
+        wedges.write_run(&state.updates, run, state.root_count(), &mut packer)?;
     }
     packer.finish()
 }
@@ -195,13 +206,23 @@ pub(super) fn read(
     if state.is_lossless() {
         read_exact(state, &mut input, start, &flags)?;
     }
+    let roots = state.root_count();
+    if let Some(wedges) = &mut state.wedges {
+        let is_recorded = |at: usize| flags[at - start] & RECORDED != 0;
+        let read = wedges.read_run(&state.updates, start, is_recorded, roots, &mut input);
+        read.map_err(|error| match error {
+            WedgeError::Io(error) => ChunkError::Decompress(error),
+            WedgeError::Invalid(why) => ChunkError::Wedges(why),
+        })?;
+    }
     if input.is_at_end()? { Ok(()) } else { Err(ChunkError::TrailingData) }
 }
 
 /// Returns the flags that an update of this file may have.
 fn flags_of(state: &DecoderState) -> u8 {
     let of_all = OPEN | FUSED | NON_FAN;
-    if state.is_lossless() { of_all | EXACT[0] | EXACT[1] } else { of_all }
+    let exact = if state.is_lossless() { EXACT[0] | EXACT[1] } else { 0 };
+    of_all | exact | if state.wedges.is_some() { RECORDED } else { 0 }
 }
 
 /// Decodes the exact positions of the children that have one, for the updates from `start` on.

@@ -3,11 +3,13 @@
 use glam::Vec3;
 use meshlod_mesh::Frame;
 
+use super::FileError;
 use super::exact_coding::Deltas;
 use super::lattice::Lattice;
 use super::normal_predictor::NormalPredictor;
+use super::wedge_state::WedgeState;
 use crate::forest::NONE;
-use crate::implicit::{BaseMesh, DetachedUpdate};
+use crate::implicit::{BaseMesh, DetachedUpdate, Implicit, ModelInfo};
 use crate::pack::ExactPositions;
 
 /// Base mesh and runs of consecutive updates. If only some chunks are loaded, their updates are
@@ -19,6 +21,8 @@ pub(super) struct DecoderState {
     pub(super) updates: Vec<DetachedUpdate>,
     /// Exact positions of vertices of the finest mesh, by local node.
     exact: ExactPositions,
+    /// Wedges, if the file has any.
+    pub(super) wedges: Option<WedgeState>,
     /// First update of each run, by its number in the file and by its local number.
     runs: Vec<[u32; 2]>,
 }
@@ -30,7 +34,7 @@ impl DecoderState {
         base: BaseMesh,
         exact: ExactPositions,
     ) -> Self {
-        Self { frame, lattice, base, updates: Vec::new(), exact, runs: Vec::new() }
+        Self { frame, lattice, base, updates: Vec::new(), exact, wedges: None, runs: Vec::new() }
     }
 
     /// Starts a run: the updates pushed next have consecutive numbers in the file from `update` on.
@@ -95,9 +99,15 @@ impl DecoderState {
             .ok_or("one of its exact positions is outside the lattice cell of its vertex")
     }
 
-    /// Returns the base mesh, the updates and the exact positions.
-    pub(super) fn into_parts(self) -> (BaseMesh, Vec<DetachedUpdate>, ExactPositions) {
-        (self.base, self.updates, self.exact)
+    /// Builds the model of what has been decoded.
+    pub(super) fn assemble(self, about: ModelInfo) -> Result<Implicit, FileError> {
+        let wedges = self.wedges.map(WedgeState::into_detached).transpose();
+        let wedges = wedges.map_err(|why| FileError::Section {
+            section: "the attributes".into(),
+            why: why.into(),
+        })?;
+        let (updates, exact) = (&self.updates, &self.exact);
+        Ok(Implicit::assemble(about, self.base, updates, exact, wedges.as_ref()))
     }
 
     /// Returns true if stored positions are finite in model units.

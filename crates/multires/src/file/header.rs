@@ -16,6 +16,8 @@ pub(super) struct Header {
     pub(super) lattice: Lattice,
     /// True if the vertices of the finest mesh have exact positions.
     pub(super) lossless: bool,
+    /// True if it has attributes, materials or objects.
+    pub(super) has_wedges: bool,
     /// Bounding-box diagonal of the finest mesh, in model units.
     pub(super) diagonal: f64,
     /// Largest distance that a vertex without an exact position was moved, in model units.
@@ -85,7 +87,8 @@ impl Header {
         out.extend([0; BODY_AT - CHECKSUM_AT]);
         let kind = self.about.error_kind;
         out.extend(self.lattice.to_bytes());
-        let flags = if self.lossless { LOSSLESS } else { 0 };
+        let flags = [(LOSSLESS, self.lossless), (WEDGES, self.has_wedges)];
+        let flags = flags.iter().filter(|(_, is_so)| *is_so).map(|(flag, _)| flag).sum();
         out.extend([kind_code(kind), flags]);
         let words = [self.roots, self.base_faces, self.base.bytes, self.base.checksum];
         out.extend(words.iter().flat_map(|word| word.to_le_bytes()));
@@ -143,6 +146,7 @@ impl Header {
             },
             lattice: lattice.ok_or(bad("the cell size of its lattice is out of range"))?,
             lossless: bytes[BODY_AT + 3] & LOSSLESS != 0,
+            has_wedges: bytes[BODY_AT + 3] & WEDGES != 0,
             diagonal: f64_at(bytes, 72),
             rounding: f64_at(bytes, 80),
             roots: u32_at(bytes, 20),
@@ -153,7 +157,7 @@ impl Header {
                 .map(ChunkEntry::from_bytes)
                 .collect(),
         };
-        if bytes[BODY_AT + 3] & !LOSSLESS != 0 {
+        if bytes[BODY_AT + 3] & !(LOSSLESS | WEDGES) != 0 {
             return Err(bad(UNKNOWN_FLAGS));
         }
         if this.updates() > MAX_UPDATES || this.roots as usize > MAX_UPDATES {
@@ -173,8 +177,10 @@ impl Header {
 
 /// Limit of the bounds written to the index, in stored units.
 const FAR: f64 = 1e30;
-/// The only flag defined so far.
+/// Flag of a file with exact positions.
 const LOSSLESS: u8 = 1;
+/// Flag of a file with attributes, materials or objects.
+const WEDGES: u8 = 2;
 /// Message for any other flag.
 pub(super) const UNKNOWN_FLAGS: &str = "it has flags unknown to this program";
 /// Upper limit on updates and on roots, so that roots and two nodes per update stay below 2³¹.

@@ -15,6 +15,7 @@ mod decoder_state;
 mod exact_coding;
 mod header;
 mod lattice;
+mod layer_coding;
 mod normal_predictor;
 mod quantize;
 mod source;
@@ -22,6 +23,8 @@ mod streams;
 #[cfg(test)]
 mod tests;
 mod unflatten;
+mod wedge_names;
+mod wedge_state;
 mod write;
 
 use std::io;

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use meshlod_mesh::Bounds;
+use meshlod_mesh::{AttributeBounds, Bounds};
 use rayon::prelude::*;
 
 use super::chunk_plan::{ChunkPlan, PlannedChunk, file_node, plan_chunks};
@@ -10,6 +10,7 @@ use super::decoder_state::DecoderState;
 use super::header::{ChunkEntry, Header, Section};
 use super::lattice::Lattice;
 use super::quantize::Quantized;
+use super::wedge_state::WedgeState;
 use super::{FileError, base, chunk};
 use crate::cut::Certificate;
 use crate::forest::Forest;
@@ -29,6 +30,8 @@ pub struct Storage {
     pub updates_per_chunk: usize,
     /// Errors to store.
     pub errors: StoredErrors,
+    /// Largest errors of attributes; a [lossless](Forest::lossless) forest keeps them bit for bit.
+    pub attributes: AttributeBounds,
 }
 
 /// Errors to store in a `.mlod` file.
@@ -44,7 +47,12 @@ pub enum StoredErrors {
 
 impl Default for Storage {
     fn default() -> Self {
-        Self { rounding: None, updates_per_chunk: 1 << 12, errors: StoredErrors::AsRecorded }
+        Self {
+            rounding: None,
+            updates_per_chunk: 1 << 12,
+            errors: StoredErrors::AsRecorded,
+            attributes: AttributeBounds::default(),
+        }
     }
 }
 
@@ -77,6 +85,7 @@ pub(super) fn write(
                 &mt,
                 &plan_chunks(&mt, &links, storage.updates_per_chunk.max(1)),
                 lattice,
+                (!forest.exact.is_lossless()).then_some(&storage.attributes),
             )
         },
     );
@@ -85,6 +94,7 @@ pub(super) fn write(
         about: ModelInfo { frame: forest.frame, error_kind: forest.error_kind },
         lattice,
         lossless: forest.exact.is_lossless(),
+        has_wedges: forest.wedges.is_some(),
         diagonal,
         rounding: forest.frame.model_length(max_displacement),
         roots: mt.root_count() as u32,
@@ -107,11 +117,15 @@ fn encode_sections(
     mt: &Implicit,
     plan: &ChunkPlan,
     lattice: Lattice,
+    bounds: Option<&AttributeBounds>,
 ) -> io::Result<EncodedSections> {
     let nodes = (0..mt.root_count() as u32)
         .chain(plan.order.iter().flat_map(|&update| mt.children(update)));
-    let exact = mt.exact().select(nodes);
+    let nodes: Vec<u32> = nodes.collect();
+    let exact = mt.exact().select(nodes.iter().copied());
     let mut state = DecoderState::new(*mt.frame(), lattice, mt.base_mesh(), exact);
+    let wedges = mt.wedges();
+    state.wedges = wedges.map(|all| WedgeState::of_model(all, bounds, &nodes, &plan.order));
     state.begin_run(0);
     state.updates.extend(plan.order.iter().map(|&update| {
         let update = mt.detached(update);

@@ -1,6 +1,7 @@
 //! Conversion of a packed model to detached updates and back, as files need it.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use glam::Vec3;
 use meshlod_mesh::Frame;
@@ -13,6 +14,7 @@ use crate::forest::MAX_RANKED;
 use crate::forest::{MAX_LEVELS, NONE, NonFanSplit};
 use crate::length16::Length16;
 use crate::pack::ExactPositions;
+use crate::wedges::DetachedWedges;
 
 /// An update taken out of its model. Nodes are numbered roots first, then the children of each
 /// update.
@@ -81,6 +83,7 @@ impl Implicit {
         base: BaseMesh,
         updates: &[DetachedUpdate],
         exact: &ExactPositions,
+        wedges: Option<&DetachedWedges>,
     ) -> Self {
         let roots = base.positions.len();
         let nodes = roots + 2 * updates.len();
@@ -133,11 +136,11 @@ impl Implicit {
             error_kind: about.error_kind,
             roots: roots as u32,
             exact: exact.select(order.nodes.iter().copied()),
-            trees: order.trees,
+            trees: order.trees.clone(),
             positions: StoredPositions::Float(places),
             splits: Splits::Full(splits),
             base: base.faces,
-            wedges: None,
+            wedges: wedges.map(|wedges| Arc::new(wedges.assemble(&order))),
             non_fan_splits: non_fans,
             full_faces,
         }

@@ -57,8 +57,7 @@ impl ExactPositions {
 
     /// Returns the memory used.
     pub(crate) fn bytes(&self) -> usize {
-        let bytes =
-            |table: &Arc<Table>| table.nodes.bytes() + size_of_val(&table.positions[..]);
+        let bytes = |table: &Arc<Table>| table.nodes.bytes() + size_of_val(&table.positions[..]);
         self.0.as_ref().map_or(0, bytes)
     }
 }

@@ -8,7 +8,7 @@ use meshlod_samples as samples;
 use meshlod_simplify::{Method, Options};
 
 use super::walks::{Dice, query};
-use crate::{Cut, Forest, Implicit, Level, Model, UpdateLimits};
+use crate::{Archive, Cut, Forest, Implicit, Level, Model, Query, Storage, UpdateLimits};
 
 /// Returns models with seams, creases and several materials.
 fn meshes() -> Vec<(&'static str, Mesh)> {
@@ -92,7 +92,7 @@ fn the_finest_cut_has_the_attributes_of_the_input() {
         let level = model.extractor().uniform(0.0).unwrap().mesh();
         level.validate().unwrap();
         assert_eq!(corner_values(&level), corner_values(&mesh), "{name}");
-        let level = Cut::at(model.implicit(), &crate::Query::uniform(0.0)).unwrap().level().mesh();
+        let level = Cut::at(model.implicit(), &Query::uniform(0.0)).unwrap().level().mesh();
         assert_eq!(corner_values(&level), corner_values(&mesh), "{name}");
     }
 }
@@ -114,7 +114,9 @@ fn textures_do_not_tear() {
     // Where two faces of a chart meet at an edge in the input, they share its wedges; charts of
     // `charted` lie in different unit squares, so a face that mixed two would be wide.
     forests(|name, mesh, forest| {
-        let Some(uvs) = mesh.attributes.as_ref().and_then(|a| a.layer(LayerKind::Uv(0))) else { return };
+        let Some(uvs) = mesh.attributes.as_ref().and_then(|a| a.layer(LayerKind::Uv(0))) else {
+            return;
+        };
         if !["torus", "gyroid"].contains(&name) || uvs.values.is_empty() {
             return;
         }
@@ -129,4 +131,67 @@ fn textures_do_not_tear() {
             }
         }
     });
+}
+
+#[test]
+fn a_file_keeps_wedges_and_values_within_bounds() {
+    forests(|name, mesh, forest| {
+        let storage = Storage { updates_per_chunk: 100, ..Storage::default() };
+        let (bytes, _) = Archive::write(&forest, &storage).unwrap();
+        let archive = Archive::open(bytes).unwrap();
+        let (mt, _) = archive.read().unwrap();
+        let plain = Implicit::new(&forest).unwrap();
+        let finest = |mt: &Implicit| Cut::at(mt, &Query::uniform(0.0)).unwrap().level();
+        let [was, is] = [&plain, &mt].map(|mt| finest(mt).mesh());
+        is.validate().unwrap();
+        assert_eq!(
+            is.attributes.as_ref().unwrap().wedge_count,
+            was.attributes.as_ref().unwrap().wedge_count
+        );
+        let count = |mesh: &Mesh| mesh.materials.as_ref().map(|m| m.of_face.iter().sum::<u32>());
+        assert_eq!(count(&is), count(&was), "{name}");
+        let mut dice = Dice(3);
+        for _ in 0..6 {
+            // What is read in part is what the whole file gives.
+            let query = query(&mut dice, mesh);
+            let part = archive.extract(&query).unwrap().level.mesh();
+            let whole = Cut::at(&mt, &query).unwrap().level().mesh();
+            assert_eq!(corner_values(&part), corner_values(&whole), "{name}: {query:?}");
+        }
+        let some = archive.extract_at_most(mesh.faces.len() / 4, &Query::uniform(0.0)).unwrap();
+        some.level.mesh().validate().unwrap();
+        assert!(some.level.wedges.is_some());
+    });
+}
+
+#[test]
+fn a_lossless_file_keeps_attributes_to_the_bit() {
+    for (name, mesh) in meshes() {
+        let forest = Forest::lossless(&mesh, &Options::default()).unwrap();
+        let bytes = Archive::write(&forest, &Storage::default()).unwrap().0;
+        let found = Archive::open(bytes).unwrap().extract(&Query::uniform(0.0)).unwrap();
+        assert_eq!(corner_values(&found.level.mesh()), corner_values(&mesh), "{name}");
+    }
+}
+
+#[test]
+fn damaged_wedges_are_errors_or_sound_models() {
+    let mesh = fixtures::charted(&samples::torus(150));
+    let forest = Forest::new(&mesh, &Options::default()).unwrap();
+    let bytes = Archive::write(&forest, &Storage::default()).unwrap().0;
+    let mut dice = Dice(8);
+    for _ in 0..1500 {
+        let mut damaged = bytes.clone();
+        let at = (dice.roll() * bytes.len() as f64) as usize;
+        damaged[at] ^= 1 << (dice.roll() * 8.0) as u32;
+        Archive::rewrite_checksums(&mut damaged);
+        let Ok(archive) = Archive::open(damaged) else { continue };
+        if let Ok((mt, _)) = archive.read() {
+            let level = Cut::at(&mt, &Query::uniform(0.0)).unwrap().level().mesh();
+            level.validate().unwrap();
+        }
+        if let Ok(found) = archive.extract(&Query::uniform(0.01)) {
+            found.level.mesh().validate().ok();
+        }
+    }
 }

@@ -13,6 +13,7 @@ mod record;
 
 pub(crate) use labels::WedgeLabels;
 pub(crate) use level::{LevelWedges, select};
+pub(crate) use pack::DetachedWedges;
 pub(crate) use record::{ForestWedges, WedgeRecorder, WedgeSplit};
 
 use meshlod_mesh::Layer;
@@ -117,6 +118,12 @@ impl Wedges {
         first..first + self.of_nodes.count(node)
     }
 
+    /// Returns a wedge of a node by its local number, of which uncertified files may have any.
+    #[inline]
+    pub(crate) fn at(&self, node: u32, local: u16) -> u32 {
+        self.first(node) + u32::from(local).min(self.count(node) - 1)
+    }
+
     /// Returns the number of wedges of a node.
     #[inline]
     pub(crate) fn count(&self, node: u32) -> u32 {
@@ -132,14 +139,19 @@ impl Wedges {
         children: [u32; 2],
         created: impl FnOnce() -> usize,
     ) -> Option<SplitRecord<'_>> {
-        let rank = self.splits.updates.rank(update)?;
-        let numbers = &self.splits.numbers
-            [self.splits.starts[rank] as usize..self.splits.starts[rank + 1] as usize];
+        let numbers = self.record(update)?;
         let parents = children.map(|child| self.count(child)).iter().sum::<u32>() as usize;
         let (parents, faces) = numbers.split_at_checked(parents).unwrap_or((numbers, &[]));
         let around = faces.len().saturating_sub(3 * created());
         let (around, created) = faces.split_at(around);
         Some(SplitRecord { parents, around, created: created.as_chunks().0 })
+    }
+
+    /// Returns the numbers of an update's record.
+    pub(crate) fn record(&self, update: u32) -> Option<&[u16]> {
+        let RecordedSplits { updates, starts, numbers } = &self.splits;
+        let rank = updates.rank(update)?;
+        Some(&numbers[starts[rank] as usize..starts[rank + 1] as usize])
     }
 
     /// Returns true if an update has a record.

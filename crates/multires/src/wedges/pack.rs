@@ -1,7 +1,11 @@
 //! Packs the wedges of a forest in the order of a model.
 
+use std::collections::BTreeMap;
+
+use meshlod_mesh::Layer;
+
 use super::level::select;
-use super::{ForestWedges, LOST, NodeWedges, RecordedSplits, WedgeSplit, Wedges};
+use super::{ForestWedges, LOST, NodeWedges, RecordedSplits, WedgeLabels, WedgeSplit, Wedges};
 use crate::forest::{BuildError, Forest, NONE};
 use crate::implicit::Order;
 
@@ -33,8 +37,43 @@ impl Wedges {
 
     /// Returns the number of wedges of all nodes.
     pub(crate) fn wedge_count(&self) -> usize {
-        let nodes = |layer: &meshlod_mesh::Layer| layer.values.len() / layer.width.max(1);
+        let nodes = |layer: &Layer| layer.values.len() / layer.width.max(1);
         self.layers.first().map_or(self.labels.of_wedges.len(), nodes)
+    }
+}
+
+/// Wedges taken out of their model, in any order of nodes with roots first.
+#[derive(Clone, Debug)]
+pub(crate) struct DetachedWedges {
+    /// First wedge of each node, and the end of the last.
+    pub(crate) first: Vec<u32>,
+    /// Records of updates next to seams.
+    pub(crate) records: BTreeMap<u32, Vec<u16>>,
+    /// Wedges at the corners of the base mesh's faces.
+    pub(crate) base: Vec<[u32; 3]>,
+    pub(crate) layers: Vec<Layer>,
+    pub(crate) labels: WedgeLabels,
+}
+
+impl DetachedWedges {
+    /// Packs the wedges in the order of a model. Records need no change: in every set of updates
+    /// that is closed upwards, nodes keep their relative order.
+    pub(crate) fn assemble(&self, order: &Order) -> Wedges {
+        let of = |node: u32| self.first[node as usize]..self.first[node as usize + 1];
+        let numbers = || order.nodes.iter().flat_map(|&node| of(node));
+        let mut splits = RecordedSplits::default();
+        for (at, update) in (0..).zip(&order.updates) {
+            if let Some(record) = self.records.get(update) {
+                splits.push(at, record.iter().copied());
+            }
+        }
+        Wedges {
+            of_nodes: NodeWedges::new(order.nodes.iter().map(|&node| of(node).len() as u32)),
+            base: self.base.clone(),
+            splits,
+            layers: self.layers.iter().map(|layer| select(layer, numbers())).collect(),
+            labels: self.labels.renumbered(numbers()),
+        }
     }
 }
 

@@ -201,7 +201,11 @@ impl WedgeRecorder {
             self.live[same[0].0.index()] = number;
         }
         if wedges.is_empty() {
-            self.wedges.push(&[], None, self.wedges.labels.of(self.wedges.first[children[0] as usize]));
+            self.wedges.push(
+                &[],
+                None,
+                self.wedges.labels.of(self.wedges.first[children[0] as usize]),
+            );
         }
         self.wedges.end_node();
         let is_single = self.wedges.len() as u32 == first + 1;

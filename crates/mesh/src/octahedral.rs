@@ -1,11 +1,11 @@
-//! Directions on the unfolded octahedron [CDE14].
+//! Directions as two integers, on the unfolded octahedron [CDE14].
 
 use glam::DVec3;
 
-/// Encodes a direction in twice `bits` bits, as the best of the four nearest codes.
+/// Encodes a direction of any length in twice `bits` bits, as the best of the four nearest codes.
 ///
 /// A direction of zero length becomes the first axis.
-pub(crate) fn fold(direction: DVec3, bits: u32) -> [u32; 2] {
+pub fn fold(direction: DVec3, bits: u32) -> [u32; 2] {
     let direction = direction.try_normalize().unwrap_or(DVec3::X);
     let most = last(bits);
     let [x, y] = flat(direction).map(|x| ((x + 1.0) / 2.0 * most).floor());
@@ -15,8 +15,8 @@ pub(crate) fn fold(direction: DVec3, bits: u32) -> [u32; 2] {
     near.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).expect("there are four")
 }
 
-/// Decodes a direction, identically on every machine.
-pub(crate) fn unfold(at: [u32; 2], bits: u32) -> DVec3 {
+/// Decodes a unit direction from two integers below 2^`bits`, identically on every machine.
+pub fn unfold(at: [u32; 2], bits: u32) -> DVec3 {
     let [x, y] = at.map(|x| f64::from(x) / last(bits) * 2.0 - 1.0);
     let z = 1.0 - x.abs() - y.abs();
     let over = (-z).max(0.0);
@@ -29,8 +29,18 @@ pub(crate) fn unfold(at: [u32; 2], bits: u32) -> DVec3 {
 /// a step along their diagonal turns three times as far as it is long, and across it √3 times:
 /// corners of cells form a lattice of triangles with side √6 s there, and no direction is farther
 /// from all of them than √6 s / √3.
-pub(crate) fn max_error_rad(bits: u32) -> f64 {
+pub fn max_error_rad(bits: u32) -> f64 {
     2.0 * 2f64.sqrt() / last(bits)
+}
+
+/// Least and greatest number of bits of each integer.
+pub const BITS: [u32; 2] = [3, 16];
+
+/// Returns the least number of bits that keep directions within an error in radians, or the
+/// greatest if none does.
+pub fn bits_within(bound_rad: f64) -> u32 {
+    let [least, most] = BITS;
+    (least..most).find(|&bits| max_error_rad(bits) <= bound_rad).unwrap_or(most)
 }
 
 fn last(bits: u32) -> f64 {
@@ -48,18 +58,19 @@ fn flat(direction: DVec3) -> [f64; 2] {
 
 #[cfg(test)]
 mod tests {
-    use meshlod_samples as samples;
-
     use super::*;
 
     #[test]
     fn a_bit_more_halves_how_far_directions_turn() {
         let worst = |bits: u32| {
-            let turn = |p: &[f64; 3]| {
-                let direction = DVec3::from(*p).normalize();
+            // A golden-angle spiral covers the sphere evenly.
+            let turn = |i: u32| {
+                let z = (f64::from(i) + 0.5) / 5000.0 - 1.0;
+                let (y, x) = (2.399_963_229_728_653 * f64::from(i)).sin_cos();
+                let direction = (DVec3::new(x, y, 0.0) * (1.0 - z * z).sqrt()).with_z(z);
                 unfold(fold(direction, bits), bits).angle_between(direction)
             };
-            samples::sphere(20_000).positions.iter().map(turn).fold(0.0, f64::max)
+            (0..10_000).map(turn).fold(0.0, f64::max)
         };
         for bits in [4, 8, 12, 16] {
             let bound = max_error_rad(bits);

@@ -1,0 +1,163 @@
+//! Attribute values as integers within an error bound, from which differences are taken.
+
+use glam::DVec3;
+use meshlod_mesh::octahedral::{self, fold, unfold};
+use meshlod_mesh::{AttributeBounds, Layer, LayerKind, WedgeId};
+
+/// Coding of one attribute layer.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct LayerCoding {
+    pub(super) kind: LayerKind,
+    pub(super) name: String,
+    pub(super) width: usize,
+    pub(super) numbers: Numbers,
+}
+
+/// Meaning of the integers of a layer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Numbers {
+    /// Octahedral directions with this number of bits twice; tangents also have a sign.
+    Directions(u8),
+    /// Multiples of this power of two.
+    Steps(i16),
+    /// Bit patterns of `f32`, in the order of the values.
+    Bits,
+}
+
+/// Bits by which a step may be smaller than the greatest value, the precision of `f32`.
+const F32_BITS: i32 = 23;
+/// Least and greatest exponent of a step.
+pub(super) const EXPONENTS: std::ops::RangeInclusive<i16> = -149..=104;
+
+impl LayerCoding {
+    /// Chooses the coding of a layer that keeps its values within the bounds, or exactly.
+    pub(super) fn new(layer: &Layer, bounds: Option<&AttributeBounds>) -> Self {
+        let wedges = (0..layer.values.len() / layer.width.max(1)).map(WedgeId::new);
+        let numbers = match bounds.map(|bounds| bounds.of(layer, wedges)) {
+            None => Numbers::Bits,
+            Some(bound) if layer.kind.is_direction() => {
+                Numbers::Directions(octahedral::bits_within(bound) as u8)
+            }
+            Some(bound) => Numbers::Steps(exponent(layer, bound)),
+        };
+        Self { kind: layer.kind, name: layer.name.clone(), width: layer.width, numbers }
+    }
+
+    /// Returns the number of integers of a wedge.
+    pub(super) fn columns(&self) -> usize {
+        match self.numbers {
+            // Two for a direction, and one for each further value.
+            Numbers::Directions(_) => self.width - 1,
+            Numbers::Steps(_) | Numbers::Bits => self.width,
+        }
+    }
+
+    /// Appends the integers of a wedge.
+    pub(super) fn encode(&self, values: &[f32], to: &mut Vec<i32>) {
+        match self.numbers {
+            Numbers::Directions(bits) => {
+                let direction = DVec3::from_array([0, 1, 2].map(|k| values[k].into()));
+                to.extend(fold(direction, bits.into()).map(|x| x as i32));
+                to.extend(values[3..].iter().map(|&sign| i32::from(sign < 0.0)));
+            }
+            Numbers::Steps(exponent) => {
+                let step = step(exponent);
+                to.extend(values.iter().map(|&x| (f64::from(x) / step).round() as i32));
+            }
+            Numbers::Bits => to.extend(values.iter().map(|x| ordered(x.to_bits() as i32))),
+        }
+    }
+
+    /// Appends the values of a wedge, or returns `None` if one is not finite.
+    pub(super) fn decode(&self, numbers: &[i32], to: &mut Vec<f32>) -> Option<()> {
+        let start = to.len();
+        match self.numbers {
+            Numbers::Directions(bits) => {
+                // Only damaged data is out of range.
+                let last = (1 << bits) - 1;
+                let at = [numbers[0], numbers[1]].map(|x| x.clamp(0, last) as u32);
+                to.extend(unfold(at, bits.into()).to_array().map(|x| x as f32));
+                to.extend(numbers[2..].iter().map(|&sign| if sign == 1 { -1.0 } else { 1.0 }));
+            }
+            Numbers::Steps(exponent) => {
+                let step = step(exponent);
+                to.extend(numbers.iter().map(|&x| (f64::from(x) * step) as f32));
+            }
+            Numbers::Bits => to.extend(numbers.iter().map(|&x| f32::from_bits(ordered(x) as u32))),
+        }
+        to[start..].iter().all(|x| x.is_finite()).then_some(())
+    }
+}
+
+/// Returns the exponent of the largest step that keeps values within a bound.
+fn exponent(layer: &Layer, bound: f64) -> i16 {
+    let most = layer.values.iter().fold(0.0, |most: f64, &x| most.max(f64::from(x).abs()));
+    let log2 = |x: f64| if x > 0.0 { x.log2().floor() as i32 } else { i32::MIN / 2 };
+    let exponent = log2(2.0 * bound).max(log2(most) - F32_BITS);
+    (exponent.clamp((*EXPONENTS.start()).into(), (*EXPONENTS.end()).into())) as i16
+}
+
+fn step(exponent: i16) -> f64 {
+    f64::from(exponent).exp2()
+}
+
+/// Maps the bits of `f32` to integers in the order of the values, and back.
+fn ordered(bits: i32) -> i32 {
+    if bits < 0 { bits ^ i32::MAX } else { bits }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn layer(kind: LayerKind, width: usize, values: &[f32]) -> Layer {
+        Layer { kind, name: "it".into(), width, values: values.to_vec() }
+    }
+
+    fn again(layer: &Layer, bounds: Option<&AttributeBounds>) -> Vec<f32> {
+        let coding = LayerCoding::new(layer, bounds);
+        let mut values = Vec::new();
+        for wedge in layer.values.chunks(layer.width) {
+            let mut numbers = Vec::new();
+            coding.encode(wedge, &mut numbers);
+            assert_eq!(numbers.len(), coding.columns());
+            coding.decode(&numbers, &mut values).unwrap();
+        }
+        values
+    }
+
+    #[test]
+    fn values_come_back_within_their_bounds() {
+        let bounds = AttributeBounds::default();
+        let near = |layer: &Layer, bound: f32| {
+            let is = again(layer, Some(&bounds));
+            let off = layer.values.iter().zip(&is).map(|(a, b)| (a - b).abs());
+            assert!(off.fold(0.0, f32::max) <= bound, "{layer:?} {is:?}");
+        };
+        near(&layer(LayerKind::Uv(0), 2, &[0.1, 0.7, -3.3, 1.0, 2e3, 0.0]), 1.0 / 8192.0);
+        near(&layer(LayerKind::Normal, 3, &[0.0, 0.6, 0.8, -1.0, 0.0, 0.0]), 0.006);
+        near(&layer(LayerKind::Tangent, 4, &[0.0, 0.6, 0.8, -1.0, 0.0, 0.0, -1.0, 1.0]), 0.006);
+        near(&layer(LayerKind::Joints(0), 4, &[0.0, 255.0, 70.0, 3.0]), 0.0);
+        near(&layer(LayerKind::Other, 1, &[0.0, 0.0]), 0.0);
+        near(&layer(LayerKind::Other, 1, &[1e30, -1e30, 0.0]), 2e30 / 65_536.0);
+    }
+
+    #[test]
+    fn exact_values_come_back_to_the_bit() {
+        let odd = [0.1, -0.0, 1e-40, f32::MAX, f32::MIN, -3.5];
+        let is = again(&layer(LayerKind::Other, 2, &odd), None);
+        assert_eq!(is.map_bits(), odd.to_vec().map_bits());
+        let coding = LayerCoding::new(&layer(LayerKind::Other, 1, &[1.0]), None);
+        assert!(coding.decode(&[i32::MAX], &mut Vec::new()).is_none());
+    }
+
+    trait MapBits {
+        fn map_bits(&self) -> Vec<u32>;
+    }
+
+    impl MapBits for Vec<f32> {
+        fn map_bits(&self) -> Vec<u32> {
+            self.iter().map(|x| x.to_bits()).collect()
+        }
+    }
+}

@@ -1,0 +1,324 @@
+//! Wedges of the nodes decoded so far, and their coding in the base section and in chunks.
+//!
+//! The values of a wedge are predicted from those of its parent, and of a second child's wedge also
+//! from the first child's, as the parent mostly lies between.
+
+use std::collections::BTreeMap;
+use std::io;
+use std::ops::Range;
+
+use meshlod_mesh::{AttributeBounds, Layer, WedgeId};
+
+use super::layer_coding::LayerCoding;
+use super::streams::{Packer, Unpacker};
+use crate::forest::NONE;
+use crate::implicit::DetachedUpdate;
+use crate::wedges::{DetachedWedges, LOST, WedgeLabels, Wedges};
+
+/// Wedges in the file's order of nodes; in part of a file, of the nodes that are loaded.
+pub(super) struct WedgeState {
+    pub(super) coding: Vec<LayerCoding>,
+    /// Names and pairs, with the pairs of wedges.
+    pub(super) labels: WedgeLabels,
+    /// First wedge of each node, and the end of the last.
+    first: Vec<u32>,
+    /// Integers of all wedges, a row for each.
+    numbers: Vec<i32>,
+    /// Records of updates next to seams.
+    records: BTreeMap<u32, Vec<u16>>,
+    /// Wedges at the corners of the base mesh's faces.
+    base: Vec<[u32; 3]>,
+}
+
+/// Reason why wedges cannot be decoded.
+pub(super) enum WedgeError {
+    Io(io::Error),
+    Invalid(&'static str),
+}
+
+impl From<io::Error> for WedgeError {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
+const OUT_OF_RANGE: &str = "a wedge is out of range";
+
+impl WedgeState {
+    /// Creates the state of a file without any wedges yet.
+    pub(super) fn new(coding: Vec<LayerCoding>, labels: WedgeLabels) -> Self {
+        let (first, numbers, records, base) = (vec![0], Vec::new(), BTreeMap::new(), Vec::new());
+        Self { coding, labels, first, numbers, records, base }
+    }
+
+    /// Encodes the wedges of a model, with its nodes and updates in the order of the file. Values
+    /// are kept within the bounds, or exactly.
+    pub(super) fn of_model(
+        all: &Wedges,
+        bounds: Option<&AttributeBounds>,
+        nodes: &[u32],
+        updates: &[u32],
+    ) -> Self {
+        let coding = all.layers.iter().map(|layer| LayerCoding::new(layer, bounds)).collect();
+        let wedges = || nodes.iter().flat_map(|&node| all.of(node));
+        let mut this = Self::new(coding, all.labels.renumbered(wedges()));
+        this.first.extend(nodes.iter().scan(0, |end, &node| {
+            *end += all.count(node);
+            Some(*end)
+        }));
+        for wedge in wedges() {
+            for (coding, layer) in this.coding.iter().zip(&all.layers) {
+                coding.encode(layer.of(WedgeId(wedge)), &mut this.numbers);
+            }
+        }
+        // Roots have the same numbers in both orders.
+        this.base = all.base.clone();
+        for (at, &update) in (0..).zip(updates) {
+            this.records.extend(all.record(update).map(|record| (at, record.to_vec())));
+        }
+        this
+    }
+
+    /// Returns true if an update has a record.
+    pub(super) fn is_recorded(&self, update: usize) -> bool {
+        self.records.contains_key(&(update as u32))
+    }
+
+    fn columns(&self) -> usize {
+        self.coding.iter().map(LayerCoding::columns).sum()
+    }
+
+    fn of(&self, node: u32) -> Range<u32> {
+        self.first[node as usize]..self.first[node as usize + 1]
+    }
+
+    fn row(&self, wedge: u32) -> &[i32] {
+        &self.numbers[wedge as usize * self.columns()..][..self.columns()]
+    }
+
+    /// Encodes the wedges of the roots.
+    pub(super) fn write_base(&self, roots: u32, packer: &mut Packer) -> io::Result<()> {
+        let counts: Vec<u32> = (0..roots).map(|root| self.of(root).len() as u32).collect();
+        packer.numbers(&counts)?;
+        packer.numbers(self.base.as_flattened())?;
+        let wedges = 0..self.first[roots as usize];
+        for column in 0..self.columns() {
+            let numbers = wedges.clone().map(|wedge| self.row(wedge)[column]);
+            let steps = numbers.scan(0, |last, x| Some(x.wrapping_sub(std::mem::replace(last, x))));
+            packer.signed(steps)?;
+        }
+        if self.labels.pairs.len() > 1 {
+            packer.numbers(&wedges.map(|wedge| self.labels.of(wedge)).collect::<Vec<_>>())?;
+        }
+        Ok(())
+    }
+
+    /// Decodes the wedges of the roots and of this many base faces.
+    pub(super) fn read_base(
+        &mut self,
+        roots: usize,
+        faces: usize,
+        input: &mut Unpacker<'_>,
+    ) -> Result<(), WedgeError> {
+        let wedges = self.extend_first(&input.numbers(roots)?)? as usize;
+        self.base = input.numbers(3 * faces)?.as_chunks().0.to_vec();
+        if self.base.iter().flatten().any(|&wedge| wedge as usize >= wedges) {
+            return Err(WedgeError::Invalid(OUT_OF_RANGE));
+        }
+        let columns = self.columns();
+        self.numbers = vec![0; wedges * columns];
+        for column in 0..columns {
+            let mut last = 0i32;
+            for (wedge, step) in input.signed(wedges)?.into_iter().enumerate() {
+                last = last.wrapping_add(step);
+                self.numbers[wedge * columns + column] = last;
+            }
+        }
+        if self.labels.pairs.len() > 1 {
+            self.labels.of_wedges = input.numbers(wedges)?;
+            self.check_labels()?;
+        }
+        Ok(())
+    }
+
+    fn check_labels(&self) -> Result<(), WedgeError> {
+        let is_pair = |&pair: &u32| (pair as usize) < self.labels.pairs.len();
+        let are_pairs = self.labels.of_wedges.iter().all(is_pair);
+        are_pairs.then_some(()).ok_or(WedgeError::Invalid("a material or object is out of range"))
+    }
+
+    /// Appends nodes with these numbers of wedges. Returns the number of all wedges.
+    fn extend_first(&mut self, counts: &[u32]) -> Result<u32, WedgeError> {
+        for &count in counts {
+            let last = self.first[self.first.len() - 1];
+            let is_count = (1..u32::from(LOST)).contains(&count);
+            let end = last.checked_add(count).filter(|_| is_count);
+            self.first.push(end.ok_or(WedgeError::Invalid("a vertex has no wedge, or too many"))?);
+        }
+        Ok(self.first[self.first.len() - 1])
+    }
+
+    /// Encodes the wedges of a run of updates.
+    pub(super) fn write_run(
+        &self,
+        updates: &[DetachedUpdate],
+        run: Range<usize>,
+        roots: u32,
+        packer: &mut Packer,
+    ) -> io::Result<()> {
+        let recorded = || run.clone().filter(|&at| self.is_recorded(at));
+        let counts = recorded().flat_map(|at| children(roots, at).map(|node| self.of(node).len()));
+        packer.numbers(&counts.map(|count| count as u32).collect::<Vec<_>>())?;
+        let records = || recorded().map(|at| &self.records[&(at as u32)]);
+        packer.numbers(&records().map(|record| record.len() as u32).collect::<Vec<_>>())?;
+        let all: Vec<u32> = records().flatten().map(|&number| number.into()).collect();
+        packer.numbers(&all)?;
+        let lineage: Vec<_> =
+            run.flat_map(|at| self.lineage(updates[at].parent, at as u32, roots)).collect();
+        if self.labels.pairs.len() > 1 {
+            let lost = lineage.iter().filter(|of| of.is_lost);
+            packer.numbers(&lost.map(|of| self.labels.of(of.wedge)).collect::<Vec<_>>())?;
+        }
+        for column in 0..self.columns() {
+            let residual =
+                |of: &Lineage| self.row(of.wedge)[column].wrapping_sub(self.predicted(of, column));
+            packer.signed(lineage.iter().map(residual))?;
+        }
+        Ok(())
+    }
+
+    /// Decodes the wedges of the updates from `start` on, of which some have records.
+    pub(super) fn read_run(
+        &mut self,
+        updates: &[DetachedUpdate],
+        start: usize,
+        is_recorded: impl Fn(usize) -> bool,
+        roots: u32,
+        input: &mut Unpacker<'_>,
+    ) -> Result<(), WedgeError> {
+        let recorded: Vec<usize> = (start..updates.len()).filter(|&at| is_recorded(at)).collect();
+        let mut counts = input.numbers::<u32>(2 * recorded.len())?.into_iter();
+        for at in start..updates.len() {
+            let mut next = || if is_recorded(at) { counts.next().unwrap_or(0) } else { 1 };
+            self.extend_first(&[next(), next()])?;
+        }
+        let lengths: Vec<u32> = input.numbers(recorded.len())?;
+        let length =
+            lengths.iter().fold(0usize, |sum, &length| sum.saturating_add(length as usize));
+        let mut numbers = input.numbers::<u32>(length)?.into_iter();
+        for (&at, length) in recorded.iter().zip(lengths) {
+            let record = numbers.by_ref().take(length as usize).map(u16::try_from);
+            let record = record.collect::<Result<Vec<u16>, _>>();
+            self.records.insert(at as u32, record.map_err(|_| WedgeError::Invalid(OUT_OF_RANGE))?);
+        }
+        let mut lineage = Vec::new();
+        for at in start..updates.len() {
+            lineage.extend(self.lineage(updates[at].parent, at as u32, roots));
+        }
+        if lineage.iter().any(|of| of.parent.is_none_or(|parent| parent >= of.wedge)) {
+            return Err(WedgeError::Invalid(OUT_OF_RANGE));
+        }
+        self.read_labels(&lineage, input)?;
+        let columns = self.columns();
+        self.numbers.resize(self.first[self.first.len() - 1] as usize * columns, 0);
+        for column in 0..columns {
+            for (of, residual) in lineage.iter().zip(input.signed(lineage.len())?) {
+                self.numbers[of.wedge as usize * columns + column] =
+                    self.predicted(of, column).wrapping_add(residual);
+            }
+        }
+        Ok(())
+    }
+
+    fn read_labels(
+        &mut self,
+        lineage: &[Lineage],
+        input: &mut Unpacker<'_>,
+    ) -> Result<(), WedgeError> {
+        if self.labels.pairs.len() < 2 {
+            return Ok(());
+        }
+        let lost = lineage.iter().filter(|of| of.is_lost).count();
+        let mut lost = input.numbers::<u32>(lost)?.into_iter();
+        for of in lineage {
+            let inherited = of.parent.map_or(0, |parent| self.labels.of(parent));
+            let label = if of.is_lost { lost.next().unwrap_or(0) } else { inherited };
+            self.labels.of_wedges.push(label);
+        }
+        self.check_labels()
+    }
+
+    /// Returns the wedges of an update's children with those that predict them.
+    fn lineage(&self, node: u32, update: u32, roots: u32) -> Vec<Lineage> {
+        let record = self.records.get(&update);
+        let [first, second] = children(roots, update as usize).map(|child| self.of(child));
+        let start = first.start;
+        let mut all: Vec<Lineage> = Vec::with_capacity(2);
+        for wedge in first.clone().chain(second) {
+            let local = record
+                .map_or(0, |record| record.get((wedge - start) as usize).copied().unwrap_or(LOST));
+            let is_lost = local == LOST;
+            // A node that is not loaded has no wedges, and its children are never shown.
+            let above = if node == NONE {
+                Some(0)
+            } else {
+                self.above(node, if is_lost { 0 } else { local })
+            };
+            let sibling = all.iter().find(|of| of.parent == above && !is_lost);
+            let sibling = sibling.map(|of| of.wedge).filter(|_| wedge >= first.end);
+            all.push(Lineage { wedge, parent: above, is_lost, sibling });
+        }
+        all
+    }
+
+    fn above(&self, node: u32, local: u16) -> Option<u32> {
+        let above = self.of(node);
+        Some(above.start + u32::from(local)).filter(|wedge| above.contains(wedge))
+    }
+
+    fn predicted(&self, of: &Lineage, column: usize) -> i32 {
+        let at = |wedge: u32| self.numbers[wedge as usize * self.columns() + column];
+        let parent = of.parent.map_or(0, at);
+        let mirrored = of.sibling.map(|first| parent.wrapping_mul(2).wrapping_sub(at(first)));
+        mirrored.unwrap_or(parent)
+    }
+
+    /// Decodes all values.
+    pub(super) fn into_detached(self) -> Result<DetachedWedges, &'static str> {
+        let columns = self.columns();
+        let empty = |coding: &LayerCoding| Layer {
+            kind: coding.kind,
+            name: coding.name.clone(),
+            width: coding.width,
+            values: Vec::new(),
+        };
+        let mut layers: Vec<Layer> = self.coding.iter().map(empty).collect();
+        for row in self.numbers.chunks_exact(columns.max(1)) {
+            let mut start = 0;
+            for (coding, layer) in self.coding.iter().zip(&mut layers) {
+                let end = start + coding.columns();
+                let values = coding.decode(&row[start..end], &mut layer.values);
+                values.ok_or("an attribute is not finite")?;
+                start = end;
+            }
+        }
+        let Self { first, records, base, labels, .. } = self;
+        Ok(DetachedWedges { first, records, base, layers, labels })
+    }
+}
+
+/// A wedge of a child, and those from which its values are predicted.
+struct Lineage {
+    wedge: u32,
+    /// `None` if it is out of range.
+    parent: Option<u32>,
+    is_lost: bool,
+    /// Wedge of the first child that has the same parent, for one of the second child.
+    sibling: Option<u32>,
+}
+
+/// Returns the two nodes that an update creates.
+fn children(roots: u32, update: usize) -> [u32; 2] {
+    let first = roots + 2 * update as u32;
+    [first, first + 1]
+}
