@@ -2,6 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use meshlod::io::{Precision, Weld};
+use meshlod::mesh::AttributeBounds;
 use meshlod::picture::{UpAxis, View};
 use meshlod::{Format, ReadOptions, Scene, WriteOptions};
 
@@ -82,6 +83,33 @@ impl WriteArgs {
         let positions = scene.meshes.iter().flat_map(|mesh| mesh.mesh.positions.as_flattened());
         let moves = positions.map(|&x| (read_again(x, precision, format) - x).abs());
         moves.fold(0.0, f64::max)
+    }
+}
+
+/// Options for the precision of attributes.
+#[derive(Args)]
+pub struct AttributeErrorArgs {
+    /// Largest error of normals and tangents, in degrees
+    #[arg(long, value_name = "DEGREES", value_parser = parse::length, allow_hyphen_values = true)]
+    pub normal_error: Option<f64>,
+    /// Largest error of texture coordinates, where 1 is the whole texture
+    #[arg(long, value_name = "BOUND", value_parser = parse::length, allow_hyphen_values = true)]
+    pub uv_error: Option<f64>,
+    /// Largest error of colours, from 0 to 1
+    #[arg(long, value_name = "BOUND", value_parser = parse::length, allow_hyphen_values = true)]
+    pub color_error: Option<f64>,
+}
+
+impl AttributeErrorArgs {
+    /// Returns the bounds, with the defaults for those not given.
+    pub fn bounds(&self) -> AttributeBounds {
+        let default = AttributeBounds::default();
+        AttributeBounds {
+            direction_rad: self.normal_error.map_or(default.direction_rad, f64::to_radians),
+            uv: self.uv_error.unwrap_or(default.uv),
+            color: self.color_error.unwrap_or(default.color),
+            ..default
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use clap::Args;
+use meshlod::io::{Image, Material};
 use meshlod::{Constraints, Mesh, Options, Target, VertexLocking};
 
 use crate::args::ReadArgs;
@@ -29,6 +30,9 @@ pub struct FlatInput {
     pub mesh: Mesh,
     pub options: Options,
     pub fused: Option<FuseReport>,
+    /// Materials of the scene: label `i` of the mesh is the `i`-th.
+    pub materials: Vec<Material>,
+    pub images: Vec<Image>,
 }
 
 impl ConstraintArgs {
@@ -57,8 +61,9 @@ impl ConstraintArgs {
         let fused = self.fuse.apply(&mut scene, session);
         let constraints = self.constraints(&InputScene { scene: &scene, path, reading })?;
         note_search(&constraints, session);
+        let (materials, images) = (scene.materials.clone(), std::mem::take(&mut scene.images));
         let (mesh, options) = constraints.flatten(scene, options).map_err(Failure::new)?;
-        Ok(FlatInput { mesh, options, fused })
+        Ok(FlatInput { mesh, options, fused, materials, images })
     }
 
     /// Returns true if vertices are to be held or objects to be fused.

@@ -86,7 +86,9 @@ mod tests;
 pub use bounds::ErrorKind;
 pub use cut::{Certificate, CertifyError, Cut, CutChange, Flaw, Located, Patch, UpdateLimits};
 pub use explicit::{Explicit, ExplicitCut};
-pub use file::{Archive, Extract, FieldParts, FileError, ModelFile, Source, Storage, StoredErrors};
+pub use file::{
+    Archive, Extract, FieldParts, FileError, ModelFile, Resources, Source, Storage, StoredErrors,
+};
 pub use forest::{BuildError, Forest, Recorder};
 pub use implicit::{Extractor, Implicit, SplitRule};
 pub use level::Level;

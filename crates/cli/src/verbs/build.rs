@@ -7,14 +7,14 @@ use clap::{Args, ValueEnum};
 use meshlod::io::write_file;
 use meshlod::multires::{
     Archive, BuildError, Certificate, Fit, Forest, HeightField, HeightPrecision, ModelFile,
-    Recorder, Storage, StoredErrors,
+    Recorder, Resources, Storage, StoredErrors,
 };
 use meshlod::simplify::Simplifier;
-use meshlod::{Mesh, Method, Options, Target};
+use meshlod::{Mesh, Method, Options, Target, pack_materials};
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
-use crate::args::ReadArgs;
+use crate::args::{AttributeErrorArgs, ReadArgs};
 use crate::constraints::{ConstraintArgs, FlatInput};
 use crate::failure::Failure;
 use crate::files;
@@ -63,6 +63,8 @@ pub struct Build {
     #[arg(long, value_name = "N", value_parser = parse::positive, default_value_t = 4096,
         allow_negative_numbers = true)]
     in_chunk: usize,
+    #[command(flatten)]
+    attributes: AttributeErrorArgs,
     #[command(flatten)]
     constraints: ConstraintArgs,
     #[command(flatten)]
@@ -119,16 +121,21 @@ impl Build {
             ));
         }
         let options = Options { method: self.method, ..Options::default() };
-        let FlatInput { mesh, options, fused } =
+        let FlatInput { mesh, options, fused, materials, images } =
             self.constraints.read_flat(&self.input, &self.reading, options, session)?;
-        let mesh = bare(mesh, session);
         if mesh.faces.is_empty() {
             return Err(Failure::at(&self.input, "the mesh has no faces"));
         }
         let start = Instant::now();
         let built = match self.model {
-            ModelArg::Contractions => self.contractions(&mesh, &options, session)?,
-            ModelArg::RightTriangles => self.right_triangles(&mesh)?,
+            ModelArg::Contractions => {
+                let resources = pack_materials(&materials, &images);
+                self.contractions(&mesh, &options, resources, session)?
+            }
+            ModelArg::RightTriangles => {
+                warn_of_attributes(&mesh, session);
+                self.right_triangles(&mesh)?
+            }
         };
         self.warn(&mesh, &built, session);
         session.progress.stage(&format!("writing {}", files::name(&self.output)));
@@ -159,6 +166,7 @@ impl Build {
         &self,
         mesh: &Mesh,
         options: &Options,
+        resources: Option<Resources>,
         session: &Session,
     ) -> Result<Built, Failure> {
         let failed = |error: BuildError| Failure::at(&self.input, error);
@@ -183,10 +191,15 @@ impl Build {
             true => StoredErrors::AsRecorded,
             false => StoredErrors::Measured,
         };
-        let storage = Storage { rounding, updates_per_chunk: self.in_chunk, errors };
+        let attributes = self.attributes.bounds();
+        let storage = Storage { rounding, updates_per_chunk: self.in_chunk, errors, attributes };
         let written = Archive::write(&forest, &storage);
         let (bytes, certificate) = written.map_err(|error| Failure::at(&self.input, error))?;
-        let archive = Archive::open(bytes).map_err(|error| Failure::at(&self.output, error))?;
+        let archive = Archive::open(bytes).and_then(|archive| match resources {
+            Some(resources) => archive.with_resources(&resources),
+            None => Ok(archive),
+        });
+        let archive = archive.map_err(|error| Failure::at(&self.output, error))?;
         let levels = Levels::Contractions {
             updates: archive.update_count(),
             base_faces: archive.base_faces(),
@@ -288,12 +301,11 @@ impl Build {
     }
 }
 
-/// Returns the mesh without attributes and materials, with a warning if it has any.
-fn bare(mesh: Mesh, session: &Session) -> Mesh {
+/// Warns of attributes and materials, which right triangles do not have.
+fn warn_of_attributes(mesh: &Mesh, session: &Session) {
     if mesh.attributes.is_some() || mesh.materials.is_some() {
-        session.warn("attributes and materials are left out: the file holds the surface only");
+        session.warn("attributes and materials are left out: right triangles hold heights only");
     }
-    Mesh::new(mesh.positions, mesh.faces)
 }
 
 /// Returns the number of vertices used by faces.

@@ -10,12 +10,12 @@ use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum};
 use meshlod::Mesh;
-use meshlod::codec::{AttributeBounds, CompressionTarget, LayerReport, Reconstruction, Scheme};
+use meshlod::codec::{CompressionTarget, LayerReport, Reconstruction, Scheme};
 use meshlod::io::write_file;
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
-use crate::args::ReadArgs;
+use crate::args::{AttributeErrorArgs, ReadArgs};
 use crate::constraints::ConstraintArgs;
 use crate::failure::Failure;
 use crate::files;
@@ -80,19 +80,6 @@ enum SchemeArg {
     Blocks,
     /// Each vertex in one block, on a lattice of power-of-two cells that all meshes share
     Lattice,
-}
-
-#[derive(Args)]
-struct AttributeErrorArgs {
-    /// Largest error of normals and tangents, in degrees
-    #[arg(long, value_name = "DEGREES", value_parser = parse::length, allow_hyphen_values = true)]
-    normal_error: Option<f64>,
-    /// Largest error of texture coordinates, where 1 is the whole texture
-    #[arg(long, value_name = "BOUND", value_parser = parse::length, allow_hyphen_values = true)]
-    uv_error: Option<f64>,
-    /// Largest error of colours, from 0 to 1
-    #[arg(long, value_name = "BOUND", value_parser = parse::length, allow_hyphen_values = true)]
-    color_error: Option<f64>,
 }
 
 /// Purpose of the output file, by its suffix.
@@ -267,18 +254,6 @@ impl Compress {
 impl CompressedFile {
     fn reduction(&self) -> f64 {
         1.0 - self.sizes[0] as f64 / (12 * self.vertices) as f64
-    }
-}
-
-impl AttributeErrorArgs {
-    fn bounds(&self) -> AttributeBounds {
-        let default = AttributeBounds::default();
-        AttributeBounds {
-            direction_rad: self.normal_error.map_or(default.direction_rad, f64::to_radians),
-            uv: self.uv_error.unwrap_or(default.uv),
-            color: self.color_error.unwrap_or(default.color),
-            ..default
-        }
     }
 }
 

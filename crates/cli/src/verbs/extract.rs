@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum};
-use meshlod::Scene;
 use meshlod::multires::{FileError, Level, ModelFile, Query, ViewCamera};
+use meshlod::scene_with_materials;
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
@@ -99,7 +99,8 @@ impl Extract {
         let format = files::check_output(&self.output, session)?;
         files::check_apart(&self.output, &[&self.input])?;
         let start = Instant::now();
-        let taken = self.take(&model_file::open(&self.input, session)?)?;
+        let file = model_file::open(&self.input, session)?;
+        let taken = self.take(&file)?;
         let time = start.elapsed();
         let mesh = taken.level.mesh();
         if mesh.faces.is_empty() {
@@ -114,7 +115,8 @@ impl Extract {
             );
             session.warn(Failure::at(&self.input, reason));
         }
-        let scene = Scene::from_mesh(name(&self.input), mesh);
+        let materials = model_file::materials(&self.input, &file, session)?;
+        let scene = scene_with_materials(name(&self.input), mesh, materials);
         let (json, text) = (self.json(&taken, counts, time), self.text(&taken, counts, time));
         let writing = self.writing.within(taken.rounding, &scene, format);
         let moves = writing.moves(&scene, format);

@@ -23,6 +23,15 @@ pub struct Archive<S> {
     complete: usize,
 }
 
+/// Bytes attached to a `.mlod` file, such as materials and images.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Resources {
+    /// What belongs to every level, read with the coarsest one.
+    pub early: Vec<u8>,
+    /// What only the whole file has; `None` if it is truncated.
+    pub late: Option<Vec<u8>>,
+}
+
 /// Mesh extracted from a `.mlod` file, with statistics of what was read to build it.
 #[derive(Clone, Debug)]
 pub struct Extract {
@@ -50,6 +59,23 @@ impl Archive<Vec<u8>> {
         write::write(forest, storage)
     }
 
+    /// Attaches resources, such as materials and images, which mean nothing to the model itself:
+    /// early ones, which are read with the coarsest level, and late ones, at the end of the file.
+    /// # Errors
+    /// Resources of 4 GiB or more.
+    pub fn with_resources(self, resources: &Resources) -> Result<Self, FileError> {
+        let late = resources.late.as_deref().unwrap_or_default();
+        if [resources.early.len(), late.len()].iter().any(|&bytes| u32::try_from(bytes).is_err()) {
+            return Err(FileError::ResourcesTooLarge);
+        }
+        let both = [&resources.early, late].map(|bytes| Section::of(bytes));
+        let (base, body) =
+            self.source[self.header.len() as usize..].split_at(self.header.base.bytes as usize);
+        let header = Header { resources: Some(both), ..self.header.clone() };
+        let bytes = [&header.to_bytes(), base, &resources.early, body, late].concat();
+        Self::open(bytes)
+    }
+
     /// Recomputes all checksums of a modified `.mlod` file, for tests of [`Archive::read`].
     #[doc(hidden)]
     pub fn rewrite_checksums(bytes: &mut [u8]) {
@@ -70,10 +96,29 @@ impl<S: Source> Archive<S> {
         let there = this.chunk_ends().take_while(|&end| end <= length).count();
         let truncated = FileError::Truncated { at: length, what: "the coarsest mesh" };
         this.complete = there.checked_sub(1).ok_or(truncated)?;
-        match this.chunk_ends().last() {
-            Some(at) if at < length => Err(FileError::TrailingData { at }),
-            _ => Ok(this),
-        }
+        let end = this.end();
+        if end < length { Err(FileError::TrailingData { at: end }) } else { Ok(this) }
+    }
+
+    /// Returns the length of the whole file.
+    fn end(&self) -> u64 {
+        let late = self.header.resources.map_or(0, |[_, late]| u64::from(late.bytes));
+        self.chunk_ends().last().unwrap_or(0) + late
+    }
+
+    /// Reads the resources that were [attached](Archive::with_resources) to the file: early ones, and
+    /// late ones unless the file is truncated. `None` if there are none.
+    /// # Errors
+    /// A file that is damaged.
+    pub fn resources(&self) -> Result<Option<Resources>, FileError> {
+        let Some([early, late]) = self.header.resources else { return Ok(None) };
+        let name = || "the resources".to_owned();
+        let start = self.header.len() + u64::from(self.header.base.bytes);
+        let early = self.read_section(start, early, name)?;
+        let is_there = self.source.length()? >= self.end();
+        let late =
+            is_there.then(|| self.read_section(self.end() - u64::from(late.bytes), late, name));
+        Ok(Some(Resources { early, late: late.transpose()? }))
     }
 
     /// Returns the number of chunks of updates listed in the file's index, including any that are
@@ -91,7 +136,8 @@ impl<S: Source> Archive<S> {
     /// Iterates over byte offsets in the file: the end of the base mesh, then the end of each
     /// chunk.
     pub fn chunk_ends(&self) -> impl Iterator<Item = u64> + '_ {
-        let base = self.header.len() + u64::from(self.header.base.bytes);
+        let early = self.header.resources.map_or(0, |[early, _]| u64::from(early.bytes));
+        let base = self.header.len() + u64::from(self.header.base.bytes) + early;
         let sizes = self.header.chunks.iter().map(|chunk| u64::from(chunk.stored.bytes));
         let ends = sizes.scan(base, |end, size| {
             *end += size;

@@ -26,6 +26,8 @@ pub(super) struct Header {
     pub(super) base_faces: u32,
     pub(super) base: Section,
     pub(super) chunks: Vec<ChunkEntry>,
+    /// Resources after the base and after the last chunk, if there are any.
+    pub(super) resources: Option<[Section; 2]>,
 }
 
 /// Length and checksum of a section of the file.
@@ -72,7 +74,8 @@ fn kind_code(kind: ErrorKind) -> u8 {
 impl Header {
     /// Length of the header and its index, in bytes.
     pub(super) fn len(&self) -> u64 {
-        (FIXED_LEN + ENTRY_LEN * self.chunks.len()) as u64
+        let resources = if self.resources.is_some() { RESOURCES_LEN } else { 0 };
+        (FIXED_LEN + ENTRY_LEN * self.chunks.len() + resources) as u64
     }
 
     /// Total number of updates in all chunks.
@@ -87,7 +90,11 @@ impl Header {
         out.extend([0; BODY_AT - CHECKSUM_AT]);
         let kind = self.about.error_kind;
         out.extend(self.lattice.to_bytes());
-        let flags = [(LOSSLESS, self.lossless), (WEDGES, self.has_wedges)];
+        let flags = [
+            (LOSSLESS, self.lossless),
+            (WEDGES, self.has_wedges),
+            (RESOURCES, self.resources.is_some()),
+        ];
         let flags = flags.iter().filter(|(_, is_so)| *is_so).map(|(flag, _)| flag).sum();
         out.extend([kind_code(kind), flags]);
         let words = [self.roots, self.base_faces, self.base.bytes, self.base.checksum];
@@ -107,6 +114,11 @@ impl Header {
             out.extend(numbers.as_flattened().iter().flat_map(|x| x.to_le_bytes()));
             out.extend(round_up(DVec3::splat(area.error)).x.to_le_bytes());
         }
+        for section in self.resources.iter().flatten() {
+            out.extend(
+                [section.bytes, section.checksum].iter().flat_map(|word| word.to_le_bytes()),
+            );
+        }
         let checksum = crc32fast::hash(&out[BODY_AT..]);
         out[CHECKSUM_AT..BODY_AT].copy_from_slice(&checksum.to_le_bytes());
         out
@@ -121,7 +133,8 @@ impl Header {
         if version != VERSION {
             return Err(FileError::Version(version));
         }
-        Ok(FIXED_LEN + ENTRY_LEN * u32_at(start, 36) as usize)
+        let resources = if start[BODY_AT + 3] & RESOURCES != 0 { RESOURCES_LEN } else { 0 };
+        Ok(FIXED_LEN + ENTRY_LEN * u32_at(start, 36) as usize + resources)
     }
 
     /// Decodes a header of exactly the length that [`Header::length`] returned.
@@ -133,6 +146,8 @@ impl Header {
         let frame = Frame::from_unit(origin, f64_at(bytes, 64));
         let lattice = Lattice::from_bytes([bytes[BODY_AT], bytes[BODY_AT + 1]]);
         let bad = |why| FileError::Header(why);
+        let has_resources = bytes[BODY_AT + 3] & RESOURCES != 0;
+        let end = bytes.len() - if has_resources { RESOURCES_LEN } else { 0 };
         let this = Self {
             about: ModelInfo {
                 frame: frame
@@ -152,12 +167,16 @@ impl Header {
             roots: u32_at(bytes, 20),
             base_faces: u32_at(bytes, 24),
             base: Section { bytes: u32_at(bytes, 28), checksum: u32_at(bytes, 32) },
-            chunks: bytes[FIXED_LEN..]
+            chunks: bytes[FIXED_LEN..end]
                 .chunks_exact(ENTRY_LEN)
                 .map(ChunkEntry::from_bytes)
                 .collect(),
+            resources: has_resources.then(|| {
+                [end, end + 8]
+                    .map(|at| Section { bytes: u32_at(bytes, at), checksum: u32_at(bytes, at + 4) })
+            }),
         };
-        if bytes[BODY_AT + 3] & !(LOSSLESS | WEDGES) != 0 {
+        if bytes[BODY_AT + 3] & !(LOSSLESS | WEDGES | RESOURCES) != 0 {
             return Err(bad(UNKNOWN_FLAGS));
         }
         if this.updates() > MAX_UPDATES || this.roots as usize > MAX_UPDATES {
@@ -181,6 +200,10 @@ const FAR: f64 = 1e30;
 const LOSSLESS: u8 = 1;
 /// Flag of a file with attributes, materials or objects.
 const WEDGES: u8 = 2;
+/// Flag of a file with resources.
+const RESOURCES: u8 = 4;
+/// Length of the index of the resources.
+const RESOURCES_LEN: usize = 16;
 /// Message for any other flag.
 pub(super) const UNKNOWN_FLAGS: &str = "it has flags unknown to this program";
 /// Upper limit on updates and on roots, so that roots and two nodes per update stay below 2³¹.
@@ -202,7 +225,7 @@ impl ChunkEntry {
     }
 }
 
-/// Recomputes the checksums of the header, the base and all chunks that are present.
+/// Recomputes the checksums of the header, the base, all chunks and the resources that are present.
 pub(super) fn rewrite_checksums(bytes: &mut [u8]) {
     let Some(index) = bytes.get(..FIXED_LEN).and_then(|start| Header::length(start).ok()) else {
         return;
@@ -210,9 +233,14 @@ pub(super) fn rewrite_checksums(bytes: &mut [u8]) {
     if bytes.len() < index {
         return;
     }
-    // Length and checksum of the base are in the header, those of a chunk in its index entry.
+    // Length and checksum of a section are side by side in the header: first those of the base.
+    let has_resources = bytes[BODY_AT + 3] & RESOURCES != 0;
+    let chunks_end = index - if has_resources { RESOURCES_LEN } else { 0 };
+    let (early, late) =
+        (has_resources.then_some(chunks_end), has_resources.then_some(chunks_end + 8));
+    let chunks = (FIXED_LEN..chunks_end).step_by(ENTRY_LEN);
     let mut from = index;
-    for at in std::iter::once(28).chain((FIXED_LEN..index).step_by(ENTRY_LEN)) {
+    for at in std::iter::once(28).chain(early).chain(chunks).chain(late) {
         let size = u32_at(bytes, at) as usize;
         let Some(piece) = bytes.get(from..).and_then(|rest| rest.get(..size)) else { break };
         let checksum = crc32fast::hash(piece);

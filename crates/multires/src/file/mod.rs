@@ -31,7 +31,7 @@ use std::io;
 
 use thiserror::Error;
 
-pub use archive::{Archive, Extract};
+pub use archive::{Archive, Extract, Resources};
 pub use container::{FieldParts, ModelFile};
 pub use source::Source;
 pub use write::{Storage, StoredErrors};
@@ -90,6 +90,11 @@ pub enum FileError {
     /// The requested rounding is negative, larger than the diagonal or not a number.
     #[error("the rounding must be between 0 and the diagonal of the mesh, not {0}")]
     Rounding(f64),
+    /// The resources of a file are too large.
+    #[error(
+        "the materials and images take 4 GiB or more, which a multiresolution file cannot hold"
+    )]
+    ResourcesTooLarge,
     /// The model could not be built from the simplification.
     #[error(transparent)]
     Build(#[from] BuildError),

@@ -101,6 +101,7 @@ pub(super) fn write(
         base_faces: mt.base_faces() as u32,
         base: Section::of(&sections.base),
         chunks: sections.chunks,
+        resources: None,
     };
     let bytes = [header.to_bytes(), sections.base, sections.bodies.concat()].concat();
     Ok((bytes, certificate))
