@@ -44,6 +44,8 @@ pub(crate) fn seeds() -> Vec<Vec<u8>> {
         fixtures::moebius(5),
         fixtures::two_objects(),
         samples::torus(80),
+        fixtures::seam_strip(),
+        fixtures::charted(&samples::torus(60)),
     ];
     let methods = [Method::Qem, Method::LeeJang, Method::LindstromTurkFaces];
     let files = meshes.iter().flat_map(|mesh| {

@@ -3,6 +3,7 @@
 
 use anyhow::{Context, Result};
 use meshlod::mesh::Mesh;
+use meshlod::multires::{Archive, Forest, Query, Storage, StoredErrors};
 use meshlod::picture::{ImageError, Paint, ReferenceImages, Style};
 use meshlod::simplify::{Method, Options, Target};
 use meshlod::{Scene, materials_of, simplify_scene, single_sided_materials};
@@ -90,7 +91,17 @@ fn levels(scene: &Scene, mesh: &Mesh, ratio: f64) -> Result<Vec<(&'static str, M
         simplify_scene(&mut scene, Target::Faces(peer.faces.len()), &options)?;
         levels.push((method.name(), scene.flatten()));
     }
+    levels.push(("cut of a multiresolution file", cut(mesh, peer.faces.len())?));
     levels.push(("meshoptimizer with attributes", peer));
     levels.push(("meshoptimizer with update", simplify_with_attributes(mesh, faces, &updated)));
     Ok(levels)
+}
+
+/// Returns the cut of at most `faces` faces of a multiresolution file of a mesh.
+fn cut(mesh: &Mesh, faces: usize) -> Result<Mesh> {
+    let mut forest = Forest::new(mesh, &Options::default())?;
+    forest.smooth_errors();
+    let storage = Storage { errors: StoredErrors::Measured, ..Storage::default() };
+    let archive = Archive::open(Archive::write(&forest, &storage)?.0)?;
+    Ok(archive.extract_at_most(faces, &Query::uniform(f64::INFINITY))?.level.mesh())
 }
