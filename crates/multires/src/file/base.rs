@@ -87,7 +87,7 @@ pub(super) fn read(header: &Header, bytes: &[u8]) -> Result<DecoderState, BaseEr
     }
     if header.has_wedges {
         let mut wedges = wedge_names::read(&mut input)?;
-        wedges.read_base(roots, state.base.faces.len(), &mut input)?;
+        wedges.read_base(&state, &mut input)?;
         state.wedges = Some(wedges);
     }
     Ok(state)

@@ -206,10 +206,10 @@ pub(super) fn read(
     if state.is_lossless() {
         read_exact(state, &mut input, start, &flags)?;
     }
-    let roots = state.root_count();
-    if let Some(wedges) = &mut state.wedges {
+    if let Some(mut wedges) = state.wedges.take() {
         let is_recorded = |at: usize| flags[at - start] & RECORDED != 0;
-        let read = wedges.read_run(&state.updates, start, is_recorded, roots, &mut input);
+        let read = wedges.read_run(state, start, is_recorded, &mut input);
+        state.wedges = Some(wedges);
         read.map_err(|error| match error {
             WedgeError::Io(error) => ChunkError::Decompress(error),
             WedgeError::Invalid(why) => ChunkError::Wedges(why),

@@ -18,6 +18,7 @@ mod lattice;
 mod layer_coding;
 mod normal_predictor;
 mod quantize;
+mod slope;
 mod source;
 mod streams;
 #[cfg(test)]

@@ -7,9 +7,12 @@ use std::collections::BTreeMap;
 use std::io;
 use std::ops::Range;
 
+use glam::{DVec3, Vec3};
 use meshlod_mesh::{AttributeBounds, Layer, WedgeId};
 
+use super::decoder_state::DecoderState;
 use super::layer_coding::LayerCoding;
+use super::slope::Slope;
 use super::streams::{Packer, Unpacker};
 use crate::forest::NONE;
 use crate::implicit::DetachedUpdate;
@@ -24,6 +27,8 @@ pub(super) struct WedgeState {
     first: Vec<u32>,
     /// Integers of all wedges, a row for each.
     numbers: Vec<i32>,
+    /// Relations of all wedges.
+    kin: Vec<Kin>,
     /// Records of updates next to seams.
     records: BTreeMap<u32, Vec<u16>>,
     /// Wedges at the corners of the base mesh's faces.
@@ -47,8 +52,15 @@ const OUT_OF_RANGE: &str = "a wedge is out of range";
 impl WedgeState {
     /// Creates the state of a file without any wedges yet.
     pub(super) fn new(coding: Vec<LayerCoding>, labels: WedgeLabels) -> Self {
-        let (first, numbers, records, base) = (vec![0], Vec::new(), BTreeMap::new(), Vec::new());
-        Self { coding, labels, first, numbers, records, base }
+        Self {
+            coding,
+            labels,
+            first: vec![0],
+            numbers: Vec::new(),
+            kin: Vec::new(),
+            records: BTreeMap::new(),
+            base: Vec::new(),
+        }
     }
 
     /// Encodes the wedges of a model, with its nodes and updates in the order of the file. Values
@@ -58,6 +70,7 @@ impl WedgeState {
         bounds: Option<&AttributeBounds>,
         nodes: &[u32],
         updates: &[u32],
+        state: &DecoderState,
     ) -> Self {
         let coding = all.layers.iter().map(|layer| LayerCoding::new(layer, bounds)).collect();
         let wedges = || nodes.iter().flat_map(|&node| all.of(node));
@@ -75,6 +88,10 @@ impl WedgeState {
         this.base = all.base.clone();
         for (at, &update) in (0..).zip(updates) {
             this.records.extend(all.record(update).map(|record| (at, record.to_vec())));
+        }
+        this.start_kin(state);
+        for (at, update) in state.updates.iter().enumerate() {
+            this.link(&this.lineage(update.parent, at as u32, state.root_count()), state, at);
         }
         this
     }
@@ -113,13 +130,13 @@ impl WedgeState {
         Ok(())
     }
 
-    /// Decodes the wedges of the roots and of this many base faces.
+    /// Decodes the wedges of the roots and of the base faces.
     pub(super) fn read_base(
         &mut self,
-        roots: usize,
-        faces: usize,
+        state: &DecoderState,
         input: &mut Unpacker<'_>,
     ) -> Result<(), WedgeError> {
+        let (roots, faces) = (state.root_count() as usize, state.base.faces.len());
         let wedges = self.extend_first(&input.numbers(roots)?)? as usize;
         self.base = input.numbers(3 * faces)?.as_chunks().0.to_vec();
         if self.base.iter().flatten().any(|&wedge| wedge as usize >= wedges) {
@@ -134,6 +151,7 @@ impl WedgeState {
                 self.numbers[wedge * columns + column] = last;
             }
         }
+        self.start_kin(state);
         if self.labels.pairs.len() > 1 {
             self.labels.of_wedges = input.numbers(wedges)?;
             self.check_labels()?;
@@ -158,6 +176,28 @@ impl WedgeState {
         Ok(self.first[self.first.len() - 1])
     }
 
+    /// Adds the relations of the roots' wedges: they have none.
+    fn start_kin(&mut self, state: &DecoderState) {
+        for root in 0..state.root_count() {
+            let kin = Kin { parent: NONE, sibling: NONE, place: state.stored_position(root) };
+            self.kin.extend(self.of(root).map(|_| kin));
+        }
+    }
+
+    /// Adds the relations of the wedges of an update's children.
+    fn link(&mut self, lineage: &[Lineage], state: &DecoderState, update: usize) {
+        let [first, second] =
+            children(state.root_count(), update).map(|c| state.stored_position(c));
+        for of in lineage {
+            let place = if of.is_second { second } else { first };
+            let parent = of.parent.unwrap_or(NONE);
+            self.kin.push(Kin { parent, sibling: of.sibling.unwrap_or(NONE), place });
+            if let Some(sibling) = of.sibling {
+                self.kin[sibling as usize].sibling = of.wedge;
+            }
+        }
+    }
+
     /// Encodes the wedges of a run of updates.
     pub(super) fn write_run(
         &self,
@@ -179,10 +219,13 @@ impl WedgeState {
             let lost = lineage.iter().filter(|of| of.is_lost);
             packer.numbers(&lost.map(|of| self.labels.of(of.wedge)).collect::<Vec<_>>())?;
         }
+        let mut predicted = Vec::with_capacity(lineage.len() * self.columns());
+        lineage.iter().for_each(|of| self.predict(of, &mut predicted));
         for column in 0..self.columns() {
-            let residual =
-                |of: &Lineage| self.row(of.wedge)[column].wrapping_sub(self.predicted(of, column));
-            packer.signed(lineage.iter().map(residual))?;
+            let at = |(i, of): (usize, &Lineage)| {
+                self.row(of.wedge)[column].wrapping_sub(predicted[i * self.columns() + column])
+            };
+            packer.signed(lineage.iter().enumerate().map(at))?;
         }
         Ok(())
     }
@@ -190,12 +233,12 @@ impl WedgeState {
     /// Decodes the wedges of the updates from `start` on, of which some have records.
     pub(super) fn read_run(
         &mut self,
-        updates: &[DetachedUpdate],
+        state: &DecoderState,
         start: usize,
         is_recorded: impl Fn(usize) -> bool,
-        roots: u32,
         input: &mut Unpacker<'_>,
     ) -> Result<(), WedgeError> {
+        let (updates, roots) = (&state.updates, state.root_count());
         let recorded: Vec<usize> = (start..updates.len()).filter(|&at| is_recorded(at)).collect();
         let mut counts = input.numbers::<u32>(2 * recorded.len())?.into_iter();
         for at in start..updates.len() {
@@ -219,13 +262,19 @@ impl WedgeState {
             return Err(WedgeError::Invalid(OUT_OF_RANGE));
         }
         self.read_labels(&lineage, input)?;
+        for (i, pair) in (start..).zip(by_update(&lineage)) {
+            self.link(pair, state, i);
+        }
         let columns = self.columns();
-        self.numbers.resize(self.first[self.first.len() - 1] as usize * columns, 0);
-        for column in 0..columns {
-            for (of, residual) in lineage.iter().zip(input.signed(lineage.len())?) {
-                self.numbers[of.wedge as usize * columns + column] =
-                    self.predicted(of, column).wrapping_add(residual);
-            }
+        let residuals = (0..columns).map(|_| input.signed(lineage.len()));
+        let residuals = residuals.collect::<io::Result<Vec<_>>>()?;
+        self.numbers.reserve(lineage.len() * columns);
+        let mut predicted = Vec::with_capacity(columns);
+        for (i, of) in lineage.iter().enumerate() {
+            predicted.clear();
+            self.predict(of, &mut predicted);
+            let numbers = predicted.iter().zip(&residuals);
+            self.numbers.extend(numbers.map(|(&x, column)| x.wrapping_add(column[i])));
         }
         Ok(())
     }
@@ -264,9 +313,11 @@ impl WedgeState {
             } else {
                 self.above(node, if is_lost { 0 } else { local })
             };
-            let sibling = all.iter().find(|of| of.parent == above && !is_lost);
+            let of_first = |of: &&Lineage| !of.is_second && of.parent == above && !is_lost;
+            let sibling = all.iter().find(of_first);
             let sibling = sibling.map(|of| of.wedge).filter(|_| wedge >= first.end);
-            all.push(Lineage { wedge, parent: above, is_lost, sibling });
+            let is_second = wedge >= first.end;
+            all.push(Lineage { wedge, parent: above, is_lost, is_second, sibling });
         }
         all
     }
@@ -276,11 +327,39 @@ impl WedgeState {
         Some(above.start + u32::from(local)).filter(|wedge| above.contains(wedge))
     }
 
-    fn predicted(&self, of: &Lineage, column: usize) -> i32 {
-        let at = |wedge: u32| self.numbers[wedge as usize * self.columns() + column];
-        let parent = of.parent.map_or(0, at);
-        let mirrored = of.sibling.map(|first| parent.wrapping_mul(2).wrapping_sub(at(first)));
-        mirrored.unwrap_or(parent)
+    /// Appends the predicted integers of a wedge.
+    fn predict(&self, of: &Lineage, to: &mut Vec<i32>) {
+        let Some(parent) = of.parent else { return to.extend((0..self.columns()).map(|_| 0)) };
+        let base = of.sibling.unwrap_or(parent);
+        let way = self.way([of.wedge, base]);
+        let mut slope = Slope::default();
+        if let Some(first) = of.sibling {
+            slope.add(self.way([first, parent]), [first, parent], OWN);
+        }
+        let (mut at, mut weight) = (parent, 1.0);
+        for _ in 0..ANCESTORS {
+            let Kin { parent, sibling, .. } = self.kin[at as usize];
+            if sibling != NONE {
+                slope.add(self.way([at, sibling]), [at, sibling], weight);
+                weight *= FADE;
+            }
+            if parent == NONE {
+                break;
+            }
+            at = parent;
+        }
+        let parts = slope.parts(way);
+        to.extend((0..self.columns()).map(|column| {
+            let at = |wedge: u32| self.row(wedge)[column];
+            let step = |[to, from]: [u32; 2]| f64::from(at(to)) - f64::from(at(from));
+            let steps: f64 = parts.iter().map(|&(part, ends)| part * step(ends)).sum();
+            at(base).wrapping_add(steps.round() as i32)
+        }));
+    }
+
+    /// Returns the way from the second wedge to the first.
+    fn way(&self, [to, from]: [u32; 2]) -> DVec3 {
+        (self.kin[to as usize].place - self.kin[from as usize].place).as_dvec3()
     }
 
     /// Decodes all values.
@@ -313,8 +392,31 @@ struct Lineage {
     /// `None` if it is out of range.
     parent: Option<u32>,
     is_lost: bool,
+    /// True for a wedge of the second child.
+    is_second: bool,
     /// Wedge of the first child that has the same parent, for one of the second child.
     sibling: Option<u32>,
+}
+
+/// Relations of a wedge, and its place.
+#[derive(Clone, Copy)]
+struct Kin {
+    parent: u32,
+    /// Wedge of the other child that has the same parent, or [`NONE`].
+    sibling: u32,
+    place: Vec3,
+}
+
+/// Weight of the step from the parent to the first child, which leads on to the second: all three are
+/// mostly on a line.
+const OWN: f64 = 8.0;
+/// Number of ancestors by whose siblings values are predicted, and the weight of each relative to
+/// the one before.
+const ANCESTORS: usize = 6;
+const FADE: f64 = 0.5;
+/// Groups the wedges of a run by update.
+fn by_update(lineage: &[Lineage]) -> impl Iterator<Item = &[Lineage]> {
+    lineage.chunk_by(|a, b| !(a.is_second && !b.is_second))
 }
 
 /// Returns the two nodes that an update creates.

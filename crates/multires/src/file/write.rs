@@ -125,8 +125,6 @@ fn encode_sections(
     let nodes: Vec<u32> = nodes.collect();
     let exact = mt.exact().select(nodes.iter().copied());
     let mut state = DecoderState::new(*mt.frame(), lattice, mt.base_mesh(), exact);
-    let wedges = mt.wedges();
-    state.wedges = wedges.map(|all| WedgeState::of_model(all, bounds, &nodes, &plan.order));
     state.begin_run(0);
     state.updates.extend(plan.order.iter().map(|&update| {
         let update = mt.detached(update);
@@ -134,6 +132,8 @@ fn encode_sections(
         let non_fan = update.non_fan.map(|non_fan| Box::new(non_fan.renumbered(number)));
         DetachedUpdate { parent: number(update.parent), non_fan, ..update }
     }));
+    let wedges = mt.wedges();
+    state.wedges = wedges.map(|all| WedgeState::of_model(all, bounds, &nodes, &plan.order, &state));
     let write = |chunk: &PlannedChunk| {
         let body = chunk::write(&state, chunk.updates.clone())?;
         let updates = &state.updates[chunk.updates.clone()];

@@ -103,5 +103,5 @@ fn cut(mesh: &Mesh, faces: usize) -> Result<Mesh> {
     forest.smooth_errors();
     let storage = Storage { errors: StoredErrors::Measured, ..Storage::default() };
     let archive = Archive::open(Archive::write(&forest, &storage)?.0)?;
-    Ok(archive.extract_at_most(faces, &Query::uniform(f64::INFINITY))?.level.mesh())
+    Ok(archive.extract_at_most(faces, &Query::uniform(mesh.bounds().diagonal()))?.level.mesh())
 }
