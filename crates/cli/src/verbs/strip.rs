@@ -128,7 +128,7 @@ impl Strip {
         }
         if self.verify {
             session.progress.stage("verifying");
-            verify::compare(&source.input, source.tree.faces(), &mut levels)
+            verify::compare(&source.input, &source.tree, &mut levels)
                 .map_err(|error| Failure::at(&self.input, error))?;
         }
         for level in levels.iter().filter(|level| !level.reached) {

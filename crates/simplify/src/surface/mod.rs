@@ -15,7 +15,7 @@ pub(crate) mod ties;
 pub(crate) mod wedges;
 
 use glam::DVec3;
-use meshlod_mesh::{Connectivity, FaceId, Mesh, VertexId};
+use meshlod_mesh::{Connectivity, FaceId, Mesh, VertexId, WedgeId};
 
 use crate::engine::candidates::CandidateId;
 use crate::surface::neighbourhood::Neighbourhood;
@@ -218,6 +218,23 @@ impl Surface {
     #[inline]
     pub fn face(&self, face: FaceId) -> [VertexId; 3] {
         self.faces[face.index()].vertices
+    }
+
+    /// Returns the wedges of a face, or those it had when it was removed; `None` if the mesh has
+    /// neither attributes nor several materials or objects.
+    ///
+    /// A wedge that faces of several materials or objects use is a wedge of its own in each; the
+    /// copies have ids above those of the mesh.
+    #[inline]
+    pub fn wedges(&self, face: FaceId) -> Option<[WedgeId; 3]> {
+        self.wedges.as_ref().map(|wedges| wedges.of(face))
+    }
+
+    /// Returns true if two wedges of one vertex are in one chart: they have the same attributes, up
+    /// to normals and tangents, and the same material and object.
+    #[inline]
+    pub fn is_same_chart(&self, a: WedgeId, b: WedgeId) -> bool {
+        self.wedges.as_ref().is_none_or(|wedges| wedges.same_chart(a, b))
     }
 
     /// Returns the state of a candidate for contraction.
