@@ -229,6 +229,7 @@ mod materials;
 mod place;
 mod repair;
 mod scene;
+mod strips;
 
 pub use meshlod_check as check;
 pub use meshlod_codec as codec;
@@ -263,3 +264,4 @@ pub use meshlod_simplify::{Method, Options, Report, SimplifyError, Target, Topol
 pub use place::world_bounds;
 pub use repair::repair_scene;
 pub use scene::{SceneError, SceneSimplifier, simplify_scene};
+pub use strips::scene_strips;

@@ -110,7 +110,7 @@ fn creased(mesh: &Mesh) -> Mesh {
     let normals = charts.layers[0].values.as_chunks::<2>().0.iter().flat_map(|uv| {
         let chart = uv[0] as usize;
         let mut normal = [0.0; 3];
-        normal[chart / 2 % 3] = if chart % 2 == 0 { 1.0 } else { -1.0 };
+        normal[chart / 2 % 3] = if chart.is_multiple_of(2) { 1.0 } else { -1.0 };
         normal
     });
     let values = normals.collect();
