@@ -121,3 +121,6 @@ impl Place<'_> {
         Attributes { corners: Vec::new(), wedge_count: wedges.len(), layers }
     }
 }
+
+#[cfg(test)]
+mod tests;
