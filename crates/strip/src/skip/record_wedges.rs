@@ -9,20 +9,15 @@ use super::wedges::{MeshWedges, StripWedge};
 /// Observer of half-edge contractions that records where each wedge of a removed vertex goes.
 pub(super) struct WedgeRecorder {
     pub(super) tree: MergeTree,
-    /// Vertex of the tree that is now each wedge of the surface.
+    /// Vertex of the tree that each wedge of the surface is now.
     shown: Vec<VertexId>,
     /// Vertices of the tree at each vertex of the mesh, also those whose faces have all vanished.
-    there: Vec<Vec<VertexId>>,
-    leaving: Leaving,
-}
-
-/// Wedges of a vertex that is about to be removed.
-#[derive(Default)]
-struct Leaving {
-    /// Each wedge in a face that stays, with such a face and the wedge's corner of it.
-    staying: Vec<(WedgeId, FaceId, usize)>,
-    /// Each wedge in a face that goes, with the wedge at the other end of the contracted edge.
-    pairs: Vec<[WedgeId; 2]>,
+    at_vertex: Vec<Vec<VertexId>>,
+    /// Wedges of the vertex that is about to be removed, each once, with a face that survives and
+    /// the corner of that.
+    leaving: Vec<(WedgeId, FaceId, usize)>,
+    /// Wedges of the vertex that stays, at the ends of the contracted edge.
+    kept: Vec<WedgeId>,
 }
 
 impl WedgeRecorder {
@@ -37,100 +32,86 @@ impl WedgeRecorder {
                 shown[wedge.index()] = vertex;
             }
         }
-        let mut there = vec![Vec::new(); mesh.positions.len()];
+        let mut at_vertex = vec![Vec::new(); mesh.positions.len()];
         for (i, wedge) in wedges.wedges.iter().enumerate() {
-            there[wedge.vertex.index()].push(VertexId::new(i));
+            at_vertex[wedge.vertex.index()].push(VertexId::new(i));
         }
         let tree = MergeTree::of_wedges(mesh, wedges);
-        Self { tree, shown, there, leaving: Leaving::default() }
-    }
-
-    /// Merges a wedge into another at the vertex that stays.
-    fn merge(&mut self, wedge: WedgeId, into: WedgeId, turn: usize) {
-        self.give(self.shown[wedge.index()], self.shown[into.index()], turn);
+        Self { tree, shown, at_vertex, leaving: Vec::new(), kept: Vec::new() }
     }
 
     /// Moves a wedge that has no counterpart to the vertex that stays, where it takes its texture
     /// coordinates from the wedge that its chart became.
-    fn carry(&mut self, wedge: WedgeId, surface: &Surface, turn: usize) {
-        let mut kept = self.leaving.pairs.iter().map(|pair| pair[1]);
-        let Some(other) = kept.find(|&kept| surface.is_same_chart(wedge, kept)) else { return };
-        let new = VertexId::new(self.tree.vertices());
+    fn carry(&mut self, wedge: WedgeId, surface: &Surface) {
+        let is_same_chart = |kept: &&WedgeId| surface.is_same_chart(wedge, **kept);
+        let other = self.kept.iter().find(is_same_chart).or(self.kept.first());
+        let (Some(other), Some(wedges)) = (other, &mut self.tree.wedges) else { return };
         let (own, other) = (self.shown[wedge.index()], self.shown[other.index()]);
-        let Some(wedges) = &mut self.tree.wedges else { return };
         let StripWedge { vertex, texture, .. } = wedges[other.index()];
+        let new = VertexId::new(wedges.len());
         wedges.push(StripWedge { vertex, texture, ..wedges[own.index()] });
-        self.there[vertex.index()].push(new);
         self.tree.parents.push(new);
         self.tree.turns.push(STAYS);
-        self.give(own, new, turn);
+        self.at_vertex[vertex.index()].push(new);
+        self.merge(own, new);
         self.shown[wedge.index()] = new;
     }
 
-    /// Lets what is left of a removed vertex follow it: corners of faces that have vanished, which
-    /// must not come apart.
-    fn merge_rest(&mut self, gone: VertexId, kept: VertexId, turn: usize) {
-        let Some(&parent) = self.there[kept.index()].first() else { return };
-        for vertex in std::mem::take(&mut self.there[gone.index()]) {
+    /// Merges what else is left of a removed vertex. Only faces that have vanished use it, but
+    /// their corners must stay together.
+    fn merge_rest(&mut self, gone: VertexId, kept: VertexId) {
+        let Some(&parent) = self.at_vertex[kept.index()].first() else { return };
+        for vertex in std::mem::take(&mut self.at_vertex[gone.index()]) {
             if self.tree.turns[vertex.index()] == STAYS {
-                self.give(vertex, parent, turn);
+                self.merge(vertex, parent);
             }
         }
     }
 
-    fn give(&mut self, vertex: VertexId, parent: VertexId, turn: usize) {
+    fn merge(&mut self, vertex: VertexId, parent: VertexId) {
         self.tree.parents[vertex.index()] = parent;
-        self.tree.turns[vertex.index()] = turn as u32;
+        self.tree.turns[vertex.index()] = self.tree.contractions() as u32;
     }
 }
 
 impl Observe for WedgeRecorder {
     fn before(&mut self, surface: &Surface, neighbourhood: &Neighbourhood, placed: &Placed) {
-        let Leaving { staying, pairs } = &mut self.leaving;
-        staying.clear();
+        let Self { leaving, kept, .. } = self;
+        leaving.clear();
         for spoke in neighbourhood.spokes().iter().filter(|spoke| spoke.owner() != placed.kept) {
             let Some(wedges) = surface.wedges(spoke.face) else { continue };
             let wedge = wedges[spoke.corner()];
-            if !staying.iter().any(|(known, ..)| *known == wedge) {
-                staying.push((wedge, spoke.face, spoke.corner()));
+            if !leaving.iter().any(|(known, ..)| *known == wedge) {
+                leaving.push((wedge, spoke.face, spoke.corner()));
             }
         }
-        pairs.clear();
-        let kept = neighbourhood.contracted()[placed.kept];
-        for removed in neighbourhood.removed_faces() {
-            let (vertices, Some(wedges)) =
-                (surface.face(removed.face), surface.wedges(removed.face))
-            else {
-                continue;
-            };
-            let at = |v: VertexId| vertices.iter().position(|&corner| corner == v);
-            let gone = neighbourhood.contracted().iter().find(|&&v| v != kept);
-            if let (Some(gone), Some(kept)) = (gone.and_then(|&v| at(v)), at(kept)) {
-                pairs.push([wedges[gone], wedges[kept]]);
-            }
-        }
+        let vertex = neighbourhood.contracted()[placed.kept];
+        let at_vertex = neighbourhood.removed_faces().iter().filter_map(|removed| {
+            let corner = surface.face(removed.face).iter().position(|&v| v == vertex)?;
+            Some(surface.wedges(removed.face)?[corner])
+        });
+        kept.clear();
+        kept.extend(at_vertex);
     }
 
     fn after(&mut self, surface: &Surface, neighbourhood: &Neighbourhood, placed: &Placed) {
-        let turn = self.tree.contractions();
-        let staying = std::mem::take(&mut self.leaving.staying);
-        for &(was, face, corner) in &staying {
-            match surface.wedges(face) {
-                Some(now) if now[corner] != was => self.merge(was, now[corner], turn),
-                _ => self.carry(was, surface, turn),
+        let leaving = std::mem::take(&mut self.leaving);
+        for &(was, face, corner) in &leaving {
+            match surface.wedges(face).map(|wedges| wedges[corner]) {
+                Some(now) if now != was => {
+                    self.merge(self.shown[was.index()], self.shown[now.index()]);
+                }
+                _ => self.carry(was, surface),
             }
         }
-        let pairs = std::mem::take(&mut self.leaving.pairs);
-        for &[gone, kept] in pairs.iter().filter(|pair| !staying.iter().any(|s| s.0 == pair[0])) {
-            self.merge(gone, kept, turn);
-        }
+        self.leaving = leaving;
         let kept = neighbourhood.contracted()[placed.kept];
         for &gone in neighbourhood.contracted().iter().filter(|&&v| v != kept) {
-            self.merge_rest(gone, kept, turn);
+            self.merge_rest(gone, kept);
         }
-        let left = self.tree.faces_left(turn) - neighbourhood.removed_faces().len();
+        let left = self.tree.faces_left(self.tree.contractions());
+        let left = left.saturating_sub(neighbourhood.removed_faces().len());
         self.tree.faces_left.push(left as u32);
-        self.leaving = Leaving { staying, pairs };
     }
 }
 

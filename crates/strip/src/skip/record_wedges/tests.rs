@@ -49,25 +49,18 @@ impl Names {
     fn level(&mut self, simplifier: &Simplifier<'_>) -> Vec<[VertexId; 3]> {
         let (level, surface) = (simplifier.level(), simplifier.surface());
         let alive = (0..surface.face_count()).map(FaceId::new).filter(|&f| surface.is_alive(f));
-        let corner = |vertex, wedge: Option<WedgeId>| {
-            let layers = level.attributes.iter().flat_map(|attributes| &attributes.layers);
-            (
-                vertex,
-                values(
-                    wedge
-                        .into_iter()
-                        .flat_map(|wedge| layers.clone().zip([wedge].into_iter().cycle())),
-                ),
-            )
-        };
-        alive
-            .enumerate()
-            .map(|(i, face)| {
-                let wedges = level.attributes.as_ref().map(|a| a.corners[i]);
-                let vertices = surface.face(face);
-                [0, 1, 2].map(|k| self.of(corner(vertices[k], wedges.map(|wedges| wedges[k]))))
+        // Both list the faces in one order.
+        let face = |(place, face): (usize, FaceId)| {
+            let vertices = surface.face(face);
+            [0, 1, 2].map(|k| {
+                let layer = |attributes| {
+                    let Attributes { corners, layers, .. }: &Attributes = attributes;
+                    values(layers.iter().map(|layer| (layer, corners[place][k])))
+                };
+                self.of((vertices[k], level.attributes.as_ref().map(layer).unwrap_or_default()))
             })
-            .collect()
+        };
+        alive.enumerate().map(face).collect()
     }
 }
 
