@@ -4,7 +4,7 @@ use std::path::Path;
 
 use clap::Args;
 use meshlod::io::{Image, Material};
-use meshlod::{Constraints, Mesh, Options, Target, VertexLocking};
+use meshlod::{Constraints, Mesh, Options, Scene, Target, VertexLocking};
 
 use crate::args::ReadArgs;
 use crate::failure::Failure;
@@ -57,8 +57,30 @@ impl ConstraintArgs {
         options: Options,
         session: &Session,
     ) -> Result<FlatInput, Failure> {
+        let read = self.read_fused(path, reading, session)?;
+        self.flatten(read, (path, reading), options, session)
+    }
+
+    /// Reads a scene and fuses it if that is asked for.
+    pub fn read_fused(
+        &self,
+        path: &Path,
+        reading: &ReadArgs,
+        session: &Session,
+    ) -> Result<(Scene, Option<FuseReport>), Failure> {
         let mut scene = files::read(path, reading, session)?;
         let fused = self.fuse.apply(&mut scene, session);
+        Ok((scene, fused))
+    }
+
+    /// Merges a scene read from a path into one mesh, with the constraints added to the options.
+    pub fn flatten(
+        &self,
+        (mut scene, fused): (Scene, Option<FuseReport>),
+        (path, reading): (&Path, &ReadArgs),
+        options: Options,
+        session: &Session,
+    ) -> Result<FlatInput, Failure> {
         let constraints = self.constraints(&InputScene { scene: &scene, path, reading })?;
         note_search(&constraints, session);
         let (materials, images) = (scene.materials.clone(), std::mem::take(&mut scene.images));

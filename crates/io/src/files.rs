@@ -143,6 +143,30 @@ pub fn write_lods(path: &Path, scene: &Scene, levels: &[gltf::Level]) -> Result<
     }
 }
 
+/// Writes a scene as glTF or GLB with triangle strips in place of faces, and their levels.
+///
+/// See [`gltf::write_strips_glb`] for details.
+///
+/// # Errors
+/// Errors of [`write()`]; also any other suffix, and strips that do not fit the scene.
+pub fn write_strips(path: &Path, scene: &Scene, strips: &[gltf::StripMesh]) -> Result<(), IoError> {
+    let unsupported = |error| IoError::unsupported(path, error);
+    match Format::of_path(path)? {
+        Format::Glb => {
+            let bytes = gltf::write_strips_glb(scene, strips).map_err(unsupported)?;
+            write_one(path, |out| out.write_all(&bytes))
+        }
+        Format::Gltf => {
+            let files = gltf::write_strips(scene, strips, &stem(path)).map_err(unsupported)?;
+            write_gltf(path, &files)
+        }
+        _ => Err(unsupported(Unsupported::new(
+            "strips",
+            "only .glb and .gltf can store strips; use one of those",
+        ))),
+    }
+}
+
 /// Writes a scene as compressed glTF or GLB; returns the compressed sizes and the quantization
 /// error.
 ///

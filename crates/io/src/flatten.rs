@@ -27,7 +27,7 @@ impl MeshInstance {
     }
 
     /// Reports whether the transform reverses orientation.
-    fn mirrors(&self) -> bool {
+    pub fn mirrors(&self) -> bool {
         self.linear().determinant() < 0.0
     }
 }

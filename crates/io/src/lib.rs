@@ -36,7 +36,8 @@ mod vertex_attributes;
 
 pub use error::{FileLocation, IoError, ParseError, Unsupported};
 pub use files::{
-    ReadOptions, Resolve, Weld, WriteOptions, read, read_bytes, write, write_compressed, write_lods,
+    ReadOptions, Resolve, Weld, WriteOptions, read, read_bytes, write, write_compressed,
+    write_lods, write_strips,
 };
 pub use flatten::MeshInstance;
 pub use format::Format;

@@ -230,6 +230,7 @@ mod model_materials;
 mod place;
 mod repair;
 mod scene;
+mod strips;
 
 pub use meshlod_check as check;
 pub use meshlod_codec as codec;
@@ -265,3 +266,4 @@ pub use model_materials::{BadMaterials, pack_materials, scene_with_materials, un
 pub use place::world_bounds;
 pub use repair::repair_scene;
 pub use scene::{SceneError, SceneSimplifier, simplify_scene};
+pub use strips::scene_strips;

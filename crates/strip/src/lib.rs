@@ -59,7 +59,7 @@ pub use measure::{StripStatistics, acmr};
 pub use overdraw::overdraw;
 pub use repair::{LevelStrips, LiveStrips, StripEffort};
 pub use selective::{CutStrips, PointsMove};
-pub use skip::{HistoryError, MergeTree, SkipStrip};
+pub use skip::{HistoryError, MergeTree, SkipStrip, StripWedge};
 pub use stripify::{StripOptions, StripQuality, stripify};
 pub use strips::Strips;
 pub use verify::{Difference, difference};

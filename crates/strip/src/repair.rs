@@ -13,7 +13,7 @@ use meshlod_mesh::VertexId;
 use self::local_search::LocalSearch;
 use crate::filter::Filter;
 use crate::path_cover::PathCover;
-use crate::skip::SkipStrip;
+use crate::skip::{MergeTree, SkipStrip};
 use crate::strips::Strips;
 use crate::verify::has_three_corners;
 
@@ -27,7 +27,7 @@ impl SkipStrip {
     /// before. Cost: linear.
     pub fn repaired(&mut self, effort: StripEffort) -> Strips {
         let mut seed = Seed::default();
-        self.each_strip(|strip, shown| seed.add(strip, shown));
+        self.each_strip(|tree, strip, shown| seed.add(tree, strip, shown));
         let Seed { faces, ends, is_changed } = seed;
         let mut cover = PathCover::new(&faces);
         let mut start = 0;
@@ -56,7 +56,7 @@ struct Seed {
 }
 
 impl Seed {
-    fn add(&mut self, strip: &[VertexId], shown: &[VertexId]) {
+    fn add(&mut self, tree: &MergeTree, strip: &[VertexId], shown: &[VertexId]) {
         let start = self.faces.len();
         let mut is_one_gone = false;
         for (place, (was, is)) in strip.array_windows().zip(shown.array_windows()).enumerate() {
@@ -64,7 +64,7 @@ impl Seed {
             if !has_three_corners(was) {
                 continue;
             }
-            if !has_three_corners(is) {
+            if !tree.is_drawn(is) {
                 if let Some(before) = self.is_changed[start..].last_mut() {
                     *before = true;
                 }
@@ -97,7 +97,6 @@ mod tests {
     use meshlod_simplify::Target;
 
     use super::*;
-    use crate::skip::MergeTree;
     use crate::stripify::{StripOptions, stripify};
     use crate::verify::{Difference, difference};
 

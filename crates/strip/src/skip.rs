@@ -2,10 +2,15 @@
 
 mod cursor;
 mod pointers;
+mod record;
+mod record_wedges;
 mod tree;
+mod wedges;
 
 pub(crate) use cursor::LevelCursor;
-pub use tree::{HistoryError, MergeTree};
+pub use record::HistoryError;
+pub use tree::MergeTree;
+pub use wedges::StripWedge;
 
 use meshlod_mesh::VertexId;
 
@@ -76,19 +81,47 @@ impl SkipStrip {
     /// Cost: linear in the strips of the mesh.
     pub fn display(&mut self, filter: Filter) -> Strips {
         let mut display = Strips::default();
-        self.each_strip(|_, shown| filter.strip(shown, &mut display));
+        let mut apart = Vec::new();
+        self.each_strip(|tree, _, shown| {
+            if !tree.has_wedges() {
+                return filter.strip(shown, &mut display);
+            }
+            close_collapsed(tree, shown, &mut apart);
+            filter.strip(&apart, &mut display);
+        });
         display
     }
 
-    /// Calls `visit` with each strip of the mesh and with its vertices as shown at the level.
-    pub(crate) fn each_strip(&mut self, mut visit: impl FnMut(&[VertexId], &[VertexId])) {
+    /// Calls `visit` with the tree, each strip of the mesh, and its vertices as shown at the level.
+    pub(crate) fn each_strip(
+        &mut self,
+        mut visit: impl FnMut(&MergeTree, &[VertexId], &[VertexId]),
+    ) {
         let Self { tree, strips, contractions, pointers } = self;
         let mut shown = Vec::new();
         for strip in strips.iter() {
             shown.clear();
             shown.extend(strip.iter().map(|&v| tree.shown(v, *contractions, pointers)));
-            visit(strip, &shown);
+            visit(tree, strip, &shown);
         }
+    }
+}
+
+/// Copies the shown vertices of a strip so that every window of a collapsed triangle repeats a
+/// vertex.
+///
+/// A triangle may collapse between two wedges *a*, *b* of one vertex: *ab* becomes *aabb*, and *axb*
+/// becomes *axxxb*. Two vertices more, so windings are kept.
+fn close_collapsed(tree: &MergeTree, shown: &[VertexId], to: &mut Vec<VertexId>) {
+    let is_split = |a: VertexId, b: VertexId| a != b && tree.mesh_vertex(a) == tree.mesh_vertex(b);
+    to.clear();
+    for &next in shown {
+        match to[..] {
+            [.., last] if is_split(last, next) => to.extend([last, next]),
+            [.., before, last] if is_split(before, next) => to.extend([last, last]),
+            _ => {}
+        }
+        to.push(next);
     }
 }
 

@@ -23,6 +23,7 @@ use crate::files;
 use crate::fuse;
 use crate::parse::{self, LevelSize};
 use crate::session::Session;
+use output::StripOutput;
 
 /// Convert a mesh and its levels to triangle strips, and count the vertices they send
 #[derive(Args)]
@@ -44,12 +45,12 @@ pub struct Strip {
     /// Effort of --quality best and --filter repair
     #[arg(long, value_name = "EFFORT", default_value = "thorough")]
     effort: EffortArg,
-    /// File to write: .gltf for the levels as meshes of strips, finest first, linked by MSFT_lod;
-    /// .json for lists of vertices
+    /// File to write: .glb or .gltf for the scene with strips for faces, finest level first, linked
+    /// by MSFT_lod; .json for lists of vertices
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Compare the triangles drawn with the faces of an independently simplified level; exit with 1
-    /// if they differ
+    /// Compare the triangles drawn and their attributes with those of an independently simplified
+    /// level; exit with 1 if they differ
     #[arg(long)]
     verify: bool,
     /// Exit with 1 if a level is out of reach
@@ -117,8 +118,10 @@ impl Strip {
         if let Some(out) = &self.out {
             output::check(out, &self.input)?;
         }
-        let input =
-            self.constraints.read_flat(&self.input, &self.reading, Options::default(), session)?;
+        let read = self.constraints.read_fused(&self.input, &self.reading, session)?;
+        let output = self.out.as_deref().map(|out| StripOutput::new(out, &read.0));
+        let place = (&*self.input, &self.reading);
+        let input = self.constraints.flatten(read, place, Options::default(), session)?;
         check_sizes(&self.levels, input.input_faces())?;
         let mut source = self.prepare(input, session)?;
         let mut levels = Vec::new();
@@ -128,16 +131,15 @@ impl Strip {
         }
         if self.verify {
             session.progress.stage("verifying");
-            verify::compare(&source.input, source.tree.faces(), &mut levels)
+            verify::compare(&source.input, &source.tree, &mut levels)
                 .map_err(|error| Failure::at(&self.input, error))?;
         }
         for level in levels.iter().filter(|level| !level.reached) {
             let reason = format_args!("{}: no further contraction is possible", level.size);
             session.warn(Failure::at(&self.input, reason));
         }
-        if let Some(out) = &self.out {
-            session.progress.stage(&format!("writing {}", files::name(out)));
-            output::write(out, &source.input.mesh.positions, &levels)?;
+        if let Some(output) = &output {
+            output.write(&source.input.mesh, &source.tree, &levels, session)?;
         }
         let missed = self.strict && levels.iter().any(|level| !level.reached);
         let wrong = levels.iter().any(|level| level.is_wrong());

@@ -1,5 +1,7 @@
 //! Strips at any level, and the files they are written to.
 
+use std::collections::BTreeSet;
+
 use meshlod_fixtures::{shared_broken, shared_mesh};
 use serde_json::{Value, json};
 
@@ -99,6 +101,67 @@ fn strips_in_gltf_are_read_back() {
         assert!(a == b || is_close(), "{field}: {a}, {b}");
     }
     assert_eq!(run.json(&["strip", "out.gltf", "--verify"])["verified"], true);
+}
+
+#[test]
+fn strips_keep_attributes_skins_and_animations() {
+    for name in ["cesium-man.glb", "duck.glb", "cesium-milk-truck.glb"] {
+        let Some(path) = shared_mesh(name) else { return };
+        let run = Run::new();
+        let levels = ["strip", path.to_str().unwrap(), "--levels", "100%,30%", "--verify"];
+        let report =
+            run.json(&[&levels[..], &["--filter", "repair", "--out", "out.gltf"]].concat());
+        assert_eq!(report["verified"], true);
+        run.json(&["simplify", path.to_str().unwrap(), "whole.gltf", "--ratio", "1"]);
+        let [out, whole] = ["out.gltf", "whole.gltf"].map(|file| -> Value {
+            serde_json::from_slice(&std::fs::read(run.path(file)).unwrap()).unwrap()
+        });
+        for kept in ["skins", "animations", "materials", "textures"] {
+            assert_eq!(out[kept].as_array().map(Vec::len), whole[kept].as_array().map(Vec::len));
+        }
+        let names = |document: &Value| -> BTreeSet<String> {
+            let attributes = document["meshes"][0]["primitives"][0]["attributes"].as_object();
+            attributes.unwrap().keys().cloned().collect()
+        };
+        assert_eq!(names(&out), names(&whole));
+        let [original, back] =
+            [path.to_str().unwrap(), "out.gltf"].map(|file| run.json(&["info", file]));
+        assert_eq!(original["faces"], back["faces"]);
+        assert_eq!(original["area"], back["area"]);
+    }
+}
+
+#[test]
+fn no_strip_has_two_materials_and_what_is_lost_is_named() {
+    let run = Run::new();
+    let mtl = "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n";
+    std::fs::write(run.path("in.mtl"), mtl).unwrap();
+    let mut obj = String::from("mtllib in.mtl\n");
+    for y in 0..4 {
+        (0..=20).for_each(|x| obj += &format!("v {x} {y} 0\n"));
+    }
+    for (row, material) in [(0, "red"), (1, "blue"), (2, "red")] {
+        obj += &format!("o row{row}\nusemtl {material}\n");
+        for x in 0..20 {
+            let [a, b] = [row * 21 + x + 1, row * 21 + x + 22];
+            obj += &format!("f {a} {} {} {b}\n", a + 1, b + 1);
+        }
+    }
+    std::fs::write(run.path("in.obj"), obj).unwrap();
+    let strip = ["strip", "in.obj", "--levels", "100%,50%", "--verify", "--filter", "dtff"];
+    let done = run.run(&[&strip[..], &["--out", "out.gltf"]].concat());
+    assert_eq!(done.code, 0, "{done:?}");
+    assert!(done.err.contains("not kept: 3 names of objects"), "{done:?}");
+    let document: Value =
+        serde_json::from_slice(&std::fs::read(run.path("out.gltf")).unwrap()).unwrap();
+    for mesh in document["meshes"].as_array().unwrap() {
+        let primitives = mesh["primitives"].as_array().unwrap();
+        let materials: Vec<_> = primitives.iter().map(|p| p["material"].clone()).collect();
+        assert_eq!(materials, [json!(0), json!(1)]);
+        assert!(primitives.iter().all(|primitive| primitive["mode"] == 5));
+    }
+    let [original, back] = ["in.obj", "out.gltf"].map(|file| run.json(&["info", file]));
+    assert_eq!(original["area"], back["area"]);
 }
 
 #[test]

@@ -1,12 +1,13 @@
 //! Encoding of a primitive's vertices and indices as glTF arrays.
 
-use meshlod_mesh::{Layer, LayerKind, Mesh, WedgeId};
+use meshlod_mesh::{Layer, LayerKind, Mesh, VertexId, WedgeId};
 
 use super::accessor::component;
 use super::buffer_builder::{Blob, Part, Usage};
 use super::compress::{Compression, QuantizationGrid};
 use super::mesh::flip_v;
 use super::schema::parse_target_name;
+use super::strips::StripCorner;
 use super::{quantize, vertex_cache};
 use crate::Unsupported;
 use crate::meshopt::Filter;
@@ -17,8 +18,8 @@ pub(super) struct Arrays {
     pub positions: Blob,
     /// The requested layers, in order.
     pub layers: Vec<Blob>,
-    /// Indices, three per face.
-    pub indices: Blob,
+    /// Arrays of indices: of faces, three each, or of strips.
+    pub indices: Vec<Blob>,
     /// Largest distance that a vertex moved.
     pub position_error: f64,
 }
@@ -51,25 +52,67 @@ pub(super) fn arrays(
     numbers: Numbers<'_>,
 ) -> Result<Arrays, Unsupported> {
     let corners: Vec<u64> = faces.iter().flat_map(|&face| keys(mesh, face as usize)).collect();
-    let mut vertices = corners.clone();
-    vertices.sort_unstable();
-    vertices.dedup();
-    let find = |corner| vertices.binary_search(corner).expect("every corner is a vertex") as u32;
-    let mut indices: Vec<u32> = corners.iter().map(find).collect();
+    let mut vertices = vertices_of(&corners);
+    let mut indices = indices_of(&corners, &vertices);
     if numbers.compression.is_some() {
         let old = vertex_cache::arrange(indices.as_chunks_mut().0, vertices.len());
         vertices = old.iter().map(|&v| vertices[v as usize]).collect();
     }
-    let indices = index_blob(&indices, vertices.len());
-    let blobs = layers.iter().map(|&typed| layer_blob(typed, &vertices, numbers));
+    let indices = vec![index_blob(&indices, vertices.len())];
+    with_vertices(mesh, &vertices, layers, numbers, indices)
+}
+
+/// Builds the arrays for strips, each given by its corners; all share the vertices.
+///
+/// # Errors
+/// Errors of [`arrays`].
+pub(super) fn strip_arrays(
+    mesh: &Mesh,
+    strips: &[&[StripCorner]],
+    layers: &[Typed<'_>],
+) -> Result<Arrays, Unsupported> {
+    let keys: Vec<u64> = strips.iter().copied().flatten().map(|&(v, w)| key(v, w)).collect();
+    let vertices = vertices_of(&keys);
+    let all = indices_of(&keys, &vertices);
+    let mut rest = &all[..];
+    let indices = strips.iter().map(|strip| {
+        let (these, others) = rest.split_at(strip.len());
+        rest = others;
+        index_blob(these, vertices.len())
+    });
+    let indices = indices.collect();
+    with_vertices(mesh, &vertices, layers, Numbers::default(), indices)
+}
+
+fn with_vertices(
+    mesh: &Mesh,
+    vertices: &[u64],
+    layers: &[Typed<'_>],
+    numbers: Numbers<'_>,
+    indices: Vec<Blob>,
+) -> Result<Arrays, Unsupported> {
+    let blobs = layers.iter().map(|&typed| layer_blob(typed, vertices, numbers));
     let layers = blobs.collect::<Result<_, _>>()?;
-    let (positions, position_error) = positions(mesh, &vertices, numbers.grid)?;
+    let (positions, position_error) = positions(mesh, vertices, numbers.grid)?;
     Ok(Arrays { layers, positions, indices, position_error })
+}
+
+/// Lists the distinct corners in order.
+fn vertices_of(corners: &[u64]) -> Vec<u64> {
+    let mut vertices = corners.to_vec();
+    vertices.sort_unstable();
+    vertices.dedup();
+    vertices
+}
+
+fn indices_of(corners: &[u64], vertices: &[u64]) -> Vec<u32> {
+    let find = |corner| vertices.binary_search(corner).expect("every corner is a vertex") as u32;
+    corners.iter().map(find).collect()
 }
 
 /// Builds a primitive with one degenerate face at `point`, as glTF does not allow empty meshes.
 pub(super) fn nothing(point: [f64; 3]) -> Result<Arrays, Unsupported> {
-    let face = [meshlod_mesh::VertexId(0); 3];
+    let face = [VertexId(0); 3];
     arrays(&Mesh::new(vec![point], vec![face]), &[0], &[], Numbers::default())
 }
 
@@ -80,7 +123,11 @@ fn keys(mesh: &Mesh, face: usize) -> [u64; 3] {
         Some(attributes) => attributes.corners[face],
         None => vertices.map(|v| WedgeId(v.0)),
     };
-    std::array::from_fn(|i| u64::from(wedges[i].0) << 32 | u64::from(vertices[i].0))
+    std::array::from_fn(|i| key(vertices[i], wedges[i]))
+}
+
+fn key(vertex: VertexId, wedge: WedgeId) -> u64 {
+    u64::from(wedge.0) << 32 | u64::from(vertex.0)
 }
 
 fn wedge_of(key: u64) -> WedgeId {

@@ -34,21 +34,35 @@ pub(super) fn add(
 ) -> Result<(), Unsupported> {
     check(levels, templates.len())?;
     let first = add_meshes(json, templates, grids, levels, replacer)?;
+    let coverage: Vec<f64> = levels.iter().map(|level| level.screen_coverage).collect();
+    let ids = |mesh| (0..levels.len()).map(|k| first + k * templates.len() + mesh).collect();
+    link_nodes(json, ids, Some(&coverage));
+    Ok(())
+}
+
+/// Links every node with a mesh to new nodes for the coarser levels of the mesh, of which
+/// `ids_of` gives the indices; `coverage` is the screen coverage at which each is shown, if known.
+pub(super) fn link_nodes(
+    json: &mut Value,
+    ids_of: impl Fn(usize) -> Vec<usize>,
+    coverage: Option<&[f64]>,
+) {
     let count = json.get("nodes").and_then(Value::as_array).map_or(0, Vec::len);
     let hidden = nodes::levels(json, count);
     let moving = moving(json);
     for node in (0..count).filter(|&node| !hidden[node]) {
         let Some(mesh) = json["nodes"][node].get("mesh").and_then(Value::as_u64) else { continue };
-        let ids: Vec<usize> =
-            (0..levels.len()).map(|k| first + k * templates.len() + mesh as usize).collect();
+        let ids = ids_of(mesh as usize);
+        if ids.is_empty() {
+            continue;
+        }
         let has_children = json["nodes"][node].get("children").is_some();
         let name = base_name(json, node, mesh as usize);
         let shown =
             if has_children || moving.contains(&node) { give_to_child(json, node) } else { node };
-        link(json, shown, &name, &ids, levels);
+        link(json, shown, &name, &ids, coverage);
     }
     list_extension(json, "extensionsUsed", MSFT_LOD);
-    Ok(())
 }
 
 fn check(levels: &[Level], meshes: usize) -> Result<(), Unsupported> {
@@ -95,7 +109,7 @@ fn add_meshes(
 
 /// Appends to an array of the document, creating it if needed; returns the index of the first
 /// entry.
-fn extend(json: &mut Value, key: &str, new: Vec<Value>) -> usize {
+pub(super) fn extend(json: &mut Value, key: &str, new: Vec<Value>) -> usize {
     let mut values = match json[key].take() {
         Value::Array(values) => values,
         _ => Vec::new(),
@@ -155,7 +169,7 @@ pub(super) fn give_to_child(json: &mut Value, node: usize) -> usize {
 }
 
 /// Adds nodes for the coarser levels with the transform of `node`, and links them to it.
-fn link(json: &mut Value, node: usize, name: &str, meshes: &[usize], levels: &[Level]) {
+fn link(json: &mut Value, node: usize, name: &str, meshes: &[usize], coverage: Option<&[f64]>) {
     let mut shown = json["nodes"][node].take();
     let coarser = meshes.iter().enumerate().map(|(k, &mesh)| {
         let mut coarse = shown.clone();
@@ -170,12 +184,13 @@ fn link(json: &mut Value, node: usize, name: &str, meshes: &[usize], levels: &[L
     });
     let first = extend(json, "nodes", coarser.collect());
     let ids: Vec<usize> = (first..first + meshes.len()).collect();
-    // Minimum coverage of each level; the last level is shown down to zero.
-    let coverage: Vec<f64> =
-        levels.iter().map(|level| level.screen_coverage).chain([0.0]).collect();
     shown["name"] = format!("{name}_LOD0").into();
     set(&mut shown, "extensions", MSFT_LOD, json!({ "ids": ids }));
-    set(&mut shown, "extras", "MSFT_screencoverage", json!(coverage));
+    if let Some(coverage) = coverage {
+        // Minimum coverage of each level; the last level is shown down to zero.
+        let least: Vec<f64> = coverage.iter().copied().chain([0.0]).collect();
+        set(&mut shown, "extras", "MSFT_screencoverage", json!(least));
+    }
     json["nodes"][node] = shown;
 }
 

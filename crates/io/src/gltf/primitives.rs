@@ -51,34 +51,49 @@ impl<'a> Replacer<'a> {
         let old = json.get("primitives").and_then(Value::as_array).cloned().unwrap_or_default();
         let faces = faces_by_primitive(mesh, &old).map_err(wrong)?;
         let layers = by_attribute(mesh);
-        let known: BTreeSet<String> =
-            old.iter().flat_map(attributes).map(|(name, _)| name).collect();
+        let known = known_attributes(&old);
         let mut new = Vec::new();
         for (primitive, faces) in old.iter().zip(&faces) {
             if !is_surface(primitive) {
                 new.push(primitive.clone());
             } else if !faces.is_empty() {
-                let own = attributes(primitive);
-                let of_file = |name: &String| {
-                    let accessor = self.document?.accessors.get(*own.get(name)?)?;
-                    Some(accessor.component_type)
-                };
-                let (names, typed): (Vec<&String>, Vec<Typed<'_>>) = layers
-                    .iter()
-                    .filter(|(name, _)| own.contains_key(*name) || !known.contains(*name))
-                    .map(|(name, &layer)| (name, Typed { layer, component: of_file(name) }))
-                    .unzip();
+                let (names, typed) = self.layers_of(primitive, &layers, &known);
                 let arrays = encode::arrays(mesh, faces, &typed, numbers)?;
-                new.push(self.with_arrays(primitive, arrays, &names));
+                new.extend(self.with_arrays(primitive, arrays, &names));
             }
         }
         if new.is_empty() {
-            let point = mesh.positions.first().copied().unwrap_or_default();
-            let arrays = encode::nothing(point)?;
-            new.push(self.with_arrays(old.first().unwrap_or(&json!({})), arrays, &[]));
+            new = self.nothing(mesh, &old)?;
         }
         json["primitives"] = new.into();
         Ok(())
+    }
+
+    /// Returns the layers that a primitive gets, with the names of their attributes: those that it
+    /// had, and those that no primitive had.
+    pub fn layers_of<'l>(
+        &self,
+        primitive: &Value,
+        layers: &BTreeMap<String, &'l Layer>,
+        known: &BTreeSet<String>,
+    ) -> (Vec<String>, Vec<Typed<'l>>) {
+        let own = attributes(primitive);
+        let of_file = |name: &String| {
+            let accessor = self.document?.accessors.get(*own.get(name)?)?;
+            Some(accessor.component_type)
+        };
+        layers
+            .iter()
+            .filter(|(name, _)| own.contains_key(*name) || !known.contains(*name))
+            .map(|(name, &layer)| (name.clone(), Typed { layer, component: of_file(name) }))
+            .unzip()
+    }
+
+    /// Returns one degenerate primitive for a mesh without faces.
+    pub fn nothing(&mut self, mesh: &Mesh, old: &[Value]) -> Result<Vec<Value>, Unsupported> {
+        let point = mesh.positions.first().copied().unwrap_or_default();
+        let arrays = encode::nothing(point)?;
+        Ok(self.with_arrays(old.first().unwrap_or(&json!({})), arrays, &[]))
     }
 
     /// Returns the sizes of the compressed arrays and the quantization error.
@@ -100,9 +115,14 @@ impl<'a> Replacer<'a> {
         }
     }
 
-    /// Returns a copy of the primitive with other arrays; `names` are those of the layers, in
-    /// order.
-    fn with_arrays(&mut self, primitive: &Value, arrays: Arrays, names: &[&String]) -> Value {
+    /// Returns copies of the primitive with other arrays, one for each array of indices; `names` are
+    /// those of the layers, in order.
+    pub fn with_arrays(
+        &mut self,
+        primitive: &Value,
+        arrays: Arrays,
+        names: &[String],
+    ) -> Vec<Value> {
         self.position_error = self.position_error.max(arrays.position_error);
         let mut attributes = Map::new();
         let mut targets: Vec<Map<String, Value>> = Vec::new();
@@ -110,7 +130,7 @@ impl<'a> Replacer<'a> {
         for (name, blob) in names.iter().zip(arrays.layers) {
             let accessor = self.builder.add(blob).into();
             match parse_target_name(name) {
-                None => drop(attributes.insert((*name).clone(), accessor)),
+                None => drop(attributes.insert(name.clone(), accessor)),
                 Some((target, attribute)) => {
                     targets.resize_with(targets.len().max(target + 1), Map::new);
                     targets[target].insert(attribute.to_owned(), accessor);
@@ -119,7 +139,8 @@ impl<'a> Replacer<'a> {
         }
         let mut new = primitive.clone();
         new["attributes"] = attributes.into();
-        new["indices"] = self.builder.add(arrays.indices).into();
+        // In its place among the entries.
+        new["indices"] = Value::Null;
         if let Some(entries) = new.as_object_mut() {
             entries.shift_remove("mode");
             entries.shift_remove("targets");
@@ -127,7 +148,12 @@ impl<'a> Replacer<'a> {
         if !targets.is_empty() {
             new["targets"] = targets.into();
         }
-        new
+        let with_indices = |indices| {
+            let mut new = new.clone();
+            new["indices"] = self.builder.add(indices).into();
+            new
+        };
+        arrays.indices.into_iter().map(with_indices).collect()
     }
 }
 
@@ -140,6 +166,11 @@ pub(super) fn is_surface(primitive: &Value) -> bool {
 pub(super) fn attributes(primitive: &Value) -> BTreeMap<String, usize> {
     let typed = <schema::Primitive as serde::Deserialize>::deserialize(primitive);
     typed.ok().and_then(|primitive| primitive.accessors().ok()).into_iter().flatten().collect()
+}
+
+/// Collects the attributes that any of the primitives has.
+pub(super) fn known_attributes(primitives: &[Value]) -> BTreeSet<String> {
+    primitives.iter().flat_map(attributes).map(|(name, _)| name).collect()
 }
 
 /// Groups the faces by primitive. Without labels, all belong to the first triangle primitive.
@@ -163,7 +194,7 @@ fn faces_by_primitive(mesh: &Mesh, primitives: &[Value]) -> Result<Vec<Vec<u32>>
 }
 
 /// Returns the layers of a mesh by the attribute names they are written under.
-fn by_attribute(mesh: &Mesh) -> BTreeMap<String, &Layer> {
+pub(super) fn by_attribute(mesh: &Mesh) -> BTreeMap<String, &Layer> {
     let mut named: BTreeMap<String, &Layer> = BTreeMap::new();
     let layers = mesh.attributes.as_ref().map_or(&[][..], |attributes| &attributes.layers);
     for layer in layers {

@@ -11,7 +11,7 @@ use super::primitives::{Replacer, attributes, is_surface};
 use super::read::Contents;
 use super::uri::{self, Uri};
 use super::{container, dequantize_nodes, mesh, new_document};
-use crate::{Image, Scene, Unsupported};
+use crate::{Image, ParseError, Scene, Unsupported};
 
 /// Contents of a `.gltf` file and of the buffer and image files that belong to it.
 #[derive(Clone, Debug)]
@@ -103,10 +103,10 @@ pub fn write_compressed(
 }
 
 /// Document with its new geometry, before its buffer is attached.
-struct Output {
-    json: Map<String, Value>,
-    builder: BufferBuilder,
-    report: CompressionReport,
+pub(super) struct Output {
+    pub json: Map<String, Value>,
+    pub builder: BufferBuilder,
+    pub report: CompressionReport,
 }
 
 impl Output {
@@ -135,17 +135,9 @@ impl Output {
         levels: &[Level],
         compression: Option<&Compression>,
     ) -> Result<Self, Unsupported> {
-        let (json, buffers) = (&source.json, &source.buffers);
-        let unreadable = |error: crate::ParseError| Unsupported::new("source", error.to_string());
-        let document = Document::new(json, buffers).map_err(unreadable)?;
-        let count = document.meshes.len();
-        if scene.meshes.len() != count {
-            let reason = format!(
-                "has {count} meshes, but the scene has {}; drop the source",
-                scene.meshes.len()
-            );
-            return Err(Unsupported::new("source", reason));
-        }
+        let json = &source.json;
+        let document = Document::new(json, &source.buffers).map_err(unreadable)?;
+        check_meshes(scene, &document)?;
         let mut changed = Vec::new();
         for (index, mesh) in scene.meshes.iter().enumerate() {
             let old = mesh::read(&document, index, source.weld).map_err(unreadable)?;
@@ -191,13 +183,13 @@ impl Output {
         }
     }
 
-    fn into_glb(mut self, scene: &Scene) -> Result<Vec<u8>, Unsupported> {
+    pub fn into_glb(mut self, scene: &Scene) -> Result<Vec<u8>, Unsupported> {
         self.embed_images(scene, |_| true);
         let buffer = self.builder.finish(&mut self.json);
         container::join(&to_bytes(self.json)?, &buffer)
     }
 
-    fn into_files(mut self, scene: &Scene, stem: &str) -> Result<GltfFiles, Unsupported> {
+    pub fn into_files(mut self, scene: &Scene, stem: &str) -> Result<GltfFiles, Unsupported> {
         // An image outside the folder is embedded: that file is not ours to write.
         self.embed_images(scene, |name| crate::files::inner_path(name).is_none());
         let images = self.external_images(scene);
@@ -239,6 +231,21 @@ impl Output {
     }
 }
 
+/// Refuses a scene that has not as many meshes as the document that it was read from.
+pub(super) fn check_meshes(scene: &Scene, document: &Document<'_>) -> Result<(), Unsupported> {
+    let (count, found) = (document.meshes.len(), scene.meshes.len());
+    if found == count {
+        return Ok(());
+    }
+    let reason = format!("has {count} meshes, but the scene has {found}; drop the source");
+    Err(Unsupported::new("source", reason))
+}
+
+/// Returns the error that a document that was read cannot be read again.
+pub(super) fn unreadable(error: ParseError) -> Unsupported {
+    Unsupported::new("source", error.to_string())
+}
+
 /// Returns the file that an image of a document refers to.
 fn file_name(image: &Value) -> Option<String> {
     match uri::parse(image.get("uri")?.as_str()?) {
@@ -266,7 +273,7 @@ fn same_geometry(a: &Mesh, b: &Mesh) -> bool {
 }
 
 /// Computes one flag per accessor: true if only triangle primitives of changed meshes use it.
-fn free_accessors(document: &Document<'_>, changed: &[bool]) -> Vec<bool> {
+pub(super) fn free_accessors(document: &Document<'_>, changed: &[bool]) -> Vec<bool> {
     let count = document.accessors.len();
     let (mut replaced, mut kept) = (vec![false; count], vec![false; count]);
     let meshes = document.json.get("meshes").and_then(Value::as_array);

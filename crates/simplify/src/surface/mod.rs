@@ -236,6 +236,13 @@ impl Surface {
         self.wedges.as_ref().map_or(&[], |wedges| wedges.layers())
     }
 
+    /// Returns true if two wedges of one vertex are in one chart: they have the same attributes, up
+    /// to normals and tangents, and the same material and object.
+    #[inline]
+    pub fn is_same_chart(&self, a: WedgeId, b: WedgeId) -> bool {
+        self.wedges.as_ref().is_none_or(|wedges| wedges.same_chart(a, b))
+    }
+
     /// Returns the state of a candidate for contraction.
     #[inline]
     pub(crate) fn state(&self, id: CandidateId) -> State {

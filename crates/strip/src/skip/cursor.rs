@@ -4,7 +4,6 @@ use meshlod_mesh::VertexId;
 
 use super::pointers::Pointers;
 use super::tree::MergeTree;
-use crate::verify::has_three_corners;
 
 /// A current level of a merge tree that can list the faces changed by a move to another level.
 #[derive(Clone, Debug)]
@@ -62,13 +61,14 @@ impl LevelCursor {
         let Self { tree, pointers, order, below, seen, times, .. } = self;
         *times += 1;
         let mut changes = Vec::new();
-        for vertex in &order[from.min(to)..from.max(to)] {
+        let until = |contractions| order.partition_point(|&v| tree.is_gone(v, contractions));
+        for vertex in &order[until(from.min(to))..until(from.max(to))] {
             for &face in below.of(*vertex) {
                 if std::mem::replace(&mut seen[face as usize], *times) == *times {
                     continue;
                 }
                 let corners = tree.faces()[face as usize].map(|v| tree.shown(v, to, pointers));
-                changes.push((face, Some(corners).filter(has_three_corners)));
+                changes.push((face, Some(corners).filter(|corners| tree.is_drawn(corners))));
             }
         }
         changes
