@@ -78,8 +78,8 @@ impl BoundSearch<'_> {
     }
 
     fn level(&self, run: &mut SimplifyRun<'_>, estimate: f64) -> Result<Simplified, Failure> {
-        let report = run.simplify_to(Target::Error(estimate))?;
-        let meshes = run.level();
+        let mut report = run.simplify_to(Target::Error(estimate))?;
+        let meshes = run.level(&mut report);
         let measured = measure(Some(self.original), self.scene, &meshes, self.session);
         Ok(Simplified { meshes, report, measured, sequence: None })
     }

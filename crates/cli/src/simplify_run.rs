@@ -109,9 +109,10 @@ impl<'s> SimplifyRun<'s> {
         self.simplifier.input_faces()
     }
 
-    /// Returns the meshes of the scene as simplified so far.
-    pub fn level(&self) -> Vec<Mesh> {
-        self.simplifier.level()
+    /// Returns the meshes of the scene as simplified so far, and notes in their report what volume
+    /// they were repaid.
+    pub fn level(&self, report: &mut Report) -> Vec<Mesh> {
+        self.simplifier.settled_level(&mut report.volume)
     }
 
     /// Returns the wall-clock time spent so far on connectivity and contractions.

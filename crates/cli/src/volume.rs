@@ -60,8 +60,8 @@ pub fn worst_residual(
     worst
 }
 
-/// Returns the contractions that could not conserve the volume as JSON, and what is still owed;
-/// `null` for a method that does not aim to.
+/// Returns the contractions that could not conserve the volume as JSON, with what they owed and the
+/// level was repaid; `null` for a method that does not aim to.
 pub fn unconserved_json(method: Method, loss: &VolumeLoss) -> Value {
     let json = || {
         json!({
@@ -69,6 +69,7 @@ pub fn unconserved_json(method: Method, loss: &VolumeLoss) -> Value {
             "behind_boundary_cones": loss.at_boundaries,
             "held": with_bounds(&loss.held),
             "owed": loss.owed,
+            "repaid": loss.repaid,
         })
     };
     method.conserves_volume().then(json).into()
@@ -81,8 +82,8 @@ fn with_bounds(some: &Unconserved) -> Value {
 }
 
 /// Describes the volume that a volume-conserving method has lost in closed parts, relative to the
-/// volume of the closed parts of `input`; `None` if it is not worth a line. What the level repays is
-/// not lost.
+/// volume of the closed parts of `input`; `None` if it is not worth a line. What the level was repaid
+/// is not lost.
 pub fn lost_text(method: Method, loss: &VolumeLoss, input: &Scene) -> Option<String> {
     // Most runs lose next to nothing, and need no volume of the input.
     let most = world_bounds(input).diagonal().powi(3);
@@ -116,18 +117,24 @@ mod tests {
     fn a_method_that_promises_to_conserve_says_what_it_lost() {
         let bounds = Bounds { min: [0.0, -1.0, 0.5], max: [1.0; 3] };
         let held = Unconserved { contractions: 1, bounds };
-        let loss = VolumeLoss { running_sum: 0.03, owed: 0.01, held, ..VolumeLoss::default() };
+        let loss = VolumeLoss {
+            running_sum: 0.03,
+            owed: 0.02,
+            repaid: 0.01,
+            held,
+            ..VolumeLoss::default()
+        };
         let text = |loss: &VolumeLoss| text(loss, 2.0);
         let expected = "volume: -1%; --exact-volume restores it";
         assert_eq!(text(&loss).as_deref(), Some(expected));
         let vanished = VolumeLoss { vanished: 0.01, ..loss };
         let expected = "volume: -1%, 0.5% in parts that vanished; --exact-volume restores it";
         assert_eq!(text(&vanished).as_deref(), Some(expected));
-        let repaid = VolumeLoss { owed: 0.03, ..loss };
+        let repaid = VolumeLoss { repaid: 0.03, ..loss };
         assert_eq!(text(&repaid), None);
         let json = |method| unconserved_json(method, &loss);
         assert_eq!(json(Method::LeeJang)["held"]["contractions"], 1);
-        assert_eq!(json(Method::LeeJang)["owed"], 0.01);
+        assert_eq!(json(Method::LeeJang)["owed"], 0.02);
         assert!(json(Method::LeeJang)["at_boundaries"]["bounds"].is_null());
         assert!(json(Method::Qem).is_null());
     }

@@ -7,7 +7,7 @@ use meshlod_mesh::{
     Borders, ConditionOptions, Conditioned, Conditioning, Locks, Mesh, NearBorders, Search,
     condition, near_borders,
 };
-use meshlod_simplify::{Options, Report, Simplifier, SimplifyError, Target, Topology};
+use meshlod_simplify::{Options, Report, Simplifier, SimplifyError, Target, Topology, VolumeLoss};
 
 use crate::locks;
 
@@ -183,9 +183,9 @@ impl<'m> ConditionedMesh<'m> {
         }
     }
 
-    /// Returns the current level in terms of the input.
-    pub(crate) fn level(&self, simplifier: &Simplifier<'_>) -> Mesh {
-        let mut level = simplifier.settled_level();
+    /// Returns the current level in terms of the input, and notes in `loss` what it was repaid.
+    pub(crate) fn settled_level(&self, simplifier: &Simplifier<'_>, loss: &mut VolumeLoss) -> Mesh {
+        let mut level = simplifier.settled_level(loss);
         if let Some(found) = self.conditioned() {
             found.rejoin(&mut level);
         }
@@ -215,8 +215,8 @@ pub fn simplify(
     let mut simplifier = ready.simplifier(options.vanish_below)?;
     let report = simplifier.run(own, &mut ())?;
     let duplicate_faces = report.duplicate_faces + ready.counts().duplicate_faces;
-    let report = Report { input_faces: mesh.faces.len(), duplicate_faces, ..report };
-    Ok((ready.level(&simplifier), report))
+    let mut report = Report { input_faces: mesh.faces.len(), duplicate_faces, ..report };
+    Ok((ready.settled_level(&simplifier, &mut report.volume), report))
 }
 
 /// Returns true if locks are for the vertices of a mesh.

@@ -74,8 +74,8 @@ pub fn simplify_scene(
 ) -> Result<Report, SceneError> {
     let conditioned = ConditionedScene::new(scene, options, Borders::Stitch)?;
     let mut simplifier = SceneSimplifier::new(&conditioned)?;
-    let report = simplifier.run(target, &mut ())?;
-    let level = simplifier.level();
+    let mut report = simplifier.run(target, &mut ())?;
+    let level = simplifier.settled_level(&mut report.volume);
     drop(simplifier);
     for (mesh, level) in scene.meshes.iter_mut().zip(level) {
         mesh.mesh = level;
@@ -164,15 +164,32 @@ impl<'s> SceneSimplifier<'s> {
         self.still_faces + self.parts.iter().map(of).sum::<usize>()
     }
 
-    /// Returns all meshes of the scene as simplified so far, in the order of the scene.
+    /// Returns all meshes of the scene as simplified so far, in the order of the scene, each
+    /// [settled](Simplifier::settled_level).
     pub fn level(&self) -> Vec<Mesh> {
+        self.settled_level(&mut VolumeLoss::default())
+    }
+
+    /// Returns [the level](Self::level), and sets [`VolumeLoss::repaid`] of `loss`, the volume of
+    /// the run's report, to what its instances have been repaid in world space.
+    pub fn settled_level(&self, loss: &mut VolumeLoss) -> Vec<Mesh> {
+        loss.repaid = 0.0;
+        let instances = self.scene.instances();
         let mut parts = self.parts.iter().peekable();
         let meshes = self.scene.meshes.iter().enumerate();
-        let now = meshes.map(|(index, mesh)| match parts.next_if(|part| part.mesh == index) {
-            Some(part) => self.conditioned.meshes[index].level(&part.simplifier),
-            None => mesh.mesh.clone(),
+        let settled = meshes.map(|(index, mesh)| {
+            let Some(part) = parts.next_if(|part| part.mesh == index) else {
+                return mesh.mesh.clone();
+            };
+            let mut own = VolumeLoss::default();
+            let level = self.conditioned.meshes[index].settled_level(&part.simplifier, &mut own);
+            if own.repaid != 0.0 {
+                let placed = instances.iter().filter(|place| place.mesh == index);
+                placed.for_each(|place| loss.add(&own, &place.transform));
+            }
+            level
         });
-        now.collect()
+        settled.collect()
     }
 
     /// Returns the simplifier of the scene's only mesh, in its current state; `None` if there are

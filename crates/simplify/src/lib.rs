@@ -58,6 +58,6 @@ pub fn simplify(
     options: &Options,
 ) -> Result<(Mesh, Report), SimplifyError> {
     let mut simplifier = Simplifier::new(mesh, options)?;
-    let report = simplifier.run(target, &mut ())?;
-    Ok((simplifier.settled_level(), report))
+    let mut report = simplifier.run(target, &mut ())?;
+    Ok((simplifier.settled_level(&mut report.volume), report))
 }

@@ -7,6 +7,7 @@ use crate::engine::locks::{self, Held};
 use crate::engine::policy::{Observe, Stop};
 use crate::engine::vanishing::Vanishing;
 use crate::engine::{PreparedSurface, Run, Tally};
+use crate::history::volume::VolumeLoss;
 use crate::kernel::{self, PlaneDistance, SweptVolume};
 use crate::methods;
 use crate::options::{Method, Options, Report, SimplifyError, Target, Topology};
@@ -178,10 +179,14 @@ impl<'m> Simplifier<'m> {
     /// [`Method::LindstromTurk`] still owes repaid by vertices around, which move along their
     /// normals by a small part of an edge.
     ///
-    /// Locked and tied vertices and boundaries stay. A run to [`Target::Error`] owes its bound
-    /// more than its volume, and repays nothing. Histories have the levels without repayment.
-    pub fn settled_level(&self) -> Mesh {
-        self.engine.settled_level(self.mesh)
+    /// Locked and tied vertices and boundaries stay, and so does a debt that no small move repays.
+    /// A run to [`Target::Error`] owes its bound more than its volume, and repays nothing. Histories
+    /// have the levels without repayment. Sets [`VolumeLoss::repaid`] of `loss`, the volume of the
+    /// run's report, to what the level has been repaid.
+    pub fn settled_level(&self, loss: &mut VolumeLoss) -> Mesh {
+        let (level, repaid) = self.engine.settled_level(self.mesh);
+        loss.repaid = repaid;
+        level
     }
 
     /// Returns the number of input faces without those left out as degenerate or duplicate.

@@ -90,8 +90,8 @@ impl<'s> ChainBuilder<'s> {
         file: String,
     ) -> Result<LevelMesh, Failure> {
         self.run.set_label(format!("{} to {size}", self.what));
-        let report = self.run.simplify_to(target)?;
-        let meshes = self.run.level();
+        let mut report = self.run.simplify_to(target)?;
+        let meshes = self.run.level(&mut report);
         self.session.progress.stage(&format!("{}: measuring", self.what));
         let shown = self.subject.shown_with(&meshes);
         let level = Level {

@@ -130,8 +130,8 @@ impl Lods {
         let mut chain: Vec<LodLevel> = Vec::new();
         for (i, &size) in self.levels.iter().enumerate() {
             let target = size.target();
-            let report = run.simplify_to(fused.map_or(target, |fused| fused.target(target)))?;
-            let mut meshes = run.level();
+            let mut report = run.simplify_to(fused.map_or(target, |fused| fused.target(target)))?;
+            let mut meshes = run.level(&mut report);
             let residual = self.volume.restore(&ready.scene, &mut meshes, digits, session);
             let measured = simplify_run::measure(surface.as_ref(), scene, &meshes, session);
             let finer = chain.last().map_or(1.0, |level| level.screen_coverage);

@@ -231,7 +231,7 @@ impl Simplify {
         if self.sequence.is_some() {
             run.record();
         }
-        let report = run.simplify_to(task.target)?;
+        let mut report = run.simplify_to(task.target)?;
         let time = run.time();
         let (meshes, sequence) = match self.sequence {
             Some(_) => {
@@ -240,7 +240,7 @@ impl Simplify {
                 // As the sequence restores it, without the repayment of volume.
                 (vec![all.level()], Some(all))
             }
-            None => (run.level(), None),
+            None => (run.level(&mut report), None),
         };
         Ok((Simplified { meshes, report, measured: None, sequence }, time))
     }

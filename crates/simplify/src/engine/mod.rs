@@ -303,9 +303,10 @@ pub(crate) trait Run {
     fn level(&self, mesh: &Mesh) -> Mesh {
         level(mesh, self.surface())
     }
-    /// Returns the input mesh in its current state, with the volume repaid that contractions owe.
-    fn settled_level(&self, mesh: &Mesh) -> Mesh {
-        self.level(mesh)
+    /// Returns the input mesh in its current state, repaid as far as possible the volume that
+    /// contractions owe, and the volume repaid, in cubic model units.
+    fn settled_level(&self, mesh: &Mesh) -> (Mesh, f64) {
+        (self.level(mesh), 0.0)
     }
     fn tally(&self) -> Tally;
 }

@@ -16,12 +16,14 @@ pub struct VolumeLoss {
     /// Volume before minus volume after, summed over all contractions with a closed ring, in cubic
     /// model units: table 2 of [LJ05].
     pub running_sum: f64,
-    /// Part of the sum that [`Method::LindstromTurk`](crate::Method::LindstromTurk) still owes,
-    /// where a place that conserves the volume would have spoiled the shape, in cubic model units.
-    /// [`Simplifier::settled_level`](crate::Simplifier::settled_level) repays it, as far as the shape
-    /// allows; zero for a run to an
-    /// error bound, after which it repays nothing.
+    /// Part of the sum that [`Method::LindstromTurk`](crate::Method::LindstromTurk) owes when
+    /// contractions end, where a place that conserves the volume would have spoiled the shape, in
+    /// cubic model units.
     pub owed: f64,
+    /// Part of the sum that the level has been repaid by
+    /// [`Simplifier::settled_level`](crate::Simplifier::settled_level), in cubic model units: what
+    /// is owed, as far as the shape allows, and zero until then.
+    pub repaid: f64,
     /// Sum of the absolute volumes of the closed components that were removed as a whole, in cubic
     /// model units.
     pub vanished: f64,
@@ -49,10 +51,10 @@ pub struct Unconserved {
 }
 
 impl VolumeLoss {
-    /// Returns the volume that a [settled level](crate::Simplifier::settled_level) has lost, in
-    /// cubic model units: the sum without what is owed, which the level has been repaid.
+    /// Returns the volume that the level has lost, in cubic model units: the sum without what the
+    /// level has been repaid.
     pub fn lost(&self) -> f64 {
-        self.running_sum - self.owed
+        self.running_sum - self.repaid
     }
 
     /// Adds the volume lost by another mesh, placed by the matrix `transform` (columns, as in
@@ -62,6 +64,7 @@ impl VolumeLoss {
         let scale = DMat3::from_mat4(transform).determinant().abs();
         self.running_sum += other.running_sum * scale;
         self.owed += other.owed * scale;
+        self.repaid += other.repaid * scale;
         if let Some(lost) = other.at_boundaries {
             *self.at_boundaries.get_or_insert(0.0) += lost * scale;
         }

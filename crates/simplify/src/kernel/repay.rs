@@ -33,28 +33,31 @@ pub(crate) struct Debt {
     pub(crate) sixfold: f64,
 }
 
-/// Repays debts one after the other as far as possible. Vertices that are `held` stay, and so do
-/// boundaries.
+/// Repays debts one after the other as far as possible, and returns six times the volume repaid, in
+/// cubic model units. Vertices that are `held` stay, and so do boundaries.
 ///
 /// Cost: O(n) for n faces, if there are debts, and for each debt the size of its patch.
-pub(crate) fn repay(level: &mut Mesh, debts: &[Debt], held: &[bool]) {
+pub(crate) fn repay(level: &mut Mesh, debts: &[Debt], held: &[bool]) -> f64 {
     if debts.is_empty() {
-        return;
+        return 0.0;
     }
     let connectivity = Connectivity::new(&level.faces, level.positions.len());
     let stays = |v: VertexId| connectivity.marks(v).boundary() || held[v.index()];
+    let mut repaid = 0.0;
     for debt in debts {
         let mut patch = Patch::new(debt.vertex);
         for _ in 0..MOST_RINGS {
-            let inflation = patch.inflation(level, &connectivity, &stays, debt.sixfold);
-            if let Some(inflation) = &inflation {
+            if let Some(inflation) = patch.inflation(level, &connectivity, &stays, debt.sixfold) {
                 inflation.apply(level);
+                repaid += inflation.gain();
+                break;
             }
-            if inflation.is_some() || !patch.grow(level, &connectivity) {
+            if !patch.grow(level, &connectivity) {
                 break;
             }
         }
     }
+    repaid
 }
 
 /// A vertex and some rings around it.
@@ -216,4 +219,26 @@ impl Inflation {
 /// Returns the normal of a triangle, twice its area long.
 fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_samples as samples;
+
+    use super::*;
+
+    #[test]
+    fn what_cannot_be_repaid_is_not_counted() {
+        let sphere = samples::sphere(2000);
+        let debt = |sixfold| Debt { vertex: VertexId(7), sixfold };
+        let none_held = vec![false; sphere.positions.len()];
+        let mut level = sphere.clone();
+        // More than a sphere of this size can gain by small moves.
+        let repaid = repay(&mut level, &[debt(1e-4), debt(10.0)], &none_held);
+        assert!((repaid / 1e-4 - 1.0).abs() < 1e-9 && level != sphere, "{repaid:e}");
+        let mut level = sphere.clone();
+        let all_held = vec![true; sphere.positions.len()];
+        assert_eq!(repay(&mut level, &[debt(1e-4)], &all_held), 0.0);
+        assert_eq!(level, sphere);
+    }
 }

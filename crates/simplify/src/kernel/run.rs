@@ -174,20 +174,21 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
         self.numbered_level().0
     }
 
-    fn settled_level(&self, _: &Mesh) -> Mesh {
+    fn settled_level(&self, _: &Mesh) -> (Mesh, f64) {
         let (mut level, ids) = self.numbered_level();
+        // A bound of the error comes before the volume.
+        if self.input.get().is_some() {
+            return (level, 0.0);
+        }
         let names = self.names();
         let unit = names.frame.unit.powi(3);
         let debt = |(v, sixfold): (u32, f64)| Debt {
             vertex: VertexId(ids[names.input(v).index()]),
             sixfold: sixfold * unit,
         };
-        // A bound of the error comes before the volume.
-        if self.input.get().is_none() {
-            let debts: Vec<Debt> = self.partition.debts().into_iter().map(debt).collect();
-            repay(&mut level, &debts, &self.held(&ids));
-        }
-        level
+        let debts: Vec<Debt> = self.partition.debts().into_iter().map(debt).collect();
+        let sixfold = repay(&mut level, &debts, &self.held(&ids));
+        (level, sixfold / 6.0)
     }
 
     fn surface(&self) -> &Surface {
@@ -207,10 +208,7 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
     }
 
     fn tally(&self) -> Tally {
-        // A level within a bound is not repaid.
-        let repays = self.input.get().is_none();
-        let debts = self.partition.debts();
-        let owed = debts.iter().filter(|_| repays).map(|(_, sixfold)| sixfold).sum();
+        let owed = self.partition.debts().iter().map(|(_, sixfold)| sixfold).sum();
         Tally {
             vanished: self
                 .partition

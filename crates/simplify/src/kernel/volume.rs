@@ -137,6 +137,7 @@ impl VolumeTally {
         VolumeLoss {
             running_sum: self.sixfold * sixth,
             owed: owed * sixth,
+            repaid: 0.0,
             vanished: self.vanished * sixth,
             at_boundaries: None,
             open: self.open.to_model(frame),
