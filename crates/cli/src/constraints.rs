@@ -33,6 +33,8 @@ pub struct FlatInput {
     /// Materials of the scene: label `i` of the mesh is the `i`-th.
     pub materials: Vec<Material>,
     pub images: Vec<Image>,
+    /// True if the scene is glTF, whose materials have more than that.
+    pub is_gltf: bool,
 }
 
 impl ConstraintArgs {
@@ -84,8 +86,9 @@ impl ConstraintArgs {
         let constraints = self.constraints(&InputScene { scene: &scene, path, reading })?;
         note_search(&constraints, session);
         let (materials, images) = (scene.materials.clone(), std::mem::take(&mut scene.images));
+        let is_gltf = scene.source.is_some();
         let (mesh, options) = constraints.flatten(scene, options).map_err(Failure::new)?;
-        Ok(FlatInput { mesh, options, fused, materials, images })
+        Ok(FlatInput { mesh, options, fused, materials, images, is_gltf })
     }
 
     /// Returns true if vertices are to be held or objects to be fused.

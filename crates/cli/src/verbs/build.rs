@@ -121,7 +121,7 @@ impl Build {
             ));
         }
         let options = Options { method: self.method, ..Options::default() };
-        let FlatInput { mesh, options, fused, materials, images } =
+        let FlatInput { mesh, options, fused, materials, images, is_gltf } =
             self.constraints.read_flat(&self.input, &self.reading, options, session)?;
         if mesh.faces.is_empty() {
             return Err(Failure::at(&self.input, "the mesh has no faces"));
@@ -129,6 +129,11 @@ impl Build {
         let start = Instant::now();
         let built = match self.model {
             ModelArg::Contractions => {
+                if is_gltf && !materials.is_empty() {
+                    session.warn(
+                        "materials keep their base colour and its texture; skins, animations and other textures are left out",
+                    );
+                }
                 let resources = pack_materials(&materials, &images);
                 self.contractions(&mesh, &options, resources, session)?
             }

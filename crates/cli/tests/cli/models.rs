@@ -244,13 +244,40 @@ fn a_height_field_comes_back_as_right_triangles() {
 fn what_a_file_has_no_room_for_is_told() {
     let run = Run::new();
     write(&run, "in.obj", TEXTURED.as_bytes());
-    let done = run.run(&["build", "in.obj", "out.mlod", "--json"]);
+    let done = run.run(&["build", "in.obj", "out.mlod", "--json", "--model", "right-triangles"]);
     assert!(done.code == 0 && done.only_line().contains("warning: attributes"), "{done:?}");
-    assert_eq!(done.json()["input_faces"], 4);
-    assert_eq!(extract(&run, "out.mlod", "back.obj", &["--error", "0"])["faces"], 4);
     write(&run, "none.gltf", br#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{}]}"#);
     let done = refused(&run, &["build", "none.gltf", "none.mlod"], 1);
     assert!(done.only_line().contains("none.gltf: the mesh has no faces"), "{done:?}");
+}
+
+#[test]
+fn attributes_and_materials_come_back() {
+    let run = Run::new();
+    let material = "newmtl sky\nKd 0 0 1\nnewmtl sea\nKd 0 1 0\nmap_Kd sea.png\n";
+    write(&run, "two.mtl", material.as_bytes());
+    run.sample("torus", 400, "torus.obj");
+    run.json(&["render", "torus.obj", "sea.png", "--size", "300x300"]);
+    let lines =
+        TEXTURED.replace("f 3/1", "usemtl sea\nf 3/1").replace("f 1/1", "usemtl sky\nf 1/1");
+    write(&run, "in.obj", format!("mtllib two.mtl\n{lines}").as_bytes());
+    run.json(&["build", "in.obj", "out.mlod", "--lossless"]);
+    extract(&run, "out.mlod", "back.obj", &["--error", "0"]);
+    let [before, after] = ["in.obj", "back.obj"].map(|file| run.json(&["info", file]));
+    for key in ["vertices", "faces", "wedges", "attributes", "materials"] {
+        assert_eq!(before[key], after[key], "{key}");
+    }
+    extract(&run, "out.mlod", "back.glb", &["--error", "0"]);
+    run.json(&["render", "in.obj", "before.png"]);
+    run.json(&["render", "back.glb", "after.png"]);
+    assert_eq!(bytes(&run, "before.png"), bytes(&run, "after.png"));
+    // Without the last byte, the image is a preview.
+    let all = bytes(&run, "out.mlod");
+    write(&run, "out.mlod", &all[..all.len() - 1]);
+    let done = run.run(&["extract", "out.mlod", "back.glb", "--error", "0"]);
+    assert!(done.code == 0 && done.only_line().contains("previews"), "{done:?}");
+    run.json(&["render", "back.glb", "preview.png"]);
+    assert_ne!(bytes(&run, "preview.png"), bytes(&run, "after.png"));
 }
 
 #[test]

@@ -41,8 +41,11 @@ fn every_kind_is_within_its_bound_and_comes_back_from_bytes() {
             let (layer, wedges) = layer(kind, width, 1.0);
             let packed = PackedLayer::new(&layer, &wedges, rows(wedges.len()), &bounds);
             let report = packed.report();
-            let bound =
-                if matches!(kind, LayerKind::Joints(_)) { 0.0 } else { bounds.of(&layer, &wedges) };
+            let bound = if matches!(kind, LayerKind::Joints(_)) {
+                0.0
+            } else {
+                bounds.of(&layer, wedges.iter().copied())
+            };
             assert!(report.max_error <= bound, "{report:?} {bound}");
             assert!(bound == 0.0 || report.max_error > bound / 8.0, "{report:?} {bound}");
             let mut bytes = Vec::new();

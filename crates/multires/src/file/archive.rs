@@ -68,7 +68,7 @@ impl Archive<Vec<u8>> {
         if [resources.early.len(), late.len()].iter().any(|&bytes| u32::try_from(bytes).is_err()) {
             return Err(FileError::ResourcesTooLarge);
         }
-        let both = [&resources.early, late].map(|bytes| Section::of(bytes));
+        let both = [&resources.early, late].map(Section::of);
         let (base, body) =
             self.source[self.header.len() as usize..].split_at(self.header.base.bytes as usize);
         let header = Header { resources: Some(both), ..self.header.clone() };

@@ -255,8 +255,8 @@ impl WedgeState {
             self.records.insert(at as u32, record.map_err(|_| WedgeError::Invalid(OUT_OF_RANGE))?);
         }
         let mut lineage = Vec::new();
-        for at in start..updates.len() {
-            lineage.extend(self.lineage(updates[at].parent, at as u32, roots));
+        for (at, update) in (0..).zip(updates).skip(start) {
+            lineage.extend(self.lineage(update.parent, at, roots));
         }
         if lineage.iter().any(|of| of.parent.is_none_or(|parent| parent >= of.wedge)) {
             return Err(WedgeError::Invalid(OUT_OF_RANGE));
@@ -416,7 +416,7 @@ const ANCESTORS: usize = 6;
 const FADE: f64 = 0.5;
 /// Groups the wedges of a run by update.
 fn by_update(lineage: &[Lineage]) -> impl Iterator<Item = &[Lineage]> {
-    lineage.chunk_by(|a, b| !(a.is_second && !b.is_second))
+    lineage.chunk_by(|a, b| !a.is_second || b.is_second)
 }
 
 /// Returns the two nodes that an update creates.
