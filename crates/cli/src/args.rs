@@ -54,7 +54,7 @@ impl ReadArgs {
 }
 
 /// Options of every verb that writes meshes.
-#[derive(Args)]
+#[derive(Clone, Copy, Args)]
 pub struct WriteArgs {
     /// Coordinate type in PLY, OBJ, OFF and SMF: f32 or f64
     /// [default: f32; f64 where repair or extract need it]

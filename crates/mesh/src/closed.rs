@@ -8,11 +8,12 @@ use crate::{FaceId, VertexId};
 ///
 /// A component is so if every edge of it has as many faces in one direction as in the other, which
 /// also allows for non-manifold edges; its signed volume does not depend on the origin. Faces that
-/// share a vertex are in one component.
+/// share a vertex are in one component. A face that repeats another is left out and opens nothing,
+/// so a mesh and a level of it, which has no such faces, agree on what is closed.
 ///
 /// Cost: O(n), n = faces, and O(m log m) for m faces at non-manifold edges.
 pub fn closed_faces(faces: &[[VertexId; 3]], vertex_count: usize) -> Vec<bool> {
-    let connectivity = Connectivity::new(faces, vertex_count);
+    let (connectivity, duplicates) = Connectivity::without_duplicates(faces, vertex_count);
     let (labels, count) = face_components(faces, vertex_count);
     let mut is_closed = vec![true; count];
     let mut crowded = Vec::new();
@@ -32,7 +33,9 @@ pub fn closed_faces(faces: &[[VertexId; 3]], vertex_count: usize) -> Vec<bool> {
         let forward = edge.iter().filter(|side| side.2).count();
         is_closed[edge[0].3 as usize] &= 2 * forward == edge.len();
     }
-    labels.into_iter().map(|label| is_closed[label as usize]).collect()
+    let mut marks: Vec<bool> = labels.into_iter().map(|l| is_closed[l as usize]).collect();
+    duplicates.iter().for_each(|face| marks[face.index()] = false);
+    marks
 }
 
 #[cfg(test)]
@@ -53,6 +56,14 @@ mod tests {
         faces.extend(twisted);
         let expected: Vec<bool> = (0..11).map(|face| face < 4).collect();
         assert_eq!(closed_faces(&faces, 12), expected);
+    }
+
+    #[test]
+    fn a_face_given_twice_opens_nothing_and_counts_once() {
+        let mut faces = Vec::from(solid([0, 1, 2, 3]));
+        let [a, b, c] = faces[1];
+        faces.extend([[b, c, a], [a, b, c]]);
+        assert_eq!(closed_faces(&faces, 4), [true, true, true, true, false, false]);
     }
 
     #[test]

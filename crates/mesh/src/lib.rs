@@ -19,6 +19,7 @@ mod closed;
 mod components;
 mod condition;
 mod connectivity;
+mod duplicates;
 mod frame;
 mod ids;
 mod labels;

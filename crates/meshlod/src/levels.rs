@@ -10,10 +10,10 @@ use meshlod_multires::{
     Archive, Certificate, ErrorKind, FileError, Forest, Level, ModelFile, Query, Storage,
     StoredErrors,
 };
-use meshlod_simplify::{Method, Options, SimplifyError};
+use meshlod_simplify::{Digits, Method, Options, SimplifyError};
 use thiserror::Error;
 
-use crate::Constraints;
+use crate::{Constraints, CutVolumeError, conserve_cut_volume};
 
 /// Options for writing a multiresolution file with [`build`].
 #[derive(Clone, Debug, PartialEq)]
@@ -72,11 +72,15 @@ pub struct ExtractOptions<'f> {
     /// True to leave out faces entirely outside the focus region of the query. Of a point only the
     /// nearest faces are left.
     pub crop: bool,
+    /// Number format in which the mesh shall have [exactly the volume](crate::conserve_cut_volume)
+    /// of the finest cut in the file; `None` to leave the vertices where the file has them. Does not
+    /// go with `crop`.
+    pub exact_volume: Option<Digits>,
 }
 
 impl Default for ExtractOptions<'static> {
     fn default() -> Self {
-        Self { query: Query::uniform(0.0), max_faces: None, crop: false }
+        Self { query: Query::uniform(0.0), max_faces: None, crop: false, exact_volume: None }
     }
 }
 
@@ -93,6 +97,14 @@ pub enum LevelsError {
         path: PathBuf,
         /// Description of the problem.
         source: FileError,
+    },
+    /// The extracted mesh cannot get the volume asked for.
+    #[error("{}: {source}", path.display())]
+    Volume {
+        /// Path of the multiresolution file.
+        path: PathBuf,
+        /// Description of the problem.
+        source: CutVolumeError,
     },
 }
 
@@ -166,7 +178,7 @@ fn constrained<'m>(
 /// Extracts a mesh at one level of detail from a `.mlod` file, reading only the parts needed.
 ///
 /// # Errors
-/// A file that cannot be read or is damaged, and an invalid query.
+/// A file that cannot be read or is damaged, an invalid query, and a volume that the mesh cannot get.
 ///
 /// ```
 /// use meshlod::multires::{Focus, Query, Tolerance};
@@ -185,15 +197,21 @@ fn constrained<'m>(
 /// ```
 pub fn extract(path: &Path, options: &ExtractOptions<'_>) -> Result<Mesh, LevelsError> {
     let file = File::open(path).map_err(|error| IoError::system(path, error))?;
-    let level = level(file, options);
-    level
-        .map(|level| level.mesh())
-        .map_err(|source| LevelsError::File { path: path.to_owned(), source })
+    let unread = |source| LevelsError::File { path: path.to_owned(), source };
+    let file = ModelFile::open(file).map_err(unread)?;
+    let mut mesh = level(&file, options).map_err(unread)?.mesh();
+    if let Some(digits) = options.exact_volume {
+        let conserved = match options.crop {
+            true => Err(CutVolumeError::Cropped),
+            false => conserve_cut_volume(&mut mesh, &file, digits),
+        };
+        conserved.map_err(|source| LevelsError::Volume { path: path.to_owned(), source })?;
+    }
+    Ok(mesh)
 }
 
-fn level(file: File, options: &ExtractOptions<'_>) -> Result<Level, FileError> {
-    let ExtractOptions { query, max_faces, crop } = options;
-    let file = ModelFile::open(file)?;
+fn level(file: &ModelFile<File>, options: &ExtractOptions<'_>) -> Result<Level, FileError> {
+    let ExtractOptions { query, max_faces, crop, .. } = options;
     let (query, nearest) = file.at_surface(query, *max_faces)?;
     let level = match *max_faces {
         None => file.extract(&query)?.level,
@@ -274,6 +292,35 @@ mod tests {
         expected.sort_unstable();
         assert_eq!(boundary(&options), expected);
         assert!(boundary(&free).len() < expected.len());
+    }
+
+    #[test]
+    fn a_cut_has_the_volume_of_the_mesh() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("knot.mlod");
+        let mesh = samples::knot(4_000);
+        build(&mesh, &path, &BuildOptions { lossless: true, ..Default::default() }).unwrap();
+        let off = |options: &ExtractOptions<'_>| {
+            let cut = extract(&path, options).unwrap();
+            (meshlod_measure::volume(&cut) / meshlod_measure::volume(&mesh) - 1.0).abs()
+        };
+        let focus = Focus::Sphere { center: [0.9, 0.0, 0.0], radius: 0.2 };
+        let near = Query { focus, ..Query::uniform(0.001) };
+        let exact_volume = Some(Digits::F64);
+        for query in [near, Query::uniform(0.02)] {
+            let cut = ExtractOptions { query, ..Default::default() };
+            assert!(off(&cut) > 1e-9, "{:e}", off(&cut));
+            let exact = ExtractOptions { exact_volume, ..cut };
+            assert!(off(&exact) < 1e-14, "{:e}", off(&exact));
+        }
+        let cropped = ExtractOptions { crop: true, exact_volume, ..Default::default() };
+        let refused = extract(&path, &cropped).unwrap_err().to_string();
+        assert!(refused.contains("a cropped cut"), "{refused}");
+        let bytes = std::fs::read(&path).unwrap();
+        std::fs::write(&path, &bytes[..bytes.len() - 100]).unwrap();
+        let whole = ExtractOptions { exact_volume, ..Default::default() };
+        let refused = extract(&path, &whole).unwrap_err().to_string();
+        assert!(refused.contains("chunks are there"), "{refused}");
     }
 
     #[test]

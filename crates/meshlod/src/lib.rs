@@ -254,7 +254,9 @@ pub use compressed::{
 pub use conditioned::{ConditionedScene, simplify};
 pub use constraints::{Constraints, VertexLocking};
 pub use contacts::scene_locks;
-pub use exact_volume::{closed_volume, conserve_volumes, digits_of};
+pub use exact_volume::{
+    CutVolumeError, closed_volume, conserve_cut_volume, conserve_volumes, digits_of,
+};
 pub use fuse::fuse_scene;
 pub use levels::{BuildOptions, BuildReport, ExtractOptions, LevelsError, build, extract};
 pub use locks::join_locks;

@@ -24,6 +24,7 @@ use crate::model_file;
 use crate::numbers::{count, faces, percent, value};
 use crate::parse::{self, Bound};
 use crate::session::Session;
+use crate::volume;
 
 /// Write all levels of a mesh to one multiresolution file (.mlod). The topology of the mesh is kept,
 /// and locks hold in every level: tied vertices are locked
@@ -58,6 +59,10 @@ pub struct Build {
     /// vertices of coarser levels move by about 0.002% of the diagonal
     #[arg(long, conflicts_with = "rounding")]
     lossless: bool,
+    /// Keep the volume of closed parts exactly in the finest cut, as --lossless does, so that extract
+    /// --exact-volume gives it to any other cut
+    #[arg(long, conflicts_with = "rounding")]
+    exact_volume: bool,
     /// Approximate number of vertices in a chunk, the unit of reading: smaller chunks make a larger
     /// file of which a query reads less
     #[arg(long, value_name = "N", value_parser = parse::positive, default_value_t = 4096,
@@ -115,6 +120,11 @@ impl Build {
                 "right-triangles takes neither locks nor --fuse: its levels consist of vertices of the grid, which never move",
             ));
         }
+        if self.exact_volume && self.model == ModelArg::RightTriangles {
+            return Err(Failure::usage(
+                "--exact-volume does not go with right-triangles: a height field encloses no volume",
+            ));
+        }
         if self.lossless && self.model == ModelArg::RightTriangles {
             return Err(Failure::usage(
                 "--lossless does not go with right-triangles, which move vertices to a grid; use --rounding 0 to keep the heights",
@@ -125,6 +135,10 @@ impl Build {
             self.constraints.read_flat(&self.input, &self.reading, options, session)?;
         if mesh.faces.is_empty() {
             return Err(Failure::at(&self.input, "the mesh has no faces"));
+        }
+        self.lossless |= self.exact_volume;
+        if self.exact_volume {
+            volume::warn_if_open(&mesh, session);
         }
         let start = Instant::now();
         let built = match self.model {

@@ -6,7 +6,8 @@ use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum};
 use meshlod::multires::{FileError, Level, ModelFile, Query, ViewCamera};
-use meshlod::scene_with_materials;
+use meshlod::simplify::{Digits, VolumeResidual};
+use meshlod::{CutVolumeError, Mesh, conserve_cut_volume, digits_of, scene_with_materials};
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
@@ -47,6 +48,12 @@ pub struct Extract {
     /// Leave out faces that do not intersect the focus; of a point leave the nearest ones
     #[arg(long, requires = "focus")]
     only: bool,
+    /// Move vertices along their normals, mostly by their last digits, until closed parts have the
+    /// volume of the finest cut in the file, in the precision that is written: that of the mesh, if
+    /// the file was built with --exact-volume or --lossless. Reads the whole file; vertices move on
+    /// top of --error, and so do those that were locked, which the file does not know
+    #[arg(long, conflicts_with = "only")]
+    exact_volume: bool,
     #[command(flatten)]
     writing: WriteArgs,
 }
@@ -101,7 +108,7 @@ impl Extract {
         let start = Instant::now();
         let file = model_file::open(&self.input, session)?;
         let taken = self.take(&file)?;
-        let time = start.elapsed();
+        let mut time = start.elapsed();
         let mesh = taken.level.mesh();
         if mesh.faces.is_empty() {
             return Err(Failure::at(&self.input, "no face intersects the focus"));
@@ -116,13 +123,26 @@ impl Extract {
             session.warn(Failure::at(&self.input, reason));
         }
         let materials = model_file::materials(&self.input, &file, session)?;
-        let scene = scene_with_materials(name(&self.input), mesh, materials);
-        let (json, text) = (self.json(&taken, counts, time), self.text(&taken, counts, time));
+        let mut scene = scene_with_materials(name(&self.input), mesh, materials);
         let writing = self.writing.within(taken.rounding, &scene, format);
         let moves = writing.moves(&scene, format);
         if moves > taken.rounding {
             let moved = format_args!("rounding to f32 moved coordinates by up to {}", value(moves));
             session.warn(Failure::at(&self.output, moved));
+        }
+        let mut restored = None;
+        if self.exact_volume {
+            let start = Instant::now();
+            let digits = digits_of(format, writing.options().precision);
+            restored = self.restore_volume(&mut scene.meshes[0].mesh, &file, digits, session)?;
+            time += start.elapsed();
+        }
+        let mut json = self.json(&taken, counts, time);
+        json["volume_residual"] = restored.map(|restored| restored.after.abs()).into();
+        json["volume_moved"] = restored.map(|restored| restored.farthest).into();
+        let mut text = self.text(&taken, counts, time);
+        if let Some(restored) = &restored {
+            text += &volume_text(restored, taken.lossless);
         }
         files::write(&self.output, &scene, &writing, session)?;
         Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
@@ -162,6 +182,26 @@ impl Extract {
             updates: taken.updates,
             bytes: taken.bytes,
         })
+    }
+
+    /// Gives the closed parts of a cut the volume that they have in the finest cut; warns if that
+    /// cannot be done.
+    fn restore_volume(
+        &self,
+        cut: &mut Mesh,
+        file: &ModelFile<File>,
+        digits: Digits,
+        session: &Session,
+    ) -> Result<Option<VolumeResidual>, Failure> {
+        session.progress.stage("restoring the volume");
+        match conserve_cut_volume(cut, file, digits) {
+            Ok(restored) => Ok(Some(restored)),
+            Err(CutVolumeError::File(error)) => Err(Failure::at(&self.input, error)),
+            Err(error) => {
+                session.warn(format_args!("--exact-volume: {error}"));
+                Ok(None)
+            }
+        }
     }
 
     fn query(&self, file: &ModelFile<File>) -> Result<Query<'static>, Failure> {
@@ -229,6 +269,19 @@ impl Extract {
             count(taken.bytes as usize),
             value(time.as_secs_f64()),
         )
+    }
+}
+
+/// Describes what is left of a difference in volume, and whose volume it is.
+fn volume_text(restored: &VolumeResidual, lossless: bool) -> String {
+    let VolumeResidual { after, farthest, .. } = restored;
+    let text =
+        format!("volume_residual: {:.1e}\nvolume_moved: {}\n", after.abs(), value(*farthest));
+    match lossless {
+        true => text,
+        false => {
+            text + "the volume is that of the rounded vertices; build --exact-volume keeps the mesh's\n"
+        }
     }
 }
 

@@ -20,3 +20,4 @@ mod usage;
 mod verbs;
 mod view;
 mod view_school;
+mod volume;

@@ -412,6 +412,7 @@ fn wrong_questions_are_2_and_write_nothing() {
         &["--error", "0", "--focus", "sphere=0,0,0,-1"],
         &["--error", "0", "--focus", "point=0,0,inf"],
         &["--error", "0", "--only"],
+        &["--error", "0", "--focus", "sphere=0,0,0,1", "--only", "--exact-volume"],
         &["--error", "1px", "--camera", "here"],
         &["--error", "1px", "--camera", short],
         &["--error", "1px", "--camera", blind],

@@ -405,20 +405,3 @@ fn a_size_that_may_be_left_out_takes_no_file_for_it() {
     let apart = ["simplify", "in.ply", "out.ply", "--faces", "100", "--keep-objects", "5%"];
     assert_eq!(run.run(&apart).code, 2);
 }
-
-#[test]
-fn exact_volume_is_that_of_the_file() {
-    let run = Run::new();
-    run.sample("knot", 8_000, "in.ply");
-    let volume = |file: &str| run.json(&["info", file])["volume"].as_f64().unwrap();
-    let exact = ["--ratio", "10%", "--method", "lindstrom-turk", "--exact-volume"];
-    for file in ["out.ply", "out.obj", "out.glb", "out.stl"] {
-        let report = run.json(&[&["simplify", "in.ply", file], &exact[..]].concat());
-        assert!(report["volume_residual"].as_f64().unwrap() <= 1e-12, "{report}");
-        let relative = volume(file) / volume("in.ply") - 1.0;
-        assert!(relative.abs() <= 1e-12, "{file}: {relative:e}");
-    }
-    run.sample("terrain", 1_000, "open.ply");
-    let open = run.run(&[&["simplify", "open.ply", "out.ply"], &exact[..]].concat());
-    assert!(open.err.contains("is a closed, oriented surface"), "{open:?}");
-}

@@ -1,10 +1,8 @@
 //! Links between sides: which two sides of faces are the two halves of one edge.
 
-use std::collections::HashSet;
-
 use crate::condition::pairing;
 use crate::condition::suspects::continues;
-use crate::{Connectivity, FaceId, Mesh, Side, Twin, VertexId};
+use crate::{Connectivity, FaceId, Mesh, Side, Twin, VertexId, duplicates};
 
 /// No side.
 const NONE: u32 = u32::MAX;
@@ -82,24 +80,7 @@ fn side(index: usize) -> Side {
 
 /// Returns the faces that repeat one with a lower id, with the same material and orientation.
 pub(super) fn duplicate_faces(mesh: &Mesh, connectivity: &Connectivity) -> Vec<FaceId> {
-    // All sides of such a face have another face that runs the same way.
-    let is_suspect = |face: FaceId| {
-        (0..3).all(|k| match connectivity.twin(Side::new(face, k)) {
-            Twin::NonManifold => true,
-            Twin::Side(twin) => twin.ends(&mesh.faces) == Side::new(face, k).ends(&mesh.faces),
-            Twin::Boundary | Twin::Degenerate => false,
-        })
-    };
-    let mut seen = HashSet::new();
-    let repeats = |face: &FaceId| {
-        let [a, b, c] = mesh.faces[face.index()];
-        let turned = [[a, b, c], [b, c, a], [c, a, b]].into_iter().min();
-        let material = mesh.materials.as_ref().map_or(NONE, |labels| labels.of(face.index()));
-        !seen.insert((turned, material))
-    };
-    (0..mesh.faces.len())
-        .map(FaceId::new)
-        .filter(|&face| is_suspect(face))
-        .filter(repeats)
-        .collect()
+    let material =
+        |face: FaceId| mesh.materials.as_ref().map_or(NONE, |labels| labels.of(face.index()));
+    duplicates::duplicate_faces(&mesh.faces, connectivity, material)
 }

@@ -146,6 +146,7 @@ fn closed(mesh: &Mesh) -> Vec<[VertexId; 3]> {
 }
 
 /// Sums over the faces of a mesh for six times its volume, in a frame's units.
+#[derive(Debug)]
 struct VolumeSums {
     volume: f64,
     /// Sum of the absolute values of the terms.
@@ -412,6 +413,21 @@ mod tests {
         level.positions.iter_mut().flatten().for_each(|x| *x *= 1.0 + 1e-8);
         let residual = conserve_volume(&mut level, &mesh, Digits::F64, &Locks::default()).unwrap();
         assert!(residual.before > 1e-8 && residual.after.abs() < 1e-14, "{residual:?}");
+    }
+
+    #[test]
+    fn a_face_given_twice_is_no_other_volume() {
+        let mut mesh = samples::torus(2_000);
+        let (count, far) = (mesh.positions.len() as u32, samples::sphere(1_000));
+        mesh.positions.extend(far.positions.iter().map(|[x, y, z]| [x + 9.0, *y, *z]));
+        mesh.faces.extend(far.faces.iter().map(|face| face.map(|v| VertexId(v.0 + count))));
+        let volume =
+            VolumeSums::of(&mesh.faces, &mesh.positions, &Frame::of(&mesh.bounds())).volume;
+        mesh.faces.push(mesh.faces[7]);
+        let mut level = coarse(&mesh, 0.3);
+        conserve_volume(&mut level, &mesh, Digits::F64, &Locks::default()).unwrap();
+        let found = VolumeSums::of(&level.faces, &level.positions, &Frame::of(&mesh.bounds()));
+        assert!((found.volume / volume - 1.0).abs() < 1e-13, "{found:?}");
     }
 
     #[test]
