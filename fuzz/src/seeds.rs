@@ -1,12 +1,12 @@
 //! Seed files, made by our writers and by hand, so that mutations start near the grammar.
 
 use meshlod_codec::{
-    AttributeBounds, CompressionTarget, Lattice, Reconstruction, Scheme, Transport,
+    CompressionTarget, Lattice, Reconstruction, Scheme, Transport,
     TransportOptions, TransportQuantization, compress,
 };
 use meshlod_fixtures as fixtures;
 use meshlod_io::{Precision, Scene, gltf, obj, off, ply, smf, stl};
-use meshlod_mesh::Mesh;
+use meshlod_mesh::{AttributeBounds, Mesh};
 use meshlod_samples as samples;
 use meshlod_simplify::{self as simplify, History, Options, Progressive, Simplifier};
 

@@ -5,9 +5,9 @@
 
 use std::time::Instant;
 
-use meshlod_codec::{AttributeBounds, CompressionTarget, Reconstruction, Scheme, compress};
+use meshlod_codec::{CompressionTarget, Reconstruction, Scheme, compress};
 use meshlod_measure::{DistanceOptions, distance};
-use meshlod_mesh::Mesh;
+use meshlod_mesh::{AttributeBounds, Mesh};
 use meshlod_samples as samples;
 
 const SCHEMES: [(&str, Scheme); 3] = [

@@ -18,7 +18,8 @@
 //! [`Transport`] writes the smaller `.mlz` file.
 //!
 //! ```
-//! use meshlod_codec::{AttributeBounds, Compressed, CompressionTarget, Scheme, compress};
+//! use meshlod_codec::{Compressed, CompressionTarget, Scheme, compress};
+//! use meshlod_mesh::AttributeBounds;
 //! use meshlod_samples as samples;
 //!
 //! let mesh = samples::sphere(5000);
@@ -44,7 +45,7 @@ mod patch;
 mod resident;
 mod transport;
 
-pub use attributes::{AttributeBounds, LayerReport};
+pub use attributes::LayerReport;
 pub use blocks::{
     Accuracy, BlocksError, BlocksReport, StoredBlock, StoredBlocks, SurfaceChange, VertexBlocks,
 };

@@ -3,12 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use meshlod_codec::{
-    AttributeBounds, CompressError, Compressed, CompressionTarget, Lattice, LatticeError,
-    Malformed, Scheme, Transport, TransportError, TransportFile, TransportOptions,
-    TransportQuantization,
+    CompressError, Compressed, CompressionTarget, Lattice, LatticeError, Malformed, Scheme,
+    Transport, TransportError, TransportFile, TransportOptions, TransportQuantization,
 };
 use meshlod_io::{IoError, write_file};
-use meshlod_mesh::Mesh;
+use meshlod_mesh::{AttributeBounds, Mesh};
 use thiserror::Error;
 
 /// Options for writing a compressed mesh file with [`compress`].

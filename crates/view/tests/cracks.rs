@@ -10,9 +10,8 @@ use std::f64::consts::{FRAC_PI_4, PI};
 use common::compressed::Stage;
 use common::gpu;
 use meshlod::Mesh;
-use meshlod::codec::{
-    AttributeBounds, Compressed, CompressionTarget, Reconstruction, Scheme, compress,
-};
+use meshlod::codec::{Compressed, CompressionTarget, Reconstruction, Scheme, compress};
+use meshlod::mesh::AttributeBounds;
 use meshlod::picture::{Camera, Picture, View};
 use meshlod::samples;
 use meshlod_view::{CompressedOptions, GpuCompressed, Shade};

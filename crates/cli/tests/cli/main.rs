@@ -4,6 +4,7 @@ mod check;
 mod compare;
 mod compress;
 mod constraints;
+mod damaged_models;
 mod demo;
 mod flock;
 mod hostile;

@@ -6,9 +6,8 @@ mod quantizer;
 mod tests;
 
 use glam::DVec3;
-pub use meshlod_mesh::AttributeBounds;
 use meshlod_mesh::octahedral::{self, fold, unfold};
-use meshlod_mesh::{Layer, LayerKind, WedgeId};
+use meshlod_mesh::{AttributeBounds, Layer, LayerKind, WedgeId};
 
 pub(crate) use self::packed::PackedRows;
 use self::quantizer::UniformQuantizer;

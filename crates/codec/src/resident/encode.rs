@@ -1,6 +1,6 @@
 //! Encoding of a mesh by each of the three storage schemes.
 
-use meshlod_mesh::{Mesh, VertexId, WedgeId};
+use meshlod_mesh::{AttributeBounds, Mesh, VertexId, WedgeId};
 
 use super::nodes::Nodes;
 use super::weld_parts::WeldExceptions;
@@ -8,7 +8,7 @@ use super::{
     BLOCKS_PER_PATCH, CompressError, Compressed, Compression, MAX_FACES, MAX_VALUES, Positions,
     WedgeVertices,
 };
-use crate::attributes::{AttributeBounds, PackedLayer};
+use crate::attributes::PackedLayer;
 use crate::blocks::{Accuracy, VertexBlocks};
 use crate::kd::blocks_of;
 use crate::lattice::{Lattice, LatticeBlocks};

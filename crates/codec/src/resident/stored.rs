@@ -70,9 +70,9 @@ mod tests {
     use meshlod_samples as samples;
 
     use super::*;
-    use crate::attributes::AttributeBounds;
     use crate::lattice::StoredShear;
     use crate::{CompressionTarget, Reconstruction, Scheme, compress};
+    use meshlod_mesh::AttributeBounds;
 
     fn number(words: &[u64], at: u64, width: u32) -> u128 {
         let bit = |bit: u64| u128::from(words[(bit / 64) as usize] >> (bit % 64) & 1);

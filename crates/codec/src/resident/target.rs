@@ -1,10 +1,9 @@
 //! Compression targets, and how each scheme meets them.
 
-use meshlod_mesh::{Bounds, Mesh, VertexId};
+use meshlod_mesh::{AttributeBounds, Bounds, Mesh, VertexId};
 
 use super::encode::check;
 use super::{CompressError, Compressed};
-use crate::attributes::AttributeBounds;
 use crate::blocks::{Accuracy, BlocksError, VertexBlocks};
 use crate::lattice::{Lattice, LatticeBlocks};
 use crate::parts::{Partitioner, Parts, PartsError, Reconstruction};

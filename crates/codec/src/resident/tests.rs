@@ -3,12 +3,12 @@
 use glam::DVec3;
 use meshlod_fixtures as fixtures;
 use meshlod_mesh::{
-    Attributes, Connectivity, Layer, LayerKind, Mesh, VertexId, WedgeId, face_components,
+    AttributeBounds, Attributes, Connectivity, Layer, LayerKind, Mesh, VertexId, WedgeId,
+    face_components,
 };
 use meshlod_samples as samples;
 
 use super::*;
-use crate::attributes::AttributeBounds;
 use crate::blocks::Accuracy;
 use crate::lattice::Lattice;
 use crate::parts::{Partitioner, Reconstruction};

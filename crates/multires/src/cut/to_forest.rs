@@ -8,7 +8,7 @@ use crate::forest::{Forest, NONE, Update};
 use crate::implicit::Implicit;
 
 /// Maps between the numbers of the forest and those of the model.
-struct Numbers {
+struct Numbering {
     /// Model update of each forest update, first to last.
     updates: Vec<u32>,
     /// Forest node of each model node.
@@ -23,7 +23,7 @@ impl Forest {
     /// Every update is applied once to see its ring.
     /// Cost: linear.
     pub(crate) fn from_implicit(mt: &Implicit) -> Self {
-        let numbers = Numbers::new(mt);
+        let numbers = Numbering::new(mt);
         let mut positions = vec![[0.0; 3]; mt.node_count()];
         for (&to, node) in numbers.nodes.iter().zip(0..) {
             positions[to as usize] = mt.stored_position(node);
@@ -83,7 +83,7 @@ impl Forest {
     }
 }
 
-impl Numbers {
+impl Numbering {
     fn new(mt: &Implicit) -> Self {
         let mut updates = by_level(mt.update_count(), |update| {
             mt.level(if mt.is_fused_with_parent(update) { update - 1 } else { update })

@@ -26,9 +26,9 @@ pub struct Archive<S> {
 /// Bytes attached to a `.mlod` file, such as materials and images.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Resources {
-    /// What belongs to every level, read with the coarsest one.
+    /// Bytes that belong to every level, read with the coarsest one.
     pub early: Vec<u8>,
-    /// What only the whole file has; `None` if it is truncated.
+    /// Bytes that only the whole file has; `None` if it is truncated.
     pub late: Option<Vec<u8>>,
 }
 

@@ -40,7 +40,7 @@ pub(crate) struct NodeWedges {
     extra: Vec<u32>,
 }
 
-/// What updates next to seams record, in local numbers: wedges are counted from the first of their
+/// Records of the updates next to seams, in local numbers: wedges are counted from the first of their
 /// node.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct RecordedSplits {

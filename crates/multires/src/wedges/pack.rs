@@ -22,7 +22,7 @@ impl Wedges {
         let mut splits = RecordedSplits::default();
         for (at, &update) in (0..).zip(&order.updates) {
             if let Some(split) = all.splits.get(&update) {
-                let local = Local { forest, all, order, update: update as usize };
+                let local = RecordPacker { forest, all, order, update: update as usize };
                 splits.push(at, local.record(split)?);
             }
         }
@@ -93,14 +93,14 @@ fn base(forest: &Forest, all: &ForestWedges, order: &Order) -> Vec<[u32; 3]> {
 }
 
 /// An update whose record is converted to local numbers.
-struct Local<'f> {
+struct RecordPacker<'f> {
     forest: &'f Forest,
     all: &'f ForestWedges,
     order: &'f Order,
     update: usize,
 }
 
-impl Local<'_> {
+impl RecordPacker<'_> {
     fn record(&self, split: &WedgeSplit) -> Result<Vec<u16>, BuildError> {
         let Self { forest, all, order, update } = *self;
         let children = forest.updates[update].children;

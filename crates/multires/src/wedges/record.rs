@@ -22,7 +22,7 @@ pub(crate) struct ForestWedges {
     pub(crate) labels: WedgeLabels,
     /// Wedges of leaves at the corners of the forest's faces.
     pub(crate) corners: Vec<[u32; 3]>,
-    /// What updates next to seams do to faces.
+    /// Changes of faces by the updates next to seams.
     pub(crate) splits: BTreeMap<u32, WedgeSplit>,
 }
 

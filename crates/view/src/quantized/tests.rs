@@ -1,6 +1,7 @@
 //! Places that the shaders decode, against those of the codec.
 
-use meshlod::codec::{AttributeBounds, CompressionTarget, Reconstruction, Scheme, compress};
+use meshlod::codec::{CompressionTarget, Reconstruction, Scheme, compress};
+use meshlod::mesh::AttributeBounds;
 use meshlod::samples;
 use wgpu::{BufferDescriptor, ShaderStages};
 

@@ -1,9 +1,8 @@
 //! Compressed meshes, and how tests draw them.
 
 use meshlod::Mesh;
-use meshlod::codec::{
-    AttributeBounds, Compressed, CompressionTarget, Reconstruction, Scheme, compress,
-};
+use meshlod::codec::{Compressed, CompressionTarget, Reconstruction, Scheme, compress};
+use meshlod::mesh::AttributeBounds;
 use meshlod::picture::{Camera, Normals, Paint, Picture};
 use meshlod_view::{
     Canvas, CompressedOptions, Gpu, GpuCompressed, GpuMesh, Renderer, Shade, TargetFormat,

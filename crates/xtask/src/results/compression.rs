@@ -8,9 +8,10 @@ mod sent;
 use anyhow::{Context, Result};
 use meshlod::Mesh;
 use meshlod::codec::{
-    AttributeBounds, Compression, CompressionTarget, Partitioner, Reconstruction, Scheme, compress,
+    Compression, CompressionTarget, Partitioner, Reconstruction, Scheme, compress,
 };
 use meshlod::measure::{Distance, DistanceOptions, distance};
+use meshlod::mesh::AttributeBounds;
 use meshlod_bench::least_seconds;
 
 use self::global::{Rounding, global};

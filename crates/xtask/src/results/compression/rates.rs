@@ -2,7 +2,8 @@
 
 use anyhow::Result;
 use meshlod::Mesh;
-use meshlod::codec::{AttributeBounds, CompressionTarget, Reconstruction, Scheme, compress};
+use meshlod::codec::{CompressionTarget, Reconstruction, Scheme, compress};
+use meshlod::mesh::AttributeBounds;
 use meshlod_bench::peer::meshopt_codec;
 
 use super::distance_of;
