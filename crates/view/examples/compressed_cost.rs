@@ -9,8 +9,9 @@ use std::time::Instant;
 
 use meshlod::Mesh;
 use meshlod::codec::{
-    AttributeBounds, Compressed, CompressionTarget, Partitioner, Reconstruction, Scheme, compress,
+    Compressed, CompressionTarget, Partitioner, Reconstruction, Scheme, compress,
 };
+use meshlod::mesh::AttributeBounds;
 use meshlod::picture::{Camera, View};
 use meshlod_view::{Canvas, Gpu, GpuCompressed, Placement, Renderer, Shade, TargetFormat};
 
