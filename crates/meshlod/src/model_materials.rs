@@ -152,7 +152,11 @@ mod tests {
 
     /// Returns a picture of noise, which does not compress.
     fn noise(side: u32) -> Image {
-        let bytes = (0..4 * side * side).map(|i| (i.wrapping_mul(2_654_435_761) >> 23) as u8);
+        let mut state = 1u64;
+        let bytes = (0..4 * side * side).map(|_| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 56) as u8
+        });
         let png = Picture::new(side, side, bytes.collect()).unwrap().png();
         Image { name: format!("noise {side}"), bytes: png }
     }

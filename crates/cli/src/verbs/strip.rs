@@ -139,7 +139,7 @@ impl Strip {
             session.warn(Failure::at(&self.input, reason));
         }
         if let Some(output) = &output {
-            output.write(&source.input.mesh, &source.tree, &levels, session)?;
+            output.write(&source.input, &source.tree, &levels, session)?;
         }
         let missed = self.strict && levels.iter().any(|level| !level.reached);
         let wrong = levels.iter().any(|level| level.is_wrong());

@@ -98,11 +98,20 @@ fn fits(mesh: &Mesh) -> bool {
 fn strip_levels(run: &Run, name: &str, positions: &[[f64; 3]]) -> Vec<Mesh> {
     let json: serde_json::Value =
         serde_json::from_slice(&std::fs::read(run.path(name)).unwrap()).unwrap();
+    // A fused mesh has vertices of its own.
+    let fused: Option<Vec<[f64; 3]>> =
+        json.get("positions").map(|list| serde_json::from_value(list.clone()).unwrap());
+    let positions = fused.as_deref().unwrap_or(positions);
+    // Where objects meet, strips have wedges, of which several are at one vertex.
+    let vertex = |v: &serde_json::Value| {
+        let wedge = v.as_u64().unwrap() as usize;
+        let wedges = json.get("wedges");
+        wedges.map_or(wedge, |wedges| wedges[wedge]["vertex"].as_u64().unwrap() as usize) as u32
+    };
     let level = |level: &serde_json::Value| {
         let mut faces = Vec::new();
         for strip in level["strips"].as_array().unwrap() {
-            let strip: Vec<u32> =
-                strip.as_array().unwrap().iter().map(|v| v.as_u64().unwrap() as u32).collect();
+            let strip: Vec<u32> = strip.as_array().unwrap().iter().map(vertex).collect();
             for three in strip.windows(3) {
                 let [a, b, c] = [three[0], three[1], three[2]];
                 if a != b && b != c && c != a {

@@ -133,7 +133,7 @@ impl MergeTree {
     }
 
     /// Returns whether the vertices are wedges, of which a vertex of the mesh may have several.
-    pub(super) fn has_wedges(&self) -> bool {
+    pub fn has_wedges(&self) -> bool {
         self.wedges.is_some()
     }
 

@@ -5,12 +5,12 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use meshlod::io::{write_file, write_strips};
-use meshlod::mesh::Mesh;
 use meshlod::strip::{MergeTree, StripWedge, Strips};
 use meshlod::{Scene, scene_strips};
 use serde_json::{Value, json};
 
 use super::StrippedLevel;
+use crate::constraints::FlatInput;
 use crate::failure::Failure;
 use crate::files;
 use crate::numbers::count;
@@ -54,7 +54,7 @@ impl<'o> StripOutput<'o> {
     /// Writes the strips of all levels of a flattened scene.
     pub(super) fn write(
         &self,
-        flat: &Mesh,
+        flat: &FlatInput,
         tree: &MergeTree,
         levels: &[StrippedLevel],
         session: &Session,
@@ -67,7 +67,7 @@ impl<'o> StripOutput<'o> {
         let mut drawn: Vec<_> = levels.iter().filter(|level| !level.strips.is_empty()).collect();
         drawn.sort_by_key(|level| Reverse(level.triangles));
         let strips: Vec<&Strips> = drawn.iter().map(|level| &level.strips).collect();
-        write_strips(self.path, scene, &scene_strips(scene, flat, tree, &strips))?;
+        write_strips(self.path, scene, &scene_strips(scene, &flat.mesh, tree, &strips))?;
         if let Some(lost) = lost(scene) {
             session.warn(Failure::at(self.path, format_args!("not kept: {lost}")));
         }
@@ -75,9 +75,10 @@ impl<'o> StripOutput<'o> {
     }
 }
 
-/// Builds JSON lists of the vertices of each strip. They are numbered as in the input; in a mesh
-/// with attributes they are wedges, each with where its values are in the input.
-fn lists(mesh: &Mesh, tree: &MergeTree, levels: &[StrippedLevel]) -> Value {
+/// Builds JSON lists of the vertices of each strip. They are numbered as in the input, or as in the
+/// fused mesh, whose positions are then listed; in a mesh with attributes or several objects or
+/// materials they are wedges, each with where its values are.
+fn lists(input: &FlatInput, tree: &MergeTree, levels: &[StrippedLevel]) -> Value {
     let strips = |level: &StrippedLevel| {
         let lists = level.strips.iter().map(|strip| strip.iter().map(|v| v.0).collect::<Vec<_>>());
         json!({
@@ -87,7 +88,11 @@ fn lists(mesh: &Mesh, tree: &MergeTree, levels: &[StrippedLevel]) -> Value {
         })
     };
     let mut lists = json!({ "levels": levels.iter().map(strips).collect::<Vec<_>>() });
-    if mesh.attributes.is_some() {
+    let mesh = &input.mesh;
+    if input.fused.is_some() {
+        lists["positions"] = json!(mesh.positions);
+    }
+    if tree.has_wedges() {
         let wedge = |wedge: &StripWedge| {
             json!({
                 "vertex": wedge.vertex.0, "shading": wedge.shading.0, "texture": wedge.texture.0,
