@@ -71,6 +71,15 @@ impl Level {
         Self { frame, nodes, positions, faces, exact: ExactPositions::default(), wedges: None }
     }
 
+    /// Returns true if each face has wedges of its own nodes, of one material and object, which only
+    /// certified models are sure of.
+    pub(crate) fn has_own_wedges(&self) -> bool {
+        self.wedges.as_ref().is_none_or(|LevelWedges { corners, all }| {
+            let nodes = self.faces.iter().map(|face| face.map(|v| self.nodes[v as usize]));
+            corners.iter().zip(nodes).all(|(&wedges, nodes)| all.may_be_at(wedges, nodes))
+        })
+    }
+
     /// Attaches the exact positions of the model's nodes.
     pub(crate) fn with_exact(self, exact: &ExactPositions) -> Self {
         Self { exact: exact.clone(), ..self }

@@ -46,13 +46,7 @@ impl CoarseWedges {
 pub(super) fn are_of_their_nodes(front: &Front<'_>, mut faces: impl Iterator<Item = u32>) -> bool {
     let Some(all) = front.mt.wedges() else { return true };
     faces.all(|t| {
-        let (nodes, wedges) = (front.triangles.nodes(t), front.triangles.wedges(t));
-        wedges.is_some_and(|wedges| {
-            let is_own = |k: usize| {
-                all.of(nodes[k]).contains(&wedges[k])
-                    && all.labels.of(wedges[k]) == all.labels.of(wedges[0])
-            };
-            (0..3).all(is_own)
-        })
+        let wedges = front.triangles.wedges(t);
+        wedges.is_some_and(|wedges| all.may_be_at(wedges, front.triangles.nodes(t)))
     })
 }

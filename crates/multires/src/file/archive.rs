@@ -7,7 +7,7 @@ use super::header::{self, FIXED_LEN, Header, Section};
 use super::source::{Source, read_range};
 use super::{FileError, Storage, base, chunk, write};
 use crate::bounds::ErrorKind;
-use crate::cut::{Certificate, Cut};
+use crate::cut::{Certificate, Cut, Flaw};
 use crate::forest::Forest;
 use crate::implicit::Implicit;
 use crate::level::Level;
@@ -273,8 +273,8 @@ impl<S: Source> Archive<S> {
     /// Extracts the mesh that satisfies a query, reading only the chunks whose area the query may
     /// refine.
     ///
-    /// Nothing is certified: a file crafted to mislead, with matching checksums, may give a mesh
-    /// with cracks. [`Archive::read`] detects that.
+    /// Only the wedges of the result are checked: a file crafted to mislead, with matching checksums,
+    /// may give a mesh with cracks. [`Archive::read`] detects that.
     /// # Errors
     /// An invalid query, or a damaged file.
     pub fn extract(&self, query: &Query<'_>) -> Result<Extract, FileError> {
@@ -287,6 +287,12 @@ impl<S: Source> Archive<S> {
         let updates = state.updates.len();
         let model = state.assemble(self.header.about)?;
         let level = Cut::at(&model, query)?.level();
+        if !level.has_own_wedges() {
+            return Err(FileError::Section {
+                section: "the attributes".into(),
+                why: Flaw::BadWedge.to_string(),
+            });
+        }
         Ok(Extract { level, chunks: chunks.len(), updates, bytes })
     }
 

@@ -130,6 +130,16 @@ impl Wedges {
         self.of_nodes.count(node)
     }
 
+    /// Returns true if a face over the given nodes may have the wedges: they are of its nodes, all of
+    /// one material and object.
+    pub(crate) fn may_be_at(&self, wedges: [u32; 3], nodes: [u32; 3]) -> bool {
+        let is_own = |k: usize| {
+            self.of(nodes[k]).contains(&wedges[k])
+                && self.labels.of(wedges[k]) == self.labels.of(wedges[0])
+        };
+        (0..3).all(is_own)
+    }
+
     /// Returns the record of an update, given its children and the number of faces that it creates;
     /// `None` if each child has one wedge and created faces continue those around.
     #[inline]

@@ -7,7 +7,7 @@ use meshlod_simplify::Options;
 
 use super::small;
 use crate::pack::ExactPositions;
-use crate::{Archive, Forest};
+use crate::{Archive, Forest, Query};
 
 /// Offset of the base's length in the header, offset of the index, and length of its entries, which
 /// start with the length of a chunk.
@@ -129,4 +129,25 @@ fn places_are_numbers() {
         Archive::rewrite_checksums(&mut wrong);
         assert!(refusal(wrong).contains("out of range"));
     }
+}
+
+/// Whatever a section says, what is extracted without a certificate is a valid mesh.
+#[test]
+fn faces_have_wedges_of_their_own_vertices() {
+    let bytes = written(&lossy(&fixtures::seam_strip()));
+    let chunks = Archive::open(bytes.clone()).unwrap().chunk_count();
+    let mut refused = 0;
+    for chunk in std::iter::once(None).chain((0..chunks).map(Some)) {
+        let mut length = 0;
+        changed(&bytes, chunk, |content| length = content.len());
+        for (at, flip) in (0..length).flat_map(|at| [(at, 1), (at, 2)]) {
+            let wrong = changed(&bytes, chunk, |content| content[at] ^= flip);
+            let extract = |archive: Archive<_>| archive.extract(&Query::uniform(0.0));
+            match Archive::open(wrong).and_then(extract) {
+                Ok(taken) => taken.level.mesh().validate().unwrap(),
+                Err(why) => refused += usize::from(why.to_string().contains("wedge of another")),
+            }
+        }
+    }
+    assert!(refused > 0);
 }
