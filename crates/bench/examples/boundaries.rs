@@ -1,5 +1,5 @@
-//! Volume lost at the boundaries of open meshes, behind the cones that close them: the figures of
-//! `docs/notes/boundaries.md`.
+//! Volume lost at the boundaries of open meshes, textured or not, behind the cones that close them:
+//! the figures of `docs/notes/boundaries.md`.
 //!
 //! `cargo run --release -p meshlod-bench --example boundaries -- bunny.ply lion-head.off`
 
@@ -8,7 +8,7 @@ use std::path::Path;
 
 use meshlod::measure::{distance, volume};
 use meshlod::simplify::{Simplifier, VolumeLoss};
-use meshlod::{Mesh, Method, Options, ReadOptions, Target, Topology, io};
+use meshlod::{Method, Options, ReadOptions, Target, Topology, io};
 
 const METHODS: [Method; 5] = [
     Method::KimJang,
@@ -21,7 +21,6 @@ const METHODS: [Method; 5] = [
 fn main() -> Result<(), Box<dyn Error>> {
     for path in std::env::args().skip(1) {
         let mesh = io::read(Path::new(&path), &ReadOptions::default())?.into_mesh();
-        let mesh = Mesh { attributes: None, materials: None, objects: None, ..mesh };
         let whole = volume(&mesh).abs();
         for method in METHODS {
             for ratio in [0.5, 0.1, 0.02] {

@@ -90,20 +90,33 @@ fn with_bounds(some: &Unconserved) -> Value {
 }
 
 /// Describes the volume that a volume-conserving method has lost in closed parts, relative to the
-/// volume of the closed parts of `input`; `None` if it is not worth a line. What the level was repaid
-/// is not lost.
-pub fn lost_text(method: Method, loss: &VolumeLoss, input: &Scene) -> Option<String> {
+/// volume of the closed parts of `input`; `None` if it is not worth a line, or `input` has no
+/// closed part. What the level was repaid is not lost. `can_restore` says whether `--exact-volume`
+/// would restore it.
+pub fn lost_text(
+    method: Method,
+    loss: &VolumeLoss,
+    input: &Scene,
+    can_restore: impl FnOnce() -> bool,
+) -> Option<String> {
     // Most runs lose next to nothing, and need no volume of the input.
     let most = world_bounds(input).diagonal().powi(3);
     if !method.conserves_volume() || loss.lost().abs() < 1e-12 * most {
         return None;
     }
-    text(loss, closed_volume(input))
+    text(loss, closed_volume(input), can_restore)
 }
 
-fn text(loss: &VolumeLoss, volume: f64) -> Option<String> {
+/// Returns true if the volumes of all meshes of a level that have one can be restored.
+pub fn can_restore(scene: &ConditionedScene<'_>, level: &[Mesh]) -> bool {
+    let restored = conserve_volumes(scene, &mut level.to_vec(), Digits::F64);
+    restored.iter().all(|found| matches!(found, Ok(_) | Err(ExactVolumeError::OpenMesh)))
+}
+
+fn text(loss: &VolumeLoss, volume: f64, can_restore: impl FnOnce() -> bool) -> Option<String> {
     let lost = loss.lost() / volume;
-    if lost.is_nan() || lost.abs() < UNSEEN {
+    // Without a closed part there is nothing to compare with.
+    if !lost.is_finite() || lost.abs() < UNSEEN {
         return None;
     }
     let part = |relative: f64| percent(100.0 * relative);
@@ -112,7 +125,11 @@ fn text(loss: &VolumeLoss, volume: f64) -> Option<String> {
         gone => format!(", {} in parts that vanished", part(gone)),
     };
     let sign = if lost > 0.0 { "-" } else { "+" };
-    Some(format!("volume: {sign}{}{vanished}; --exact-volume restores it", part(lost.abs())))
+    let advice = match can_restore() {
+        true => "--exact-volume restores it",
+        false => "more than --exact-volume can restore",
+    };
+    Some(format!("volume: {sign}{}{vanished}; {advice}", part(lost.abs())))
 }
 
 #[cfg(test)]
@@ -132,7 +149,11 @@ mod tests {
             held,
             ..VolumeLoss::default()
         };
-        let text = |loss: &VolumeLoss| text(loss, 2.0);
+        let open = text(&loss, 0.0, || true);
+        assert_eq!(open, None, "an open mesh has no volume to compare with");
+        let stuck = text(&loss, 2.0, || false);
+        assert_eq!(stuck.as_deref(), Some("volume: -1%; more than --exact-volume can restore"));
+        let text = |loss: &VolumeLoss| text(loss, 2.0, || true);
         let expected = "volume: -1%; --exact-volume restores it";
         assert_eq!(text(&loss).as_deref(), Some(expected));
         let vanished = VolumeLoss { vanished: 0.01, ..loss };

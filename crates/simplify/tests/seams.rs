@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use meshlod_fixtures::charted;
+use meshlod_fixtures::{charted, in_materials};
 use meshlod_mesh::{Attributes, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId};
 use meshlod_samples as samples;
 use meshlod_simplify::{
@@ -272,8 +272,8 @@ fn volume(mesh: &Mesh) -> f64 {
 
 #[test]
 fn volume_is_conserved_across_seams() {
-    for mesh in [samples::knot(4000), samples::torus(4000), samples::gyroid(4000)] {
-        let mesh = charted(&mesh);
+    let bare = [samples::knot(4000), samples::torus(4000), samples::gyroid(4000)];
+    for mesh in bare.iter().flat_map(|mesh| [charted(mesh), in_materials(mesh)]) {
         for method in Method::ALL.into_iter().filter(|method| method.conserves_volume()) {
             let rounding = if KERNEL_METHODS.contains(&method) { 1e-6 } else { 1e-12 };
             for ratio in [0.5, 0.1, 0.02] {

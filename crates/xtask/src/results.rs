@@ -27,11 +27,12 @@ pub use contacts::policies;
 type Section = fn(&Project) -> Result<String>;
 
 /// Sections and their titles, in the order of the page.
-const SECTIONS: [(&str, Section); 14] = [
+const SECTIONS: [(&str, Section); 15] = [
     // First, while this process is still small: see the module.
     ("Memory and determinism", memory::section),
     ("Accuracy", accuracy::section),
     ("Volume", volume::section),
+    ("Volume of textured models", volume::textured::section),
     ("Face constriction", constriction::section),
     ("Textured", textured::section),
     ("Many parts", parts::section),

@@ -320,8 +320,10 @@ impl Simplify {
         if let Some(distance) = &done.measured {
             text += &format!("error_measured:\n{}", distance::to_table(distance));
         }
+        let can_restore = || volume::can_restore(&task.ready.scene, &done.meshes);
         if !self.volume.exact_volume
-            && let Some(line) = volume::lost_text(report.method, &report.volume, task.scene)
+            && let Some(line) =
+                volume::lost_text(report.method, &report.volume, task.scene, can_restore)
         {
             text += &format!("{line}\n");
         }

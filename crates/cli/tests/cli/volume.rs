@@ -79,3 +79,18 @@ fn a_volume_that_a_cut_cannot_have_is_said() {
     let done = run.run(&[&["build", "terrain.ply", "t.mlod"], &by_triangles[..]].concat());
     assert_eq!(done.code, 2, "{done:?}");
 }
+
+#[test]
+fn a_lost_volume_is_said_with_what_can_be_done() {
+    let run = Run::new();
+    let said = |sample: &str, faces: usize, target: &[&str]| {
+        run.sample(sample, faces, "in.ply");
+        let done = run.run(&[&["simplify", "in.ply", "out.ply"], target].concat());
+        done.text().lines().find(|line| line.starts_with("volume: ")).map(str::to_owned)
+    };
+    let stuck = said("sphere", 2_000, &["--faces", "4", "--topology", "keep"]).unwrap();
+    assert!(stuck.ends_with("more than --exact-volume can restore"), "{stuck}");
+    // What an open mesh loses encloses nothing.
+    assert_eq!(said("terrain", 2_000, &["--faces", "40"]), None);
+    assert_eq!(said("knot", 8_000, &["--ratio", "10%"]), None, "what is repaid is not lost");
+}

@@ -1,5 +1,7 @@
 //! Measures the change of volume by simplification, in the files written.
 
+pub mod textured;
+
 use anyhow::{Context, Result};
 use meshlod::io::Precision;
 use meshlod::measure::volume;
@@ -23,7 +25,7 @@ const METHODS: [Method; 6] = [
     Method::Qem,
 ];
 
-/// Returns a table of the relative change of volume by mesh, ratio and method.
+/// Returns a table of the relative change of volume of bare meshes by mesh, ratio and method.
 pub fn section(_: &Project) -> Result<String> {
     let mut table = Table::new(
         ["mesh, ratio"].into_iter().chain(METHODS.map(Method::name)).collect::<Vec<_>>(),
