@@ -8,7 +8,8 @@ use std::error::Error;
 use cpu_time::ThreadTime;
 use meshlod_mesh::Bounds;
 use meshlod_multires::{
-    Focus, HeightField, HeightPrecision, Query, Rtin, RtinExtractor, Tolerance, ViewCamera,
+    Focus, HeightField, HeightPrecision, Query, Rtin, RtinCut, RtinExtractor, Tolerance,
+    UpdateLimits, ViewCamera,
 };
 
 type Failure = Box<dyn Error + Send + Sync>;
@@ -35,7 +36,9 @@ fn main() -> Result<(), Failure> {
     let (seconds, sound) = best(|| model.certify());
     println!("certified {} in {:.1} ms", sound?, seconds * 1e3);
     sizes(&field)?;
-    extractions(&model, &field.bounds())
+    extractions(&model, &field.bounds())?;
+    println!("following a flight over the field, a thousandth of the diagonal a frame:");
+    [4.0, 1.0, 0.25].iter().try_for_each(|&pixels| follow(&model, &field.bounds(), pixels))
 }
 
 fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
@@ -109,5 +112,60 @@ fn extractions(model: &Rtin, bounds: &Bounds) -> Result<(), Failure> {
             budgeted * 1e3,
         );
     }
+    Ok(())
+}
+
+/// Flies along the diagonal and prints medians over the frames: of a cut that follows, of
+/// extraction anew, and of points located on the cut.
+fn follow(model: &Rtin, bounds: &Bounds, pixels: f64) -> Result<(), Failure> {
+    const FRAMES: u32 = 101;
+    let ([x, y, z], diagonal) = (bounds.center(), bounds.diagonal());
+    let camera = |frame: u32| {
+        let along = (f64::from(frame) - 0.5 * f64::from(FRAMES)) * 1e-3 * diagonal;
+        let eye = [x + 0.8 * along, y + 0.6 * along, z + 0.05 * diagonal];
+        let look = [eye[0] + 0.8 * diagonal, eye[1] + 0.6 * diagonal, z];
+        ViewCamera { eye, look, up: [0.0, 0.0, 1.0], fov_rad: 0.8, viewport: [1920, 1080] }
+    };
+    let mut extractor = RtinExtractor::new(model);
+    let (start, mut cut) = timed(|| RtinCut::new(model));
+    let (mut figures, mut first) = (Vec::new(), 0.0);
+    for frame in 0..FRAMES {
+        let query = Query::pixels(camera(frame), pixels);
+        let (followed, change) = timed(|| cut.update(&query, &UpdateLimits::default()));
+        let (change, slots) = (change?, cut.patches().count());
+        let (extracted, level) = timed(|| extractor.exact(&query).map(|level| level.faces.len()));
+        assert_eq!(level?, cut.face_count());
+        let at = camera(frame).eye;
+        let (located, _) = timed(|| cut.locate(at));
+        match frame {
+            0 => first = followed,
+            _ => figures.push([
+                (change.splits + change.merges) as f64,
+                change.inspected as f64,
+                slots as f64,
+                followed * 1e3,
+                extracted * 1e3,
+                located * 1e6,
+            ]),
+        }
+    }
+    let median = |k: usize| {
+        let mut all: Vec<f64> = figures.iter().map(|figure| figure[k]).collect();
+        all.sort_by(f64::total_cmp);
+        all[all.len() / 2]
+    };
+    println!(
+        "  {pixels} px, {} faces: {} changes, {} inspected, {} slots; followed in {:.3} ms, extracted in \
+         {:.2} ms; located in {:.1} us; started in {:.1} ms, first frame {:.1} ms",
+        cut.face_count(),
+        median(0),
+        median(1),
+        median(2),
+        median(3),
+        median(4),
+        median(5),
+        start * 1e3,
+        first * 1e3,
+    );
     Ok(())
 }

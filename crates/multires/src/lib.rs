@@ -57,6 +57,8 @@
 //!
 //! A mesh that is a height field on a grid needs no recorded simplification: [`Rtin`] derives its
 //! levels by arithmetic, in ten bytes per vertex, with proven error bounds (docs/notes/rtin.md).
+//! [`Hierarchy`] is either kind of model, and [`HierarchyCut`] a cut of it: [`ModelFile::read`]
+//! gives the one, its [`cut`](Hierarchy::cut) the other.
 //!
 //! Positions are stored as `f32` relative to the middle of the mesh; on request the input's are
 //! kept exactly ([`Forest::lossless`]). Errors are the simplification's estimates made monotone, and
@@ -70,6 +72,7 @@ mod cut;
 mod explicit;
 mod file;
 mod forest;
+mod hierarchy;
 mod implicit;
 mod length16;
 mod level;
@@ -90,11 +93,12 @@ pub use file::{
     Archive, Extract, FieldParts, FileError, ModelFile, Resources, Source, Storage, StoredErrors,
 };
 pub use forest::{BuildError, Forest, Recorder};
+pub use hierarchy::{Hierarchy, HierarchyCut};
 pub use implicit::{Extractor, Implicit, SplitRule};
 pub use level::Level;
 pub use model::{Model, ModelBytes};
 pub use query::{Focus, Ground, GroundShape, Query, QueryError, Tolerance, ViewCamera};
 pub use rtin::{
     FieldBytesError, Fit, HeightField, HeightFieldError, HeightPrecision, Rtin, RtinCertifyError,
-    RtinExtractor, RtinFlaw,
+    RtinCut, RtinExtractor, RtinFlaw,
 };

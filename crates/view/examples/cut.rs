@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use meshlod::multires::{Focus, Forest, Model, ViewCamera};
+use meshlod::multires::{Focus, Forest, Hierarchy, Model, ViewCamera};
 use meshlod::picture::{Background, Camera, Wireframe};
 use meshlod::samples;
 use meshlod_view::{
@@ -13,11 +13,11 @@ use meshlod_view::{
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // All levels of a mesh. `meshlod::multires::Archive` reads them from a file.
+    // All levels of a mesh. `meshlod::multires::ModelFile` reads them from a file.
     let mut knot = samples::knot(200_000);
     knot.attributes = None;
     let forest = Forest::new(&knot, &meshlod::Options::default())?;
-    let model = Arc::new(Model::new(&forest)?.implicit().clone());
+    let model = Arc::new(Hierarchy::from(Model::new(&forest)?.implicit().clone()));
 
     // Bring your own device, queue and target; this canvas is one without a window.
     let gpu = Gpu::headless()?;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use meshlod::mesh::Bounds;
-use meshlod::multires::{Archive, Cut, Focus, Implicit, Query, Tolerance, ViewCamera};
+use meshlod::multires::{Focus, Hierarchy, ModelFile, Query, Tolerance, UpdateLimits, ViewCamera};
 use meshlod::picture::{Antialiasing, Background, Camera, Picture, Style};
 use meshlod_view::{
     Canvas, CutFollower, CutQuery, CutTolerance, CutVertices, Gpu, GpuCut, Renderer, Shade,
@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let path = arguments.next().ok_or("name a .mlod file")?;
     let views: u32 = arguments.next().map_or(Ok(0), |views| views.parse())?;
-    let model: Arc<Implicit> = Arc::new(Archive::open(std::fs::read(path)?)?.read()?.0);
+    let model = Arc::new(ModelFile::open(std::fs::read(path)?)?.read()?);
     let gpu = Gpu::headless()?;
     println!("{}", gpu.name());
     let renderer = Renderer::new(&gpu, TargetFormat::CANVAS);
@@ -90,7 +90,7 @@ fn look_for_cracks(
     gpu: &Gpu,
     renderer: &Renderer,
     cut: &mut GpuCut,
-    model: &Implicit,
+    model: &Hierarchy,
     orbit: &Orbit,
     bounds: &Bounds,
     views: u32,
@@ -124,7 +124,9 @@ fn look_for_cracks(
             continue;
         }
         let query = Query { focus, tolerance: Tolerance::Uniform(error) };
-        let mesh = Cut::at(model, &query)?.level().mesh();
+        let mut level = model.cut();
+        level.update(&query, &UpdateLimits::default())?;
+        let mesh = level.level().mesh();
         let exact = meshlod::picture::render(&mesh, &camera, &style)?;
         let is_crack = |&[x, y]: &[u32; 2]| exact.pixel(x, y)[3] == 255;
         cracks += found.iter().filter(|at| is_crack(at)).count();

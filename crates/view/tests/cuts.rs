@@ -7,7 +7,7 @@ use std::sync::Arc;
 use common::cracks::cracks;
 use common::{bumpy, gpu};
 use meshlod::Mesh;
-use meshlod::multires::{Focus, Forest, Implicit, Model, ViewCamera};
+use meshlod::multires::{Focus, Forest, HeightField, Hierarchy, Model, Rtin, ViewCamera};
 use meshlod::picture::{Camera, Picture, View};
 use meshlod::samples;
 use meshlod_view::{
@@ -23,7 +23,7 @@ struct Subject {
 }
 
 impl Subject {
-    fn new(gpu: &Gpu, model: Arc<Implicit>) -> Self {
+    fn new(gpu: &Gpu, model: Arc<Hierarchy>) -> Self {
         let renderer = Renderer::new(gpu, TargetFormat::CANVAS);
         let vertices = CutVertices::new(&model).unwrap();
         let cut = GpuCut::new(&renderer, &model, &vertices).unwrap();
@@ -53,9 +53,9 @@ impl Subject {
     }
 }
 
-fn model(mesh: &Mesh) -> Arc<Implicit> {
+fn model(mesh: &Mesh) -> Arc<Hierarchy> {
     let forest = Forest::new(mesh, &Default::default()).unwrap();
-    Arc::new(Model::new(&forest).unwrap().implicit().clone())
+    Arc::new(Model::new(&forest).unwrap().implicit().clone().into())
 }
 
 fn view_camera(eye: [f64; 3], size: [u32; 2]) -> ViewCamera {
@@ -84,6 +84,25 @@ fn a_small_orbit_uploads_little() {
             tolerance(step * f64::from(frame)),
             Transition::Immediate,
         );
+        let part = subject.cut.take_uploaded() as f64 / subject.cut.index_bytes() as f64;
+        assert!(part < 0.05, "{part} of the index buffer");
+    }
+}
+
+#[test]
+fn a_flight_over_a_height_field_uploads_little() {
+    let Some(gpu) = gpu() else { return };
+    let field = HeightField::from_mesh(&samples::terrain(12_000)).unwrap();
+    let mut subject = Subject::new(gpu, Arc::new(Rtin::new(&field).into()));
+    let tolerance = |angle: f64| CutTolerance::Pixels {
+        camera: view_camera(on_circle(angle, 2.0), [1920, 1080]),
+        pixels: 1.0,
+    };
+    subject.follow(Focus::Everything, tolerance(0.0), Transition::Immediate);
+    assert!(subject.cut.take_uploaded() >= 12 * subject.cut.faces() as u64);
+    for frame in 1..=20 {
+        let angle = (0.1 * f64::from(frame)).to_radians();
+        subject.follow(Focus::Everything, tolerance(angle), Transition::Immediate);
         let part = subject.cut.take_uploaded() as f64 / subject.cut.index_bytes() as f64;
         assert!(part < 0.05, "{part} of the index buffer");
     }

@@ -6,12 +6,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 use meshlod::mesh::{Bounds, Labels};
+use meshlod::multires::{Focus, HeightField, HeightPrecision, Hierarchy};
 use meshlod::{
     BuildOptions, CompressOptions, OwnedPaint, ReadOptions, Scene, WriteOptions, build, compress,
     samples, write,
 };
-use meshlod_view::stage::{Coloring, Display, Loaded, Stage, Subject, SubjectId};
-use meshlod_view::{Canvas, Gpu, Renderer, TargetFormat};
+use meshlod_view::stage::{Coloring, Display, Loaded, LoadedContent, Stage, Subject, SubjectId};
+use meshlod_view::{Canvas, CutQuery, CutTolerance, Gpu, Renderer, TargetFormat};
 
 fn read(path: &Path) -> Loaded {
     Loaded::read(path, &ReadOptions::default()).unwrap()
@@ -66,6 +67,30 @@ fn files_of_every_kind_are_shown() {
         let [left, right] = covered(gpu, &renderer, &mut stage);
         assert!(left > 0.1 && right > 0.1, "{}: {left} {right}", loaded.name());
     }
+}
+
+#[test]
+fn a_height_field_is_shown_by_levels() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("terrain.mlod");
+    let terrain = samples::terrain(2_000);
+    let field = HeightField::from_mesh(&terrain).unwrap();
+    std::fs::write(&path, field.to_file(HeightPrecision::Exact).unwrap()).unwrap();
+    let loaded = read(&path);
+    assert!(loaded.mesh.faces.len() <= terrain.faces.len());
+    let LoadedContent::Levels(levels) = &loaded.content else { panic!("{loaded:?}") };
+    assert!(matches!(**levels, Hierarchy::RightTriangles(_)));
+    let Some(gpu) = common::gpu() else { return };
+    let renderer = Renderer::new(gpu, TargetFormat::CANVAS);
+    let mut stage = Stage::default();
+    let id = show(&renderer, &mut stage, &loaded);
+    assert!(covered(gpu, &renderer, &mut stage)[0] > 0.1);
+    let Some(Subject::Levels(subject)) = stage.subject_mut(id) else { unreachable!() };
+    let finest = subject.cut().faces();
+    subject.ask(CutQuery { focus: Focus::Everything, tolerance: CutTolerance::Faces(500) });
+    subject.finish().unwrap();
+    assert!(subject.cut().faces() <= 500 && finest > 500);
+    assert!(covered(gpu, &renderer, &mut stage)[0] > 0.1);
 }
 
 #[test]

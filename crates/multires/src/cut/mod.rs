@@ -6,6 +6,7 @@ mod each_triangle;
 mod front;
 mod inspect;
 mod locate;
+mod meter;
 mod refine;
 mod schedule;
 mod split_wedges;
@@ -17,10 +18,11 @@ pub use certificate::{Certificate, CertifyError, Flaw};
 pub use locate::Located;
 
 use std::collections::VecDeque;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use self::front::Front;
-use self::schedule::{Schedule, Span};
+pub(crate) use self::meter::Meter;
+pub(crate) use self::schedule::{Schedule, ScheduleEntry, Span};
 use crate::implicit::Implicit;
 use crate::level::Level;
 use crate::query::{Ball, Criterion, QueryKey};
@@ -45,9 +47,6 @@ pub struct Cut<'m> {
     to_merge: Vec<u32>,
     hysteresis: Option<f64>,
 }
-
-/// Number of inspections, at a few dozen nanoseconds each, between two readings of the clock.
-const INSPECTIONS_PER_CLOCK: usize = 256;
 
 /// Limits on the work that one call of [`Cut::update`] may do.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -251,38 +250,5 @@ impl<'f> Criteria<'f> {
     /// Returns true if an applied update may stay.
     fn may_stay(&self, ball: &Ball) -> bool {
         self.keep.as_ref().unwrap_or(&self.refine).requires(ball)
-    }
-}
-
-/// Counts the work done against the limits.
-struct Meter {
-    change: CutChange,
-    most: usize,
-    /// Times at which to stop everything and, before that, to stop inspecting.
-    until: Option<[Instant; 2]>,
-}
-
-impl Meter {
-    fn new(limits: &UpdateLimits) -> Self {
-        let now = Instant::now();
-        let until = limits.time.map(|time| [time, time / 2].map(|part| now.checked_add(part)));
-        Self {
-            change: CutChange::default(),
-            most: limits.changes.unwrap_or(usize::MAX),
-            until: until.and_then(|[all, inspecting]| Some([all?, inspecting?])),
-        }
-    }
-
-    fn may_change_more(&self) -> bool {
-        self.change.splits + self.change.merges < self.most
-            && self.until.is_none_or(|[until, _]| Instant::now() < until)
-    }
-
-    /// Counts an inspection and returns true if another one is allowed.
-    #[inline]
-    fn may_inspect_more(&mut self) -> bool {
-        self.change.inspected += 1;
-        !self.change.inspected.is_multiple_of(INSPECTIONS_PER_CLOCK)
-            || self.until.is_none_or(|[_, until]| Instant::now() < until)
     }
 }

@@ -27,35 +27,35 @@ const SLACK: f64 = 1e-12;
 /// An inspected update with all that is needed to confirm its decision, so that most inspections
 /// touch no other memory.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct ScheduleEntry {
-    pub(super) update: u32,
+pub(crate) struct ScheduleEntry {
+    pub(crate) update: u32,
     /// Node that the update splits.
-    pub(super) node: u32,
-    pub(super) center: [f32; 3],
+    pub(crate) node: u32,
+    pub(crate) center: [f32; 3],
     /// Distances between which the decision does not change.
-    pub(super) span: Span,
+    pub(crate) span: Span,
 }
 
 /// Open interval of distances, rounded inwards.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Span(f32, f32);
+pub(crate) struct Span(f32, f32);
 
 impl Span {
-    pub(super) const NEVER_TURNS: Self = Self(f32::NEG_INFINITY, f32::INFINITY);
+    pub(crate) const NEVER_TURNS: Self = Self(f32::NEG_INFINITY, f32::INFINITY);
 
     /// Distances less than the given one.
-    pub(super) fn below(distance: f64) -> Self {
+    pub(crate) fn below(distance: f64) -> Self {
         Self::NEVER_TURNS.and_below(distance)
     }
 
     /// Distances greater than the given one.
-    pub(super) fn above(distance: f64) -> Self {
+    pub(crate) fn above(distance: f64) -> Self {
         // `next_up` leaves infinity as it is.
         Self((distance as f32).next_up(), f32::INFINITY)
     }
 
     /// Restricts the interval to distances less than the given one.
-    pub(super) fn and_below(self, distance: f64) -> Self {
+    pub(crate) fn and_below(self, distance: f64) -> Self {
         let most = if distance.is_finite() { (distance as f32).next_down() } else { f32::INFINITY };
         Self(self.0, most)
     }
@@ -65,7 +65,7 @@ impl Span {
 ///
 /// Each octave of slack has its own step length and a ring buffer of lists, one per step.
 #[derive(Clone, Debug)]
-pub(super) struct Schedule {
+pub(crate) struct Schedule {
     viewpoint: Option<Viewpoint>,
     /// Length of the path so far.
     path: f64,
@@ -73,7 +73,7 @@ pub(super) struct Schedule {
     /// Number of entries in each octave.
     counts: [usize; OCTAVES],
     /// Entries due now.
-    pub(super) due: Vec<ScheduleEntry>,
+    pub(crate) due: Vec<ScheduleEntry>,
 }
 
 impl Default for Schedule {
@@ -86,7 +86,7 @@ impl Default for Schedule {
 impl Schedule {
     /// Moves the viewpoint and collects the entries that are due. Returns false if the query is of
     /// another kind, or the path too long, so that everything has to be inspected.
-    pub(super) fn follow(&mut self, viewpoint: Option<Viewpoint>) -> bool {
+    pub(crate) fn follow(&mut self, viewpoint: Option<Viewpoint>) -> bool {
         let last = std::mem::replace(&mut self.viewpoint, viewpoint);
         let (Some(last), Some(viewpoint)) = (last, viewpoint) else { return false };
         if last.slope != viewpoint.slope {
@@ -110,12 +110,12 @@ impl Schedule {
     }
 
     /// Makes the next query inspect everything.
-    pub(super) fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.viewpoint = None;
     }
 
     /// Removes all entries and reports their nodes.
-    pub(super) fn clear(&mut self, mut out: impl FnMut(u32)) {
+    pub(crate) fn clear(&mut self, mut out: impl FnMut(u32)) {
         self.path = 0.0;
         self.counts = [0; OCTAVES];
         let all = self.rings.iter_mut().chain([&mut self.due]);
@@ -124,7 +124,7 @@ impl Schedule {
 
     /// Schedules an update that has just been inspected. Returns false if its decision never
     /// changes.
-    pub(super) fn add(&mut self, entry: ScheduleEntry) -> bool {
+    pub(crate) fn add(&mut self, entry: ScheduleEntry) -> bool {
         let Some(slack) = self.slack(&entry) else { return false };
         if slack < f64::INFINITY {
             self.enter(entry, slack.max(0.0));
@@ -134,7 +134,7 @@ impl Schedule {
 
     /// Reschedules an update and returns true, if its decision cannot have changed.
     #[inline]
-    pub(super) fn add_again(&mut self, entry: ScheduleEntry) -> bool {
+    pub(crate) fn add_again(&mut self, entry: ScheduleEntry) -> bool {
         let slack = self.slack(&entry).filter(|slack| *slack > 0.0);
         if let Some(slack) = slack {
             self.enter(entry, slack);

@@ -3,6 +3,7 @@
 use super::archive::{Archive, Extract};
 use super::source::{Source, read_range};
 use super::{FileError, VERSION};
+use crate::hierarchy::Hierarchy;
 use crate::level::Level;
 use crate::query::{Focus, Query, Tolerance};
 use crate::rtin::{FieldBytesError, HeightField, HeightPrecision, Rtin, RtinExtractor};
@@ -78,6 +79,20 @@ impl<S: Source> ModelFile<S> {
 }
 
 impl<S: Source> ModelFile<S> {
+    /// Reads all levels that the file holds into memory, where a
+    /// [`HierarchyCut`](crate::HierarchyCut) can follow queries. Of a truncated file these are the
+    /// coarser ones.
+    ///
+    /// Contractions are certified: no cut has a crack. Errors of a height field are measured again.
+    /// # Errors
+    /// A damaged file.
+    pub fn read(&self) -> Result<Hierarchy, FileError> {
+        match self {
+            Self::Contractions(archive) => Ok(archive.read()?.0.into()),
+            Self::HeightField(field, _) => Ok(Rtin::new(field).into()),
+        }
+    }
+
     /// Extracts the mesh that satisfies a query, reading only what it needs. A height field has been
     /// read whole, and its parts count as chunks.
     /// # Errors

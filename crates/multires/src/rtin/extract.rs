@@ -138,12 +138,8 @@ impl Grid {
             false => self.number(at, triangle.apex, visit),
         };
         let Some(number) = number else { return visit.show(of.numbers) };
-        let [start, end] = triangle.ends;
-        let halves = [
-            (RightTriangle { apex: at, ends: [triangle.apex, start] }, [number, apex, first]),
-            (RightTriangle { apex: at, ends: [end, triangle.apex] }, [number, last, apex]),
-        ];
-        for (triangle, numbers) in halves {
+        let numbers = [[number, apex, first], [number, last, apex]];
+        for (triangle, numbers) in triangle.halves().into_iter().zip(numbers) {
             self.halve(Numbered { triangle, numbers }, depth - 1, is_inside, visit);
         }
     }
@@ -177,10 +173,8 @@ impl<F: FnMut(GridPoint, usize) -> bool> Visit for Writer<'_, F> {
     }
 
     #[inline]
-    fn show(&mut self, [apex, first, last]: [u32; 3]) {
-        let looks_down = self.model.placement.looks_down;
-        let corners = if looks_down { [apex, last, first] } else { [apex, first, last] };
-        self.level.faces.push(corners);
+    fn show(&mut self, corners: [u32; 3]) {
+        self.level.faces.push(self.model.turned(corners));
     }
 }
 

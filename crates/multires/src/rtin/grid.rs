@@ -4,6 +4,8 @@
 //! and each triangle is bisected from its right angle to the middle of its hypotenuse, down to half
 //! cells.
 
+use std::cmp::Ordering;
+
 /// A vertex of the grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct GridPoint {
@@ -129,6 +131,17 @@ impl Grid {
         apexes.into_iter().flatten().filter(move |&apex| grid.holds(apex))
     }
 
+    /// Returns the vertices of the field that depend on a vertex: those in the middle of the
+    /// hypotenuses of the triangles that it creates.
+    #[inline]
+    pub(crate) fn dependents(&self, place: GridPoint) -> impl Iterator<Item = GridPoint> + use<> {
+        let grid = *self;
+        let coarse = self.diamond(place).into_iter().flat_map(|diamond| diamond.coarse());
+        let created = coarse.flat_map(|triangle| triangle.halves());
+        let at = created.filter(|half| !half.is_finest()).map(|half| middle(half.ends));
+        at.filter(move |&at| grid.holds(at))
+    }
+
     /// Returns the number of bisections before a vertex is inserted, which must not be a corner of
     /// the square.
     pub(crate) fn depth_of(&self, GridPoint { column, row }: GridPoint) -> u32 {
@@ -199,6 +212,35 @@ impl RightTriangle {
     #[inline]
     pub(crate) fn corners(&self) -> [GridPoint; 3] {
         [self.apex, self.ends[0], self.ends[1]]
+    }
+
+    /// Returns the two halves, with their right angles in the middle of the hypotenuse.
+    #[inline]
+    pub(crate) fn halves(&self) -> [Self; 2] {
+        let (apex, [start, end]) = (middle(self.ends), self.ends);
+        [Self { apex, ends: [self.apex, start] }, Self { apex, ends: [end, self.apex] }]
+    }
+
+    /// Returns true if it is half a cell, which is not bisected.
+    #[inline]
+    pub(crate) fn is_finest(&self) -> bool {
+        (self.ends[0].column + self.ends[1].column) % 2 == 1
+    }
+
+    /// Returns the side of the right angle on which the hypotenuse lies, counter-clockwise from 0
+    /// to 3: the triangles that one vertex creates have different ones.
+    #[inline]
+    pub(crate) fn side(&self) -> usize {
+        let [a, b] = self.ends;
+        let right =
+            (u64::from(a.column) + u64::from(b.column)).cmp(&(2 * u64::from(self.apex.column)));
+        let above = (u64::from(a.row) + u64::from(b.row)).cmp(&(2 * u64::from(self.apex.row)));
+        match (right, above) {
+            (Ordering::Greater, Ordering::Equal | Ordering::Greater) => 0,
+            (Ordering::Less | Ordering::Equal, Ordering::Greater) => 1,
+            (Ordering::Less, _) => 2,
+            _ => 3,
+        }
     }
 
     /// Returns twice the signed area, in cells.

@@ -8,6 +8,7 @@ mod budget;
 mod build;
 mod bytes;
 mod certificate;
+mod cut;
 mod extract;
 mod field;
 mod grid;
@@ -16,6 +17,7 @@ mod recognize;
 #[cfg(test)]
 mod tests;
 
+use glam::Vec3;
 use meshlod_mesh::{Bounds, Frame};
 
 use crate::length16::Length16;
@@ -28,6 +30,7 @@ use self::grid::{Grid, GridPoint};
 
 pub use self::bytes::{FieldBytesError, HeightPrecision};
 pub use self::certificate::{RtinCertifyError, RtinFlaw};
+pub use self::cut::RtinCut;
 pub use self::extract::RtinExtractor;
 pub use self::field::{Fit, HeightField};
 pub use self::recognize::HeightFieldError;
@@ -131,6 +134,27 @@ impl Rtin {
     /// Returns the memory used by the model's vectors, in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.vertices[..]) + size_of_val(&self.radii[..])
+    }
+
+    /// Returns the position of a vertex, given as the number of its node, in model units.
+    ///
+    /// # Panics
+    /// `node` is not below the product of [`Rtin::size`].
+    pub fn position(&self, node: u32) -> [f64; 3] {
+        self.frame.model(Vec3::from(self.stored_position(node)))
+    }
+
+    /// Returns the position of a vertex in stored units, as levels have it.
+    fn stored_position(&self, node: u32) -> [f32; 3] {
+        let (place, vertex) = (self.grid.place(node as usize), &self.vertices[node as usize]);
+        self.placement.point(place, vertex.height.into()).as_vec3().into()
+    }
+
+    /// Returns the corners of a triangle counter-clockwise seen from outside, given as seen from
+    /// the side of greater heights.
+    #[inline]
+    fn turned(&self, [apex, first, last]: [u32; 3]) -> [u32; 3] {
+        if self.placement.looks_down { [apex, last, first] } else { [apex, first, last] }
     }
 
     /// Returns the ball of a vertex that holds the triangles it removes and the balls of its

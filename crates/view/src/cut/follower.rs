@@ -7,7 +7,7 @@ use std::thread;
 
 use meshlod::mesh::Bounds;
 use meshlod::multires::{
-    Cut, Focus, Implicit, Query, QueryError, Tolerance, UpdateLimits, ViewCamera,
+    Focus, Hierarchy, HierarchyCut, Query, QueryError, Tolerance, UpdateLimits, ViewCamera,
 };
 use thiserror::Error;
 
@@ -78,7 +78,7 @@ impl CutFollower {
     /// A step does at most `changes` splits and merges, which bounds what a frame uploads: a change
     /// touches about six slots of 12 bytes. `None` answers every query in one step, and so does a
     /// search for a number of faces in any case.
-    pub fn start(model: Arc<Implicit>, changes: Option<usize>) -> Self {
+    pub fn start(model: Arc<Hierarchy>, changes: Option<usize>) -> Self {
         let (queries, incoming) = channel();
         // One step at a time: the next one waits until this one has been taken.
         let (outgoing, answers) = sync_channel(0);
@@ -156,8 +156,8 @@ impl CutFollower {
 
 /// Cut that answers queries.
 struct Worker<'m> {
-    cut: Cut<'m>,
-    model: &'m Implicit,
+    cut: HierarchyCut<'m>,
+    model: &'m Hierarchy,
     changes: Option<usize>,
     /// True until the first step.
     is_first: bool,
@@ -173,9 +173,9 @@ struct Worker<'m> {
 const ROUNDS: usize = 8;
 
 impl<'m> Worker<'m> {
-    fn new(model: &'m Implicit, changes: Option<usize>) -> Self {
+    fn new(model: &'m Hierarchy, changes: Option<usize>) -> Self {
         Self {
-            cut: Cut::new(model),
+            cut: model.cut(),
             error: None,
             model,
             changes,
@@ -283,7 +283,7 @@ impl<'m> Worker<'m> {
     }
 }
 
-fn diagonal(model: &Implicit) -> f64 {
+fn diagonal(model: &Hierarchy) -> f64 {
     let places: Vec<_> = (0..model.node_count() as u32).map(|node| model.position(node)).collect();
     Bounds::of(&places).diagonal()
 }
@@ -292,14 +292,19 @@ fn diagonal(model: &Implicit) -> f64 {
 mod tests {
     use std::collections::HashMap;
 
-    use meshlod::multires::{Forest, Model};
+    use meshlod::multires::{Forest, HeightField, Model, Rtin};
     use meshlod::samples;
 
     use super::*;
 
-    fn model() -> Arc<Implicit> {
+    fn model() -> Arc<Hierarchy> {
         let forest = Forest::new(&samples::torus(3_000), &Default::default()).unwrap();
-        Arc::new(Model::new(&forest).unwrap().implicit().clone())
+        Arc::new(Model::new(&forest).unwrap().implicit().clone().into())
+    }
+
+    fn field() -> Arc<Hierarchy> {
+        let field = HeightField::from_mesh(&samples::terrain(3_000)).unwrap();
+        Arc::new(Rtin::new(&field).into())
     }
 
     fn uniform(error: f64) -> CutQuery {
@@ -330,13 +335,14 @@ mod tests {
 
     #[test]
     fn patches_add_up_to_the_cut() {
-        let model = model();
-        for changes in [None, Some(40)] {
+        let models = [model(), field()];
+        for (model, changes) in models.iter().flat_map(|m| [None, Some(40)].map(|c| (m, c))) {
             let mut follower = CutFollower::start(model.clone(), changes);
             let mut slots = HashMap::new();
             for error in [1.0, 0.01, 0.0, 0.002, 0.1] {
                 follow(&mut follower, uniform(error), &mut slots);
-                let cut = Cut::at(&model, &Query::uniform(error)).unwrap();
+                let mut cut = model.cut();
+                cut.update(&Query::uniform(error), &UpdateLimits::default()).unwrap();
                 let sorted = |all: Vec<[u32; 3]>| {
                     let mut all: Vec<_> = all.into_iter().map(rotated).collect();
                     all.sort_unstable();
@@ -379,7 +385,7 @@ mod tests {
     #[test]
     fn a_step_towards_an_earlier_query_is_not_the_answer() {
         let mut follower = CutFollower::start(model(), None);
-        let finest = Cut::new(&model()).face_count();
+        let finest = model().cut().face_count();
         follower.ask(uniform(0.0));
         // The worker may be done with it, and wait to hand it over.
         std::thread::sleep(std::time::Duration::from_millis(50));

@@ -4,7 +4,7 @@ mod dirty;
 mod follower;
 mod vertices;
 
-use meshlod::multires::Implicit;
+use meshlod::multires::Hierarchy;
 use wgpu::{BindGroup, Buffer, BufferDescriptor, BufferUsages, IndexFormat, RenderPass};
 
 use self::dirty::DirtyRanges;
@@ -60,17 +60,17 @@ pub enum Transition {
 const EMPTY: [u32; 3] = [0; 3];
 
 impl GpuCut {
-    /// Uploads the vertices of a model, with room for the triangles of its finest level.
+    /// Uploads the vertices of a model, with room for the triangles of any cut.
     ///
     /// # Errors
     /// A model beyond the limits of the GPU.
     pub fn new(
         renderer: &Renderer,
-        model: &Implicit,
+        model: &Hierarchy,
         vertices: &CutVertices,
     ) -> Result<Self, ViewError> {
         let gpu = renderer.gpu();
-        let index_bytes = 12 * model.full_faces().max(model.base_faces()) as u64;
+        let index_bytes = 12 * model.most_faces() as u64;
         gpu.check_buffer("the vertices of all levels", 20 * vertices.attributes.len() as u64)?;
         gpu.check_buffer("the faces of the finest level", index_bytes)?;
         let usage = BufferUsages::VERTEX | BufferUsages::STORAGE;

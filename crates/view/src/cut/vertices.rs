@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use meshlod::mesh::Bounds;
-use meshlod::multires::{Cut, Implicit, Query, QueryError};
+use meshlod::multires::{Hierarchy, Query, QueryError, UpdateLimits};
 
 use crate::mesh::{VertexAttributes, fractions};
 
@@ -22,7 +22,7 @@ impl CutVertices {
     ///
     /// # Errors
     /// Never for a certified model.
-    pub fn new(model: &Implicit) -> Result<Self, QueryError> {
+    pub fn new(model: &Hierarchy) -> Result<Self, QueryError> {
         let count = model.node_count() as u32;
         let places: Vec<DVec3> = (0..count).map(|node| model.position(node).into()).collect();
         let bounds = Bounds::of(places.iter().map(|place| place.as_ref()));
@@ -51,8 +51,9 @@ impl CutVertices {
 }
 
 /// Sums the normals of all faces of the finest level that a node stands for.
-fn normals(model: &Implicit, places: &[DVec3]) -> Result<Vec<DVec3>, QueryError> {
-    let finest = Cut::at(model, &Query::uniform(0.0))?;
+fn normals(model: &Hierarchy, places: &[DVec3]) -> Result<Vec<DVec3>, QueryError> {
+    let mut finest = model.cut();
+    finest.update(&Query::uniform(0.0), &UpdateLimits::default())?;
     let mut sums = vec![DVec3::ZERO; places.len()];
     for (_, nodes) in finest.triangles() {
         let [a, b, c] = nodes.map(|node| places[node as usize]);

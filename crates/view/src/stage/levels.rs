@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use meshlod::mesh::Bounds;
-use meshlod::multires::{Focus, Implicit};
+use meshlod::multires::{Focus, Hierarchy};
 use wgpu::RenderPass;
 
 use super::Display;
@@ -46,7 +46,7 @@ impl LevelsSubject {
     ///
     /// # Errors
     /// A model beyond the limits of the GPU.
-    pub fn new(renderer: &Renderer, model: &Arc<Implicit>) -> Result<Self, ViewError> {
+    pub fn new(renderer: &Renderer, model: &Arc<Hierarchy>) -> Result<Self, ViewError> {
         let vertices = CutVertices::new(model).map_err(CutError::from)?;
         let mut this = Self {
             cut: GpuCut::new(renderer, model, &vertices)?,

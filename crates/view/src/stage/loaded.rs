@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use meshlod::codec::{Compressed, Malformed};
 use meshlod::mesh::Bounds;
-use meshlod::multires::{Cut, FileError, Implicit, ModelFile, Query, Rtin};
+use meshlod::multires::{FileError, Hierarchy, ModelFile, Query, UpdateLimits};
 use meshlod::picture::Normals;
 use meshlod::{
     IoError, Mesh, OwnedPaint, ReadOptions, decompress_bytes, materials_of, normals_of,
@@ -46,10 +46,8 @@ pub struct Loaded {
 pub enum LoadedContent {
     /// A mesh file.
     Mesh,
-    /// Levels of detail: a `.mlod` file built from a mesh.
-    Levels(Arc<Implicit>),
-    /// Levels of detail of a height field.
-    HeightField(Arc<Rtin>),
+    /// Levels of detail of a mesh or a height field: a `.mlod` file.
+    Levels(Arc<Hierarchy>),
     /// Compressed geometry that can be drawn from directly: `.mlq`.
     Compressed(Arc<Compressed>),
     /// Compressed geometry to be sent: `.mlz`.
@@ -88,8 +86,10 @@ impl LoadedContent {
     pub fn name(&self) -> &'static str {
         match self {
             Self::Mesh => "Mesh",
-            Self::Levels(_) => "Levels of detail",
-            Self::HeightField(_) => "Height field",
+            Self::Levels(levels) => match **levels {
+                Hierarchy::Contractions(_) => "Levels of detail",
+                Hierarchy::RightTriangles(_) => "Levels of a height field",
+            },
             Self::Compressed(_) => "Compressed mesh",
             Self::Transport => "Compressed mesh, for transport",
         }
@@ -172,19 +172,11 @@ fn compressed(path: &Path) -> Result<Loaded, LoadError> {
 fn levels(path: &Path) -> Result<Loaded, LoadError> {
     let damaged = |source| LoadError::Levels { path: path.to_owned(), source };
     let file = File::open(path).map_err(|error| IoError::system(path, error))?;
-    let finest = Query::uniform(0.0);
-    let (mesh, content) = match ModelFile::open(file).map_err(damaged)? {
-        ModelFile::Contractions(archive) => {
-            let (model, _) = archive.read().map_err(damaged)?;
-            let cut = Cut::at(&model, &finest).map_err(|error| damaged(error.into()))?;
-            (cut.level().mesh(), LoadedContent::Levels(Arc::new(model)))
-        }
-        ModelFile::HeightField(field, _) => {
-            let model = Rtin::new(&field);
-            let level = model.level(&finest).map_err(|error| damaged(error.into()))?;
-            (level.mesh(), LoadedContent::HeightField(Arc::new(model)))
-        }
-    };
+    let levels = ModelFile::open(file).and_then(|file| file.read()).map_err(damaged)?;
+    let mut cut = levels.cut();
+    let finest = cut.update(&Query::uniform(0.0), &UpdateLimits::default());
+    finest.map_err(|error| damaged(error.into()))?;
+    let (mesh, content) = (cut.level().mesh(), LoadedContent::Levels(Arc::new(levels)));
     Ok(Loaded::of(path, mesh, OwnedPaint::CLAY, content))
 }
 

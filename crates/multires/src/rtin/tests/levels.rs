@@ -11,7 +11,7 @@ use crate::{Level, Query, ViewCamera};
 
 /// Checks that a level is a disc without folds, exactly over the rectangle of the field: of the
 /// same area, with no open edge but along its sides. So there are no T-junctions.
-fn assert_covers(level: &Level, model: &Rtin, looks_down: bool) {
+pub(super) fn assert_covers(level: &Level, model: &Rtin, looks_down: bool) {
     let size = model.size();
     let place = |node: u32| [node % size[0], node / size[0]].map(i64::from);
     let mut area = 0;

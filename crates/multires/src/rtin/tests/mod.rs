@@ -1,5 +1,6 @@
 //! Properties of the RTIN.
 
+mod cuts;
 mod files;
 mod levels;
 mod meshes;

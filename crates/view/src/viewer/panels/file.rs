@@ -1,6 +1,7 @@
 //! Contents of the file.
 
 use egui::Ui;
+use meshlod::multires::Hierarchy;
 
 use super::{bytes, grouped, length, row, section};
 use crate::stage::{Loaded, LoadedContent};
@@ -30,10 +31,16 @@ fn facts(loaded: &Loaded, ui: &mut Ui) {
             row(ui, "Patches", grouped(compressed.patches()));
             row(ui, "Bits per vertex", format!("{bits:.1}"));
         }
-        LoadedContent::Levels(model) => {
-            row(ui, "Coarsest level", format!("{} faces", grouped(model.base_faces())));
-            row(ui, "Updates", grouped(model.update_count()));
-        }
+        LoadedContent::Levels(levels) => match &**levels {
+            Hierarchy::Contractions(model) => {
+                row(ui, "Coarsest level", format!("{} faces", grouped(model.base_faces())));
+                row(ui, "Updates", grouped(model.update_count()));
+            }
+            Hierarchy::RightTriangles(model) => {
+                let [columns, rows] = model.size().map(|count| grouped(count as usize));
+                row(ui, "Grid", format!("{columns} × {rows}"));
+            }
+        },
         _ => {}
     }
     if loaded.file_bytes > 0 {
