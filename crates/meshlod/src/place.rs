@@ -1,8 +1,9 @@
 //! Bounding box of a scene in world space, and scale of its instances.
 
 use glam::{DMat3, DMat4, DVec3};
-use meshlod_io::Scene;
+use meshlod_io::{MeshInstance, Scene};
 use meshlod_mesh::Bounds;
+use meshlod_simplify::Digits;
 
 /// Returns the bounding box of a scene in world space, without vertices that no face uses.
 ///
@@ -23,6 +24,29 @@ pub fn world_bounds(scene: &Scene) -> Bounds {
     }
     bounds
 }
+
+/// Returns how far writing a level of a scene with these digits may move a point, at most, in world
+/// units: by half a unit in the last place of its largest coordinate along each axis.
+///
+/// Covers coordinates in the space of a mesh, as glTF has them, and in world space.
+pub fn rounding_of_level(scene: &Scene, digits: Digits) -> f64 {
+    if digits == Digits::F64 {
+        return 0.0;
+    }
+    let reach = |bounds: &Bounds| {
+        let of_each = bounds.min.iter().chain(&bounds.max).filter(|x| x.is_finite());
+        of_each.fold(0.0, |most: f64, x| most.max(x.abs()))
+    };
+    let own = |place: &MeshInstance| {
+        length_scale(&place.transform) * reach(&scene.meshes[place.mesh].mesh.bounds())
+    };
+    let local = scene.instances().iter().map(own).fold(0.0, f64::max);
+    let half_ulp = 0.5 * f64::from(f32::EPSILON);
+    BEYOND * 3f64.sqrt() * half_ulp * local.max(reach(&world_bounds(scene)))
+}
+
+/// Factor by which vertices of a level may lie farther out than those of its input.
+const BEYOND: f64 = 1.1;
 
 /// Returns the largest factor by which a transform scales a length: its largest singular value.
 ///

@@ -21,6 +21,7 @@ use crate::kernel::components::Components;
 use crate::kernel::contraction_log::{Logged, merge};
 use crate::kernel::mesh::one_ring::{GHOST, LongRing, VertexStore, Vertices};
 use crate::kernel::mesh::vertex::VertexFlags;
+use crate::kernel::retrace::Retrace;
 use crate::kernel::schedule::bucket_queue::{BucketQueue, last_bucket};
 use crate::kernel::schedule::deferral::Deferral;
 use crate::kernel::volume::{VolumeDebts, VolumeTally};
@@ -92,6 +93,8 @@ pub(crate) struct Partition<A> {
     long_of_copies: Vec<LongRing>,
     /// Steps done so far, if an observer wants them.
     pub(crate) log: Option<Vec<Logged>>,
+    /// True if an observer also wants the values of attributes.
+    pub(crate) records_values: bool,
     parts: Vec<PartState>,
 }
 
@@ -134,6 +137,7 @@ impl<A: AttributeModel> Partition<A> {
             whole: Whole::default(),
             long_of_copies: Vec::new(),
             log: None,
+            records_values: false,
         };
         partition.hand_out(long);
         partition.cost_all_vertices();
@@ -232,16 +236,40 @@ impl<A: AttributeModel> Partition<A> {
             }
             gone(before - live);
         }
-        let done: Vec<_> =
-            loops.iter().map(|e| (e.error, e.contractions, e.refusals, e.volume)).collect();
-        for (error, contractions, refusals, volume) in done {
-            self.contractions += contractions;
-            self.error = self.error.max(error);
-            self.refusals += refusals;
-            self.volume.merge(&volume);
-        }
+        let done: Vec<Done> = loops.iter().map(Done::of).collect();
+        done.iter().for_each(|done| self.add(done));
         self.live_faces = live;
         self.log = log;
+    }
+
+    /// Repeats the steps of another run without some of them, on the unchanged surface.
+    pub(crate) fn retrace(&mut self, retrace: &Retrace) {
+        self.unite();
+        let (live_faces, log) = (self.live_faces, self.log.take());
+        let mut loops = self.loops();
+        let Some((collapse_loop, _)) = loops.first_mut() else { return };
+        (collapse_loop.live_faces, collapse_loop.log) = (live_faces, log);
+        collapse_loop.retrace(retrace);
+        let (done, live_faces) = (Done::of(collapse_loop), collapse_loop.live_faces);
+        let log = collapse_loop.log.take();
+        self.add(&done);
+        (self.live_faces, self.log) = (live_faces, log);
+        self.refusals += retrace.refusals;
+        self.parts.iter_mut().for_each(|part| part.deferral.merge(&retrace.deferral));
+    }
+
+    /// Returns what is usual at the front, joined over all parts.
+    pub(crate) fn deferral(&self) -> Deferral {
+        let mut all = Deferral::default();
+        self.parts.iter().for_each(|part| all.merge(&part.deferral));
+        all
+    }
+
+    fn add(&mut self, done: &Done) {
+        self.contractions += done.contractions;
+        self.error = self.error.max(done.error);
+        self.refusals += done.refusals;
+        self.volume.merge(&done.volume);
     }
 
     /// Merges groups of parts. Vertices that need not wait any more are queued.
@@ -280,7 +308,7 @@ impl<A: AttributeModel> Partition<A> {
     /// Returns a loop for each part, with the part's waiting vertices.
     fn loops(&mut self) -> Vec<(CollapseLoop<'_, A>, &mut Vec<u32>)> {
         let first_copy = self.store.own() as u32;
-        let (error, room) = (self.error, self.whole.room);
+        let (error, room, records_values) = (self.error, self.whole.room, self.records_values);
         let VertexStore { all, copied, split, protection, .. } = &mut self.store;
         let mut rest = &mut all[..];
         let mut loops = Vec::with_capacity(self.parts.len());
@@ -294,6 +322,7 @@ impl<A: AttributeModel> Partition<A> {
             let mut collapse_loop =
                 CollapseLoop::new(vertices, model, queue, edge_ring, (deferral, debts), room);
             collapse_loop.error = error;
+            collapse_loop.records_values = records_values;
             loops.push((collapse_loop, waiting));
         }
         if let [(collapse_loop, _)] = &mut loops[..] {
@@ -337,6 +366,21 @@ fn cut(store: &VertexStore, count: usize) -> Vec<PartState> {
 fn has_far_neighbours(vertices: &Vertices, v: u32) -> bool {
     let ids = vertices.ids();
     vertices.neighbours(v).iter().any(|w| *w != GHOST && !ids.contains(w))
+}
+
+/// What a loop has done.
+struct Done {
+    error: f64,
+    contractions: usize,
+    refusals: Refusals,
+    volume: VolumeTally,
+}
+
+impl Done {
+    fn of<A: AttributeModel>(of: &CollapseLoop<'_, A>) -> Self {
+        let &CollapseLoop { error, contractions, refusals, volume, .. } = of;
+        Self { error, contractions, refusals, volume }
+    }
 }
 
 /// Limit up to which all parts go before any goes further.
