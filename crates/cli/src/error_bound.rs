@@ -14,6 +14,9 @@ const UNSEEN: f64 = 0.005;
 /// Largest part of the error that is kept free for rounding.
 const MOST_ROOM: f64 = 0.5;
 
+/// Multiple of the rounding that is kept free where the volume is restored.
+const MOVES: f64 = 5.0;
+
 /// Relative difference of two lengths that counts as none: the rounding of their computation.
 const EQUAL: f64 = 1e-9;
 
@@ -23,9 +26,11 @@ pub struct AskedError {
     asked: f64,
     /// Largest distance by which writing moves a point.
     rounding: f64,
+    /// Distance kept free for rounding, and for moves that restore the volume.
+    room: f64,
 }
 
-/// What holds of an error that was asked for, in world units.
+/// An error that was asked for with what is proved of it, in world units.
 #[derive(Clone, Copy)]
 pub struct KeptError {
     asked: f64,
@@ -37,26 +42,30 @@ pub struct KeptError {
 }
 
 impl AskedError {
-    pub fn new(asked: f64, scene: &Scene, digits: Digits) -> Self {
-        Self { asked, rounding: rounding_of_level(scene, digits) }
+    /// Restoring the volume moves vertices too, mostly by about twice the rounding.
+    pub fn new(asked: f64, scene: &Scene, digits: Digits, is_volume_restored: bool) -> Self {
+        let rounding = rounding_of_level(scene, digits);
+        let room = if is_volume_restored { MOVES * rounding } else { rounding };
+        Self { asked, rounding, room }
     }
 
     /// Returns whether rounding takes more of the error than goes unseen.
     pub fn needs_precision(&self) -> bool {
-        self.rounding > UNSEEN * self.asked
+        self.room > UNSEEN * self.asked
     }
 
     /// Returns the target that leaves room for rounding.
     pub fn target(&self) -> Target {
-        Target::Error(self.asked - self.rounding.min(MOST_ROOM * self.asked))
+        Target::Error(self.asked - self.room.min(MOST_ROOM * self.asked))
     }
 
-    /// Returns what the proof in a report says of the level as it is written.
-    pub fn by_report(&self, report: &Report) -> KeptError {
-        let within = |proved: f64| (proved + self.rounding).max(self.asked);
+    /// Returns what the proof in a report says of the level as it is written, after its vertices
+    /// have moved by at most `moved`.
+    pub fn by_report(&self, report: &Report, moved: f64) -> KeptError {
+        let changed = self.rounding + moved;
         let proved = report.proof.map(|proof| match proof.proved <= proof.asked {
-            true => within(proof.asked),
-            false => proof.proved + self.rounding,
+            true => (proof.asked + changed).max(self.asked),
+            false => proof.proved + changed,
         });
         let rounds = report.proof.map_or(0, |proof| proof.rounds);
         KeptError { asked: self.asked, proved, rounds, rounding: self.rounding }
@@ -68,14 +77,13 @@ impl AskedError {
         original: Option<&PreparedSurface<'_>>,
         scene: &Scene,
         level: &[Mesh],
-        rounds: usize,
     ) -> KeptError {
         let level = distance::surface_of(scene, level);
         let proved = original.zip(PreparedSurface::new(&level).ok()).map(|(original, level)| {
             let options = CertifiedOptions::default();
             certified_surface_distance(original, &level, &options).symmetric().upper + self.rounding
         });
-        KeptError { asked: self.asked, proved, rounds, rounding: self.rounding }
+        KeptError { asked: self.asked, proved, rounds: 0, rounding: self.rounding }
     }
 }
 

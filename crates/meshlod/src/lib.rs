@@ -267,7 +267,7 @@ pub use meshlod_io::{Format, IoError, ReadOptions, Scene, WriteOptions, read, wr
 pub use meshlod_mesh::{Borders, Mesh};
 pub use meshlod_simplify::{Method, Options, Report, SimplifyError, Target, Topology};
 pub use model_materials::{BadMaterials, pack_materials, scene_with_materials, unpack_materials};
-pub use place::{rounding_of_level, world_bounds};
+pub use place::{moved_at_most, rounding_of_level, world_bounds};
 pub use repair::repair_scene;
 pub use scene::{SceneError, SceneSimplifier, simplify_scene};
 pub use strips::scene_strips;

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DMat4, DVec3};
 use meshlod_io::{MeshInstance, Scene};
-use meshlod_mesh::Bounds;
+use meshlod_mesh::{Bounds, Mesh};
 use meshlod_simplify::Digits;
 
 /// Returns the bounding box of a scene in world space, without vertices that no face uses.
@@ -43,6 +43,18 @@ pub fn rounding_of_level(scene: &Scene, digits: Digits) -> f64 {
     let local = scene.instances().iter().map(own).fold(0.0, f64::max);
     let half_ulp = 0.5 * f64::from(f32::EPSILON);
     BEYOND * 3f64.sqrt() * half_ulp * local.max(reach(&world_bounds(scene)))
+}
+
+/// Returns the largest distance, in world units, by which a vertex differs between two levels of a
+/// scene that have the same vertices: no point of one is farther from the other.
+pub fn moved_at_most(scene: &Scene, before: &[Mesh], after: &[Mesh]) -> f64 {
+    let moved = |place: &MeshInstance| {
+        let [before, after] = [before, after].map(|level| &level[place.mesh].positions);
+        let apart = |(a, b): (&[f64; 3], &[f64; 3])| DVec3::from(*a).distance(DVec3::from(*b));
+        let most = before.iter().zip(after).map(apart).fold(0.0, f64::max);
+        length_scale(&place.transform) * most
+    };
+    scene.instances().iter().map(moved).fold(0.0, f64::max)
 }
 
 /// Factor by which vertices of a level may lie farther out than those of its input.

@@ -42,7 +42,7 @@ struct Part<'s> {
     /// Option `vanish_below`, in units of the mesh.
     vanish_below: Option<f64>,
     simplifier: Simplifier<'s>,
-    /// What is proved of the distance from the mesh, if the last target was an error.
+    /// Proof of the distance from the mesh, if the last target was an error.
     proof: Option<ErrorProof>,
     /// True if all targets so far were errors, so that a run may be repeated.
     is_bounded: bool,

@@ -411,7 +411,7 @@ pub struct Report {
     /// that the kernel has removed counts with its distance from the rest of the input, and one that
     /// the policy engine has removed with its size.
     pub error_estimate: f64,
-    /// What is proved about the distance from the input; `None` if nothing is. [`Simplifier`]
+    /// Proof of the distance from the input; `None` if nothing is proved. [`Simplifier`]
     /// proves nothing; the facade `meshlod` does for every [`Target::Error`].
     ///
     /// [`Simplifier`]: crate::Simplifier

@@ -5,7 +5,9 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use meshlod::simplify::AttributeWeights;
-use meshlod::{Format, Method, Options, Report, Scene, Target, digits_of, world_bounds};
+use meshlod::{
+    Format, Mesh, Method, Options, Report, Scene, Target, digits_of, moved_at_most, world_bounds,
+};
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
@@ -194,11 +196,14 @@ impl Simplify {
         let ready = ReadyScene::new(&scene, &options, borders, &self.input, session)?;
         let task = Task { scene: &scene, ready, target, asked, options };
         let (mut done, mut time) = self.plain_run(&task, session)?;
+        let before = self.volume.exact_volume.then(|| done.meshes.clone());
         let start = Instant::now();
         let digits = digits_of(format, self.writing.options().precision);
         let residual = self.volume.restore(&task.ready.scene, &mut done.meshes, digits, session);
         time += start.elapsed();
-        let kept = self.measure(&task, &mut done, session)?;
+        let moved = |before: Vec<Mesh>| moved_at_most(&scene, &before, &done.meshes);
+        let moved = before.map_or(0.0, moved);
+        let kept = self.measure(&task, &mut done, moved, session)?;
         self.method.warn(&done.report, &task.ready, session);
         if let Some(kept) = kept.filter(|kept| !kept.is_held()) {
             done.report.reached = false;
@@ -257,7 +262,7 @@ impl Simplify {
         let Target::Error(error) = target else { return None };
         let with = |writing: &WriteArgs| {
             let digits = digits_of(format, writing.options().precision);
-            AskedError::new(error, scene, digits)
+            AskedError::new(error, scene, digits, self.volume.exact_volume)
         };
         if with(&self.writing).needs_precision() {
             self.writing = self.writing.precise();
@@ -266,11 +271,12 @@ impl Simplify {
     }
 
     /// Measures the result if that was asked for. Returns what holds of an error that was asked
-    /// for: by the proof of the run, or else by a measurement.
+    /// for: by the proof of the run before vertices moved by up to `moved`, or by a measurement.
     fn measure(
         &self,
         task: &Task<'_>,
         done: &mut Simplified,
+        moved: f64,
         session: &Session,
     ) -> Result<Option<KeptError>, Failure> {
         if task.asked.is_none() && !self.measured {
@@ -284,13 +290,9 @@ impl Simplify {
         };
         done.measured = simplify_run::measure(surface.as_ref(), task.scene, &done.meshes, session);
         let Some(asked) = task.asked else { return Ok(None) };
-        let by_report = asked.by_report(&done.report);
         Ok(Some(match done.report.proof {
-            Some(_) if !self.volume.exact_volume => by_report,
-            proof => {
-                let rounds = proof.map_or(0, |proof| proof.rounds);
-                asked.by_measuring(surface.as_ref(), task.scene, &done.meshes, rounds)
-            }
+            Some(_) => asked.by_report(&done.report, moved),
+            None => asked.by_measuring(surface.as_ref(), task.scene, &done.meshes),
         }))
     }
 

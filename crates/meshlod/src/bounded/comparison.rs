@@ -17,7 +17,7 @@ const SLACK: f64 = 0.01;
 /// percent of the diagonal and large flats are divided into other faces, more would be needed.
 const MOST_SPLITS: usize = 32_000_000;
 
-/// What the comparison of a level with the input has shown.
+/// Result of the comparison of a level with the input.
 pub(super) enum Outcome {
     /// No point of either is farther from the other than allowed.
     Near,
