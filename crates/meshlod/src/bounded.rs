@@ -10,7 +10,9 @@ mod comparison;
 
 use meshlod_measure::{CertifiedOptions, PreparedSurface, certified_surface_distance};
 use meshlod_mesh::Mesh;
-use meshlod_simplify::{ErrorProof, Excess, Observe, Report, Simplifier, SimplifyError, Target};
+use meshlod_simplify::{
+    ErrorProof, Excess, ExcessFace, Method, Observe, Report, Simplifier, SimplifyError, Target,
+};
 
 use crate::bounded::comparison::{Comparison, Outcome};
 use crate::conditioned::ConditionedMesh;
@@ -20,6 +22,15 @@ const MOST_MENDS: usize = 12;
 
 /// Largest number of times that the whole run is repeated.
 const MOST_RUNS: usize = 16;
+
+/// Part of a level's faces, one in this many, that are too far away if its bound is probed too
+/// coarsely everywhere, as where long thin faces follow a crease. Mending all these places costs more
+/// faces than a run with a bound lower by [`SLIGHTLY`]: fandisk-32k within .3 %, a fifth of whose
+/// faces are too far away, has 670 faces mended, and 534 with a bound of .95.
+const MANY: usize = 10;
+
+/// Factor by which the bound is lowered if many faces are too far away.
+const SLIGHTLY: f64 = 0.95;
 
 /// Part of the bound that would just have done, for a whole run with a lower bound.
 const CAUTION: f64 = 0.97;
@@ -58,11 +69,13 @@ pub(crate) fn run_within<'m>(
             }
         };
         rounds += 1;
-        if mends < MOST_MENDS && simplifier.take_back(&found) {
+        let is_first = mends == 0 && runs == 1 && again.is_some();
+        let are_many = is_first && can_take_back(&report) && are_many(&found, &level);
+        if !are_many && mends < MOST_MENDS && simplifier.take_back(&found) {
             mends += 1;
         } else if let Some((mesh, vanish_below)) = again.filter(|_| runs < MOST_RUNS) {
             (runs, mends) = (runs + 1, 0);
-            bound *= lower(&found);
+            bound *= if are_many { SLIGHTLY } else { lower(&found) };
             *simplifier = mesh.simplifier(vanish_below)?;
             comparison = Comparison::new(whole, &input, error);
         } else {
@@ -71,6 +84,16 @@ pub(crate) fn run_within<'m>(
         }
         report = simplifier.run(Target::Error(bound), &mut ())?;
     }
+}
+
+fn can_take_back(report: &Report) -> bool {
+    matches!(report.method, Method::LindstromTurk | Method::Qem)
+}
+
+/// Returns true if many faces of a level are too far from the input.
+fn are_many(found: &[Excess], level: &Mesh) -> bool {
+    let of_level = |excess: &&Excess| matches!(excess.face, ExcessFace::OfLevel(_));
+    found.iter().filter(of_level).count() * MANY > level.faces.len()
 }
 
 fn with_proof(report: Report, [asked, proved]: [f64; 2], rounds: usize) -> Report {
