@@ -116,6 +116,26 @@ mod tests {
     }
 
     #[test]
+    fn rounding_covers_what_single_precision_moves() {
+        let mut scene = Scene::from_mesh("torus", samples::torus(500));
+        let place =
+            DMat4::from_translation(DVec3::splat(1e3)) * DMat4::from_scale(DVec3::splat(3.0));
+        scene.nodes[0].transform = place.to_cols_array_2d();
+        let before = vec![scene.meshes[0].mesh.clone()];
+        let mut after = before.clone();
+        after[0].positions.as_flattened_mut().iter_mut().for_each(|x| *x = f64::from(*x as f32));
+        let moved = moved_at_most(&scene, &before, &after);
+        assert!(moved > 0.0 && moved <= rounding_of_level(&scene, Digits::F32), "{moved}");
+        let mut in_world = 0.0f64;
+        for position in scene.flatten().positions {
+            let short = position.map(|x| f64::from(x as f32));
+            in_world = in_world.max(DVec3::from(short).distance(position.into()));
+        }
+        assert!(in_world > moved && in_world <= rounding_of_level(&scene, Digits::F32));
+        assert_eq!(rounding_of_level(&scene, Digits::F64), 0.0);
+    }
+
+    #[test]
     fn odd_transforms_give_no_nan() {
         assert_eq!(scale(DMat4::ZERO), 0.0);
         assert_eq!(scale(DMat4::from_scale(DVec3::splat(f64::INFINITY))), f64::INFINITY);

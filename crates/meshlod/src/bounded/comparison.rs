@@ -151,3 +151,56 @@ fn mesh_of(faces: &[Corners]) -> Mesh {
     let face = |i: usize| [3 * i, 3 * i + 1, 3 * i + 2].map(VertexId::new);
     Mesh::new(positions, (0..faces.len()).map(face).collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use meshlod_samples as samples;
+    use meshlod_simplify::{Options, Simplifier, Target};
+
+    use super::*;
+
+    /// Faces that are too far away, by surface and number.
+    fn far(outcome: Outcome) -> Vec<(bool, FaceId)> {
+        let Outcome::Far(found) = outcome else { return Vec::new() };
+        let mut faces: Vec<_> = found
+            .iter()
+            .map(|excess| match excess.face {
+                ExcessFace::OfLevel(face) => (true, face),
+                ExcessFace::OfInput(face) => (false, face),
+            })
+            .collect();
+        faces.sort_unstable();
+        faces
+    }
+
+    #[test]
+    fn a_second_level_is_compared_as_if_it_were_the_first() {
+        let mesh = samples::knot(4_000);
+        let input = PreparedSurface::new(&mesh).unwrap();
+        let error = 0.003 * mesh.bounds().diagonal();
+        let mut simplifier = Simplifier::new(&mesh, &Options::default()).unwrap();
+        let mut levels = [0.9, 0.25, 0.2, 0.15].map(|ratio| {
+            simplifier.run(Target::Ratio(ratio), &mut ()).unwrap();
+            simplifier.level()
+        });
+        for back in [false, true] {
+            let mut comparison = Comparison::new(&mesh, &input, error);
+            for level in &levels {
+                let alone = far(Comparison::new(&mesh, &input, error).with(level));
+                assert_eq!(far(comparison.with(level)), alone, "{back}");
+            }
+            levels.reverse();
+        }
+        let coarsest = far(Comparison::new(&mesh, &input, error).with(&levels[3]));
+        assert!(coarsest.len() > 10 && coarsest.len() < mesh.faces.len(), "{}", coarsest.len());
+    }
+
+    #[test]
+    fn a_surface_is_near_itself_at_no_distance() {
+        let mesh = samples::sphere(300);
+        let input = PreparedSurface::new(&mesh).unwrap();
+        assert!(matches!(Comparison::new(&mesh, &input, 0.0).with(&mesh), Outcome::Near));
+        let flat = Mesh { positions: vec![[0.0; 3]; mesh.positions.len()], ..mesh.clone() };
+        assert!(matches!(Comparison::new(&mesh, &input, 1.0).with(&flat), Outcome::NoArea));
+    }
+}
