@@ -76,6 +76,12 @@ impl WriteArgs {
         self
     }
 
+    /// Switches to 64-bit coordinates unless `--precision` is given.
+    pub fn precise(mut self) -> Self {
+        self.precision.get_or_insert(Precision::F64);
+        self
+    }
+
     /// Returns the largest change of a coordinate when the scene is written and read back, in model
     /// units.
     pub fn moves(&self, scene: &Scene, format: Format) -> f64 {

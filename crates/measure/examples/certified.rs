@@ -1,4 +1,5 @@
-//! Measures the certified distance between two meshes, and the time that it takes.
+//! Measures the certified distance between two meshes, then asks which faces are farther apart than
+//! parts of it; prints the time that each takes.
 //!
 //! `cargo run --release -p meshlod-measure --example certified A.ply B.ply`
 
@@ -6,7 +7,9 @@ use std::error::Error;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use meshlod_measure::{CertifiedOptions, PreparedSurface, certified_one_way};
+use meshlod_measure::{
+    BeyondOptions, CertifiedOptions, PreparedSurface, certified_one_way, faces_beyond,
+};
 use meshlod_mesh::Mesh;
 
 type Failure = Box<dyn Error + Send + Sync>;
@@ -29,6 +32,13 @@ fn main() -> Result<(), Failure> {
         let [lower, upper] = [way.lower, way.upper].map(|x| 100.0 * x / a.diagonal());
         let time = start.elapsed().as_secs_f64();
         println!("{lower:.5} % to {upper:.5} % in {time:.3} s, {} splits", way.splits);
+        for part in [0.3, 0.9, 1.01] {
+            let (start, limit) = (Instant::now(), part * way.upper);
+            let beyond = faces_beyond(from, to, &|_| limit, &BeyondOptions::default());
+            let time = start.elapsed().as_secs_f64();
+            let (faces, splits) = (beyond.faces.len(), beyond.splits);
+            println!("  beyond {part} of that: {faces} faces in {time:.3} s, {splits} splits");
+        }
     }
     Ok(())
 }

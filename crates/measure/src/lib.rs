@@ -3,7 +3,7 @@
 //! [`distance`] measures how far two meshes are apart, by samples spread evenly over both. To
 //! measure many meshes against one, build a [`PreparedSurface`] of each and call
 //! [`surface_distance`]. [`certified_distance`] encloses the maximum, which samples bound from below
-//! only.
+//! only, and [`faces_beyond`] lists the faces that are farther away than they may be.
 //!
 //! ```
 //! use meshlod_measure::{DistanceOptions, PreparedSurface, distance, surface_distance, volume};
@@ -37,8 +37,8 @@ mod sample;
 mod size;
 
 pub use certified::{
-    Bracket, CertifiedDistance, CertifiedOptions, certified_distance, certified_one_way,
-    certified_surface_distance,
+    BeyondOptions, Bracket, CertifiedDistance, CertifiedOptions, FaceBeyond, FacesBeyond,
+    certified_distance, certified_one_way, certified_surface_distance, faces_beyond,
 };
 pub use distance::{
     Distance, DistanceOptions, MeasureError, OneSidedDistance, Place, distance, surface_distance,

@@ -9,6 +9,7 @@ use meshlod_mesh::{
 };
 use meshlod_simplify::{Options, Report, Simplifier, SimplifyError, Target, Topology, VolumeLoss};
 
+use crate::bounded::run_within;
 use crate::locks;
 
 /// Smallest number of near boundary edges that is worth mentioning.
@@ -200,6 +201,11 @@ impl<'m> ConditionedMesh<'m> {
 /// holds only what its faces use. If the target is out of reach, the mesh is reduced as far as the
 /// rules allow, and the report says so and counts the reasons.
 ///
+/// A [`Target::Error`] is proved: no point of the result is farther from the mesh, and no point of
+/// the mesh farther from the result, in exact arithmetic on the positions in memory. Writing them
+/// as 32-bit floats rounds them. The [proof](Report::proof) in the report says so, or what holds
+/// instead where an error as small as the rounding of positions is out of reach.
+///
 /// # Errors
 /// The mesh, the target or an option is invalid, see [`SimplifyError`].
 pub fn simplify(
@@ -213,7 +219,13 @@ pub fn simplify(
         target => target,
     };
     let mut simplifier = ready.simplifier(options.vanish_below)?;
-    let report = simplifier.run(own, &mut ())?;
+    let report = match own {
+        Target::Error(error) => {
+            let again = Some((&ready, options.vanish_below));
+            run_within(again, &mut simplifier, error, &mut ())?
+        }
+        own => simplifier.run(own, &mut ())?,
+    };
     let duplicate_faces = report.duplicate_faces + ready.counts().duplicate_faces;
     let mut report = Report { input_faces: mesh.faces.len(), duplicate_faces, ..report };
     Ok((ready.settled_level(&simplifier, &mut report.volume), report))

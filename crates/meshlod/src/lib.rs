@@ -29,7 +29,8 @@
 //! ```
 //!
 //! [`simplify`](simplify()) makes a coarser mesh: of a number of faces, of a fraction of them, or
-//! as coarse as an error allows. The report says what was reached, and if the target was not, why:
+//! as coarse as an error allows, which is then proved. The report says what was reached, and if the
+//! target was not, why:
 //!
 //! ```
 //! # let knot = meshlod::samples::knot(20_000);
@@ -216,6 +217,7 @@
 #![forbid(unsafe_code)]
 
 mod appearance;
+mod bounded;
 mod check_report;
 mod compressed;
 mod conditioned;
@@ -265,7 +267,7 @@ pub use meshlod_io::{Format, IoError, ReadOptions, Scene, WriteOptions, read, wr
 pub use meshlod_mesh::{Borders, Mesh};
 pub use meshlod_simplify::{Method, Options, Report, SimplifyError, Target, Topology};
 pub use model_materials::{BadMaterials, pack_materials, scene_with_materials, unpack_materials};
-pub use place::world_bounds;
+pub use place::{moved_at_most, rounding_of_level, world_bounds};
 pub use repair::repair_scene;
 pub use scene::{SceneError, SceneSimplifier, simplify_scene};
 pub use strips::scene_strips;

@@ -1,8 +1,9 @@
 //! Bounding box of a scene in world space, and scale of its instances.
 
 use glam::{DMat3, DMat4, DVec3};
-use meshlod_io::Scene;
-use meshlod_mesh::Bounds;
+use meshlod_io::{MeshInstance, Scene};
+use meshlod_mesh::{Bounds, Mesh};
+use meshlod_simplify::Digits;
 
 /// Returns the bounding box of a scene in world space, without vertices that no face uses.
 ///
@@ -23,6 +24,41 @@ pub fn world_bounds(scene: &Scene) -> Bounds {
     }
     bounds
 }
+
+/// Returns how far writing a level of a scene with these digits may move a point, at most, in world
+/// units: by half a unit in the last place of its largest coordinate along each axis.
+///
+/// Covers coordinates in the space of a mesh, as glTF has them, and in world space.
+pub fn rounding_of_level(scene: &Scene, digits: Digits) -> f64 {
+    if digits == Digits::F64 {
+        return 0.0;
+    }
+    let reach = |bounds: &Bounds| {
+        let of_each = bounds.min.iter().chain(&bounds.max).filter(|x| x.is_finite());
+        of_each.fold(0.0, |most: f64, x| most.max(x.abs()))
+    };
+    let own = |place: &MeshInstance| {
+        length_scale(&place.transform) * reach(&scene.meshes[place.mesh].mesh.bounds())
+    };
+    let local = scene.instances().iter().map(own).fold(0.0, f64::max);
+    let half_ulp = 0.5 * f64::from(f32::EPSILON);
+    BEYOND * 3f64.sqrt() * half_ulp * local.max(reach(&world_bounds(scene)))
+}
+
+/// Returns the largest distance, in world units, by which a vertex differs between two levels of a
+/// scene that have the same vertices: no point of one is farther from the other.
+pub fn moved_at_most(scene: &Scene, before: &[Mesh], after: &[Mesh]) -> f64 {
+    let moved = |place: &MeshInstance| {
+        let [before, after] = [before, after].map(|level| &level[place.mesh].positions);
+        let apart = |(a, b): (&[f64; 3], &[f64; 3])| DVec3::from(*a).distance(DVec3::from(*b));
+        let most = before.iter().zip(after).map(apart).fold(0.0, f64::max);
+        length_scale(&place.transform) * most
+    };
+    scene.instances().iter().map(moved).fold(0.0, f64::max)
+}
+
+/// Factor by which vertices of a level may lie farther out than those of its input.
+const BEYOND: f64 = 1.1;
 
 /// Returns the largest factor by which a transform scales a length: its largest singular value.
 ///
@@ -77,6 +113,26 @@ mod tests {
         let mut shear = DMat4::IDENTITY;
         shear.y_axis.x = 1.0;
         assert!((scale(shear) - (1.0 + 5f64.sqrt()) / 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn rounding_covers_what_single_precision_moves() {
+        let mut scene = Scene::from_mesh("torus", samples::torus(500));
+        let place =
+            DMat4::from_translation(DVec3::splat(1e3)) * DMat4::from_scale(DVec3::splat(3.0));
+        scene.nodes[0].transform = place.to_cols_array_2d();
+        let before = vec![scene.meshes[0].mesh.clone()];
+        let mut after = before.clone();
+        after[0].positions.as_flattened_mut().iter_mut().for_each(|x| *x = f64::from(*x as f32));
+        let moved = moved_at_most(&scene, &before, &after);
+        assert!(moved > 0.0 && moved <= rounding_of_level(&scene, Digits::F32), "{moved}");
+        let mut in_world = 0.0f64;
+        for position in scene.flatten().positions {
+            let short = position.map(|x| f64::from(x as f32));
+            in_world = in_world.max(DVec3::from(short).distance(position.into()));
+        }
+        assert!(in_world > moved && in_world <= rounding_of_level(&scene, Digits::F32));
+        assert_eq!(rounding_of_level(&scene, Digits::F64), 0.0);
     }
 
     #[test]

@@ -3,12 +3,13 @@
 use meshlod_io::Scene;
 use meshlod_mesh::{Borders, Mesh};
 use meshlod_simplify::{
-    Contractions, Held, Method, Observe, Options, Refusals, Report, Simplifier, SimplifyError,
-    Target, VolumeLoss,
+    Contractions, ErrorProof, Held, Method, Observe, Options, Refusals, Report, Simplifier,
+    SimplifyError, Target, VolumeLoss,
 };
 use thiserror::Error;
 
 use crate::ConditionedScene;
+use crate::bounded::run_within;
 use crate::place::length_scale;
 
 /// Simplifies all meshes of a scene to one common target, always contracting where it costs least
@@ -38,7 +39,13 @@ struct Part<'s> {
     scale: f64,
     /// Costs in world space per cost in the space of the mesh.
     cost_scale: f64,
+    /// Option `vanish_below`, in units of the mesh.
+    vanish_below: Option<f64>,
     simplifier: Simplifier<'s>,
+    /// Proof of the distance from the mesh, if the last target was an error.
+    proof: Option<ErrorProof>,
+    /// True if all targets so far were errors, so that a run may be repeated.
+    is_bounded: bool,
 }
 
 /// Reason why the meshes of a scene cannot be simplified.
@@ -106,7 +113,17 @@ impl<'s> SceneSimplifier<'s> {
             match conditioned.meshes[index].simplifier(vanish_below) {
                 Ok(simplifier) => {
                     let cost_scale = scale.powi(method.cost_power());
-                    this.parts.push(Part { mesh: index, copies, scale, cost_scale, simplifier });
+                    let (mesh, proof) = (index, None);
+                    this.parts.push(Part {
+                        mesh,
+                        copies,
+                        scale,
+                        cost_scale,
+                        vanish_below,
+                        simplifier,
+                        proof,
+                        is_bounded: true,
+                    });
                 }
                 Err(error @ (SimplifyError::NoFaces | SimplifyError::AllDegenerate(_))) => {
                     this.still_faces += copies * scene.meshes[index].mesh.faces.len();
@@ -125,8 +142,14 @@ impl<'s> SceneSimplifier<'s> {
     /// allowed any more.
     ///
     /// A number of faces is shared: the next contraction is the cheapest of all meshes in world
-    /// space. An error bound holds for each mesh by itself, at its size in world space. Observers
-    /// see the ids of conditioned meshes.
+    /// space. Observers see the ids of conditioned meshes.
+    ///
+    /// An error bound holds for each mesh by itself, in both directions, at the largest size at
+    /// which a node shows it, so it holds for the whole scene in world space. It is
+    /// [proved](Report::proof), whatever the method, unless the observer wants to see contractions:
+    /// then it is what the method [makes of it](Target::Error). Where the proof fails at first,
+    /// contractions are taken back or the run is repeated, so such a level need not be nested in an
+    /// earlier one. After a target of another kind neither is done: the proof then says what holds.
     ///
     /// # Errors
     /// An invalid target.
@@ -140,6 +163,7 @@ impl<'s> SceneSimplifier<'s> {
             target => target.faces_of(self.input_faces()),
         };
         let others = self.still_faces;
+        self.parts.iter_mut().for_each(|part| (part.proof, part.is_bounded) = (None, false));
         match &mut self.parts[..] {
             [only] => {
                 let faces = budget.saturating_sub(others) / only.copies;
@@ -209,9 +233,26 @@ impl<'s> SceneSimplifier<'s> {
             let own = error / part.scale;
             // A mesh scaled to a point may lose anything.
             let own = if own.is_nan() { f64::INFINITY } else { own };
-            part.simplifier.run(Target::Error(own), observer)?;
+            let mesh = &self.conditioned.meshes[part.mesh];
+            let again = part.is_bounded.then_some((mesh, part.vanish_below));
+            let report = run_within(again, &mut part.simplifier, own, observer)?;
+            part.proof = report.proof;
         }
-        self.report()
+        let report = self.report()?;
+        let proof = self.proof(error);
+        Ok(Report { reached: proof.is_none_or(|proof| proof.proved <= error), proof, ..report })
+    }
+
+    /// Returns what is proved of the distance from the scene, in world units.
+    fn proof(&self, asked: f64) -> Option<ErrorProof> {
+        let mut whole = ErrorProof { asked, proved: 0.0, rounds: 0 };
+        for part in &self.parts {
+            let own = part.proof?;
+            let proved = if own.proved <= own.asked { asked } else { part.scale * own.proved };
+            whole.proved = whole.proved.max(proved);
+            whole.rounds += own.rounds;
+        }
+        Some(whole)
     }
 
     /// Contracts in the mesh with the cheapest next contraction until `budget` faces are shown.
@@ -247,6 +288,7 @@ impl<'s> SceneSimplifier<'s> {
             vanished: 0,
             reached: true,
             error_estimate: 0.0,
+            proof: None,
             refusals: Refusals::default(),
             volume: VolumeLoss::default(),
         };

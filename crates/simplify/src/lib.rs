@@ -20,6 +20,7 @@
 
 mod clean;
 mod engine;
+mod excess;
 mod history;
 mod kernel;
 mod methods;
@@ -32,12 +33,14 @@ use meshlod_mesh::Mesh;
 
 pub use engine::locks::Held;
 pub use engine::policy::Observe;
+pub use excess::{Excess, ExcessFace};
 pub use history::exact_volume::{Digits, ExactVolumeError, VolumeResidual, conserve_volume};
 pub use history::progressive::{Progressive, ProgressiveError};
 pub use history::volume::{Unconserved, VolumeLoss};
 pub use history::{Contraction, History};
 pub use options::{
-    AttributeWeights, Contractions, Method, Options, Report, SimplifyError, Target, Topology,
+    AttributeWeights, Contractions, ErrorProof, Method, Options, Report, SimplifyError, Target,
+    Topology,
 };
 pub use refusal::{Refusal, Refusals};
 pub use simplifier::Simplifier;

@@ -7,6 +7,7 @@ use crate::engine::locks::{self, Held};
 use crate::engine::policy::{Observe, Stop};
 use crate::engine::vanishing::Vanishing;
 use crate::engine::{PreparedSurface, Run, Tally};
+use crate::excess::Excess;
 use crate::history::volume::VolumeLoss;
 use crate::kernel::{self, PlaneDistance, SweptVolume};
 use crate::methods;
@@ -23,7 +24,7 @@ const EXTENTS: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 pub struct Simplifier<'m> {
     mesh: &'m Mesh,
     engine: Box<dyn Run + 'm>,
-    method: Method,
+    options: Options,
     input: InputSummary,
 }
 
@@ -51,13 +52,8 @@ impl<'m> Simplifier<'m> {
     /// vertices.
     pub fn new(mesh: &'m Mesh, options: &Options) -> Result<Self, SimplifyError> {
         let bounds = validate(mesh, options)?;
-        let method = options.method;
-        let (engine, input) = match method {
-            Method::LindstromTurk => kernel::start(SweptVolume, mesh, &bounds, options)?,
-            Method::Qem => kernel::start(PlaneDistance, mesh, &bounds, options)?,
-            _ => by_policies(mesh, method, options)?,
-        };
-        Ok(Self { mesh, engine, method, input })
+        let (engine, input) = start(mesh, &bounds, options)?;
+        Ok(Self { mesh, engine, options: options.clone(), input })
     }
 
     /// Prepares any method to run on the policy engine. Tests use it to compare the kernel with
@@ -71,7 +67,7 @@ impl<'m> Simplifier<'m> {
         validate(mesh, options)?;
         let method = options.method;
         let (engine, input) = by_policies(mesh, method, options)?;
-        Ok(Self { mesh, engine, method, input })
+        Ok(Self { mesh, engine, options: options.clone(), input })
     }
 
     /// Returns the mesh that is being simplified, as it was given.
@@ -113,6 +109,26 @@ impl<'m> Simplifier<'m> {
         Ok(self.live_faces() > stop.faces && self.engine.step(&stop, observer))
     }
 
+    /// Takes back the contractions that made faces too far away, and those that depend on them. A
+    /// run to the same [`Target::Error`] then goes on from there, with a lower bound at these places
+    /// and no change elsewhere.
+    ///
+    /// `excess` is what a comparison of the [level](Self::level) with the input has found. Returns
+    /// false, with nothing changed, if that is not possible: on the policy engine, with ties, where
+    /// an observer has seen contractions, where some were made without a bound, or if none made any
+    /// of the faces.
+    ///
+    /// Cost: about that of a run without a bound.
+    pub fn take_back(&mut self, excess: &[Excess]) -> bool {
+        let Some(retrace) = self.engine.retrace(excess) else { return false };
+        let bounds = self.mesh.bounds();
+        let (mut engine, _) = start(self.mesh, &bounds, &self.options)
+            .expect("the same mesh and options have been started before");
+        engine.follow(retrace);
+        self.engine = engine;
+        true
+    }
+
     /// Returns the cost of the next candidate for contraction in the units of the method, see
     /// [`Method::cost_power`](crate::Method::cost_power); `None` if no candidate is left.
     ///
@@ -146,7 +162,7 @@ impl<'m> Simplifier<'m> {
             self.engine.tally();
         let reached = matches!(target, Target::Error(_)) || output_faces <= stop.faces;
         Report {
-            method: self.method,
+            method: self.options.method,
             input_faces: self.mesh.faces.len(),
             degenerate_faces: self.input.degenerate_faces,
             duplicate_faces: self.input.duplicate_faces,
@@ -157,6 +173,7 @@ impl<'m> Simplifier<'m> {
             vanished,
             reached,
             error_estimate,
+            proof: None,
             refusals,
             volume,
         }
@@ -216,6 +233,19 @@ fn validate(mesh: &Mesh, options: &Options) -> Result<Bounds, SimplifyError> {
         return Err(SimplifyError::BadSize(size));
     }
     Ok(bounds)
+}
+
+/// Starts the engine of the method on a valid mesh.
+fn start<'m>(
+    mesh: &'m Mesh,
+    bounds: &Bounds,
+    options: &Options,
+) -> Result<Started<'m>, SimplifyError> {
+    match options.method {
+        Method::LindstromTurk => kernel::start(SweptVolume, mesh, bounds, options),
+        Method::Qem => kernel::start(PlaneDistance, mesh, bounds, options),
+        method => by_policies(mesh, method, options),
+    }
 }
 
 /// Starts the policy engine on a valid mesh.

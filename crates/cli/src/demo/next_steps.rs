@@ -8,7 +8,7 @@ use crate::demo::sample_report::SampleReport;
 const STEPS: [(&str, &str); 7] = [
     ("Look inside", "meshlod info your.ply"),
     ("Simplify it", "meshlod simplify your.ply small.ply --ratio 10%"),
-    ("Bound the error", "meshlod simplify your.ply small.ply --error 0.1% --measured"),
+    ("Bound the error", "meshlod simplify your.ply small.ply --error 0.1%"),
     ("Measure the result", "meshlod measure your.ply small.ply"),
     ("Compare the methods", "meshlod compare your.ply --ratio 10% --out compared"),
     ("Put all levels in one file", "meshlod lods your.ply your.glb --levels 50%,25%,10%,3%"),

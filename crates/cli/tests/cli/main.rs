@@ -6,6 +6,7 @@ mod compress;
 mod constraints;
 mod damaged_models;
 mod demo;
+mod error_bound;
 mod flock;
 mod hostile;
 mod levels;

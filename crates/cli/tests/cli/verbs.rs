@@ -109,7 +109,10 @@ fn an_error_bound_comes_with_what_was_measured() {
     run.sample("knot", 4_000, "in.ply");
     let report = run.json(&["simplify", "in.ply", "out.ply", "--error", "0.2%"]);
     let bound = 0.002 * number(&report["error_measured"]["diagonal"]);
+    assert!((number(&report["error_asked"]) / bound - 1.0).abs() < 1e-12);
     assert!(number(&report["error_estimate"]) <= bound);
+    let measured = number(&report["error_measured"]["max"]);
+    assert!(measured <= number(&report["error_proved"]) && measured > 0.5 * bound);
     assert!(number(&report["output_faces"]) < 0.5 * number(&report["input_faces"]));
 }
 

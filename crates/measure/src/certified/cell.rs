@@ -6,7 +6,7 @@ use meshlod_spatial::Bvh;
 
 /// Part of the distance at which a cell may be discarded below which a distance need not be the
 /// least. CPU time for the dragon and its tenth: 0 5.7 s, .1 5.4, .3 5.0, .5 5.3.
-const CALM: f64 = 0.3;
+pub(super) const CALM: f64 = 0.3;
 
 /// Point with its distance from a surface, and the face of it that is closest.
 #[derive(Clone, Copy, Debug)]
@@ -23,9 +23,9 @@ impl Probe {
         Self { at, distance: closest.distance_squared.sqrt(), face: closest.face }
     }
 
-    /// Measures the distance of a point between others, or takes any that is at most `calm`.
-    fn between(at: DVec3, surface: &Bvh, hint: FaceId, calm: f64) -> Self {
-        let near = surface.near(at.into(), Some(hint), [calm, f64::INFINITY]);
+    /// Measures the distance of a point, or takes any that is at most `calm`.
+    pub(super) fn near(at: DVec3, surface: &Bvh, hint: Option<FaceId>, calm: f64) -> Self {
+        let near = surface.near(at.into(), hint, [calm, f64::INFINITY]);
         let closest = near.expect("there is no limit");
         Self { at, distance: closest.distance_squared.sqrt(), face: closest.face }
     }
@@ -58,11 +58,17 @@ impl Cell {
         cell
     }
 
+    /// Returns the positions of the corners.
+    pub(super) fn corners(&self) -> [[f64; 3]; 3] {
+        self.corners.map(|corner| corner.at.to_array())
+    }
+
     /// Measures the middle of the triangle and bounds its distances by the face that is closest
     /// there.
     pub(super) fn probe_middle(&mut self, surface: &Bvh, enough: f64) -> Probe {
         let [a, b, c] = self.corners;
-        let middle = Probe::between((a.at + b.at + c.at) / 3.0, surface, a.face, CALM * enough);
+        let at = (a.at + b.at + c.at) / 3.0;
+        let middle = Probe::near(at, surface, Some(a.face), CALM * enough);
         let way = self.corners.map(|corner| corner.at.distance(middle.at));
         self.bound_by(middle.distance + way.into_iter().fold(0.0, f64::max));
         self.bound_by_face(middle.face, surface);
@@ -72,7 +78,7 @@ impl Cell {
     /// Divides the triangle at the middle of its longest edge. Returns both halves and the middle.
     pub(super) fn halves(&self, surface: &Bvh, enough: f64) -> ([Self; 2], Probe) {
         let [a, b, c] = self.longest_edge_first();
-        let middle = Probe::between(a.at.midpoint(b.at), surface, a.face, CALM * enough);
+        let middle = Probe::near(a.at.midpoint(b.at), surface, Some(a.face), CALM * enough);
         let half = |corners| Self::new(corners, surface, [enough, self.upper]);
         ([half([a, middle, c]), half([middle, b, c])], middle)
     }

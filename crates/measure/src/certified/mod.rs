@@ -4,12 +4,14 @@
 //! face of one surface is divided until no part of it can be farther from the other surface than a
 //! point already found, but for a tolerance.
 
+mod beyond;
 mod cell;
 mod rounding;
 mod search;
 
 use meshlod_mesh::Mesh;
 
+pub use crate::certified::beyond::{BeyondOptions, FaceBeyond, FacesBeyond, faces_beyond};
 use crate::certified::search::Search;
 use crate::distance::{MeasureError, Place};
 use crate::prepared::PreparedSurface;

@@ -20,13 +20,16 @@ pub(super) struct Rounding {
 impl Rounding {
     /// Returns the allowance for points on `from` and their distances from `to`.
     pub(super) fn between(from: &Mesh, to: &Mesh) -> Self {
-        let reach = largest_coordinate(from).max(largest_coordinate(to));
         let closest = to
             .faces
             .par_iter()
             .map(|face| missed_at(face.map(|v| DVec3::from(to.positions[v.index()]))));
-        let point = ULPS * f64::EPSILON * reach;
-        Self { point, closest: closest.reduce(|| 0.0, f64::max) }
+        Self { point: Self::of_points(from, to), closest: closest.reduce(|| 0.0, f64::max) }
+    }
+
+    /// Returns the largest error of a point on `from` and of its distance from one face of `to`.
+    pub(super) fn of_points(from: &Mesh, to: &Mesh) -> f64 {
+        ULPS * f64::EPSILON * largest_coordinate(from).max(largest_coordinate(to))
     }
 }
 

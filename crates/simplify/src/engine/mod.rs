@@ -26,7 +26,9 @@ use crate::engine::estimate::estimate;
 use crate::engine::policy::{Candidates, Memory, Observe, Placement, Priority, Stop};
 use crate::engine::queue::{Entry, Key};
 use crate::engine::vanishing::Vanishing;
+use crate::excess::Excess;
 use crate::history::volume::VolumeLoss;
+use crate::kernel::Retrace;
 use crate::options::Contractions;
 use crate::refusal::{Refusal, Refusals};
 use crate::surface::contracted::{Contracted, Freedom};
@@ -309,6 +311,13 @@ pub(crate) trait Run {
         (self.level(mesh), 0.0)
     }
     fn tally(&self) -> Tally;
+    /// Chooses the contractions to take back because of faces that are too far away; `None` if that
+    /// is not possible. Afterwards only a fresh run that [follows](Self::follow) may go on.
+    fn retrace(&mut self, _: &[Excess]) -> Option<Retrace> {
+        None
+    }
+    /// Repeats, on the unchanged input, the contractions that are not taken back.
+    fn follow(&mut self, _: Retrace) {}
 }
 
 /// Counts and totals of a simplification run so far.

@@ -76,6 +76,8 @@ pub(crate) struct CollapseLoop<'v, A> {
     pub(crate) volume: VolumeTally,
     /// Contractions done so far, if an observer wants them.
     pub(crate) log: Option<Vec<Logged>>,
+    /// True if an observer also wants the values of attributes.
+    pub(crate) records_values: bool,
     /// Ties between vertices, if there are any.
     pub(crate) ties: Option<&'v mut Ties>,
     /// Components that may vanish as a whole, if any may.
@@ -129,6 +131,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
             refusals: Refusals::default(),
             volume: VolumeTally::default(),
             log: None,
+            records_values: false,
             ties: None,
             components: None,
             queue,
@@ -422,7 +425,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
             log.push(Logged::Contraction(done));
         }
         self.apply(collapse, quadric, moved, front);
-        if self.log.is_some() {
+        if self.records_values {
             self.model.record(v0);
         }
         if self.ties.is_some() {

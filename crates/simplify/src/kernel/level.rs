@@ -67,7 +67,7 @@ pub(crate) fn workspace(
 }
 
 /// Returns the faces whose corners are still three different vertices, with their current corners.
-fn live_faces(
+pub(crate) fn live_faces(
     count: usize,
     face: impl Fn(usize) -> [u32; 3] + Sync,
     live: &[u32],

@@ -18,6 +18,7 @@
 //! | `bound` | a bound on the distance to the input |
 //! | `schedule` | edge costs, the bucket queue, deferral |
 //! | `collapse_loop` | the loop: start reading here; `tied` and `vanish` are its rarer steps |
+//! | `retrace` | contractions taken back where the bound was not held |
 //! | `components`, `volume` | the components that may vanish, and the volume lost and owed |
 //! | `partition` | parts that coarsen side by side |
 //! | `run`, `level`, `contraction_log` | the face to `Simplifier`: runs, levels, observers |
@@ -40,6 +41,7 @@ mod metric;
 mod partition;
 mod prepare;
 mod repay;
+mod retrace;
 mod run;
 mod schedule;
 mod setup;
@@ -57,6 +59,7 @@ use crate::simplifier::Started;
 
 pub(crate) use crate::kernel::metric::plane_distance::PlaneDistance;
 pub(crate) use crate::kernel::metric::swept_volume::SweptVolume;
+pub(crate) use crate::kernel::retrace::Retrace;
 
 /// Prepares the kernel for a valid mesh. Also returns what was found in the input.
 ///

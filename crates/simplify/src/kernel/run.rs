@@ -7,17 +7,19 @@ use meshlod_mesh::{Mesh, VertexId};
 use crate::clean;
 use crate::engine::policy::{Observe, Stop};
 use crate::engine::{Run, Tally};
+use crate::excess::{Excess, ExcessFace};
 use crate::kernel::attributes::AttributeModel;
 use crate::kernel::bound::ErrorBound;
 use crate::kernel::bound::input_surface::InputSurface;
-use crate::kernel::contraction_log::{InputNames, replay};
-use crate::kernel::level::{level, workspace};
+use crate::kernel::contraction_log::{InputNames, Logged, replay};
+use crate::kernel::level::{level, live_faces, workspace};
 use crate::kernel::mesh::local_frame::Frame;
 use crate::kernel::mesh::one_ring::VertexStore;
 use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
 use crate::kernel::metric::Metric;
 use crate::kernel::partition::Partition;
 use crate::kernel::repay::{Debt, repay};
+use crate::kernel::retrace::{FarFace, Retrace};
 use crate::kernel::schedule::bucket_queue::{NONE, bucket, min_cost_in};
 use crate::kernel::setup::vertex_order::{Order, numbers};
 use crate::options::Contractions;
@@ -42,14 +44,22 @@ pub(crate) struct KernelRun<'m, A> {
     refused_above: f64,
     /// Input surface, if an error bound has been asked for.
     input: OnceCell<InputSurface>,
+    /// All steps so far, if each was made within an error bound and none was shown to an observer.
+    steps: Option<Vec<Logged>>,
+    /// The last error bound, and the part of it that holds at each vertex; empty if the whole
+    /// bound holds everywhere.
+    lowered: (f64, Vec<f32>),
     /// Current surface, if it was asked for and has not changed unobserved since.
     surface: OnceCell<Surface>,
 }
 
 impl<'m, A: AttributeModel> KernelRun<'m, A> {
     pub(crate) fn new(source: KernelInput<'m>, partition: Partition<A>) -> Self {
-        let (refused_above, surface) = (f64::INFINITY, OnceCell::new());
-        Self { source, partition, refused_above, input: OnceCell::new(), surface }
+        // Edges between ties are contracted together, which steps do not tell.
+        let steps = partition.whole.ties.is_none().then(Vec::new);
+        let lowered = (f64::INFINITY, Vec::new());
+        let (input, surface) = (OnceCell::new(), OnceCell::new());
+        Self { source, partition, refused_above: f64::INFINITY, input, steps, lowered, surface }
     }
 
     fn names(&self) -> InputNames<'_> {
@@ -98,32 +108,65 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
         }
     }
 
+    /// Returns the corners of faces in live vertices.
+    fn far_faces(&self, excess: &[Excess]) -> Vec<FarFace> {
+        let KernelInput { mesh, order, faces, .. } = &self.source;
+        let of_input = |i: usize| match faces {
+            Some(faces) => faces[i],
+            None => order.face(&mesh.faces[i]),
+        };
+        let live = self.partition.store.live_vertices();
+        let of_level = live_faces(mesh.faces.len(), of_input, &live);
+        let corners = |far: &Excess| match far.face {
+            ExcessFace::OfLevel(face) => of_level.get(face.index()).map(|(_, corners)| *corners),
+            ExcessFace::OfInput(face) if face.index() < mesh.faces.len() => {
+                Some(of_input(face.index()).map(|v| live[v as usize]))
+            }
+            ExcessFace::OfInput(_) => None,
+        };
+        excess.iter().filter_map(|far| Some((corners(far)?, far.ratio))).collect()
+    }
+
     /// Simplifies to this number of faces, and shows the observer what it wants to see.
     fn advance(&mut self, faces: usize, stop: &Stop, observer: &mut dyn Observe) {
         let is_shown = observer.needs_surface();
+        let is_bounded = stop.error < f64::INFINITY;
         if is_shown {
             self.surface();
+            self.steps = None;
             self.partition.log = Some(Vec::new());
+        } else if is_bounded {
+            // A part of this bound says nothing about another.
+            if stop.error != self.lowered.0 {
+                self.lowered = (stop.error, Vec::new());
+            }
+            self.partition.log = self.steps.take();
         }
+        self.partition.records_values = is_shown;
         self.try_again_within(stop.error);
         let last = self.last_bucket(stop.cost);
         let refused = |partition: &Partition<A>| partition.refusals.count(Refusal::Error);
         let (refused_before, at_first) = (refused(&self.partition), self.partition.live_faces);
-        let Self { source, partition, input, .. } = &mut *self;
-        let is_bounded = stop.error < f64::INFINITY;
-        let mut bound = is_bounded.then(|| bound(stop.error, source, &partition.store, input));
+        let Self { source, partition, input, lowered, .. } = &mut *self;
+        let mut bound =
+            is_bounded.then(|| bound((stop.error, &lowered.1), source, &partition.store, input));
         partition.run(faces, last, bound.as_mut(), &mut |gone| observer.gone(gone));
         if refused(&self.partition) > refused_before {
             self.refused_above = self.refused_above.min(stop.error);
         }
-        match (self.partition.log.take(), self.surface.take()) {
+        let is_unchanged = self.partition.live_faces == at_first;
+        let mut log = self.partition.log.take();
+        if !is_shown {
+            self.steps = log.take().or(self.steps.take().filter(|_| is_unchanged));
+        }
+        match (log, self.surface.take()) {
             (Some(log), Some(mut surface)) => {
                 let values = self.partition.models[0].recorded();
                 let components = self.partition.whole.components.as_ref();
                 replay((&log, &values), components, self.names(), &mut surface, observer);
                 self.surface = surface.into();
             }
-            (_, surface) if self.partition.live_faces == at_first => {
+            (_, surface) if is_unchanged => {
                 self.surface = surface.map_or_else(OnceCell::new, OnceCell::from);
             }
             _ => {}
@@ -133,7 +176,7 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
 
 /// Returns an error bound, given in model units. Builds the input surface if it is missing.
 fn bound<'o>(
-    error: f64,
+    (error, parts): (f64, &[f32]),
     source: &KernelInput<'_>,
     store: &VertexStore,
     input: &'o OnceCell<InputSurface>,
@@ -144,7 +187,7 @@ fn bound<'o>(
         let places = (0..store.all.len() as u32).map(place).collect();
         InputSurface::new(mesh, *frame, places, numbers(mesh, order, faces.as_deref()))
     });
-    ErrorBound::new((error / frame.unit) as f32, input, store)
+    ErrorBound::new((error / frame.unit) as f32, parts.to_vec(), input, store)
 }
 
 impl<A: AttributeModel> Run for KernelRun<'_, A> {
@@ -189,6 +232,29 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
         let debts: Vec<Debt> = self.partition.debts().into_iter().map(debt).collect();
         let sixfold = repay(&mut level, &debts, &self.held(&ids));
         (level, sixfold / 6.0)
+    }
+
+    fn retrace(&mut self, excess: &[Excess]) -> Option<Retrace> {
+        let far = self.far_faces(excess);
+        let Partition { store, whole, .. } = &self.partition;
+        let known = (whole.components.as_ref(), &self.lowered.1[..]);
+        let chosen = Retrace::new(self.steps.as_ref()?.clone(), &far, known, store.all.len())?;
+        Some(Retrace {
+            refusals: self.partition.refusals,
+            deferral: self.partition.deferral(),
+            refused_above: self.refused_above,
+            error: self.lowered.0,
+            input: std::mem::take(&mut self.input),
+            ..chosen
+        })
+    }
+
+    fn follow(&mut self, retrace: Retrace) {
+        self.partition.log = Some(Vec::with_capacity(retrace.steps.len()));
+        self.partition.retrace(&retrace);
+        self.steps = self.partition.log.take();
+        let Retrace { refused_above, error, parts, input, .. } = retrace;
+        (self.refused_above, self.lowered, self.input) = (refused_above, (error, parts), input);
     }
 
     fn surface(&self) -> &Surface {

@@ -31,7 +31,10 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
             let cost = components.bucket::<A::Metric>(component, &apart, faces.len());
             let loss = components.loss(component, &apart);
             let bucket = self.deferral.delay(loss, cost).unwrap_or(cost);
-            let max_error = self.within.as_ref().map_or(f32::INFINITY, |bound| bound.max_error());
+            let max_error = self
+                .within
+                .as_ref()
+                .map_or(f32::INFINITY, |bound| bound.limit_at(components.vertices(component)));
             if bucket > last {
                 components.put_back(component, bucket);
             } else if faces.len() >= self.live_faces {
@@ -55,7 +58,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
     }
 
     /// Returns the faces that are left of a component.
-    fn faces_of(&mut self, component: u32) -> Vec<[u32; 3]> {
+    pub(crate) fn faces_of(&mut self, component: u32) -> Vec<[u32; 3]> {
         let mut faces = Vec::new();
         let Some(components) = &self.components else { return faces };
         for &v in components.vertices(component) {
@@ -74,7 +77,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
     }
 
     /// Merges all vertices of a component into one without faces.
-    fn vanish(&mut self, component: u32, faces: &[[u32; 3]]) {
+    pub(crate) fn vanish(&mut self, component: u32, faces: &[[u32; 3]]) {
         let Some(components) = &self.components else { return };
         let live = |v: &u32| !self.vertices.get(*v).flags.any(VertexFlags::DEAD);
         let left: Vec<u32> = components.vertices(component).iter().copied().filter(live).collect();

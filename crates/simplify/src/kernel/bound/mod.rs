@@ -11,7 +11,7 @@ pub(crate) mod probe;
 use glam::Vec3;
 
 use crate::kernel::bound::input_surface::{EdgeSamples, InputSurface};
-use crate::kernel::bound::probe::Probe;
+use crate::kernel::bound::probe::{Probe, Probed};
 use crate::kernel::collapse::deviation::FaceFan;
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::mesh::one_ring::{GHOST, VertexStore};
@@ -21,12 +21,6 @@ use crate::kernel::mesh::one_ring::{GHOST, VertexStore};
 /// fandisk-32k and the sample `fish` relative to a bound of .1 % of the diagonal: .5 1.00, 1.00,
 /// 1.00; .7 1.40, 1.09, 1.40.
 const SURE: f32 = 0.5;
-
-/// Part of the bound that contractions may use, as distances are probed at points and are larger in
-/// between. Without a margin the proved maximum of eighteen runs (bunny, horse-97k, igea, dragon,
-/// armadillo-173k and fandisk-32k at .3, .1 and .03 %) was 1.04 to 1.21 times the bound, 1.35, 1.50
-/// and 2.0 times in three of them.
-const MARGIN: f32 = 0.9;
 
 /// A single step that goes this many times as far as the bound is refused without measuring.
 const TOO_FAR: f32 = 2.0;
@@ -44,6 +38,8 @@ pub(crate) struct ErrorBound<'m> {
     next: Vec<u32>,
     /// Distance that the surface has moved at each vertex, all steps added up.
     travelled: Vec<f32>,
+    /// Part of the bound that holds at each vertex; empty if the whole bound holds everywhere.
+    parts: Vec<f32>,
 }
 
 /// Error bound of one part of the surface.
@@ -51,50 +47,65 @@ pub(crate) struct BoundPart<'v> {
     input: &'v InputSurface,
     between: &'v EdgeSamples,
     max_error: f32,
+    /// Bound of the step that is being checked.
+    limit: f32,
     /// Id of the first vertex.
     base: u32,
     next: &'v mut [u32],
     travelled: &'v mut [f32],
+    parts: &'v mut [f32],
     /// Working memory for the faces around an edge, before and after.
     old: FaceFan,
     new: FaceFan,
 }
 
 impl<'m> ErrorBound<'m> {
-    /// Sets a bound, in the frame's units, for the surface in its current state.
+    /// Sets a bound, in the frame's units, for the surface in its current state. `parts` are the
+    /// parts of the bound that hold at the vertices; if there are none, the whole bound holds.
     ///
     /// Cost: O(n), n = vertices of the input.
-    pub(crate) fn new(max_error: f32, input: &'m InputSurface, store: &VertexStore) -> Self {
+    pub(crate) fn new(
+        max_error: f32,
+        mut parts: Vec<f32>,
+        input: &'m InputSurface,
+        store: &VertexStore,
+    ) -> Self {
         let mut next: Vec<u32> = (0..store.all.len() as u32).collect();
         for (v, heir) in store.live_vertices().into_iter().enumerate().rev() {
             if heir as usize != v {
                 next[v] = std::mem::replace(&mut next[heir as usize], v as u32);
+                if !parts.is_empty() {
+                    parts[heir as usize] = parts[heir as usize].min(parts[v]);
+                }
             }
         }
         let travelled = store.all.iter().map(|vertex| vertex.moved.sqrt()).collect();
-        let max_error = MARGIN * max_error;
-        Self { input, between: input.between(max_error), max_error, next, travelled }
+        Self { input, between: input.between(max_error), max_error, next, travelled, parts }
     }
 
     /// Splits the bound into consecutive vertex ranges of the given lengths.
     pub(crate) fn split(&mut self, lengths: &[usize]) -> Vec<BoundPart<'_>> {
-        let Self { input, between, max_error, next, travelled } = self;
+        let Self { input, between, max_error, next, travelled, parts: of_vertices } = self;
         let (mut next, mut travelled, mut base) = (&mut next[..], &mut travelled[..], 0);
+        let mut of_vertices = &mut of_vertices[..];
         let mut parts = Vec::with_capacity(lengths.len());
         for &len in lengths {
             let (own_next, other_next) = next.split_at_mut(len);
             let (own_travelled, other_travelled) = travelled.split_at_mut(len);
+            let (own_parts, other_parts) = of_vertices.split_at_mut(len.min(of_vertices.len()));
             parts.push(BoundPart {
                 input,
                 between,
                 max_error: *max_error,
+                limit: *max_error,
                 base,
                 next: own_next,
                 travelled: own_travelled,
+                parts: own_parts,
                 old: FaceFan::default(),
                 new: FaceFan::default(),
             });
-            (next, travelled) = (other_next, other_travelled);
+            (next, travelled, of_vertices) = (other_next, other_travelled, other_parts);
             base += len as u32;
         }
         parts
@@ -116,9 +127,13 @@ pub(crate) struct BoundedStep<'a> {
 }
 
 impl BoundPart<'_> {
-    /// Returns the error bound, in the frame's units.
-    pub(crate) fn max_error(&self) -> f32 {
-        self.max_error
+    /// Returns the bound that holds at all of some vertices, in the frame's units.
+    pub(crate) fn limit_at(&self, vertices: &[u32]) -> f32 {
+        if self.parts.is_empty() {
+            return self.max_error;
+        }
+        let of = |part: f32, &v: &u32| part.min(self.parts[self.slot(v)]);
+        self.max_error * vertices.iter().fold(1.0, of)
     }
 
     /// Checks a step and counts it as carried out. Returns the squared distance of the surface from
@@ -133,10 +148,11 @@ impl BoundPart<'_> {
     /// Checks a step. Returns the total distance travelled with it, and the result of
     /// [`Self::admit`].
     pub(crate) fn check(&mut self, step: &BoundedStep<'_>, estimate: f32) -> Option<(f32, f32)> {
+        self.limit = self.limit_at(&step.ends);
         let [v0, v1] = step.ends.map(|v| self.slot(v));
         let before = self.travelled[v0].max(self.travelled[v1]);
         let travelled = before + step.now.max(step.edge_ring.off_planes(step.displacement)).sqrt();
-        if travelled <= SURE * self.max_error {
+        if travelled <= SURE * self.limit {
             return Some((travelled, estimate));
         }
         let farthest = self.measure(step, before)?;
@@ -148,18 +164,21 @@ impl BoundPart<'_> {
         let [v0, v1] = ends.map(|v| self.slot(v));
         self.travelled[v0] = travelled;
         self.next.swap(v0, v1);
+        if !self.parts.is_empty() {
+            self.parts[v0] = self.parts[v0].min(self.parts[v1]);
+        }
     }
 
     /// Measures the distance of the surface from the input after a step; `None` if it is beyond the
     /// bound.
     fn measure(&mut self, step: &BoundedStep<'_>, before: f32) -> Option<f32> {
-        if step.now.sqrt() > TOO_FAR * self.max_error {
+        if step.now.sqrt() > TOO_FAR * self.limit {
             return None;
         }
         let new_to_input = self.new_faces_to_input(step)?;
         self.old.lay_old(step.edge_ring);
         self.new.lay_new(step.edge_ring, step.displacement);
-        if self.old_edges_to_new_faces(step.edge_ring) > self.max_error + before {
+        if self.old_edges_to_new_faces(step.edge_ring) > self.limit + before {
             return None;
         }
         Some(new_to_input.max(self.input_to_new_faces(step)?))
@@ -169,19 +188,24 @@ impl BoundPart<'_> {
     /// is beyond the bound.
     fn new_faces_to_input(&self, step: &BoundedStep<'_>) -> Option<f32> {
         let &BoundedStep { edge_ring, from, displacement, .. } = step;
-        let mut probe = Probe::new(self.input, self.max_error);
+        let is_thorough = self.limit < self.max_error;
+        let mut probe = Probe::new(self.input, self.limit, is_thorough);
         let apex = (from + displacement, probe.at(from + displacement)?);
         for i in 0..edge_ring.len {
             let to = from + edge_ring.relative(i);
             let at_end = if edge_ring.ids[i] == GHOST {
                 0.0
             } else {
-                let at_end = self.travelled[self.slot(edge_ring.ids[i])].min(self.max_error);
+                let at_end = self.travelled[self.slot(edge_ring.ids[i])].min(self.limit);
                 probe.along([apex, (to, at_end)])?;
                 at_end
             };
             if edge_ring.is_face(i) {
-                probe.along([apex, (to.midpoint(from + edge_ring.relative(i + 1)), at_end)])?;
+                let next = from + edge_ring.relative(i + 1);
+                probe.along([apex, (to.midpoint(next), at_end)])?;
+                if is_thorough {
+                    probe_outer(&mut probe, apex, [to, next])?;
+                }
             }
         }
         Some(probe.farthest())
@@ -208,7 +232,7 @@ impl BoundPart<'_> {
     /// new ones.
     fn input_to_new_faces(&mut self, step: &BoundedStep<'_>) -> Option<f32> {
         let &BoundedStep { edge_ring, ends, from, .. } = step;
-        let max_error = self.max_error * self.max_error;
+        let max_error = self.limit * self.limit;
         let mut farthest = 0.0f32;
         let ring = edge_ring.ids().iter().copied().filter(|&v| v != GHOST);
         for (i, head) in ends.into_iter().chain(ring).enumerate() {
@@ -250,4 +274,21 @@ impl BoundPart<'_> {
     fn slot(&self, v: u32) -> usize {
         (v - self.base) as usize
     }
+}
+
+/// Measures distances along the outer edge of a new face, and along rays to its quarters; `None` if
+/// one is beyond the bound.
+fn probe_outer(probe: &mut Probe<'_>, apex: Probed, [from, to]: [Vec3; 2]) -> Option<()> {
+    let mut before = (from, probe.at(from)?);
+    for quarter in [0.25, 0.5, 0.75] {
+        let place = from.lerp(to, quarter);
+        let probed = (place, probe.at(place)?);
+        probe.along([before, probed])?;
+        if quarter != 0.5 {
+            probe.along([apex, probed])?;
+        }
+        before = probed;
+    }
+    let last = (to, probe.at(to)?);
+    probe.along([before, last])
 }

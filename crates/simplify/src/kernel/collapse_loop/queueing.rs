@@ -148,7 +148,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
     }
 
     /// Queues a vertex before all others; it is costed when its entry comes up.
-    fn put_first(&mut self, v: u32) {
+    pub(crate) fn put_first(&mut self, v: u32) {
         let vertex = self.vertices.get_mut(v);
         vertex.floor = 0;
         vertex.target = NO_VERTEX;

@@ -1,0 +1,134 @@
+//! The error of `simplify --error`: what was asked for, what is proved, and what writing rounds.
+
+use meshlod::measure::{CertifiedOptions, PreparedSurface, certified_surface_distance};
+use meshlod::simplify::Digits;
+use meshlod::{Mesh, Report, Scene, Target, rounding_of_level};
+use serde_json::Value;
+
+use crate::distance;
+use crate::numbers::value;
+
+/// Part of the error that rounding may take before coordinates are written with 64 bits.
+const UNSEEN: f64 = 0.005;
+
+/// Largest part of the error that is kept free for rounding.
+const MOST_ROOM: f64 = 0.5;
+
+/// Multiple of the rounding that is kept free where the volume is restored.
+const MOVES: f64 = 5.0;
+
+/// Relative difference of two lengths that counts as none: the rounding of their computation.
+const EQUAL: f64 = 1e-9;
+
+/// An error asked for, in world units.
+#[derive(Clone, Copy)]
+pub struct AskedError {
+    asked: f64,
+    /// Largest distance by which writing moves a point.
+    rounding: f64,
+    /// Distance kept free for rounding, and for moves that restore the volume.
+    room: f64,
+}
+
+/// An error that was asked for with what is proved of it, in world units.
+#[derive(Clone, Copy)]
+pub struct KeptError {
+    asked: f64,
+    /// Upper bound of the distance between the input and what is written, both ways; `None` if
+    /// there is none.
+    proved: Option<f64>,
+    rounds: usize,
+    rounding: f64,
+}
+
+impl AskedError {
+    /// Restoring the volume moves vertices too, mostly by about twice the rounding.
+    pub fn new(asked: f64, scene: &Scene, digits: Digits, is_volume_restored: bool) -> Self {
+        let rounding = rounding_of_level(scene, digits);
+        let room = if is_volume_restored { MOVES * rounding } else { rounding };
+        Self { asked, rounding, room }
+    }
+
+    /// Returns whether rounding takes more of the error than goes unseen.
+    pub fn needs_precision(&self) -> bool {
+        self.room > UNSEEN * self.asked
+    }
+
+    /// Returns the target that leaves room for rounding.
+    pub fn target(&self) -> Target {
+        Target::Error(self.asked - self.room.min(MOST_ROOM * self.asked))
+    }
+
+    /// Returns what the proof in a report says of the level as it is written, after its vertices
+    /// have moved by at most `moved`.
+    pub fn by_report(&self, report: &Report, moved: f64) -> KeptError {
+        let changed = self.rounding + moved;
+        let proved = report.proof.map(|proof| match proof.proved <= proof.asked {
+            true => (proof.asked + changed).max(self.asked),
+            false => proof.proved + changed,
+        });
+        let rounds = report.proof.map_or(0, |proof| proof.rounds);
+        KeptError { asked: self.asked, proved, rounds, rounding: self.rounding }
+    }
+
+    /// Measures an upper bound of the distance between the original surface and a level.
+    pub fn by_measuring(
+        &self,
+        original: Option<&PreparedSurface<'_>>,
+        scene: &Scene,
+        level: &[Mesh],
+    ) -> KeptError {
+        let level = distance::surface_of(scene, level);
+        let proved = original.zip(PreparedSurface::new(&level).ok()).map(|(original, level)| {
+            let options = CertifiedOptions::default();
+            certified_surface_distance(original, &level, &options).symmetric().upper + self.rounding
+        });
+        KeptError { asked: self.asked, proved, rounds: 0, rounding: self.rounding }
+    }
+}
+
+impl KeptError {
+    /// Returns whether the error is proved to be within what was asked for.
+    pub fn is_held(&self) -> bool {
+        self.proved.is_some_and(|proved| proved <= self.asked * (1.0 + EQUAL))
+    }
+
+    /// Formats a warning that says what holds instead, and what would help.
+    pub fn warning(&self) -> String {
+        let asked = value(self.asked);
+        let Some(proved) = self.proved else {
+            return format!("--error {asked} is not proved: a surface has no area to measure");
+        };
+        let proved = value(proved);
+        let help = match self.rounding > MOST_ROOM * self.asked {
+            true => {
+                "the coordinates written are rounded by more than half of that; ply, obj, off \
+                and smf take --precision f64"
+            }
+            false => {
+                "use lindstrom-turk or qem without --exact-volume, --sequence and locks, or a \
+                larger error"
+            }
+        };
+        format!("--error {asked}: only {proved} is proved; {help}")
+    }
+
+    /// Adds what was asked for and what is proved to a JSON object.
+    pub fn add_json(kept: Option<&Self>, json: &mut Value) {
+        json["error_asked"] = kept.map(|kept| kept.asked).into();
+        json["error_proved"] = kept.and_then(|kept| kept.proved).into();
+        json["error_rounds"] = kept.map(|kept| kept.rounds).into();
+    }
+
+    /// Formats the lines with what was asked for and what is proved.
+    pub fn text(&self) -> String {
+        let proved = self.proved.map_or("nothing".into(), |proved| {
+            let plural = if self.rounds == 1 { "" } else { "s" };
+            match self.rounds {
+                0 => value(proved),
+                rounds => format!("{} (mended in {rounds} round{plural})", value(proved)),
+            }
+        });
+        format!("error_asked: {}\nerror_proved: {proved}\n", value(self.asked))
+    }
+}

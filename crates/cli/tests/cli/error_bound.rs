@@ -1,0 +1,102 @@
+//! `simplify --error`: what is written keeps the error, and the report says what is proved.
+
+use std::fmt::Write;
+
+use serde_json::Value;
+
+use crate::run::Run;
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+/// Checks that a report proves an error, and that the bounds of the distance between the two files
+/// agree.
+fn check(run: &Run, report: &Value, files: [&str; 2]) {
+    let [asked, proved] = ["error_asked", "error_proved"].map(|field| number(&report[field]));
+    assert!(report["reached"] == true && proved <= asked * (1.0 + 1e-9), "{report}");
+    assert!(number(&report["error_measured"]["max"]) <= proved, "{report}");
+    let measured = run.json(&["measure", files[0], files[1], "--certified", "--samples", "10"]);
+    let [lower, upper] =
+        ["lower", "upper"].map(|bound| number(&measured["certified"][bound]) / asked);
+    assert!(lower <= 1.0 && upper <= 1.02, "between {lower} and {upper} of {asked}");
+}
+
+#[test]
+fn what_is_written_keeps_the_error() {
+    let run = Run::new();
+    let mut mended = 0.0;
+    for (sample, out, rest) in [
+        ("fish", "out.glb", &[][..]),
+        ("terrain", "out.stl", &[]),
+        ("gyroid", "out.ply", &["--method", "qem"]),
+        ("fish", "out.obj", &["--lock-boundary", "--topology", "keep"]),
+        ("knot", "out.ply", &["--method", "qem-endpoint"]),
+    ] {
+        run.sample(sample, 3_000, "in.ply");
+        let arguments = ["simplify", "in.ply", out, "--error", "0.3%"];
+        let report = run.json(&[&arguments, rest].concat());
+        assert!(number(&report["output_faces"]) < number(&report["input_faces"]));
+        check(&run, &report, ["in.ply", out]);
+        mended += number(&report["error_rounds"]);
+    }
+    assert!(mended > 0.0, "nothing had to be mended");
+}
+
+#[test]
+fn the_same_bytes_come_from_any_number_of_threads() {
+    let run = Run::new();
+    run.sample("gyroid", 6_000, "in.ply");
+    let written = ["1", "3"].map(|threads| {
+        let arguments = ["simplify", "in.ply", "out.ply", "--error", "0.2%", "--threads", threads];
+        let report = run.json(&arguments);
+        assert!(number(&report["error_rounds"]) > 0.0, "nothing had to be mended");
+        std::fs::read(run.path("out.ply")).unwrap()
+    });
+    assert!(written[0] == written[1]);
+}
+
+#[test]
+fn rounding_far_from_the_origin_takes_64_bits() {
+    let run = Run::new();
+    let mut obj = String::new();
+    for i in 0..400 {
+        let [x, y] = [i / 20, i % 20].map(f64::from);
+        let z = (x * 0.7).sin() + (y * 0.9).cos();
+        writeln!(obj, "v {} {y} {z}", 1e7 + x).unwrap();
+    }
+    for i in (0..19).flat_map(|x| (1..20).map(move |y| 20 * x + y)) {
+        writeln!(obj, "f {} {} {}", i, i + 20, i + 21).unwrap();
+        writeln!(obj, "f {} {} {}", i, i + 21, i + 1).unwrap();
+    }
+    std::fs::write(run.path("in.obj"), obj).unwrap();
+    let report = run.json(&["simplify", "in.obj", "out.obj", "--error", "0.1"]);
+    check(&run, &report, ["in.obj", "out.obj"]);
+    let done = run.run(&["simplify", "in.obj", "out.stl", "--error", "0.1", "--json"]);
+    let report = done.json();
+    assert!(done.code == 0 && report["reached"] == false, "{report}");
+    assert!(number(&report["error_proved"]) > 0.1 && done.only_line().contains("rounded"));
+    let strict = ["simplify", "in.obj", "out.stl", "--error", "0.1", "--strict"];
+    assert_eq!(run.run(&strict).code, 1);
+}
+
+#[test]
+fn a_level_changed_or_recorded_is_measured_instead() {
+    let run = Run::new();
+    run.sample("knot", 3_000, "in.ply");
+    let exact = ["simplify", "in.ply", "out.ply", "--error", "0.3%", "--exact-volume"];
+    check(&run, &run.json(&exact), ["in.ply", "out.ply"]);
+    let recorded = ["simplify", "in.ply", "out.ply", "--error", "0.3%", "--sequence", "all.mlp"];
+    let report = run.json(&[&recorded[..], &["--topology", "keep"]].concat());
+    assert!(number(&report["error_proved"]) >= number(&report["error_measured"]["max"]));
+    assert_eq!(report["error_rounds"], 0);
+}
+
+#[test]
+fn a_surface_without_area_proves_nothing() {
+    let run = Run::new();
+    std::fs::write(run.path("in.obj"), "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n").unwrap();
+    let done = run.run(&["simplify", "in.obj", "out.obj", "--error", "1%", "--json"]);
+    assert_eq!(done.code, 0, "{done:?}");
+    assert!(done.json()["error_proved"].is_null() && done.only_line().contains("no area"));
+}

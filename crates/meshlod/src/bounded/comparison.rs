@@ -1,0 +1,206 @@
+//! Comparison of successive levels with one input.
+
+use std::collections::HashSet;
+
+use glam::DVec3;
+use meshlod_measure::{BeyondOptions, FaceBeyond, PreparedSurface, faces_beyond};
+use meshlod_mesh::{FaceId, Mesh, VertexId};
+use meshlod_simplify::{Excess, ExcessFace};
+use meshlod_spatial::Bvh;
+use rayon::prelude::*;
+
+/// Part by which a face may exceed what it is compared with: so much lower is that, and nothing
+/// exceeds the error itself. The smaller, the more costs the proof, and the more faces it saves.
+const SLACK: f64 = 0.01;
+
+/// Limit on the divisions of faces in each direction. Where errors are far below a thousandth of a
+/// percent of the diagonal and large flats are divided into other faces, more would be needed.
+const MOST_SPLITS: usize = 32_000_000;
+
+/// Result of the comparison of a level with the input.
+pub(super) enum Outcome {
+    /// No point of either is farther from the other than allowed.
+    Near,
+    /// These faces have points that are.
+    Far(Vec<Excess>),
+    /// It is not known of some faces whether they have, and no other face has.
+    Undecided,
+    /// The level has no area, and cannot be compared.
+    NoArea,
+}
+
+/// Comparison of levels with one input, in which what has been proved of a face once is not proved
+/// again.
+pub(super) struct Comparison<'i, 'm> {
+    input: &'i PreparedSurface<'m>,
+    mesh: &'m Mesh,
+    /// Largest distance allowed, in model units.
+    error: f64,
+    last: Option<Compared>,
+}
+
+/// A level that has been compared, and what was found.
+struct Compared {
+    /// Corners of all faces of the level.
+    corners: Vec<Corners>,
+    /// Corners of the faces that are near enough.
+    near: HashSet<Corners>,
+    /// Faces of the input that are too far away.
+    far: Vec<FaceId>,
+}
+
+/// Bits of the positions of a face's corners.
+type Corners = [[u64; 3]; 3];
+
+impl<'i, 'm> Comparison<'i, 'm> {
+    pub(super) fn new(mesh: &'m Mesh, input: &'i PreparedSurface<'m>, error: f64) -> Self {
+        Self { input, mesh, error, last: None }
+    }
+
+    /// Compares a level with the input, in both directions.
+    pub(super) fn with(&mut self, level: &Mesh) -> Outcome {
+        let Ok(surface) = PreparedSurface::new(level) else { return Outcome::NoArea };
+        let corners: Vec<Corners> = level.faces.iter().map(|face| corners(level, face)).collect();
+        let [of_level, of_input] = match &self.last {
+            None => self.faces_of_one_only(&corners),
+            Some(last) => [Some(last.new_faces(&corners)), Some(self.doubtful(last, &corners))],
+        };
+        let limit = self.error / (1.0 + SLACK);
+        let far = |from, to, faces: Option<Vec<FaceId>>| {
+            let options =
+                BeyondOptions { slack: SLACK, most_splits: MOST_SPLITS, faces: faces.as_deref() };
+            faces_beyond(from, to, &|_| limit, &options).faces
+        };
+        let of_level = far(&surface, self.input, of_level);
+        let of_input = far(self.input, &surface, of_input);
+        let mut near: HashSet<Corners> = corners.iter().copied().collect();
+        of_level.iter().for_each(|far| _ = near.remove(&corners[far.face.index()]));
+        let faces = of_input.iter().map(|far| far.face).collect();
+        self.last = Some(Compared { corners, near, far: faces });
+        if of_level.is_empty() && of_input.is_empty() {
+            return Outcome::Near;
+        }
+        let excess = |face: ExcessFace, far: &FaceBeyond| {
+            let ratio = (far.distance / limit).max(1.0);
+            far.decided.then_some(Excess { face, ratio })
+        };
+        let of_level = of_level.iter().map(|far| excess(ExcessFace::OfLevel(far.face), far));
+        let of_input = of_input.iter().map(|far| excess(ExcessFace::OfInput(far.face), far));
+        let far: Vec<Excess> = of_level.chain(of_input).flatten().collect();
+        if far.is_empty() { Outcome::Undecided } else { Outcome::Far(far) }
+    }
+
+    /// Returns the faces of a level that the input has not, and those of the input that the level
+    /// has not; `None` for all. Others are at no distance.
+    fn faces_of_one_only(&self, level: &[Corners]) -> [Option<Vec<FaceId>>; 2] {
+        if 2 * level.len() < self.mesh.faces.len() {
+            return [None, None];
+        }
+        let input: Vec<Corners> =
+            self.mesh.faces.iter().map(|face| corners(self.mesh, face)).collect();
+        let missing = |of: &[Corners], from: &[Corners]| {
+            let from: HashSet<&Corners> = from.iter().collect();
+            let is_missing = |face: &FaceId| !from.contains(&of[face.index()]);
+            Some((0..of.len()).map(FaceId::new).filter(is_missing).collect())
+        };
+        [missing(level, &input), missing(&input, level)]
+    }
+
+    /// Returns the faces of the input that may be too far from a level with these faces: those that
+    /// were too far from the last one, and those that come near a face that it has no more.
+    fn doubtful(&self, last: &Compared, now: &[Corners]) -> Vec<FaceId> {
+        let now: HashSet<&Corners> = now.iter().collect();
+        let gone: Vec<Corners> =
+            last.corners.iter().filter(|face| !now.contains(face)).copied().collect();
+        let Ok(gone) = Bvh::new(&mesh_of(&gone)) else { return last.far.clone() };
+        let comes_near = |face: &FaceId| {
+            let [a, b, c] =
+                self.mesh.faces[face.index()].map(|v| DVec3::from(self.mesh.positions[v.index()]));
+            let middle = (a + b + c) / 3.0;
+            let radius = [a, b, c].map(|at| at.distance(middle)).into_iter().fold(0.0, f64::max);
+            let reach = 1.000_001 * (self.error + radius);
+            gone.near(middle.into(), None, [reach, reach]).is_some()
+        };
+        let mut doubtful: Vec<FaceId> = (0..self.mesh.faces.len())
+            .into_par_iter()
+            .map(FaceId::new)
+            .filter(comes_near)
+            .collect();
+        doubtful.extend(&last.far);
+        doubtful.sort_unstable();
+        doubtful.dedup();
+        doubtful
+    }
+}
+
+impl Compared {
+    /// Returns the faces that are not known to be near enough.
+    fn new_faces(&self, corners: &[Corners]) -> Vec<FaceId> {
+        let is_new = |face: &FaceId| !self.near.contains(&corners[face.index()]);
+        (0..corners.len()).map(FaceId::new).filter(is_new).collect()
+    }
+}
+
+fn corners(mesh: &Mesh, face: &[VertexId; 3]) -> Corners {
+    face.map(|v| mesh.positions[v.index()].map(f64::to_bits))
+}
+
+/// Returns a mesh of faces that share no vertices.
+fn mesh_of(faces: &[Corners]) -> Mesh {
+    let positions = faces.iter().flatten().map(|at| at.map(f64::from_bits)).collect();
+    let face = |i: usize| [3 * i, 3 * i + 1, 3 * i + 2].map(VertexId::new);
+    Mesh::new(positions, (0..faces.len()).map(face).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_samples as samples;
+    use meshlod_simplify::{Options, Simplifier, Target};
+
+    use super::*;
+
+    /// Faces that are too far away, by surface and number.
+    fn far(outcome: Outcome) -> Vec<(bool, FaceId)> {
+        let Outcome::Far(found) = outcome else { return Vec::new() };
+        let mut faces: Vec<_> = found
+            .iter()
+            .map(|excess| match excess.face {
+                ExcessFace::OfLevel(face) => (true, face),
+                ExcessFace::OfInput(face) => (false, face),
+            })
+            .collect();
+        faces.sort_unstable();
+        faces
+    }
+
+    #[test]
+    fn a_second_level_is_compared_as_if_it_were_the_first() {
+        let mesh = samples::knot(4_000);
+        let input = PreparedSurface::new(&mesh).unwrap();
+        let error = 0.003 * mesh.bounds().diagonal();
+        let mut simplifier = Simplifier::new(&mesh, &Options::default()).unwrap();
+        let mut levels = [0.9, 0.25, 0.2, 0.15].map(|ratio| {
+            simplifier.run(Target::Ratio(ratio), &mut ()).unwrap();
+            simplifier.level()
+        });
+        for back in [false, true] {
+            let mut comparison = Comparison::new(&mesh, &input, error);
+            for level in &levels {
+                let alone = far(Comparison::new(&mesh, &input, error).with(level));
+                assert_eq!(far(comparison.with(level)), alone, "{back}");
+            }
+            levels.reverse();
+        }
+        let coarsest = far(Comparison::new(&mesh, &input, error).with(&levels[3]));
+        assert!(coarsest.len() > 10 && coarsest.len() < mesh.faces.len(), "{}", coarsest.len());
+    }
+
+    #[test]
+    fn a_surface_is_near_itself_at_no_distance() {
+        let mesh = samples::sphere(300);
+        let input = PreparedSurface::new(&mesh).unwrap();
+        assert!(matches!(Comparison::new(&mesh, &input, 0.0).with(&mesh), Outcome::Near));
+        let flat = Mesh { positions: vec![[0.0; 3]; mesh.positions.len()], ..mesh.clone() };
+        assert!(matches!(Comparison::new(&mesh, &input, 1.0).with(&flat), Outcome::NoArea));
+    }
+}
