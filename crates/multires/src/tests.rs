@@ -6,3 +6,4 @@ mod locate;
 mod long;
 mod motions;
 pub(crate) mod walks;
+mod wedges;

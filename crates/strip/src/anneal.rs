@@ -55,7 +55,8 @@ impl PathCover {
             match starts {
                 Starts::Runs(run) => round.runs(&mut self.nodes, run, due.each, random),
                 Starts::Nodes(nodes) => {
-                    let region = Region::new(&mut self.nodes, 0, &energy);
+                    let region =
+                        Region::new(&mut self.nodes, 0, &energy).touching(self.touched.as_mut());
                     round.anneal(region, nodes, due.of(nodes.len()), random);
                 }
             }

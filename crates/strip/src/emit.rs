@@ -29,6 +29,21 @@ impl PathCover {
         strips
     }
 
+    /// Appends the strip of the path through a node to `strip`, which must be empty, as
+    /// [`strips`](Self::strips) draws it. Returns an end of the path.
+    pub(crate) fn draw_through(
+        &self,
+        faces: &[[VertexId; 3]],
+        node: usize,
+        strip: &mut Vec<VertexId>,
+    ) -> usize {
+        let end = self.end_of(node);
+        let other = self.path(end).last().map_or(end, |(other, _)| other);
+        let (first, last) = (end.min(other), end.max(other));
+        self.draw(faces, self.better_end(first, last), strip);
+        end
+    }
+
     /// Returns the end from which a path is cheaper to draw, `end` if both cost the same.
     pub(crate) fn better_end(&self, end: usize, far: usize) -> usize {
         if self.starts_odd(end) && !self.starts_odd(far) { far } else { end }

@@ -24,7 +24,8 @@
 //! A [`SkipStrip`] carries the strips of a mesh down the half-edge contractions of a [`MergeTree`].
 //! It gives display strips for every level, shortened by a [`Filter`] or
 //! [repaired](SkipStrip::repaired). [`LevelStrips`] and [`CutStrips`] follow levels and cuts at a
-//! cost proportional to the change. See docs/notes/strips.md.
+//! cost proportional to the change, and [`StripIndices`] are index buffers that follow those. See
+//! docs/notes/strips.md.
 
 #![forbid(unsafe_code)]
 
@@ -49,6 +50,7 @@ mod sequence;
 mod skip;
 mod stripify;
 mod strips;
+mod touched;
 mod tunnel;
 mod verify;
 
@@ -57,8 +59,8 @@ pub use energy::Prices;
 pub use filter::Filter;
 pub use measure::{StripStatistics, acmr};
 pub use overdraw::overdraw;
-pub use repair::{LevelStrips, LiveStrips, StripEffort};
-pub use selective::{CutStrips, PointsMove};
+pub use repair::{LevelStrips, LiveStrips, StripEffort, StripIndices};
+pub use selective::CutStrips;
 pub use skip::{HistoryError, MergeTree, SkipStrip, StripWedge};
 pub use stripify::{StripOptions, StripQuality, stripify};
 pub use strips::Strips;

@@ -59,6 +59,7 @@ impl Order {
             false => DualEdge::new(place[edge.node()] as usize, edge.side()),
         };
         let node = |node: DualNode| DualNode { across: node.across.map(moved), ..node };
-        PathCover { nodes: self.sorted(&cover.nodes).into_iter().map(node).collect() }
+        let nodes = self.sorted(&cover.nodes).into_iter().map(node).collect();
+        PathCover { nodes, touched: None }
     }
 }

@@ -9,6 +9,7 @@ use meshlod_mesh::VertexId;
 
 use crate::dual::nodes;
 use crate::dual_node::{DualEdge, DualNode};
+use crate::touched::Touched;
 
 /// A path cover of the dual graph of some faces.
 ///
@@ -17,12 +18,15 @@ use crate::dual_node::{DualEdge, DualNode};
 #[derive(Clone, Debug)]
 pub(crate) struct PathCover {
     pub(crate) nodes: Vec<DualNode>,
+    /// Nodes whose paths have changed, if they are to be listed. Runs that are annealed in parallel
+    /// list none.
+    pub(crate) touched: Option<Touched>,
 }
 
 impl PathCover {
     /// Builds a cover in which every face is a path by itself.
     pub(crate) fn new(faces: &[[VertexId; 3]]) -> Self {
-        Self { nodes: nodes(faces) }
+        Self { nodes: nodes(faces), touched: None }
     }
 
     /// Disconnects faces with different labels, so that no strip crosses from one label to another.
@@ -138,6 +142,16 @@ impl PathCover {
             });
             Some((node, side))
         })
+    }
+
+    /// Returns an end of the path through a node. Cost: the length of the path.
+    pub(crate) fn end_of(&self, node: usize) -> usize {
+        let Some(side) = self.nodes[node].links.first() else { return node };
+        let mut entry = self.nodes[node].across[side];
+        while let Some(side) = self.nodes[entry.node()].links.without(entry.side()).first() {
+            entry = self.nodes[entry.node()].across[side];
+        }
+        entry.node()
     }
 
     /// Returns whether a node ends a path.

@@ -2,6 +2,7 @@
 
 use crate::dual_node::{DualEdge, DualNode, Links};
 use crate::energy::{Energy, swaps};
+use crate::touched::Touched;
 
 /// A run of consecutive nodes of a cover. Nodes with a neighbour outside must be frozen: then the
 /// cost of a change depends only on nodes inside, and adjacent regions can be changed in parallel.
@@ -10,6 +11,8 @@ pub(crate) struct Region<'a> {
     /// Index of the first of `nodes` in the cover.
     first: usize,
     energy: &'a Energy,
+    /// Gets the nodes whose links change, if anybody wants to know.
+    touched: Option<&'a mut Touched>,
 }
 
 /// Limit on walking a path each way to find its end. The bunny, 60 moves per face: 1.0941 vertices
@@ -19,7 +22,23 @@ const MAX_WALK: usize = 256;
 
 impl<'a> Region<'a> {
     pub(crate) fn new(nodes: &'a mut [DualNode], first: usize, energy: &'a Energy) -> Self {
-        Self { nodes, first, energy }
+        Self { nodes, first, energy, touched: None }
+    }
+
+    /// Lists the nodes whose links change.
+    pub(crate) fn touching(self, touched: Option<&'a mut Touched>) -> Self {
+        Self { touched, ..self }
+    }
+
+    /// Records that the links at `edges` have changed for good.
+    #[inline]
+    pub(crate) fn touch(&mut self, edges: &[DualEdge]) {
+        let Self { nodes, first, touched: Some(touched), .. } = self else { return };
+        for edge in edges {
+            let across = nodes[edge.node() - *first].across[edge.side()];
+            touched.mark(edge.node());
+            touched.mark(across.node());
+        }
     }
 
     /// Returns the nodes of the region.

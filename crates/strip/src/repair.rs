@@ -1,9 +1,12 @@
 //! Repairs triangle strips where the level of detail has changed.
 
+mod index_buffer;
+mod indices;
 mod levels;
 mod live;
 mod local_search;
 
+pub use indices::StripIndices;
 pub use levels::LevelStrips;
 pub use live::LiveStrips;
 pub use local_search::StripEffort;

@@ -1,50 +1,55 @@
 //! Triangle strips of a view-dependent cut.
 
+mod verify;
+mod vertices;
+
 use meshlod_mesh::VertexId;
 use meshlod_multires::{Cut, Implicit};
-use thiserror::Error;
 
-use crate::repair::{LiveStrips, StripEffort};
+use crate::repair::{LiveStrips, StripEffort, StripIndices};
 use crate::stripify::{StripOptions, stripify};
 use crate::strips::Strips;
 
-/// Triangle strips that follow a cut of a multiresolution model built by half-edge contractions.
+/// Triangle strips that follow a cut of a multiresolution model.
 ///
-/// They draw exactly the cut's triangles. Vertices are nodes of the finest level, so one vertex
-/// buffer, filled from [`Implicit::position`], serves all cuts. For models whose points move, feed
-/// the [patches](Cut::patches) of a cut to [`LiveStrips`] directly.
+/// They draw exactly the cut's triangles. Their vertices are wedges of the model if it has any, so
+/// no strip runs across a seam or from one material to another; else they are nodes. One vertex
+/// buffer serves all cuts: the position of each node ([`Implicit::position`]), or of the node of
+/// each wedge, with the values of its [layers](Implicit::layers).
+///
+/// A split that leaves one child where its node was, as in models built from half-edge
+/// contractions, changes only the triangles of the other.
 #[derive(Clone, Debug)]
 pub struct CutStrips {
-    /// Leaf at the position of each node.
-    leaves: Vec<VertexId>,
+    /// Vertex by which each node, or wedge, of the model is drawn.
+    vertices: Vec<VertexId>,
+    has_wedges: bool,
     live: LiveStrips,
 }
-
-/// Error: the multiresolution model was not built by half-edge contractions, so vertices move.
-#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
-#[error(
-    "node {0} is at the position of neither child; build the model from half-edge contractions, for example with qem-endpoint"
-)]
-pub struct PointsMove(pub u32);
 
 impl CutStrips {
     /// Builds triangle strips for the current cut of the model `mt`.
     ///
+    /// The options' clusters are ignored, since triangles come and go.
+    ///
     /// Cost: one [`stripify`], plus linear in the model.
-    /// # Errors
-    /// If the model was not built by half-edge contractions.
-    pub fn new(
-        mt: &Implicit,
+    pub fn new(mt: &Implicit, cut: &Cut<'_>, options: &StripOptions, effort: StripEffort) -> Self {
+        Self::with_vertices(vertices::vertices(mt), mt.wedge_count() > 0, cut, (options, effort))
+    }
+
+    fn with_vertices(
+        vertices: Vec<VertexId>,
+        has_wedges: bool,
         cut: &Cut<'_>,
-        options: &StripOptions,
-        effort: StripEffort,
-    ) -> Result<Self, PointsMove> {
-        let leaves = leaves(mt)?;
-        let triangles = cut.triangles().map(|(place, nodes)| (place, shown(&leaves, nodes)));
+        (options, effort): (&StripOptions, StripEffort),
+    ) -> Self {
+        let triangles = cut.triangles().map(|(slot, nodes)| {
+            (slot, corners(has_wedges, cut, slot, nodes).map(|i| vertices[i as usize]))
+        });
         let triangles: Vec<_> = triangles.collect();
         let faces: Vec<_> = triangles.iter().map(|&(_, face)| face).collect();
-        let live = LiveStrips::new(triangles, &stripify(&faces, options), effort);
-        Ok(Self { leaves, live })
+        let strips = stripify(&faces, &StripOptions { clusters: None, ..*options });
+        Self { vertices, has_wedges, live: LiveStrips::new(triangles, &strips, effort) }
     }
 
     /// Follows the last update of the cut, and returns the number of triangles added, removed or
@@ -54,10 +59,13 @@ impl CutStrips {
     ///
     /// Cost: proportional to the change.
     pub fn update(&mut self, cut: &Cut<'_>) -> usize {
-        let Self { leaves, live } = self;
-        live.update(
-            cut.patches().map(|patch| (patch.slot, patch.new.map(|nodes| shown(leaves, nodes)))),
-        )
+        let Self { vertices, has_wedges, live } = self;
+        // A slot with the same nodes has the same wedges: in one update, splits come before merges,
+        // so no other face can have taken the slot and have these nodes.
+        live.update(cut.patches().map(|patch| {
+            let corners = patch.new.map(|nodes| corners(*has_wedges, cut, patch.slot, nodes));
+            (patch.slot, corners.map(|corners| corners.map(|i| vertices[i as usize])))
+        }))
     }
 
     /// Returns the current triangle strips, which draw exactly the cut's triangles.
@@ -67,95 +75,53 @@ impl CutStrips {
         self.live.strips()
     }
 
-    /// Returns the vertex at which a node of the model is drawn, which is a node of the finest
-    /// level.
-    pub fn vertex(&self, node: u32) -> VertexId {
-        self.leaves[node as usize]
+    /// Returns the current triangle strips of each material, in the order of
+    /// [`Implicit::material_names`]; a single set if the model `mt` has no materials.
+    ///
+    /// Cost: linear in their length.
+    pub fn strips_by_material(&self, mt: &Implicit) -> Vec<Strips> {
+        let mut sets = vec![Strips::default(); material_count(mt)];
+        for strip in self.strips().iter() {
+            sets[material(mt, strip[0])].push(strip.iter().copied());
+        }
+        sets
+    }
+
+    /// Writes the current triangle strips into index buffers, one a material of the model `mt`.
+    ///
+    /// Cost: linear in their length.
+    pub fn indices(&mut self, mt: &Implicit) -> StripIndices {
+        StripIndices::new(&mut self.live, material_count(mt), |v| material(mt, v))
+    }
+
+    /// Brings index buffers up to date after [`update`](Self::update).
+    ///
+    /// Cost: the length of the strips that have changed, amortized.
+    pub fn update_indices(&self, mt: &Implicit, indices: &mut StripIndices) {
+        indices.update(&self.live, |v| material(mt, v));
+    }
+
+    /// Returns the vertex of the strips that draws a node of the model, or a wedge if it has any.
+    ///
+    /// It is the finest node, or wedge, below that has the same position, values and material.
+    pub fn vertex(&self, of: u32) -> VertexId {
+        self.vertices[of as usize]
     }
 }
 
-fn shown(leaves: &[VertexId], nodes: [u32; 3]) -> [VertexId; 3] {
-    nodes.map(|node| leaves[node as usize])
+/// Returns the number of sets of strips, one a material.
+fn material_count(mt: &Implicit) -> usize {
+    mt.material_names().map_or(1, <[String]>::len)
 }
 
-/// Finds for each node the leaf at its position.
-fn leaves(mt: &Implicit) -> Result<Vec<VertexId>, PointsMove> {
-    let mut leaves: Vec<_> = (0..mt.node_count()).map(VertexId::new).collect();
-    // Children have higher numbers.
-    for node in (0..mt.node_count() as u32).rev() {
-        let Some(children) = mt.children_of(node) else { continue };
-        let place = mt.position(node);
-        let at_place = children.into_iter().find(|&child| mt.position(child) == place);
-        leaves[node as usize] = leaves[at_place.ok_or(PointsMove(node))? as usize];
-    }
-    Ok(leaves)
+fn material(mt: &Implicit, vertex: VertexId) -> usize {
+    mt.material_of(vertex.0).unwrap_or(0) as usize
+}
+
+/// Returns what the vertices of a triangle are drawn by: its wedges, or its nodes.
+fn corners(has_wedges: bool, cut: &Cut<'_>, slot: u32, nodes: [u32; 3]) -> [u32; 3] {
+    if has_wedges { cut.wedges(slot).unwrap_or(nodes) } else { nodes }
 }
 
 #[cfg(test)]
-mod tests {
-    use meshlod_fixtures::{grid, moebius};
-    use meshlod_mesh::Mesh;
-    use meshlod_multires::{Focus, Forest, Model, Query, Tolerance, UpdateLimits};
-    use meshlod_samples as samples;
-    use meshlod_simplify::Method;
-
-    use super::*;
-    use crate::verify::{Difference, difference};
-
-    fn model(mesh: &Mesh, method: Method) -> Model {
-        let options = meshlod_simplify::Options { method, ..Default::default() };
-        Model::new(&Forest::new(mesh, &options).unwrap()).unwrap()
-    }
-
-    /// Moves a fully detailed sphere across the model.
-    fn follows(mesh: &Mesh) {
-        let model = model(mesh, Method::QemEndpoint);
-        let mut cut = model.cut();
-        let options = StripOptions::default();
-        let mut strips =
-            CutStrips::new(model.implicit(), &cut, &options, StripEffort::Quick).unwrap();
-        let bounds = mesh.bounds();
-        for step in [0, 3, 10, 11, 12, 4, 0, 7] {
-            let center = std::array::from_fn(|k| {
-                bounds.min[k] + (bounds.max[k] - bounds.min[k]) * f64::from(step) / 12.0
-            });
-            let focus = Focus::Sphere { center, radius: 0.25 * bounds.diagonal() };
-            let query = Query { focus, tolerance: Tolerance::Uniform(0.0) };
-            cut.update(&query, &UpdateLimits::default()).unwrap();
-            assert!(strips.update(&cut) <= cut.patches().count());
-            let faces: Vec<_> =
-                cut.triangles().map(|(_, nodes)| nodes.map(|node| strips.vertex(node))).collect();
-            assert_eq!(difference(&strips.strips(), &faces), Difference::default(), "{step}");
-        }
-    }
-
-    #[test]
-    fn every_cut_is_drawn() {
-        [samples::torus(800), grid(10), moebius(30)].iter().for_each(follows);
-    }
-
-    #[test]
-    fn vertices_are_where_their_nodes_are() {
-        let model = model(&samples::sphere(400), Method::QemEndpoint);
-        let mt = model.implicit();
-        let strips =
-            CutStrips::new(mt, &model.cut(), &StripOptions::default(), StripEffort::Quick).unwrap();
-        for node in 0..mt.node_count() as u32 {
-            let leaf = strips.vertex(node).0;
-            assert_eq!(mt.position(leaf), mt.position(node));
-            assert_eq!(mt.children_of(leaf), None);
-        }
-    }
-
-    #[test]
-    fn where_points_move_it_is_said() {
-        let model = model(&samples::sphere(400), Method::Qem);
-        let made = CutStrips::new(
-            model.implicit(),
-            &model.cut(),
-            &StripOptions::default(),
-            StripEffort::Quick,
-        );
-        assert!(made.is_err());
-    }
-}
+mod tests;

@@ -48,12 +48,14 @@ impl Region<'_> {
         }
         let mut tunnel = Tunnel { edges: [DualEdge::NONE; _], count: 0 };
         let came_to = self.dig(start, limit, &mut tunnel, random);
-        if came_to.is_none() {
-            for &edge in tunnel.edges() {
-                self.flip(edge);
-            }
+        if came_to.is_some() {
+            self.touch(tunnel.edges());
+            return came_to;
         }
-        came_to
+        for &edge in tunnel.edges() {
+            self.flip(edge);
+        }
+        None
     }
 
     /// Digs the tunnel for [`Region::try_tunnel`], which undoes it on failure.

@@ -1,7 +1,10 @@
 //! Builds the explicit MT by replaying the contractions.
 
+use std::sync::Arc;
+
 use super::{Explicit, ExplicitTriangle, ExplicitUpdate};
 use crate::forest::Forest;
+use crate::wedges::{ForestWedges, Wedges};
 
 impl Explicit {
     /// Builds the model from all triangles that occurred during a recorded simplification.
@@ -15,10 +18,14 @@ impl Explicit {
             exact: forest.exact.clone(),
             updates: Vec::new(),
             triangles: Vec::new(),
+            corners: Vec::new(),
+            wedges: forest.wedges.as_ref().map(|all| Arc::new(Wedges::of_forest(all))),
             splits: vec![None; forest.positions.len()],
         };
+        let mut corners = forest.wedges.iter().flat_map(|all| &all.corners).copied();
         for &nodes in &forest.faces {
             this.add(nodes, None, &mut stars);
+            this.corners.extend(corners.next());
         }
         let is_fused_with_parent =
             |u: usize| forest.updates.get(u + 1).is_some_and(|next| next.fused_with_child);
@@ -61,6 +68,10 @@ impl Explicit {
             if nodes.iter().filter(|other| children.contains(other)).count() == 1 {
                 let nodes = nodes.map(|other| if children.contains(&other) { node } else { other });
                 coarse.push(self.add(nodes, Some(id), stars));
+                if let Some(all) = &forest.wedges {
+                    let wedges = self.corners[triangle as usize];
+                    self.corners.push([0, 1, 2].map(|k| wedge_at(all, nodes[k], wedges[k])));
+                }
             }
         }
         self.splits[node as usize] = Some(id);
@@ -77,4 +88,13 @@ impl Explicit {
             update.needs.dedup();
         }
     }
+}
+
+/// Returns the wedge of a node that a wedge of it or of a node below has become.
+fn wedge_at(all: &ForestWedges, node: u32, mut wedge: u32) -> u32 {
+    // Fused updates pass through a node that no triangle has.
+    while !all.of(node).contains(&wedge) {
+        wedge = all.parents[wedge as usize];
+    }
+    wedge
 }

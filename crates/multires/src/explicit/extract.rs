@@ -6,6 +6,7 @@ use super::Explicit;
 use crate::level::Level;
 use crate::query::Criterion;
 use crate::query::{Query, QueryError};
+use crate::wedges::LevelWedges;
 
 /// A mesh extracted from an [`Explicit`] model that follows a sequence of queries.
 #[derive(Clone, Debug)]
@@ -66,7 +67,12 @@ impl<'m> ExplicitCut<'m> {
         let faces = self.present.iter().map(|&t| self.mt.triangles[t as usize].nodes);
         let place = |node: u32| self.mt.positions[node as usize];
         let count = self.mt.positions.len();
-        Level::from_nodes(self.mt.frame, count, place, faces.collect()).with_exact(&self.mt.exact)
+        let mut level = Level::from_nodes(self.mt.frame, count, place, faces.collect());
+        level.wedges = self.mt.wedges.as_ref().map(|all| LevelWedges {
+            corners: self.present.iter().map(|&t| self.mt.corners[t as usize]).collect(),
+            all: all.clone(),
+        });
+        level.with_exact(&self.mt.exact)
     }
 
     /// Applies a single update with all its dependencies.

@@ -7,10 +7,13 @@
 mod build;
 mod extract;
 
+use std::sync::Arc;
+
 use meshlod_mesh::Frame;
 
 use crate::pack::ExactPositions;
 use crate::query::{Ball, Criterion};
+use crate::wedges::Wedges;
 
 pub use extract::ExplicitCut;
 
@@ -25,6 +28,11 @@ pub struct Explicit {
     updates: Vec<ExplicitUpdate>,
     /// Triangles, by their nodes.
     triangles: Vec<ExplicitTriangle>,
+    /// Wedges at the corners of each triangle, in the forest's numbers; empty if the mesh has
+    /// neither attributes, materials nor objects.
+    corners: Vec<[u32; 3]>,
+    /// Values, materials and objects of the wedges.
+    wedges: Option<Arc<Wedges>>,
     /// Update that splits each node; `None` for leaves.
     splits: Vec<Option<u32>>,
 }
@@ -69,6 +77,8 @@ impl Explicit {
             + size_of_val(&self.updates[..])
             + self.updates.iter().map(lists).sum::<usize>()
             + size_of_val(&self.triangles[..])
+            + size_of_val(&self.corners[..])
+            + self.wedges.as_ref().map_or(0, |wedges| wedges.bytes())
             + size_of_val(&self.splits[..])
     }
 

@@ -26,6 +26,7 @@ mod order;
 mod positions;
 mod saturated;
 mod splits;
+mod wedges;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -11,7 +11,7 @@ use super::walks::{Dice, query};
 use crate::{Archive, Cut, Forest, Implicit, Level, Model, Query, Storage, UpdateLimits};
 
 /// Returns models with seams, creases and several materials.
-fn meshes() -> Vec<(&'static str, Mesh)> {
+pub(crate) fn meshes() -> Vec<(&'static str, Mesh)> {
     let mut two = fixtures::charted(&samples::sphere(900));
     let names = ["even", "odd"].map(String::from).to_vec();
     let of_face = |f: usize| u32::from(two.triangle(two.faces[f])[0].z > 0.2);
@@ -68,7 +68,7 @@ fn cuts_have_the_same_wedges_however_they_are_reached() {
 }
 
 /// Returns the values at each corner of each face, by position, and the materials.
-fn corner_values(mesh: &Mesh) -> BTreeMap<String, usize> {
+pub(crate) fn corner_values(mesh: &Mesh) -> BTreeMap<String, usize> {
     let mut all = BTreeMap::new();
     let attributes = mesh.attributes.as_ref().unwrap();
     for (f, (face, corners)) in mesh.faces.iter().zip(&attributes.corners).enumerate() {

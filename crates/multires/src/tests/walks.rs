@@ -134,7 +134,7 @@ pub(crate) fn in_forest(level: &Level, order: &Order) -> Vec<[u32; 3]> {
 }
 
 /// Returns the forest's nodes above those of a level.
-fn split_nodes(level: &Level, mt: &Implicit, order: &Order) -> BTreeSet<u32> {
+pub(crate) fn split_nodes(level: &Level, mt: &Implicit, order: &Order) -> BTreeSet<u32> {
     let mut above = BTreeSet::new();
     for &node in &level.nodes {
         let mut node = node;

@@ -35,6 +35,17 @@ impl Wedges {
         })
     }
 
+    /// Returns the wedges of a forest in its own order, without records of splits.
+    pub(crate) fn of_forest(all: &ForestWedges) -> Self {
+        let counts = all.first.windows(2).map(|ends| ends[1] - ends[0]);
+        Self {
+            of_nodes: NodeWedges::new(counts),
+            layers: all.layers.clone(),
+            labels: all.labels.clone(),
+            ..Self::default()
+        }
+    }
+
     /// Returns the number of wedges of all nodes.
     pub(crate) fn wedge_count(&self) -> usize {
         let nodes = |layer: &Layer| layer.values.len() / layer.width.max(1);

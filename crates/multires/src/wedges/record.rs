@@ -10,7 +10,8 @@ use super::WedgeLabels;
 use crate::forest::NONE;
 use crate::implicit::Order;
 
-/// Wedges of all nodes of a forest, numbered by node: first those of the leaves.
+/// Wedges of all nodes of a forest, numbered by node: first those of the leaves. Every node has one,
+/// also where no face uses it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ForestWedges {
     /// First wedge of each node, and the end of the last.
@@ -76,7 +77,7 @@ impl ForestWedges {
         below
     }
 
-    /// Adds a wedge to the last node.
+    /// Adds a wedge to the last node, with values of zero unless the surface has it.
     fn push(&mut self, layers: &[Layer], wedge: Option<WedgeId>, label: u32) {
         self.parents.push(NONE);
         for (layer, from) in self.layers.iter_mut().zip(layers) {
@@ -90,8 +91,11 @@ impl ForestWedges {
         }
     }
 
-    /// Ends the wedges of a node.
-    fn end_node(&mut self) {
+    /// Ends the wedges of a node, which gets one if it has none.
+    fn end_node(&mut self, layers: &[Layer], label: u32) {
+        if self.first.last() == Some(&(self.len() as u32)) {
+            self.push(layers, None, label);
+        }
         self.first.push(self.parents.len() as u32);
     }
 }
@@ -138,7 +142,7 @@ impl WedgeRecorder {
                 this.live[wedge.index()] = this.wedges.len() as u32;
                 this.wedges.push(surface.layers(), Some(wedge), label);
             }
-            this.wedges.end_node();
+            this.wedges.end_node(surface.layers(), 0);
         }
         let corner = |&face: &FaceId| wedges_of(surface, face).map(|w| this.live[w.index()]);
         this.wedges.corners = faces.iter().map(corner).collect();
@@ -200,14 +204,8 @@ impl WedgeRecorder {
         for (same, number) in wedges.chunk_by(|a, b| a.0 == b.0).zip(first..) {
             self.live[same[0].0.index()] = number;
         }
-        if wedges.is_empty() {
-            self.wedges.push(
-                &[],
-                None,
-                self.wedges.labels.of(self.wedges.first[children[0] as usize]),
-            );
-        }
-        self.wedges.end_node();
+        let label = self.wedges.labels.of(self.wedges.first[children[0] as usize]);
+        self.wedges.end_node(surface.layers(), label);
         let is_single = self.wedges.len() as u32 == first + 1;
         if !(follows && is_single && children.iter().all(|&child| self.wedges.count(child) == 1)) {
             self.wedges.splits.insert(update, std::mem::take(&mut self.split));

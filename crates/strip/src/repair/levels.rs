@@ -1,6 +1,8 @@
 //! Triangle strips that follow a changing level of detail incrementally.
 
-use super::{LiveStrips, StripEffort};
+use meshlod_mesh::VertexId;
+
+use super::{LiveStrips, StripEffort, StripIndices};
 use crate::skip::{LevelCursor, MergeTree};
 use crate::strips::Strips;
 
@@ -40,6 +42,20 @@ impl LevelStrips {
         self.cursor.tree()
     }
 
+    /// Writes the current triangle strips into index buffers, as [`StripIndices::new`] does.
+    ///
+    /// Cost: linear in their length.
+    pub fn indices(&mut self, sets: usize, set_of: impl Fn(VertexId) -> usize) -> StripIndices {
+        StripIndices::new(&mut self.live, sets, set_of)
+    }
+
+    /// Brings index buffers up to date after [`set_level`](Self::set_level).
+    ///
+    /// Cost: the length of the strips that have changed, amortized.
+    pub fn update_indices(&self, indices: &mut StripIndices, set_of: impl Fn(VertexId) -> usize) {
+        indices.update(&self.live, set_of);
+    }
+
     /// Returns the triangle strips of the current level.
     ///
     /// Cost: linear in their length.
@@ -68,11 +84,15 @@ mod tests {
     fn holds_everywhere(mesh: &Mesh) {
         let mut strips = start(mesh);
         let all = strips.tree().contractions();
+        let mut indices = strips.indices(1, |_| 0);
         for part in [0, 5, 10, 3, 9, 8, 7, 0] {
             strips.set_level(all * part / 10);
             strips.live.check();
             let level = strips.tree().level(strips.level());
             assert_eq!(difference(&strips.strips(), &level), Difference::default());
+            strips.update_indices(&mut indices, |_| 0);
+            let sent = indices.indices(0).iter().filter(|&&index| index != Strips::RESTART);
+            assert_eq!(sent.count(), strips.strips().vertices().len());
         }
     }
 

@@ -9,6 +9,7 @@ use crate::dual::ends;
 use crate::dual_node::{DualEdge, DualNode, Links};
 use crate::path_cover::PathCover;
 use crate::strips::Strips;
+use crate::touched::Touched;
 use crate::verify::{has_three_corners, lowest_first};
 
 /// Triangle strips of a list of triangles in numbered slots, which may be overwritten.
@@ -18,14 +19,18 @@ use crate::verify::{has_three_corners, lowest_first};
 #[derive(Clone, Debug)]
 pub struct LiveStrips {
     /// Triangle in each slot, [`FREE`] for an empty one.
-    faces: Vec<[VertexId; 3]>,
-    cover: PathCover,
+    pub(super) faces: Vec<[VertexId; 3]>,
+    /// Lists the slots that the last update has touched once there are [`StripIndices`] to follow.
+    ///
+    /// [`StripIndices`]: super::StripIndices
+    pub(super) cover: PathCover,
+    /// Number of updates so far.
+    pub(super) updates: u64,
     /// Sides without a neighbour, by the vertices they run from and to.
     open: FxHashMap<[VertexId; 2], DualEdge>,
     local_search: LocalSearch,
-    /// Slots where the next repair starts, each once.
-    changed: Vec<u32>,
-    is_changed: Vec<bool>,
+    /// Slots where the next repair starts.
+    changed: Touched,
     /// Scratch buffer of sides that have lost their neighbour.
     loose: Vec<DualEdge>,
 }
@@ -61,11 +66,11 @@ impl LiveStrips {
         let open = sides.filter(is_open).map(|edge| (ends(&faces[edge.node()], edge.side()), edge));
         Self {
             open: open.collect(),
-            is_changed: vec![false; faces.len()],
             faces,
             cover,
+            updates: 0,
             local_search: LocalSearch::new(effort),
-            changed: Vec::new(),
+            changed: Touched::default(),
             loose: Vec::new(),
         }
     }
@@ -80,10 +85,12 @@ impl LiveStrips {
         &mut self,
         changes: impl IntoIterator<Item = (u32, Option<[VertexId; 3]>)>,
     ) -> usize {
+        self.updates += 1;
+        self.cover.touched.iter_mut().for_each(Touched::clear);
         for (place, triangle) in changes {
             self.write(place as usize, triangle.unwrap_or(FREE));
         }
-        let count = self.changed.len();
+        let count = self.changed.nodes().len();
         self.loosen();
         self.join();
         self.repair();
@@ -103,7 +110,6 @@ impl LiveStrips {
             self.faces.push(FREE);
             let across = [DualEdge::NONE; 3];
             self.cover.nodes.push(DualNode { across, links: Links::default(), frozen: false });
-            self.is_changed.push(false);
         }
         if self.faces[place] == triangle {
             return;
@@ -122,9 +128,9 @@ impl LiveStrips {
 
     /// Disconnects sides of changed triangles from those that no longer run along them.
     fn loosen(&mut self) {
-        for i in 0..self.changed.len() {
+        for i in 0..self.changed.nodes().len() {
             for side in 0..3 {
-                let edge = DualEdge::new(self.changed[i] as usize, side);
+                let edge = DualEdge::new(self.changed.nodes()[i] as usize, side);
                 let other = self.cover.across(edge);
                 if other.is_none() {
                     self.loose.push(edge);
@@ -160,17 +166,16 @@ impl LiveStrips {
     }
 
     fn repair(&mut self) {
-        let Self { faces, changed, is_changed, cover, .. } = self;
-        changed.iter().for_each(|&place| is_changed[place as usize] = false);
-        changed.retain(|&place| has_three_corners(&faces[place as usize]));
-        self.local_search.improve(cover, changed);
+        let Self { faces, changed, cover, local_search, .. } = self;
+        let is_there = |place: &u32| has_three_corners(&faces[*place as usize]);
+        let starts: Vec<u32> = changed.nodes().iter().copied().filter(is_there).collect();
+        local_search.improve(cover, &starts);
         changed.clear();
     }
 
     fn mark(&mut self, place: usize) {
-        if !std::mem::replace(&mut self.is_changed[place], true) {
-            self.changed.push(place as u32);
-        }
+        self.changed.mark(place);
+        self.cover.touched.iter_mut().for_each(|touched| touched.mark(place));
     }
 
     fn is_across(&self, edge: DualEdge, other: DualEdge) -> bool {

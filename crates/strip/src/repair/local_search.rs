@@ -74,7 +74,8 @@ impl LocalSearch {
 
     fn quench(&mut self, cover: &mut PathCover, nodes: &[u32]) {
         let Self { energy, limits, random, .. } = self;
-        let mut region = Region::new(&mut cover.nodes, 0, energy);
+        let PathCover { nodes: all, touched } = cover;
+        let mut region = Region::new(all, 0, energy).touching(touched.as_mut());
         for heat in QUICK_HEATS {
             for &node in nodes {
                 if region.is_defect(node as usize) {
