@@ -16,6 +16,7 @@ mod failure;
 mod files;
 mod flock;
 mod fuse;
+mod kept_error;
 mod locks;
 mod measured_bound;
 mod model_file;

@@ -231,6 +231,7 @@ mod place;
 mod repair;
 mod scene;
 mod strips;
+mod verified;
 
 pub use meshlod_check as check;
 pub use meshlod_codec as codec;
@@ -269,3 +270,4 @@ pub use place::world_bounds;
 pub use repair::repair_scene;
 pub use scene::{SceneError, SceneSimplifier, simplify_scene};
 pub use strips::scene_strips;
+pub use verified::{Verification, VerifiedExtract, extract_verified, measure_extract};

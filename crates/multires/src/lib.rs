@@ -87,13 +87,14 @@ pub use bounds::ErrorKind;
 pub use cut::{Certificate, CertifyError, Cut, CutChange, Flaw, Located, Patch, UpdateLimits};
 pub use explicit::{Explicit, ExplicitCut};
 pub use file::{
-    Archive, Extract, FieldParts, FileError, ModelFile, Resources, Source, Storage, StoredErrors,
+    Archive, Extract, FieldParts, FileError, ModelFile, Neighbourhood, Resources, Source, Storage,
+    StoredErrors,
 };
 pub use forest::{BuildError, Forest, Recorder};
 pub use implicit::{Extractor, Implicit, SplitRule};
 pub use level::Level;
 pub use model::{Model, ModelBytes};
-pub use query::{Focus, Ground, GroundShape, Query, QueryError, Tolerance, ViewCamera};
+pub use query::{Focus, Ground, GroundShape, Limits, Query, QueryError, Tolerance, ViewCamera};
 pub use rtin::{
     FieldBytesError, Fit, HeightField, HeightFieldError, HeightPrecision, Rtin, RtinCertifyError,
     RtinExtractor, RtinFlaw,

@@ -5,15 +5,19 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum};
-use meshlod::multires::{FileError, Level, ModelFile, Query, ViewCamera};
+use meshlod::multires::{Extract as MeshExtract, FileError, Level, ModelFile, Query, ViewCamera};
 use meshlod::simplify::{Digits, VolumeResidual};
-use meshlod::{CutVolumeError, Mesh, conserve_cut_volume, digits_of, scene_with_materials};
+use meshlod::{
+    CutVolumeError, Mesh, VerifiedExtract, conserve_cut_volume, digits_of, extract_verified,
+    measure_extract, scene_with_materials,
+};
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
 use crate::args::WriteArgs;
 use crate::failure::Failure;
 use crate::files;
+use crate::kept_error::{Asked, KeptError, Known};
 use crate::model_file;
 use crate::numbers::{count, faces, plural, value};
 use crate::parse::{self, Bound};
@@ -54,6 +58,10 @@ pub struct Extract {
     /// top of --error, and so do those that were locked, which the file does not know
     #[arg(long, conflicts_with = "only")]
     exact_volume: bool,
+    /// Trust the errors in the file: faster, and reads only what the result needs, but places can be
+    /// farther off than --error, and the error of --faces is not measured
+    #[arg(long)]
+    unverified: bool,
     #[command(flatten)]
     writing: WriteArgs,
 }
@@ -70,8 +78,9 @@ enum VerticalAxis {
 #[derive(Args)]
 #[group(required = true, multiple = false)]
 struct ExtractTarget {
-    /// Largest error, by the measured errors, estimates or bounds in the file: 1px as the camera sees it, 0.01% of
-    /// the diagonal, or 0.5 in model units; 0 leaves out only detail that changes nothing
+    /// Largest error: 1px as the camera sees it, 0.01% of the diagonal, or 0.5 in model units; 0 for
+    /// the finest level. In the focus, every point of the result is as close to the mesh, and every
+    /// point of the mesh to the result, which is proven
     #[arg(long, value_name = "BOUND", value_parser = query_args::error_limit, allow_hyphen_values = true)]
     error: Option<ErrorLimit>,
     /// The best mesh of at most N faces: for the camera if there is one, else from all sides
@@ -88,6 +97,7 @@ struct Extracted {
     rounding: f64,
     lossless: bool,
     error_kind: &'static str,
+    error: KeptError,
     /// Chunks read, present and in total.
     chunks: [usize; 3],
     updates: usize,
@@ -107,7 +117,7 @@ impl Extract {
         files::check_apart(&self.output, &[&self.input])?;
         let start = Instant::now();
         let file = model_file::open(&self.input, session)?;
-        let taken = self.take(&file)?;
+        let mut taken = self.take(&file, session)?;
         let mut time = start.elapsed();
         let mesh = taken.level.mesh();
         if mesh.faces.is_empty() {
@@ -124,18 +134,24 @@ impl Extract {
         }
         let materials = model_file::materials(&self.input, &file, session)?;
         let mut scene = scene_with_materials(name(&self.input), mesh, materials);
-        let writing = self.writing.within(taken.rounding, &scene, format);
+        let spare = taken.error.spare(taken.rounding);
+        let writing = self.writing.within(spare, &scene, format);
         let moves = writing.moves(&scene, format);
-        if moves > taken.rounding {
+        if moves > spare {
             let moved = format_args!("rounding to f32 moved coordinates by up to {}", value(moves));
             session.warn(Failure::at(&self.output, moved));
+            taken.error.moved += 3f64.sqrt() * moves;
         }
         let mut restored = None;
         if self.exact_volume {
             let start = Instant::now();
             let digits = digits_of(format, writing.options().precision);
             restored = self.restore_volume(&mut scene.meshes[0].mesh, &file, digits, session)?;
+            taken.error.moved += restored.map_or(0.0, |restored| restored.farthest);
             time += start.elapsed();
+        }
+        if let Some(warning) = taken.error.warning() {
+            session.warn(Failure::at(&self.input, warning));
         }
         let mut json = self.json(&taken, counts, time);
         json["volume_residual"] = restored.map(|restored| restored.after.abs()).into();
@@ -148,18 +164,14 @@ impl Extract {
         Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
     }
 
-    fn take(&self, file: &ModelFile<File>) -> Result<Extracted, Failure> {
+    fn take(&self, file: &ModelFile<File>, session: &Session) -> Result<Extracted, Failure> {
         let failed = |error| match error {
             FileError::Query(error) => Failure::usage(error),
             error => Failure::at(&self.input, error),
         };
         let query = self.query(file)?;
         let (query, nearest) = file.at_surface(&query, self.target.faces).map_err(failed)?;
-        let taken = match self.target.faces {
-            None => file.extract(&query),
-            Some(faces) => file.extract_at_most(faces, &query),
-        };
-        let taken = taken.map_err(failed)?;
+        let (taken, known) = self.answer(file, &query, session).map_err(failed)?;
         let (rounding, lossless, error_kind, chunks) = match file {
             ModelFile::Contractions(archive) => (
                 model_file::rounding(archive),
@@ -178,10 +190,45 @@ impl Extract {
             rounding,
             lossless,
             error_kind,
+            error: KeptError {
+                asked: match self.target.error {
+                    Some(_) => Asked::of(&query.tolerance),
+                    None => Asked::Faces,
+                },
+                known,
+                moved: 0.0,
+                diagonal: file.diagonal(),
+            },
             chunks: [taken.chunks, chunks[0], chunks[1]],
             updates: taken.updates,
             bytes: taken.bytes,
         })
+    }
+
+    /// Extracts the mesh that a query asks for, and finds out about its error.
+    fn answer(
+        &self,
+        file: &ModelFile<File>,
+        query: &Query<'_>,
+        session: &Session,
+    ) -> Result<(MeshExtract, Known), FileError> {
+        session.progress.stage("extracting");
+        match self.target.faces {
+            None if self.unverified => Ok((file.extract(query)?, Known::Stored)),
+            None => {
+                let VerifiedExtract { extract, verification } = extract_verified(file, query)?;
+                Ok((extract, Known::Verified(verification)))
+            }
+            Some(faces) => {
+                let taken = file.extract_at_most(faces, query)?;
+                if self.unverified {
+                    return Ok((taken, Known::Stored));
+                }
+                session.progress.stage("measuring the error");
+                let error = measure_extract(file, &taken.level.mesh())?;
+                Ok((taken, Known::Measured(error)))
+            }
+        }
     }
 
     /// Gives the closed parts of a cut the volume that they have in the finest cut; warns if that
@@ -248,6 +295,7 @@ impl Extract {
             "faces": faces,
             "reached": taken.reaches(self.target.faces),
             "error_kind": taken.error_kind,
+            "error": taken.error.to_json(),
             "lossless": taken.lossless,
             "chunks": taken.chunks[2],
             "chunks_there": taken.chunks[1],
@@ -261,12 +309,13 @@ impl Extract {
     fn text(&self, taken: &Extracted, [vertices, all]: [usize; 2], time: Duration) -> String {
         let [read, _, chunks] = taken.chunks;
         format!(
-            "{}: {} vertices, {}\nread {read} of {chunks} chunk{}, {} bytes\nextract_seconds: {}\n",
+            "{}: {} vertices, {}\nread {read} of {chunks} chunk{}, {} bytes\n{}extract_seconds: {}\n",
             files::name(&self.output),
             count(vertices),
             faces(all),
             plural(chunks),
             count(taken.bytes as usize),
+            taken.error.to_text(),
             value(time.as_secs_f64()),
         )
     }

@@ -16,6 +16,7 @@ mod exact_coding;
 mod header;
 mod lattice;
 mod layer_coding;
+mod neighbourhood;
 mod normal_predictor;
 mod quantize;
 mod slope;
@@ -34,6 +35,7 @@ use thiserror::Error;
 
 pub use archive::{Archive, Extract, Resources};
 pub use container::{FieldParts, ModelFile};
+pub use neighbourhood::Neighbourhood;
 pub use source::Source;
 pub use write::{Storage, StoredErrors};
 
