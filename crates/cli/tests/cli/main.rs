@@ -8,6 +8,7 @@ mod damaged_models;
 mod demo;
 mod flock;
 mod hostile;
+mod kept_error;
 mod levels;
 mod models;
 mod pipes;
