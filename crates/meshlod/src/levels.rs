@@ -187,6 +187,9 @@ fn constrained<'m>(
 
 /// Extracts a mesh at one level of detail from a `.mlod` file, reading only the parts needed.
 ///
+/// Unless a number of faces is asked for, the mesh is proven to satisfy the query, as
+/// [`extract_verified`] says.
+///
 /// # Errors
 /// A file that cannot be read or is damaged, an invalid query, and a volume that the mesh cannot get.
 ///

@@ -1,8 +1,10 @@
 //! `extract`: takes one mesh out of a multiresolution file.
 
+mod report;
+
 use std::fs::File;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 use meshlod::multires::{Extract as MeshExtract, FileError, Level, ModelFile, Query, ViewCamera};
@@ -11,7 +13,6 @@ use meshlod::{
     CutVolumeError, Mesh, VerifiedExtract, conserve_cut_volume, digits_of, extract_verified,
     measure_extract, scene_with_materials,
 };
-use serde_json::{Value, json};
 
 use crate::answer::Answer;
 use crate::args::WriteArgs;
@@ -19,10 +20,11 @@ use crate::failure::Failure;
 use crate::files;
 use crate::kept_error::{Asked, KeptError, Known};
 use crate::model_file;
-use crate::numbers::{count, faces, plural, value};
+use crate::numbers::{faces, value};
 use crate::parse::{self, Bound};
 use crate::query_args::{self, ErrorLimit, FocusArg, QueryRequest};
 use crate::session::Session;
+use crate::verbs::extract::report::{Extracted, volume_text};
 
 /// Extract one mesh from a multiresolution file: fine where it is needed, coarse elsewhere
 #[derive(Args)]
@@ -88,29 +90,6 @@ struct ExtractTarget {
     faces: Option<usize>,
 }
 
-/// Extracted level with the figures on what was read.
-struct Extracted {
-    level: Level,
-    /// Number of faces of the level before faces outside the focus were left out.
-    whole_faces: usize,
-    /// Largest displacement of its vertices when the file was built.
-    rounding: f64,
-    lossless: bool,
-    error_kind: &'static str,
-    error: KeptError,
-    /// Chunks read, present and in total.
-    chunks: [usize; 3],
-    updates: usize,
-    bytes: u64,
-}
-
-impl Extracted {
-    /// Returns true if the level has no more than the number of faces asked for.
-    fn reaches(&self, max_faces: Option<usize>) -> bool {
-        max_faces.is_none_or(|most| self.whole_faces <= most)
-    }
-}
-
 impl Extract {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         let format = files::check_output(&self.output, session)?;
@@ -153,10 +132,11 @@ impl Extract {
         if let Some(warning) = taken.error.warning() {
             session.warn(Failure::at(&self.input, warning));
         }
-        let mut json = self.json(&taken, counts, time);
+        let asked = report::Asked { output: &self.output, max_faces: self.target.faces, time };
+        let mut json = taken.to_json(&asked, counts);
         json["volume_residual"] = restored.map(|restored| restored.after.abs()).into();
         json["volume_moved"] = restored.map(|restored| restored.farthest).into();
-        let mut text = self.text(&taken, counts, time);
+        let mut text = taken.to_text(&asked, counts);
         if let Some(restored) = &restored {
             text += &volume_text(restored, taken.lossless);
         }
@@ -285,51 +265,6 @@ impl Extract {
             _ if !self.only => Ok(level),
             Some(point) => level.nearest(point).map_err(Failure::usage),
             None => level.within(&query.focus).map_err(Failure::usage),
-        }
-    }
-
-    fn json(&self, taken: &Extracted, [vertices, faces]: [usize; 2], time: Duration) -> Value {
-        json!({
-            "file": files::name(&self.output),
-            "vertices": vertices,
-            "faces": faces,
-            "reached": taken.reaches(self.target.faces),
-            "error_kind": taken.error_kind,
-            "error": taken.error.to_json(),
-            "lossless": taken.lossless,
-            "chunks": taken.chunks[2],
-            "chunks_there": taken.chunks[1],
-            "chunks_read": taken.chunks[0],
-            "updates_read": taken.updates,
-            "bytes_read": taken.bytes,
-            "extract_seconds": time.as_secs_f64(),
-        })
-    }
-
-    fn text(&self, taken: &Extracted, [vertices, all]: [usize; 2], time: Duration) -> String {
-        let [read, _, chunks] = taken.chunks;
-        format!(
-            "{}: {} vertices, {}\nread {read} of {chunks} chunk{}, {} bytes\n{}extract_seconds: {}\n",
-            files::name(&self.output),
-            count(vertices),
-            faces(all),
-            plural(chunks),
-            count(taken.bytes as usize),
-            taken.error.to_text(),
-            value(time.as_secs_f64()),
-        )
-    }
-}
-
-/// Describes what is left of a difference in volume, and whose volume it is.
-fn volume_text(restored: &VolumeResidual, lossless: bool) -> String {
-    let VolumeResidual { after, farthest, .. } = restored;
-    let text =
-        format!("volume_residual: {:.1e}\nvolume_moved: {}\n", after.abs(), value(*farthest));
-    match lossless {
-        true => text,
-        false => {
-            text + "the volume is that of the rounded vertices; build --exact-volume keeps the mesh's\n"
         }
     }
 }
