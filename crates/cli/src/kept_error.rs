@@ -1,4 +1,4 @@
-//! What `extract` knows about the error of its mesh, as JSON and text.
+//! The error of a mesh that `extract` writes, asked for and known, as JSON and text.
 
 use meshlod::Verification;
 use meshlod::multires::Tolerance;
@@ -26,7 +26,7 @@ impl Asked {
     }
 }
 
-/// What is known about the error of an extracted mesh.
+/// Knowledge about the error of an extracted mesh.
 #[derive(Clone, Copy)]
 pub enum Known {
     /// Only what the file says.

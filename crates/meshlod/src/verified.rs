@@ -33,7 +33,7 @@ pub struct VerifiedExtract {
     pub verification: Verification,
 }
 
-/// What has been shown about the error of an extracted mesh.
+/// Proof of the error of an extracted mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Verification {
     /// True if every point of the mesh in the focus is as close to the original as the query asks,

@@ -132,7 +132,7 @@ impl Extract {
         if let Some(warning) = taken.error.warning() {
             session.warn(Failure::at(&self.input, warning));
         }
-        let asked = report::Asked { output: &self.output, max_faces: self.target.faces, time };
+        let asked = report::Request { output: &self.output, max_faces: self.target.faces, time };
         let mut json = taken.to_json(&asked, counts);
         json["volume_residual"] = restored.map(|restored| restored.after.abs()).into();
         json["volume_moved"] = restored.map(|restored| restored.farthest).into();

@@ -2,7 +2,7 @@
 
 use meshlod_measure::{BeyondOptions, FaceBeyond, PreparedSurface, faces_beyond};
 use meshlod_mesh::{Bounds, FaceId, Mesh, VertexId};
-use meshlod_multires::{Cut, Implicit, Limits, Neighbourhood};
+use meshlod_multires::{Cut, Implicit, Limits, Surroundings};
 
 /// Part of a limit by which a face that passes may still exceed it, which the limits make up for.
 const SLACK: f64 = 0.01;
@@ -58,7 +58,7 @@ impl<'c> Check<'c> {
     /// area.
     pub(super) fn new(
         finest: &'c CutSurface,
-        near: &'c Neighbourhood,
+        near: &'c Surroundings,
         rounding: f64,
     ) -> Option<Self> {
         Some(Self {

@@ -16,12 +16,12 @@ mod exact_coding;
 mod header;
 mod lattice;
 mod layer_coding;
-mod neighbourhood;
 mod normal_predictor;
 mod quantize;
 mod slope;
 mod source;
 mod streams;
+mod surroundings;
 #[cfg(test)]
 mod tests;
 mod unflatten;
@@ -35,8 +35,8 @@ use thiserror::Error;
 
 pub use archive::{Archive, Extract, Resources};
 pub use container::{FieldParts, ModelFile};
-pub use neighbourhood::Neighbourhood;
 pub use source::Source;
+pub use surroundings::Surroundings;
 pub use write::{Storage, StoredErrors};
 
 use crate::cut::CertifyError;

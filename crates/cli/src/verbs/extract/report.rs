@@ -1,4 +1,4 @@
-//! What `extract` reports, as JSON and text.
+//! Report of `extract`, as JSON and text.
 
 use std::path::Path;
 use std::time::Duration;
@@ -11,8 +11,8 @@ use crate::files;
 use crate::kept_error::KeptError;
 use crate::numbers::{count, faces, plural, value};
 
-/// What the user asked for, and the time that it took.
-pub struct Asked<'a> {
+/// Output and target that the user asked for, with the time that it took.
+pub struct Request<'a> {
     pub output: &'a Path,
     pub max_faces: Option<usize>,
     pub time: Duration,
@@ -40,7 +40,7 @@ impl Extracted {
         max_faces.is_none_or(|most| self.whole_faces <= most)
     }
 
-    pub fn to_json(&self, asked: &Asked<'_>, [vertices, faces]: [usize; 2]) -> Value {
+    pub fn to_json(&self, asked: &Request<'_>, [vertices, faces]: [usize; 2]) -> Value {
         json!({
             "file": files::name(asked.output),
             "vertices": vertices,
@@ -58,7 +58,7 @@ impl Extracted {
         })
     }
 
-    pub fn to_text(&self, asked: &Asked<'_>, [vertices, all]: [usize; 2]) -> String {
+    pub fn to_text(&self, asked: &Request<'_>, [vertices, all]: [usize; 2]) -> String {
         let [read, _, chunks] = self.chunks;
         format!(
             "{}: {} vertices, {}\nread {read} of {chunks} chunk{}, {} bytes\n{}extract_seconds: {}\n",

@@ -12,7 +12,7 @@ use crate::query::{Limits, Query};
 /// A cut of the model has the finest triangles of the file wherever a point of the focus may be
 /// compared with one of them, and at least the coarsest elsewhere.
 #[derive(Clone, Debug)]
-pub struct Neighbourhood {
+pub struct Surroundings {
     /// Model of the chunks that were read. It is not certified.
     pub model: Implicit,
     /// Distances that the query allows.
@@ -29,18 +29,18 @@ impl<S: Source> Archive<S> {
     /// Only wedges of an extracted level are checked: see [`Archive::extract`].
     /// # Errors
     /// An invalid query, one whose tolerance is a field, or a damaged file.
-    pub fn around(&self, query: &Query<'_>) -> Result<Neighbourhood, FileError> {
+    pub fn around(&self, query: &Query<'_>) -> Result<Surroundings, FileError> {
         let limits = Limits::new(query, &self.header.about.frame)?;
         let wanted = |&chunk: &usize| limits.concern_area(&self.header.chunks[chunk].area);
         let chunks: Vec<usize> = (0..self.complete_chunks()).filter(wanted).collect();
         let model = self.load(&chunks)?.assemble(self.header.about)?;
         let stored = chunks.iter().map(|&chunk| u64::from(self.header.chunks[chunk].stored.bytes));
         let bytes = self.chunk_ends().next().unwrap_or(0) + stored.sum::<u64>();
-        Ok(Neighbourhood { model, limits, chunks: chunks.len(), bytes })
+        Ok(Surroundings { model, limits, chunks: chunks.len(), bytes })
     }
 }
 
-impl Neighbourhood {
+impl Surroundings {
     /// Returns the mesh of a cut of the model, with what was read.
     /// # Errors
     /// A file that was crafted to mislead about wedges.
