@@ -17,6 +17,7 @@ mod failure;
 mod files;
 mod flock;
 mod fuse;
+mod kept_error;
 mod locks;
 mod model_file;
 mod numbers;

@@ -13,7 +13,7 @@ use meshlod_multires::{
 use meshlod_simplify::{Digits, Method, Options, SimplifyError};
 use thiserror::Error;
 
-use crate::{Constraints, CutVolumeError, conserve_cut_volume};
+use crate::{Constraints, CutVolumeError, conserve_cut_volume, extract_verified};
 
 /// Options for writing a multiresolution file with [`build`].
 #[derive(Clone, Debug, PartialEq)]
@@ -69,6 +69,10 @@ pub struct ExtractOptions<'f> {
     /// Largest number of faces of the mesh. If set, the query only decides where errors matter
     /// most.
     pub max_faces: Option<usize>,
+    /// True to refine the mesh until it is proven to satisfy the query, like [`extract_verified`];
+    /// false to go by the errors stored in the file, which is faster and reads less. A tolerance that
+    /// is a field needs false. Of no effect if `max_faces` is set.
+    pub verify: bool,
     /// True to leave out faces entirely outside the focus region of the query. Of a point only the
     /// nearest faces are left.
     pub crop: bool,
@@ -80,7 +84,13 @@ pub struct ExtractOptions<'f> {
 
 impl Default for ExtractOptions<'static> {
     fn default() -> Self {
-        Self { query: Query::uniform(0.0), max_faces: None, crop: false, exact_volume: None }
+        Self {
+            query: Query::uniform(0.0),
+            max_faces: None,
+            verify: true,
+            crop: false,
+            exact_volume: None,
+        }
     }
 }
 
@@ -177,6 +187,9 @@ fn constrained<'m>(
 
 /// Extracts a mesh at one level of detail from a `.mlod` file, reading only the parts needed.
 ///
+/// Unless a number of faces is asked for, the mesh is proven to satisfy the query, as
+/// [`extract_verified`] says.
+///
 /// # Errors
 /// A file that cannot be read or is damaged, an invalid query, and a volume that the mesh cannot get.
 ///
@@ -211,9 +224,10 @@ pub fn extract(path: &Path, options: &ExtractOptions<'_>) -> Result<Mesh, Levels
 }
 
 fn level(file: &ModelFile<File>, options: &ExtractOptions<'_>) -> Result<Level, FileError> {
-    let ExtractOptions { query, max_faces, crop, .. } = options;
+    let ExtractOptions { query, max_faces, crop, verify, .. } = options;
     let (query, nearest) = file.at_surface(query, *max_faces)?;
     let level = match *max_faces {
+        None if *verify => extract_verified(file, &query)?.extract.level,
         None => file.extract(&query)?.level,
         Some(faces) => file.extract_at_most(faces, &query)?.level,
     };

@@ -233,6 +233,7 @@ mod place;
 mod repair;
 mod scene;
 mod strips;
+mod verified;
 
 pub use meshlod_check as check;
 pub use meshlod_codec as codec;
@@ -271,3 +272,4 @@ pub use place::{moved_at_most, rounding_of_level, world_bounds};
 pub use repair::repair_scene;
 pub use scene::{SceneError, SceneSimplifier, simplify_scene};
 pub use strips::scene_strips;
+pub use verified::{Verification, VerifiedExtract, extract_verified, measure_extract};

@@ -91,13 +91,14 @@ pub use cut::{Certificate, CertifyError, Cut, CutChange, Flaw, Located, Patch, U
 pub use explicit::{Explicit, ExplicitCut};
 pub use file::{
     Archive, Extract, FieldParts, FileError, ModelFile, Resources, Source, Storage, StoredErrors,
+    Surroundings,
 };
 pub use forest::{BuildError, Forest, Recorder};
 pub use hierarchy::{Hierarchy, HierarchyCut};
 pub use implicit::{Extractor, Implicit, SplitRule};
 pub use level::Level;
 pub use model::{Model, ModelBytes};
-pub use query::{Focus, Ground, GroundShape, Query, QueryError, Tolerance, ViewCamera};
+pub use query::{Focus, Ground, GroundShape, Limits, Query, QueryError, Tolerance, ViewCamera};
 pub use rtin::{
     FieldBytesError, Fit, HeightField, HeightFieldError, HeightPrecision, Rtin, RtinCertifyError,
     RtinCut, RtinExtractor, RtinFlaw,

@@ -29,6 +29,12 @@ impl Box3 {
         Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
     }
 
+    /// Returns true if two boxes have a point in common.
+    #[inline]
+    pub(crate) fn meets(&self, other: &Self) -> bool {
+        self.lo.cmple(other.hi).all() && other.lo.cmple(self.hi).all()
+    }
+
     /// Returns twice the centre, which compares as the centre does.
     #[inline]
     pub(crate) fn center(&self) -> Vec3 {

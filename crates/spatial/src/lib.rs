@@ -29,6 +29,7 @@ mod sum;
 #[cfg(test)]
 mod tests;
 mod triangle;
+mod within_box;
 
 pub use bvh::{Bvh, BvhError};
 pub use closest::ClosestPoint;

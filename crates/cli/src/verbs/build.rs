@@ -46,8 +46,9 @@ pub struct Build {
     /// three times as many faces. The errors of right triangles are bounds in any case
     #[arg(long)]
     bounds: bool,
-    /// Keep the method's smoothed estimates in place of measured errors: faster, but single places
-    /// are off by two to three times as much
+    /// Keep the method's smoothed estimates in place of measured errors: two to three times faster.
+    /// Cuts that go by what the file says, such as those of extract --unverified, are then off by up
+    /// to three times as much
     #[arg(long, conflicts_with = "bounds")]
     estimates: bool,
     /// Largest displacement of a vertex by rounding: 0.001 in model units, or 0.005% of the

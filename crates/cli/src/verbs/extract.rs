@@ -1,24 +1,30 @@
 //! `extract`: takes one mesh out of a multiresolution file.
 
+mod report;
+
 use std::fs::File;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use clap::{Args, ValueEnum};
-use meshlod::multires::{FileError, Level, ModelFile, Query, ViewCamera};
+use meshlod::multires::{Extract as MeshExtract, FileError, Level, ModelFile, Query, ViewCamera};
 use meshlod::simplify::{Digits, VolumeResidual};
-use meshlod::{CutVolumeError, Mesh, conserve_cut_volume, digits_of, scene_with_materials};
-use serde_json::{Value, json};
+use meshlod::{
+    CutVolumeError, Mesh, VerifiedExtract, conserve_cut_volume, digits_of, extract_verified,
+    measure_extract, scene_with_materials,
+};
 
 use crate::answer::Answer;
 use crate::args::WriteArgs;
 use crate::failure::Failure;
 use crate::files;
+use crate::kept_error::{Asked, KeptError, Known};
 use crate::model_file;
-use crate::numbers::{count, faces, plural, value};
+use crate::numbers::{faces, value};
 use crate::parse::{self, Bound};
 use crate::query_args::{self, ErrorLimit, FocusArg, QueryRequest};
 use crate::session::Session;
+use crate::verbs::extract::report::{Extracted, volume_text};
 
 /// Extract one mesh from a multiresolution file: fine where it is needed, coarse elsewhere
 #[derive(Args)]
@@ -54,6 +60,10 @@ pub struct Extract {
     /// top of --error, and so do those that were locked, which the file does not know
     #[arg(long, conflicts_with = "only")]
     exact_volume: bool,
+    /// Trust the errors in the file: faster, and reads only what the result needs, but places can be
+    /// farther off than --error, and the error of --faces is not measured
+    #[arg(long)]
+    unverified: bool,
     #[command(flatten)]
     writing: WriteArgs,
 }
@@ -70,35 +80,14 @@ enum VerticalAxis {
 #[derive(Args)]
 #[group(required = true, multiple = false)]
 struct ExtractTarget {
-    /// Largest error, by the measured errors, estimates or bounds in the file: 1px as the camera sees it, 0.01% of
-    /// the diagonal, or 0.5 in model units; 0 leaves out only detail that changes nothing
+    /// Largest error: 1px as the camera sees it, 0.01% of the diagonal, or 0.5 in model units; 0 for
+    /// the finest level. In the focus, every point of the result is as close to the mesh, and every
+    /// point of the mesh to the result, which is proven
     #[arg(long, value_name = "BOUND", value_parser = query_args::error_limit, allow_hyphen_values = true)]
     error: Option<ErrorLimit>,
     /// The best mesh of at most N faces: for the camera if there is one, else from all sides
     #[arg(long, value_name = "N", value_parser = parse::whole, allow_negative_numbers = true)]
     faces: Option<usize>,
-}
-
-/// Extracted level with the figures on what was read.
-struct Extracted {
-    level: Level,
-    /// Number of faces of the level before faces outside the focus were left out.
-    whole_faces: usize,
-    /// Largest displacement of its vertices when the file was built.
-    rounding: f64,
-    lossless: bool,
-    error_kind: &'static str,
-    /// Chunks read, present and in total.
-    chunks: [usize; 3],
-    updates: usize,
-    bytes: u64,
-}
-
-impl Extracted {
-    /// Returns true if the level has no more than the number of faces asked for.
-    fn reaches(&self, max_faces: Option<usize>) -> bool {
-        max_faces.is_none_or(|most| self.whole_faces <= most)
-    }
 }
 
 impl Extract {
@@ -107,7 +96,7 @@ impl Extract {
         files::check_apart(&self.output, &[&self.input])?;
         let start = Instant::now();
         let file = model_file::open(&self.input, session)?;
-        let taken = self.take(&file)?;
+        let mut taken = self.take(&file, session)?;
         let mut time = start.elapsed();
         let mesh = taken.level.mesh();
         if mesh.faces.is_empty() {
@@ -124,23 +113,30 @@ impl Extract {
         }
         let materials = model_file::materials(&self.input, &file, session)?;
         let mut scene = scene_with_materials(name(&self.input), mesh, materials);
-        let writing = self.writing.within(taken.rounding, &scene, format);
+        let spare = taken.error.spare(taken.rounding);
+        let writing = self.writing.within(spare, &scene, format);
         let moves = writing.moves(&scene, format);
-        if moves > taken.rounding {
+        if moves > spare {
             let moved = format_args!("rounding to f32 moved coordinates by up to {}", value(moves));
             session.warn(Failure::at(&self.output, moved));
+            taken.error.moved += 3f64.sqrt() * moves;
         }
         let mut restored = None;
         if self.exact_volume {
             let start = Instant::now();
             let digits = digits_of(format, writing.options().precision);
             restored = self.restore_volume(&mut scene.meshes[0].mesh, &file, digits, session)?;
+            taken.error.moved += restored.map_or(0.0, |restored| restored.farthest);
             time += start.elapsed();
         }
-        let mut json = self.json(&taken, counts, time);
+        if let Some(warning) = taken.error.warning() {
+            session.warn(Failure::at(&self.input, warning));
+        }
+        let asked = report::Request { output: &self.output, max_faces: self.target.faces, time };
+        let mut json = taken.to_json(&asked, counts);
         json["volume_residual"] = restored.map(|restored| restored.after.abs()).into();
         json["volume_moved"] = restored.map(|restored| restored.farthest).into();
-        let mut text = self.text(&taken, counts, time);
+        let mut text = taken.to_text(&asked, counts);
         if let Some(restored) = &restored {
             text += &volume_text(restored, taken.lossless);
         }
@@ -148,18 +144,14 @@ impl Extract {
         Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
     }
 
-    fn take(&self, file: &ModelFile<File>) -> Result<Extracted, Failure> {
+    fn take(&self, file: &ModelFile<File>, session: &Session) -> Result<Extracted, Failure> {
         let failed = |error| match error {
             FileError::Query(error) => Failure::usage(error),
             error => Failure::at(&self.input, error),
         };
         let query = self.query(file)?;
         let (query, nearest) = file.at_surface(&query, self.target.faces).map_err(failed)?;
-        let taken = match self.target.faces {
-            None => file.extract(&query),
-            Some(faces) => file.extract_at_most(faces, &query),
-        };
-        let taken = taken.map_err(failed)?;
+        let (taken, known) = self.answer(file, &query, session).map_err(failed)?;
         let (rounding, lossless, error_kind, chunks) = match file {
             ModelFile::Contractions(archive) => (
                 model_file::rounding(archive),
@@ -178,10 +170,45 @@ impl Extract {
             rounding,
             lossless,
             error_kind,
+            error: KeptError {
+                asked: match self.target.error {
+                    Some(_) => Asked::of(&query.tolerance),
+                    None => Asked::Faces,
+                },
+                known,
+                moved: 0.0,
+                diagonal: file.diagonal(),
+            },
             chunks: [taken.chunks, chunks[0], chunks[1]],
             updates: taken.updates,
             bytes: taken.bytes,
         })
+    }
+
+    /// Extracts the mesh that a query asks for, and finds out about its error.
+    fn answer(
+        &self,
+        file: &ModelFile<File>,
+        query: &Query<'_>,
+        session: &Session,
+    ) -> Result<(MeshExtract, Known), FileError> {
+        session.progress.stage("extracting");
+        match self.target.faces {
+            None if self.unverified => Ok((file.extract(query)?, Known::Stored)),
+            None => {
+                let VerifiedExtract { extract, verification } = extract_verified(file, query)?;
+                Ok((extract, Known::Verified(verification)))
+            }
+            Some(faces) => {
+                let taken = file.extract_at_most(faces, query)?;
+                if self.unverified {
+                    return Ok((taken, Known::Stored));
+                }
+                session.progress.stage("measuring the error");
+                let error = measure_extract(file, &taken.level.mesh())?;
+                Ok((taken, Known::Measured(error)))
+            }
+        }
     }
 
     /// Gives the closed parts of a cut the volume that they have in the finest cut; warns if that
@@ -238,49 +265,6 @@ impl Extract {
             _ if !self.only => Ok(level),
             Some(point) => level.nearest(point).map_err(Failure::usage),
             None => level.within(&query.focus).map_err(Failure::usage),
-        }
-    }
-
-    fn json(&self, taken: &Extracted, [vertices, faces]: [usize; 2], time: Duration) -> Value {
-        json!({
-            "file": files::name(&self.output),
-            "vertices": vertices,
-            "faces": faces,
-            "reached": taken.reaches(self.target.faces),
-            "error_kind": taken.error_kind,
-            "lossless": taken.lossless,
-            "chunks": taken.chunks[2],
-            "chunks_there": taken.chunks[1],
-            "chunks_read": taken.chunks[0],
-            "updates_read": taken.updates,
-            "bytes_read": taken.bytes,
-            "extract_seconds": time.as_secs_f64(),
-        })
-    }
-
-    fn text(&self, taken: &Extracted, [vertices, all]: [usize; 2], time: Duration) -> String {
-        let [read, _, chunks] = taken.chunks;
-        format!(
-            "{}: {} vertices, {}\nread {read} of {chunks} chunk{}, {} bytes\nextract_seconds: {}\n",
-            files::name(&self.output),
-            count(vertices),
-            faces(all),
-            plural(chunks),
-            count(taken.bytes as usize),
-            value(time.as_secs_f64()),
-        )
-    }
-}
-
-/// Describes what is left of a difference in volume, and whose volume it is.
-fn volume_text(restored: &VolumeResidual, lossless: bool) -> String {
-    let VolumeResidual { after, farthest, .. } = restored;
-    let text =
-        format!("volume_residual: {:.1e}\nvolume_moved: {}\n", after.abs(), value(*farthest));
-    match lossless {
-        true => text,
-        false => {
-            text + "the volume is that of the rounded vertices; build --exact-volume keeps the mesh's\n"
         }
     }
 }

@@ -9,6 +9,7 @@ mod demo;
 mod error_bound;
 mod flock;
 mod hostile;
+mod kept_error;
 mod levels;
 mod models;
 mod pipes;

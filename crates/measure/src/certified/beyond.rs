@@ -121,7 +121,7 @@ struct Examined {
     state: State,
 }
 
-/// What is known of a face.
+/// State of knowledge about a face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum State {
     /// Neither a point beyond the limit is known nor that there is none.

@@ -3,6 +3,7 @@
 mod certificate;
 mod coarse_wedges;
 mod each_triangle;
+mod force;
 mod front;
 mod inspect;
 mod locate;
@@ -183,6 +184,11 @@ impl<'m> Cut<'m> {
     /// Returns the three nodes of the triangle in a slot, or `None` if the slot is empty.
     pub fn triangle(&self, slot: u32) -> Option<[u32; 3]> {
         self.front.triangles.real(slot)
+    }
+
+    /// Returns true if a node of the model is a vertex of the current mesh.
+    pub fn shows(&self, node: u32) -> bool {
+        self.front.is_active(node)
     }
 
     /// Returns the wedges at the corners of the triangle in a slot, in the numbers of

@@ -307,7 +307,7 @@ impl<S: Source> Archive<S> {
     }
 
     /// Decodes the base and the given chunks, which are in ascending order.
-    fn load(&self, chunks: &[usize]) -> Result<DecoderState, FileError> {
+    pub(super) fn load(&self, chunks: &[usize]) -> Result<DecoderState, FileError> {
         let mut state = self.read_base()?;
         let (mut first, mut wanted) = (0, chunks.iter().peekable());
         for (at, (entry, offset)) in self.header.chunks.iter().zip(self.chunk_ends()).enumerate() {

@@ -21,6 +21,7 @@ mod quantize;
 mod slope;
 mod source;
 mod streams;
+mod surroundings;
 #[cfg(test)]
 mod tests;
 mod unflatten;
@@ -35,6 +36,7 @@ use thiserror::Error;
 pub use archive::{Archive, Extract, Resources};
 pub use container::{FieldParts, ModelFile};
 pub use source::Source;
+pub use surroundings::Surroundings;
 pub use write::{Storage, StoredErrors};
 
 use crate::cut::CertifyError;

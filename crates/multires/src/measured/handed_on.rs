@@ -44,16 +44,6 @@ impl HandedOn {
         Self { places, first, next, passed: Vec::new() }
     }
 
-    /// Returns the vertices handed to the coarse side by the last [`pass`](Self::pass).
-    pub(super) fn passed(&self) -> &[u32] {
-        &self.passed
-    }
-
-    /// Returns the position of a vertex of the input.
-    pub(super) fn place(&self, v: u32) -> DVec3 {
-        self.places[v as usize]
-    }
-
     /// Hands the vertices of the changed faces on to the coarse side, each to the nearest face, or
     /// to any that is well within `least`. Returns the greatest of their distances.
     pub(super) fn pass(&mut self, changed: &[u32], coarse: &[CoarseFace], least: f64) -> f64 {

@@ -4,10 +4,9 @@
 //! The contractions are replayed. Points of the input are kept with faces of the current mesh: a
 //! contraction hands those of the faces that it removes or changes on to the nearest of the faces
 //! that it makes. In every cut each point is with exactly one face that is shown, so its distance is
-//! known there ([`handed_on`]). Points of new faces are compared with the input itself
-//! ([`probes`]), and both surfaces where edges cross ([`crossings`]).
+//! known there ([`handed_on`]). Points of new faces are compared with the input itself ([`probes`]).
+//! In between, single places are farther away: who needs a promise checks the cut.
 
-mod crossings;
 mod handed_on;
 mod probes;
 #[cfg(test)]
@@ -20,7 +19,6 @@ use meshlod_spatial::Bvh;
 use crate::bounds::ErrorKind;
 use crate::forest::{Forest, Stars};
 use crate::length16::Length16;
-use crossings::{InputEdges, crossing};
 use handed_on::HandedOn;
 use probes::Probes;
 
@@ -34,8 +32,8 @@ impl Forest {
     ///
     /// Take any cut, and let *t* be the greatest error of the updates it leaves unrefined. Every
     /// measured point of the cut is then within *t* of the input, and every measured point of the
-    /// input within *t* of the cut: the input's vertices and edges one way, and points along the
-    /// new edges and across the new faces the other. Errors never grow from an update to one that
+    /// input within *t* of the cut: the input's vertices one way, and the vertices of the cut with the
+    /// middles of new edges the other. Errors never grow from an update to one that
     /// depends on it. Where all distances are below a hundred-thousandth of the mesh's size the
     /// estimates stay. An update whose coarse side has no face left gets an infinite error.
     ///
@@ -61,7 +59,6 @@ impl Forest {
         let mut measure = Measure {
             stars: Stars::new(self),
             handed_on: HandedOn::new(input),
-            edges: InputEdges::new(input),
             probes: Probes::new(&bvh, self.positions.len()),
             coarse: Vec::new(),
             noise,
@@ -87,7 +84,6 @@ impl Forest {
 struct Measure<'b> {
     stars: Stars,
     handed_on: HandedOn,
-    edges: InputEdges,
     probes: Probes<'b>,
     /// Coarse side of the current update: faces, by number and corners.
     coarse: Vec<CoarseFace>,
@@ -120,29 +116,7 @@ impl Measure<'_> {
             return f64::INFINITY;
         }
         let least = least.max(self.noise);
-        let mut farthest = self.handed_on.pass(self.stars.changed(), &self.coarse, least);
-        let count = self.handed_on.passed().len();
-        farthest = farthest.max(self.probes.farthest(&self.coarse, count, farthest.max(least)));
-        farthest.max(self.at_crossings(u as u32, farthest.max(least)))
-    }
-
-    /// Returns the greatest distance where a new edge passes over an edge of the input, of the new
-    /// edge from the input; 0 if none is greater than `least`.
-    fn at_crossings(&mut self, update: u32, least: f64) -> f64 {
-        let Self { handed_on, edges, probes, coarse, .. } = self;
-        let CoarseFace { nodes: [node, ..], corners: [apex, ..], .. } = coarse[0];
-        let mut farthest = 0.0;
-        edges.at(handed_on.passed(), update, |ends| {
-            let [from, to] = ends.map(|v| handed_on.place(v));
-            for face in &*coarse {
-                let least = least.max(farthest);
-                let spoke = [apex, face.corners[1] - apex];
-                let Some(at) = crossing(spoke, [from, to - from], least) else {
-                    continue;
-                };
-                farthest = probes.at(at, node, least).max(farthest);
-            }
-        });
-        if farthest > least { farthest } else { 0.0 }
+        let farthest = self.handed_on.pass(self.stars.changed(), &self.coarse, least);
+        farthest.max(self.probes.farthest(&self.coarse, farthest.max(least)))
     }
 }

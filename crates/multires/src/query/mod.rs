@@ -3,6 +3,7 @@
 mod closest;
 mod criterion;
 mod ground;
+mod limits;
 mod region;
 
 use glam::DVec3;
@@ -11,6 +12,7 @@ use thiserror::Error;
 pub(crate) use closest::closest_point;
 pub(crate) use criterion::{Area, Ball, Criterion, PackedBall, QueryKey, SLACK, Viewpoint};
 pub use ground::{Ground, GroundShape};
+pub use limits::Limits;
 pub(crate) use region::Region;
 
 /// A request for a mesh that, within a region, deviates from the surface by no more than a
@@ -119,6 +121,9 @@ pub enum QueryError {
          saturated: use `exact`, or call `Model::saturate` first"
     )]
     NotSaturated,
+    /// The tolerance is a field, which says nothing of single triangles.
+    #[error("a tolerance that is a field cannot be checked: give a length or pixels")]
+    FieldUnchecked,
     /// The camera has no valid field of view, picture size or viewing direction.
     #[error("the camera sees nothing: {0}")]
     Blind(&'static str),
