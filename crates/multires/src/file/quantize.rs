@@ -88,7 +88,8 @@ impl Forest {
             false => (mt.exact_stored(node) / lattice.cell()).into(),
         };
         let mut places: Vec<_> = nodes().map(in_cells).collect();
-        unflatten(&mt, &mut places, is_free, |nodes| {
+        let unrounded = |node: u32| (before(node).as_dvec3() / lattice.cell()).into();
+        unflatten(&mt, &mut places, unrounded, is_free, |nodes| {
             has_area(nodes.map(|node| mt.exact_stored(node)))
         });
         let mut moved = Displacement::default();

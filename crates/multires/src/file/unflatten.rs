@@ -18,11 +18,12 @@ const MAX_ROUNDS: usize = 16;
 /// Moves nodes by up to a few cells so that, where possible, no triangle of any cut loses its area
 /// to rounding.
 ///
-/// `places` holds the positions of all nodes, `is_free` tells which of them may be moved, and
-/// `had_area` whether a triangle had an area before rounding.
+/// `places` holds the positions of all nodes, `unrounded` returns one before rounding, `is_free`
+/// tells which of them may be moved, and `had_area` whether a triangle had an area before rounding.
 pub(super) fn unflatten(
     mt: &Implicit,
     places: &mut [CellPosition],
+    unrounded: impl Fn(u32) -> CellPosition,
     is_free: impl Fn(u32) -> bool,
     had_area: impl Fn([u32; 3]) -> bool,
 ) {
@@ -41,18 +42,18 @@ pub(super) fn unflatten(
         at.extend(movable.map(|node| (node, nodes)));
     }
     at.sort_unstable();
-    solve(&at, places);
+    let offsets = offsets();
+    let movable = at.chunk_by(|a, b| a.0 == b.0).map(|triangles| {
+        let node = triangles[0].0;
+        MovableNode::new(triangles, places[node as usize], unrounded(node), &offsets)
+    });
+    solve(&movable.collect::<Vec<_>>(), places);
 }
 
 /// Moves nodes one by one until no move makes their triangles less degenerate.
-fn solve(at: &[(u32, [u32; 3])], places: &mut [CellPosition]) {
-    let movable: Vec<MovableNode<'_>> = at
-        .chunk_by(|a, b| a.0 == b.0)
-        .map(|triangles| MovableNode { home: places[triangles[0].0 as usize], triangles })
-        .collect();
-    let offsets = offsets();
+fn solve(movable: &[MovableNode<'_>], places: &mut [CellPosition]) {
     for _ in 0..MAX_ROUNDS {
-        let moved = movable.iter().filter(|node| node.improve(&offsets, places)).count();
+        let moved = movable.iter().filter(|node| node.improve(places)).count();
         if moved == 0 {
             break;
         }
@@ -61,22 +62,36 @@ fn solve(at: &[(u32, [u32; 3])], places: &mut [CellPosition]) {
 
 /// Node that may move, with all its triangles.
 struct MovableNode<'t> {
-    home: CellPosition,
     triangles: &'t [(u32, [u32; 3])],
+    /// Positions to try, those nearest to the position before rounding first.
+    choices: Vec<CellPosition>,
 }
 
-impl MovableNode<'_> {
-    /// Moves the node to the closest position at which its triangles are least degenerate. Returns
+impl<'t> MovableNode<'t> {
+    fn new(
+        triangles: &'t [(u32, [u32; 3])],
+        rounded: CellPosition,
+        unrounded: CellPosition,
+        offsets: &[CellPosition],
+    ) -> Self {
+        let add = |offset: &CellPosition| [0, 1, 2].map(|k| rounded[k] + offset[k]);
+        let mut choices: Vec<CellPosition> = offsets.iter().map(add).collect();
+        let away = |at: &CellPosition| (0..3).map(|k| (at[k] - unrounded[k]).powi(2)).sum::<f64>();
+        choices.sort_by(|a, b| away(a).total_cmp(&away(b)));
+        Self { triangles, choices }
+    }
+
+    /// Moves the node to the nearest position at which its triangles are least degenerate. Returns
     /// true if that is an improvement.
-    fn improve(&self, offsets: &[CellPosition], places: &mut [CellPosition]) -> bool {
+    fn improve(&self, places: &mut [CellPosition]) -> bool {
         let node = self.triangles[0].0 as usize;
         let (mut best, mut least) = (places[node], self.flatness(places, u32::MAX));
         let before = least;
-        for offset in offsets {
+        for choice in &self.choices {
             if least == 0 {
                 break;
             }
-            places[node] = [0, 1, 2].map(|k| self.home[k] + offset[k]);
+            places[node] = *choice;
             let flatness = self.flatness(places, least);
             if flatness < least {
                 (best, least) = (places[node], flatness);
@@ -99,13 +114,10 @@ impl MovableNode<'_> {
     }
 }
 
-/// Returns all combinations of offsets, shortest first.
+/// Returns all combinations of offsets.
 fn offsets() -> Vec<CellPosition> {
     let all = OFFSETS.into_iter().flat_map(|x| OFFSETS.map(|y| [x, y]));
-    let mut all: Vec<CellPosition> = all.flat_map(|[x, y]| OFFSETS.map(|z| [x, y, z])).collect();
-    let squared = |offset: &CellPosition| offset.iter().map(|x| x * x).sum::<f64>();
-    all.sort_by(|a, b| squared(a).total_cmp(&squared(b)));
-    all
+    all.flat_map(|[x, y]| OFFSETS.map(|z| [x, y, z])).collect()
 }
 
 /// Degree of degeneracy: 0 for a triangle with an area, 1 if its corners are collinear, more if
