@@ -19,6 +19,7 @@ mod fuse;
 mod locks;
 mod measured_bound;
 mod model_file;
+mod model_scene;
 mod numbers;
 mod page;
 mod parse;

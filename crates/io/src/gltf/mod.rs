@@ -19,6 +19,7 @@ mod primitives;
 mod quantize;
 mod read;
 mod schema;
+mod skeleton;
 mod strips;
 #[cfg(test)]
 mod tests;
@@ -31,5 +32,6 @@ pub use lod::Level;
 pub use parts::{QuantizedPart, write_parts_glb};
 pub use primitive_rows::PrimitiveRows;
 pub use read::{SourceDocument, read};
+pub use skeleton::{Skeleton, SkeletonImage};
 pub use strips::{StripCorner, StripMesh, write_strips, write_strips_glb};
 pub use write::{GltfFiles, write, write_compressed, write_compressed_glb, write_glb};

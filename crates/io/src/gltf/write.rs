@@ -140,8 +140,12 @@ impl Output {
         check_meshes(scene, &document)?;
         let mut changed = Vec::new();
         for (index, mesh) in scene.meshes.iter().enumerate() {
-            let old = mesh::read(&document, index, source.weld).map_err(unreadable)?;
-            changed.push(compression.is_some() || !same_geometry(&old, &mesh.mesh));
+            let is_empty = || source.emptied.get(index) == Some(&true);
+            let differs = || {
+                let old = mesh::read(&document, index, source.weld).map_err(unreadable)?;
+                Ok(!same_geometry(&old, &mesh.mesh))
+            };
+            changed.push(compression.is_some() || is_empty() || differs()?);
         }
         let builder = BufferBuilder::of(&document, &free_accessors(&document, &changed));
         let mut replacer = Replacer::new(Some(&document), builder);
@@ -272,40 +276,72 @@ fn same_geometry(a: &Mesh, b: &Mesh) -> bool {
         && (0..a.faces.len()).all(|face| label(a, face) == label(b, face))
 }
 
-/// Computes one flag per accessor: true if only triangle primitives of changed meshes use it.
+/// Computes one flag per accessor: true if only triangle primitives of changed meshes use it, or if
+/// it is empty and nothing uses it.
 pub(super) fn free_accessors(document: &Document<'_>, changed: &[bool]) -> Vec<bool> {
     let count = document.accessors.len();
     let (mut replaced, mut kept) = (vec![false; count], vec![false; count]);
     let meshes = document.json.get("meshes").and_then(Value::as_array);
     for (mesh, &changed) in meshes.into_iter().flatten().zip(changed) {
-        let primitives = mesh.get("primitives").and_then(Value::as_array);
-        for primitive in primitives.into_iter().flatten() {
-            let marks = if changed && is_surface(primitive) { &mut replaced } else { &mut kept };
-            let indices = primitive.get("indices").and_then(Value::as_u64).map(|i| i as usize);
-            for accessor in attributes(primitive).into_values().chain(indices) {
-                if let Some(mark) = marks.get_mut(accessor) {
-                    *mark = true;
-                }
-            }
-        }
+        mark_primitives(mesh, |primitive| changed && is_surface(primitive), &mut replaced);
+        mark_primitives(mesh, |primitive| !(changed && is_surface(primitive)), &mut kept);
     }
     mark_others(document.json, &mut kept);
-    replaced.iter().zip(kept).map(|(&replaced, kept)| replaced && !kept).collect()
+    let is_empty = document.accessors.iter().map(|accessor| accessor.count == 0);
+    let free = replaced.iter().zip(is_empty).map(|(&replaced, is_empty)| replaced || is_empty);
+    free.zip(kept).map(|(free, kept)| free && !kept).collect()
+}
+
+/// Computes one flag per accessor: true if animations use it and, but for triangles of the marked
+/// meshes, nothing else.
+pub(super) fn animation_accessors(document: &Document<'_>, emptied: &[bool]) -> Vec<bool> {
+    let mut animated = vec![false; document.accessors.len()];
+    mark_samplers(document.json, &mut animated);
+    let mut others = vec![false; animated.len()];
+    mark_skins(document.json, &mut others);
+    let meshes = document.json.get("meshes").and_then(Value::as_array);
+    for (mesh, &emptied) in meshes.into_iter().flatten().zip(emptied) {
+        mark_primitives(mesh, |primitive| !(emptied && is_surface(primitive)), &mut others);
+    }
+    animated.iter().zip(others).map(|(&animated, other)| animated && !other).collect()
 }
 
 /// Marks the accessors of skins and animations.
 fn mark_others(json: &Value, marks: &mut [bool]) {
-    let array = |value: &'_ Value, key: &str| {
-        value.get(key).and_then(Value::as_array).cloned().unwrap_or_default()
-    };
-    let skins = array(json, "skins").into_iter().map(|skin| skin["inverseBindMatrices"].clone());
-    let samplers = array(json, "animations").into_iter().flat_map(|a| array(&a, "samplers"));
-    let animated =
-        samplers.flat_map(|sampler| [sampler["input"].clone(), sampler["output"].clone()]);
-    for accessor in skins.chain(animated).filter_map(|value| value.as_u64()) {
-        if let Some(mark) = marks.get_mut(accessor as usize) {
-            *mark = true;
+    mark_skins(json, marks);
+    mark_samplers(json, marks);
+}
+
+fn mark_skins(json: &Value, marks: &mut [bool]) {
+    let skins = json.get("skins").and_then(Value::as_array);
+    for skin in skins.into_iter().flatten() {
+        mark(skin.get("inverseBindMatrices"), marks);
+    }
+}
+
+fn mark_samplers(json: &Value, marks: &mut [bool]) {
+    let animations = json.get("animations").and_then(Value::as_array).into_iter().flatten();
+    let samplers = animations.filter_map(|all| all.get("samplers").and_then(Value::as_array));
+    for sampler in samplers.flatten() {
+        ["input", "output"].into_iter().for_each(|key| mark(sampler.get(key), marks));
+    }
+}
+
+/// Marks the accessors of those primitives of a mesh for which `is_meant` holds.
+fn mark_primitives(mesh: &Value, is_meant: impl Fn(&Value) -> bool, marks: &mut [bool]) {
+    let primitives = mesh.get("primitives").and_then(Value::as_array);
+    for primitive in primitives.into_iter().flatten().filter(|&primitive| is_meant(primitive)) {
+        mark(primitive.get("indices"), marks);
+        for accessor in attributes(primitive).into_values() {
+            marks.get_mut(accessor).into_iter().for_each(|mark| *mark = true);
         }
+    }
+}
+
+fn mark(accessor: Option<&Value>, marks: &mut [bool]) {
+    let index = accessor.and_then(Value::as_u64);
+    if let Some(mark) = index.and_then(|index| marks.get_mut(index as usize)) {
+        *mark = true;
     }
 }
 

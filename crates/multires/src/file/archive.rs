@@ -3,7 +3,8 @@
 use meshlod_mesh::Bounds;
 
 use super::decoder_state::DecoderState;
-use super::header::{self, FIXED_LEN, Header, Section};
+use super::header::{self, FIXED_LEN, Header, ResourceIndex, Section};
+use super::resources::{self, OLD_RESOURCES_LEN, Resource, ResourceEntry};
 use super::source::{Source, read_range};
 use super::{FileError, Storage, base, chunk, write};
 use crate::bounds::ErrorKind;
@@ -19,17 +20,38 @@ use crate::query::{Criterion, Query, closest_point};
 pub struct Archive<S> {
     source: S,
     pub(super) header: Header,
+    layout: Layout,
     /// Number of chunks that are present in full.
     complete: usize,
 }
 
-/// Bytes attached to a `.mlod` file, such as materials and images.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Resources {
-    /// Bytes that belong to every level, read with the coarsest one.
-    pub early: Vec<u8>,
-    /// Bytes that only the whole file has; `None` if it is truncated.
-    pub late: Option<Vec<u8>>,
+/// Offsets of the sections of a file.
+#[derive(Debug, Default)]
+struct Layout {
+    base_end: u64,
+    chunks: Vec<u64>,
+    resources: Vec<u64>,
+    /// Length of the whole file.
+    end: u64,
+}
+
+impl Layout {
+    fn new(header: &Header) -> Self {
+        let base_end = header.len() + u64::from(header.base.bytes);
+        let mut this = Self { base_end, end: base_end, ..Self::default() };
+        let mut resources = header.resources.iter().peekable();
+        for before in 0..=header.chunks.len() {
+            while let Some(entry) = resources.next_if(|entry| entry.after as usize <= before) {
+                this.resources.push(this.end);
+                this.end += u64::from(entry.stored.bytes);
+            }
+            if let Some(entry) = header.chunks.get(before) {
+                this.chunks.push(this.end);
+                this.end += u64::from(entry.stored.bytes);
+            }
+        }
+        this
+    }
 }
 
 /// Mesh extracted from a `.mlod` file, with statistics of what was read to build it.
@@ -59,21 +81,38 @@ impl Archive<Vec<u8>> {
         write::write(forest, storage)
     }
 
-    /// Attaches resources, such as materials and images, which mean nothing to the model itself:
-    /// early ones, which are read with the coarsest level, and late ones, at the end of the file.
+    /// Attaches resources, such as materials and images, which mean nothing to the model itself.
+    /// Each lies after as many chunks as it says, so that a truncated file has those at its start; of
+    /// equal ones the first comes first.
+    ///
+    /// What was attached before is replaced. Cost: linear; resources are compressed where that
+    /// helps.
     /// # Errors
-    /// Resources of 4 GiB or more.
-    pub fn with_resources(self, resources: &Resources) -> Result<Self, FileError> {
-        let late = resources.late.as_deref().unwrap_or_default();
-        if [resources.early.len(), late.len()].iter().any(|&bytes| u32::try_from(bytes).is_err()) {
-            return Err(FileError::ResourcesTooLarge);
+    /// A resource of 4 GiB or more.
+    pub fn with_resources(self, resources: &[Resource]) -> Result<Self, FileError> {
+        let all = self.header.chunks.len();
+        let mut packed = Vec::with_capacity(resources.len());
+        for resource in resources {
+            let bytes = resources::pack(&resource.bytes)?;
+            let after = resource.after_chunks.min(all) as u32;
+            packed.push((ResourceEntry { stored: Section::of(&bytes), after }, bytes));
         }
-        let both = [&resources.early, late].map(Section::of);
-        let (base, body) =
-            self.source[self.header.len() as usize..].split_at(self.header.base.bytes as usize);
-        let header = Header { resources: Some(both), ..self.header.clone() };
-        let bytes = [&header.to_bytes(), base, &resources.early, body, late].concat();
-        Self::open(bytes)
+        packed.sort_by_key(|(entry, _)| entry.after);
+        let base = &self.source[self.header.len() as usize..self.layout.base_end as usize];
+        let entries = packed.iter().map(|(entry, _)| *entry).collect();
+        let header = Header { resources: entries, has_old_resources: false, ..self.header.clone() };
+        let mut out = [&header.to_bytes(), base].concat();
+        let mut rest = packed.iter().peekable();
+        for before in 0..=all {
+            while let Some((_, bytes)) = rest.next_if(|(entry, _)| entry.after as usize <= before) {
+                out.extend(bytes);
+            }
+            if let Some(&start) = self.layout.chunks.get(before) {
+                let length = self.header.chunks[before].stored.bytes as usize;
+                out.extend(&self.source[start as usize..][..length]);
+            }
+        }
+        Self::open(out)
     }
 
     /// Recomputes all checksums of a modified `.mlod` file, for tests of [`Archive::read`].
@@ -90,35 +129,62 @@ impl<S: Source> Archive<S> {
     pub fn open(source: S) -> Result<Self, FileError> {
         let length = source.length()?;
         let start = read_range(&source, 0, FIXED_LEN as u64, "the header")?;
-        let header = Header::length(&start)? as u64;
+        let (chunks_end, index) = Header::length(&start)?;
+        let header = chunks_end as u64
+            + match index {
+                ResourceIndex::None => 0,
+                ResourceIndex::Old => OLD_RESOURCES_LEN as u64,
+                ResourceIndex::Counted => {
+                    let count = read_range(&source, chunks_end as u64, 4, "the index")?;
+                    resources::index_len(std::array::from_fn(|k| count[k])) as u64
+                }
+            };
         let header = Header::from_bytes(&read_range(&source, 0, header, "the index")?)?;
-        let mut this = Self { source, header, complete: 0 };
+        let layout = Layout::new(&header);
+        let mut this = Self { source, header, layout, complete: 0 };
         let there = this.chunk_ends().take_while(|&end| end <= length).count();
         let truncated = FileError::Truncated { at: length, what: "the coarsest mesh" };
         this.complete = there.checked_sub(1).ok_or(truncated)?;
-        let end = this.end();
+        let end = this.layout.end;
         if end < length { Err(FileError::TrailingData { at: end }) } else { Ok(this) }
     }
 
-    /// Returns the length of the whole file.
-    fn end(&self) -> u64 {
-        let late = self.header.resources.map_or(0, |[_, late]| u64::from(late.bytes));
-        self.chunk_ends().last().unwrap_or(0) + late
+    /// Returns the number of resources [attached](Archive::with_resources) to the file, including any
+    /// that are cut off.
+    pub fn resource_count(&self) -> usize {
+        if self.header.has_old_resources { 0 } else { self.header.resources.len() }
     }
 
-    /// Reads the resources that were [attached](Archive::with_resources) to the file: early ones, and
-    /// late ones unless the file is truncated. `None` if there are none.
+    /// Returns true if the file has materials in a form that only earlier versions read.
+    pub fn has_old_resources(&self) -> bool {
+        self.header.has_old_resources
+    }
+
+    /// Returns true if there is a resource of this number and the file does not end before it does.
+    /// # Errors
+    /// The length of the file cannot be read.
+    pub fn has_resource(&self, index: usize) -> Result<bool, FileError> {
+        if index >= self.resource_count() {
+            return Ok(false);
+        }
+        let end =
+            self.layout.resources[index] + u64::from(self.header.resources[index].stored.bytes);
+        Ok(end <= self.source.length()?)
+    }
+
+    /// Reads a resource by its place in the file; `None` if there is no such resource or the file
+    /// ends before it does.
     /// # Errors
     /// A file that is damaged.
-    pub fn resources(&self) -> Result<Option<Resources>, FileError> {
-        let Some([early, late]) = self.header.resources else { return Ok(None) };
-        let name = || "the resources".to_owned();
-        let start = self.header.len() + u64::from(self.header.base.bytes);
-        let early = self.read_section(start, early, name)?;
-        let is_there = self.source.length()? >= self.end();
-        let late =
-            is_there.then(|| self.read_section(self.end() - u64::from(late.bytes), late, name));
-        Ok(Some(Resources { early, late: late.transpose()? }))
+    pub fn resource(&self, index: usize) -> Result<Option<Vec<u8>>, FileError> {
+        if !self.has_resource(index)? {
+            return Ok(None);
+        }
+        let (entry, start) = (self.header.resources[index], self.layout.resources[index]);
+        let name = || format!("resource {index}");
+        let bytes = resources::unpack(&self.read_section(start, entry.stored, name)?);
+        let damaged = || FileError::Section { section: name(), why: "it is damaged".into() };
+        bytes.ok_or_else(damaged).map(Some)
     }
 
     /// Returns the number of chunks of updates listed in the file's index, including any that are
@@ -136,14 +202,20 @@ impl<S: Source> Archive<S> {
     /// Iterates over byte offsets in the file: the end of the base mesh, then the end of each
     /// chunk.
     pub fn chunk_ends(&self) -> impl Iterator<Item = u64> + '_ {
-        let early = self.header.resources.map_or(0, |[early, _]| u64::from(early.bytes));
-        let base = self.header.len() + u64::from(self.header.base.bytes) + early;
-        let sizes = self.header.chunks.iter().map(|chunk| u64::from(chunk.stored.bytes));
-        let ends = sizes.scan(base, |end, size| {
-            *end += size;
-            Some(*end)
-        });
-        std::iter::once(base).chain(ends)
+        let chunks = self.layout.chunks.iter().zip(&self.header.chunks);
+        let ends = chunks.map(|(&start, entry)| start + u64::from(entry.stored.bytes));
+        std::iter::once(self.layout.base_end).chain(ends)
+    }
+
+    /// Returns the number of bytes of each chunk, including any that are cut off.
+    pub fn chunk_lengths(&self) -> Vec<u64> {
+        self.header.chunks.iter().map(|chunk| u64::from(chunk.stored.bytes)).collect()
+    }
+
+    /// Returns the number of bytes of the header, the base mesh and these chunks.
+    fn bytes_of(&self, chunks: impl Iterator<Item = usize>) -> u64 {
+        let stored = chunks.map(|chunk| u64::from(self.header.chunks[chunk].stored.bytes));
+        self.layout.base_end + stored.sum::<u64>()
     }
 
     /// Returns the number of updates (vertex splits) listed in the file's index, including any that
@@ -250,7 +322,7 @@ impl<S: Source> Archive<S> {
             let rest = &self.header.chunks[chunks..self.complete];
             let urgent = rest.iter().rposition(|chunk| chunk.area.error >= least);
             let Some(more) = urgent.filter(|_| is_uniform) else {
-                let bytes = self.chunk_ends().nth(chunks).unwrap_or(0);
+                let bytes = self.bytes_of(0..chunks);
                 let updates = model.implicit().update_count();
                 return Ok(Extract { level, chunks, updates, bytes });
             };
@@ -282,8 +354,7 @@ impl<S: Source> Archive<S> {
         let wanted = |&chunk: &usize| criterion.may_require_in(&self.header.chunks[chunk].area);
         let chunks: Vec<usize> = (0..self.complete).filter(wanted).collect();
         let state = self.load(&chunks)?;
-        let stored = chunks.iter().map(|&chunk| u64::from(self.header.chunks[chunk].stored.bytes));
-        let bytes = self.chunk_ends().next().unwrap_or(0) + stored.sum::<u64>();
+        let bytes = self.bytes_of(chunks.iter().copied());
         let updates = state.updates.len();
         let model = state.assemble(self.header.about)?;
         let level = Cut::at(&model, query)?.level();
@@ -310,7 +381,8 @@ impl<S: Source> Archive<S> {
     fn load(&self, chunks: &[usize]) -> Result<DecoderState, FileError> {
         let mut state = self.read_base()?;
         let (mut first, mut wanted) = (0, chunks.iter().peekable());
-        for (at, (entry, offset)) in self.header.chunks.iter().zip(self.chunk_ends()).enumerate() {
+        for (at, (entry, &offset)) in self.header.chunks.iter().zip(&self.layout.chunks).enumerate()
+        {
             if wanted.next_if(|&&chunk| chunk == at).is_some() {
                 let name = || format!("chunk {at}");
                 let bytes = self.read_section(offset, entry.stored, name)?;
