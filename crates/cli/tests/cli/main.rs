@@ -9,6 +9,7 @@ mod demo;
 mod flock;
 mod hostile;
 mod levels;
+mod model_scenes;
 mod models;
 mod pipes;
 mod queries;

@@ -16,6 +16,8 @@ pub struct ModelScene {
     head: Head,
     /// The scene, whose meshes of the levels are empty.
     scene: Scene,
+    /// True if attributes have been rounded.
+    is_rounded: bool,
     /// What a truncated file lacks of the scene.
     pub missing: MissingParts,
 }
@@ -81,7 +83,7 @@ impl ModelScene {
         if !head.slots.iter().all(|slot| is_material(slot.material)) {
             return Err(ModelSceneError::Damaged("it lacks a material"));
         }
-        Ok(Self { head, scene, missing })
+        Ok(Self { head, scene, is_rounded: !archive.is_lossless(), missing })
     }
 
     /// Returns true if a level is what the scene shows: if it has each mesh where it is, and only
@@ -129,7 +131,8 @@ impl ModelScene {
         if self.head.meshes.is_empty() {
             return Ok(Scene::from_mesh(name, level));
         }
-        let split = split(&level, &self.head.meshes, &self.head.slots, &mut self.scene);
+        let Head { meshes, slots, .. } = &self.head;
+        let split = split(&level, meshes, slots, self.is_rounded, &mut self.scene);
         split.ok_or(ModelSceneError::Damaged("the meshes of its levels are others"))?;
         Ok(self.scene)
     }

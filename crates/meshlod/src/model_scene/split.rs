@@ -9,13 +9,15 @@ use meshlod_mesh::{Attributes, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId
 use super::head::{MeshEntry, Slot};
 use super::place::slots_of_labels;
 
-/// Puts the faces of a level into the empty meshes of its scene; `None` if they do not fit.
+/// Puts the faces of a level into the empty meshes of its scene; `None` if they do not fit. `rounded`
+/// tells that attributes have been rounded.
 ///
 /// Cost: linear.
 pub(super) fn split(
     level: &Mesh,
     entries: &[Option<MeshEntry>],
     slots: &[Slot],
+    rounded: bool,
     scene: &mut Scene,
 ) -> Option<()> {
     let placed: Vec<usize> = (0..entries.len()).filter(|&m| entries[m].is_some()).collect();
@@ -60,7 +62,9 @@ pub(super) fn split(
         if entry.placement != DMat4::IDENTITY.to_cols_array_2d() {
             transform(&mut mesh, &back.to_cols_array_2d());
         }
-        complete_weights(&mut mesh);
+        if rounded {
+            mend_weights(&mut mesh);
+        }
         into.mesh = mesh;
     }
     Some(())
@@ -166,22 +170,28 @@ impl Renumbering {
     }
 }
 
-/// Sum of weights beyond which they are taken for complete.
-const NEARLY_ONE: f32 = 1.0 - 1e-6;
+/// Largest change of a weight by rounding, by default.
+const ROUNDING: f32 = 1.0 / 512.0;
 
-/// Scales the skinning weights of each wedge so that their sum is one again, which rounding has
-/// changed.
-fn complete_weights(mesh: &mut Mesh) {
-    let Some(attributes) = &mut mesh.attributes else { return };
-    let is_weights = |layer: &&mut Layer| matches!(layer.kind, LayerKind::Weights(_));
-    for wedge in (0..attributes.wedge_count).map(WedgeId::new) {
-        let all = || attributes.layers.iter().filter(|l| matches!(l.kind, LayerKind::Weights(_)));
-        let sum: f32 = all().flat_map(|layer| layer.of(wedge)).sum();
-        if !(sum > 0.0 && sum.is_finite()) || (NEARLY_ONE..=2.0 - NEARLY_ONE).contains(&sum) {
-            continue;
-        }
-        for layer in attributes.layers.iter_mut().filter(is_weights) {
-            layer.of_mut(wedge).iter_mut().for_each(|weight| *weight /= sum);
+/// Mends what rounding does to skinning weights: a sum that was one is one again, and a joint whose
+/// weight has become 0 is joint 0, as glTF wants it.
+fn mend_weights(mesh: &mut Mesh) {
+    let Some(Attributes { wedge_count, layers, .. }) = &mut mesh.attributes else { return };
+    let of_kind = |kind: fn(u8) -> LayerKind| {
+        let at = |set| layers.iter().position(|layer| layer.kind == kind(set));
+        (0..=u8::MAX).map_while(at).collect::<Vec<usize>>()
+    };
+    let (joints, weights) = (of_kind(LayerKind::Joints), of_kind(LayerKind::Weights));
+    let most_off = ROUNDING * (4 * weights.len()) as f32;
+    for wedge in (0..*wedge_count).map(WedgeId::new) {
+        let sum: f32 = weights.iter().flat_map(|&at| layers[at].of(wedge)).sum();
+        let factor = if (sum - 1.0).abs() <= most_off { 1.0 / sum } else { 1.0 };
+        for (set, &at) in weights.iter().enumerate() {
+            layers[at].of_mut(wedge).iter_mut().for_each(|weight| *weight *= factor);
+            let is_zero: [bool; 4] = std::array::from_fn(|k| layers[at].of(wedge)[k] == 0.0);
+            let Some(&joints) = joints.get(set) else { continue };
+            let pairs = layers[joints].of_mut(wedge).iter_mut().zip(is_zero);
+            pairs.filter(|(_, is_zero)| *is_zero).for_each(|(joint, _)| *joint = 0.0);
         }
     }
 }
