@@ -45,7 +45,8 @@ fn forget_arrays(json: &mut Value) {
         Value::Array(values) => values.iter_mut().for_each(forget_arrays),
         Value::Object(entries) => {
             // Images may have moved from files into the buffer.
-            let places = ["bufferView", "uri", "mimeType", "inverseBindMatrices", "input", "output"];
+            let places =
+                ["bufferView", "uri", "mimeType", "inverseBindMatrices", "input", "output"];
             places.iter().for_each(|place| drop(entries.remove(*place)));
             entries.remove("mode");
             if entries.contains_key("attributes") {

@@ -5,12 +5,14 @@ use std::sync::Arc;
 use meshlod_mesh::{Labels, Mesh};
 use serde_json::{Value, json};
 
+use super::accessor_use::{animation_accessors, free_accessors};
 use super::buffer_builder::{copy_views, mark_views};
 use super::document::{self, Buffers, Document};
 use super::new_document;
 use super::read::{Contents, SourceDocument};
-use super::write::{animation_accessors, check_meshes, free_accessors, unreadable};
-use super::{lod, materials, mesh, nodes};
+use super::skeleton_images::{SkeletonImage, attach_images, detach_images, preview_name};
+use super::write::{check_meshes, unreadable};
+use super::{materials, mesh, nodes};
 use crate::{ParseError, Scene, SceneMesh, Unsupported, Weld};
 
 /// Scene without the geometry of some of its meshes and without its images, as bytes.
@@ -29,15 +31,6 @@ pub struct Skeleton {
     pub is_gltf: bool,
     /// Marks the meshes whose geometry is left out.
     pub emptied: Vec<bool>,
-}
-
-/// Image for a scene made from a skeleton.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct SkeletonImage {
-    /// Encoded bytes of the image; empty if there are none.
-    pub bytes: Vec<u8>,
-    /// True if this is a smaller PNG in place of the image.
-    pub is_preview: bool,
 }
 
 /// Buffer of the key frames.
@@ -91,8 +84,14 @@ impl Skeleton {
             true => attach_images(&mut json, images, &mut buffers)?,
             false => images,
         };
+        let first = json.pointer("/buffers/0").cloned().filter(Value::is_object);
         let lengths = buffers.iter().map(|bytes| json!({ "byteLength": bytes.len() }));
         json["buffers"] = lengths.collect();
+        if let Some(first) = first {
+            // Whatever else the document says of its buffer.
+            json["buffers"][0] = first;
+            json["buffers"][0]["byteLength"] = buffers[0].len().into();
+        }
         let buffers = Buffers::new(buffers);
         let mut scene = Scene::default();
         let document = Document::new(&json, &buffers)?;
@@ -170,32 +169,6 @@ fn empty(accessor: &mut Value) {
     *accessor = new.into();
 }
 
-/// Gives images in data URIs a view without bytes, as those in buffers have it.
-fn detach_images(json: &mut Value) {
-    let count = json.get("bufferViews").and_then(Value::as_array).map_or(0, Vec::len);
-    let mut added = Vec::new();
-    let images = json.get_mut("images").and_then(Value::as_array_mut);
-    for image in images.into_iter().flatten() {
-        let is_data = |uri: &str| uri.get(..5).is_some_and(|s| s.eq_ignore_ascii_case("data:"));
-        if image.get("uri").and_then(Value::as_str).is_some_and(is_data) {
-            embed(image, count + added.len());
-            added.push(json!({ "buffer": 0, "byteLength": 0 }));
-        }
-    }
-    if !added.is_empty() {
-        lod::extend(json, "bufferViews", added);
-    }
-}
-
-/// Makes an image refer to a view.
-fn embed(image: &mut Value, view: usize) {
-    if let Some(image) = image.as_object_mut() {
-        image.shift_remove("uri");
-        image.insert("bufferView".into(), view.into());
-        image.entry("mimeType").or_insert("image/png".into());
-    }
-}
-
 /// Removes the animations, whose key frames are lost, and empties what they used.
 fn drop_animations(json: &mut Value) {
     if let Some(json) = json.as_object_mut() {
@@ -217,55 +190,6 @@ fn drop_animations(json: &mut Value) {
             empty(accessor);
         }
     }
-}
-
-/// Puts images into the buffers: those that were embedded, and previews. Returns the other ones,
-/// which are files, with nothing in the place of these.
-fn attach_images(
-    json: &mut Value,
-    images: Vec<SkeletonImage>,
-    buffers: &mut Vec<Vec<u8>>,
-) -> Result<Vec<SkeletonImage>, ParseError> {
-    let mut files = vec![SkeletonImage::default(); images.len()];
-    for (index, SkeletonImage { mut bytes, is_preview }) in images.into_iter().enumerate() {
-        let image = &mut json["images"][index];
-        let kind = new_document::mime_type(&bytes);
-        let view = image.get("bufferView").and_then(Value::as_u64).map(|view| view as usize);
-        if view.is_none() && !is_preview {
-            // As when a document is read, what is no image is not taken for one.
-            if kind.is_some() {
-                files[index].bytes = bytes;
-            }
-            continue;
-        }
-        if bytes.is_empty() {
-            // No valid document has an embedded image without bytes.
-            bytes = NO_IMAGE.to_vec();
-        }
-        let whole = json!({ "buffer": buffers.len(), "byteLength": bytes.len() });
-        buffers.push(bytes);
-        let view = match view {
-            Some(view) => {
-                let views = json.get_mut("bufferViews").and_then(Value::as_array_mut);
-                let count = views.as_ref().map_or(0, |views| views.len());
-                let place = views.and_then(|views| views.get_mut(view));
-                *place.ok_or_else(|| document::missing("bufferView", view, count))? = whole;
-                view
-            }
-            None => lod::extend(json, "bufferViews", vec![whole]),
-        };
-        embed(&mut json["images"][index], view);
-        if let (Some(kind), Some(image)) = (kind, json["images"][index].as_object_mut()) {
-            image.insert("mimeType".into(), kind.into());
-        }
-    }
-    Ok(files)
-}
-
-/// Returns the name of a preview of an image file.
-fn preview_name(name: &str) -> String {
-    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
-    format!("{stem}.preview.png")
 }
 
 fn check_count(what: &str, listed: usize, there: usize) -> Result<(), ParseError> {
@@ -295,6 +219,3 @@ fn scene_mesh(
     }
     Ok(SceneMesh { name: read.name.clone().unwrap_or_default(), mesh, materials })
 }
-
-/// A white pixel as PNG, in place of an embedded image that is missing.
-const NO_IMAGE: &[u8] = b"\x89\x50\x4e\x47\x0d\x0a\x1a\x0a\x00\x00\x00\x0d\x49\x48\x44\x52\x00\x00\x00\x01\x00\x00\x00\x01\x08\x00\x00\x00\x00\x3a\x7e\x9b\x55\x00\x00\x00\x0a\x49\x44\x41\x54\x78\xda\x63\xf8\x0f\x00\x01\x01\x01\x00\x1c\xb0\x8c\x99\x00\x00\x00\x00\x49\x45\x4e\x44\xae\x42\x60\x82";

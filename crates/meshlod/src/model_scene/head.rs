@@ -92,6 +92,10 @@ impl Head {
         })?;
         let length = input.number()?;
         let document = input.take(length as usize)?.to_vec();
+        if images as usize > document.len() {
+            // The document has an entry for each image.
+            return None;
+        }
         let emptied = meshes.iter().map(Option::is_some).collect();
         let buffer = input.0.to_vec();
         let skeleton = Skeleton { document, buffer, animations: Vec::new(), is_gltf, emptied };
@@ -159,7 +163,7 @@ mod tests {
     use super::*;
 
     fn head() -> Head {
-        let document = b"{}".to_vec();
+        let document = b"any bytes".to_vec();
         let emptied = vec![true, false, true];
         let skeleton = Skeleton {
             document,

@@ -134,8 +134,21 @@ impl ModelScene {
         let Head { meshes, slots, .. } = &self.head;
         let split = split(&level, meshes, slots, self.is_rounded, &mut self.scene);
         split.ok_or(ModelSceneError::Damaged("the meshes of its levels are others"))?;
-        Ok(self.scene)
+        match shown_size(&self.scene) <= MOST_SHOWN {
+            true => Ok(self.scene),
+            false => Err(ModelSceneError::Damaged("it shows more than 2^28 faces")),
+        }
     }
+}
+
+/// Most faces or vertices that a scene may show, over all instances, as where glTF is read.
+const MOST_SHOWN: usize = 1 << 28;
+
+fn shown_size(scene: &Scene) -> usize {
+    let size = |mesh: &Mesh| mesh.faces.len().max(mesh.positions.len());
+    let instances = scene.instances().into_iter();
+    let sizes = instances.map(|instance| size(&scene.meshes[instance.mesh].mesh));
+    sizes.fold(0, usize::saturating_add)
 }
 
 /// Reads the largest version that there is of each image.

@@ -121,7 +121,7 @@ impl<'m> Selector<'m> {
         if layers.is_empty() {
             return Some(None);
         }
-        let all = self.mesh.attributes.as_ref()?;
+        let all = self.mesh.attributes.as_ref().filter(|all| layers.len() <= all.layers.len())?;
         self.wedges.begin();
         let corners = faces
             .iter()

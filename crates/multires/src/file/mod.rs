@@ -6,6 +6,7 @@
 //! docs/formats/mlod.md specifies the bytes.
 
 mod archive;
+mod attached;
 mod base;
 mod child_offsets;
 mod chunk;
@@ -16,6 +17,7 @@ mod exact_coding;
 mod header;
 mod lattice;
 mod layer_coding;
+mod layout;
 mod normal_predictor;
 mod quantize;
 mod resources;
