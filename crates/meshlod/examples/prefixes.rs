@@ -1,4 +1,4 @@
-//! How truncated multiresolution files look beside the model they were built from.
+//! Pictures of truncated multiresolution files, compared with the model they were built from.
 //!
 //! ```text
 //! cargo run --release -p meshlod --example prefixes -- flight-helmet/FlightHelmet.gltf 2 5 20

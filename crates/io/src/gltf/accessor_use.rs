@@ -1,4 +1,4 @@
-//! What the accessors of a document are used for.
+//! Uses of the accessors of a document.
 
 use serde_json::Value;
 

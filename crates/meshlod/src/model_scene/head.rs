@@ -1,10 +1,10 @@
-//! First resource of a scene: its skeleton, and what takes a level of all its meshes apart.
+//! First resource of a scene: its skeleton, and the tables by which a level is taken apart.
 
 use meshlod_io::gltf::Skeleton;
 
 use super::parts::PartKind;
 
-/// What a file says about its scene as a whole.
+/// Tables and skeleton of the scene of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Head {
     /// Skeleton without the key frames of animations, which are a part of their own.

@@ -13,9 +13,9 @@ pub(super) struct ImageVersion {
 }
 
 /// A version takes at most this fraction of the bytes of the next larger one, as its reciprocal. So
-/// all previews together take less than a third of the images.
+/// all previews together take less than a third of the images, but for the smallest.
 const STEP: usize = 4;
-/// Longest side of the smallest preview, at most.
+/// Longest side of the smallest preview, at most. There is one in any case, if it takes fewer bytes.
 const LEAST_SIDE: u32 = 16;
 
 /// Returns the versions of an image, from the smallest to the image itself; none of an image without
@@ -46,7 +46,8 @@ pub(super) fn versions(bytes: &[u8], is_color: bool) -> Vec<ImageVersion> {
         }
         let Ok(picture) = Picture::new(width, height, texels.into_flattened()) else { continue };
         let bytes = picture.png();
-        if STEP * bytes.len() <= last.bytes.len() {
+        let step = if side <= LEAST_SIDE { 1 } else { STEP };
+        if step * bytes.len() < last.bytes.len() {
             versions.push(ImageVersion { side, bytes, is_preview: true });
         }
     }
@@ -104,7 +105,8 @@ mod tests {
             assert!(last.bytes == image && last.side == 300 && !last.is_preview);
             for pair in versions.windows(2) {
                 assert!(pair[0].side < pair[1].side);
-                assert!(STEP * pair[0].bytes.len() <= pair[1].bytes.len());
+                let step = if pair[0].side <= LEAST_SIDE { 1 } else { STEP };
+                assert!(step * pair[0].bytes.len() < pair[1].bytes.len());
                 let texture = Texture::decode(&pair[0].bytes).unwrap();
                 let (width, height, _) = texture.levels().next().unwrap();
                 assert_eq!(width.max(height), pair[0].side);

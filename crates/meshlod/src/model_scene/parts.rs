@@ -15,9 +15,9 @@ pub(super) enum PartKind {
     Image(u32),
 }
 
-/// A part, with its bytes.
+/// Part of a scene with its bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Part {
+pub(super) struct ScenePart {
     pub kind: PartKind,
     pub bytes: Vec<u8>,
     /// Longest side in texels.
@@ -35,17 +35,17 @@ pub(super) fn sort_parts(
     animations: Vec<u8>,
     images: Vec<Vec<ImageVersion>>,
     is_color: &[bool],
-) -> Vec<Part> {
+) -> Vec<ScenePart> {
     let mut parts = Vec::new();
     for (index, versions) in (0..).zip(images) {
         parts.extend(versions.into_iter().map(|ImageVersion { side, bytes, is_preview }| {
             let kind = if is_preview { PartKind::Preview(index) } else { PartKind::Image(index) };
-            Part { kind, bytes, side }
+            ScenePart { kind, bytes, side }
         }));
     }
     if !animations.is_empty() {
         let kind = PartKind::Animations;
-        parts.push(Part { kind, bytes: animations, side: ANIMATION_SIDE });
+        parts.push(ScenePart { kind, bytes: animations, side: ANIMATION_SIDE });
     }
     parts.sort_by_key(|part| {
         let last = match part.kind {
@@ -60,7 +60,7 @@ pub(super) fn sort_parts(
 /// Places parts between the chunks, given the bytes of each chunk, after the bytes that all of them
 /// need: the smallest images first, and then half of the bytes for parts and half for chunks, so
 /// that a truncated file has textures as fine as its surface.
-pub(super) fn interleave(head: Vec<u8>, parts: &[Part], chunks: &[u64]) -> Vec<Resource> {
+pub(super) fn interleave(head: Vec<u8>, parts: &[ScenePart], chunks: &[u64]) -> Vec<Resource> {
     let mut resources = vec![Resource { after_chunks: 0, bytes: head }];
     let (mut after, mut of_chunks, mut of_parts) = (0, 0, 0);
     for part in parts {

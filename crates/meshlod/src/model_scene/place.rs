@@ -256,7 +256,7 @@ fn colors(scene: &Scene) -> Vec<bool> {
     is_color
 }
 
-/// What tells layers apart when meshes are merged: kind, name, width.
+/// Kind, name and width, by which layers are told apart when meshes are merged.
 type LayerKey = (LayerKind, String, usize);
 
 fn layer_keys(mesh: &Mesh) -> Vec<LayerKey> {

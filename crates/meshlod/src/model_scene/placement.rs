@@ -1,4 +1,4 @@
-//! Where each mesh of a scene is while its levels are made.
+//! Choice of the place that each mesh of a scene has in its levels.
 
 use glam::{DMat3, DMat4, DVec3};
 use meshlod_io::Scene;

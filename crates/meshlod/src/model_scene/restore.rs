@@ -18,7 +18,7 @@ pub struct ModelScene {
     scene: Scene,
     /// True if attributes have been rounded.
     is_rounded: bool,
-    /// What a truncated file lacks of the scene.
+    /// Parts that a truncated file lacks.
     pub missing: MissingParts,
 }
 

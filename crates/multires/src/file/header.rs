@@ -52,7 +52,7 @@ pub(super) struct ChunkEntry {
     pub(super) area: Area,
 }
 
-/// What the header says about the index of resources that follows that of the chunks.
+/// Form of the index of resources, which follows that of the chunks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ResourceIndex {
     /// There is none.

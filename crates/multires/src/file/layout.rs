@@ -1,4 +1,4 @@
-//! Where the sections of a `.mlod` file lie.
+//! Offsets of the sections of a `.mlod` file.
 
 use super::header::Header;
 
