@@ -188,8 +188,8 @@ impl Scene {
     }
 }
 
-/// Moves a mesh by a column-major 4×4 matrix, as [`Scene::flatten`] moves it: normals and tangents turn
-/// with it, and a mirroring matrix turns its faces over.
+/// Moves a mesh by a column-major 4×4 matrix, as [`Scene::flatten`] moves it: normals and tangents
+/// turn with it, and a mirroring matrix turns its faces over.
 ///
 /// Cost: linear.
 pub fn transform(mesh: &mut Mesh, transform: &[[f64; 4]; 4]) {

@@ -27,10 +27,10 @@ use crate::parse::{self, Bound};
 use crate::session::Session;
 use crate::volume;
 
-/// Write all levels of a mesh or scene to one multiresolution file (.mlod). The topology is kept, and
-/// locks hold in every level: tied vertices are locked. Nodes, materials, images, skins, morph targets
-/// and animations come back with extract; a mesh that several nodes show is stored once, and errors
-/// hold for the largest of them, in the pose of the file
+/// Write all levels of a mesh or scene to one multiresolution file (.mlod). The topology is kept,
+/// and locks hold in every level: tied vertices are locked. Nodes, materials, images, skins, morph
+/// targets and animations come back with extract. A mesh that several nodes show is stored once;
+/// errors hold for the largest of them, in the pose of the file
 #[derive(Args)]
 pub struct Build {
     /// Mesh or scene to read, or -

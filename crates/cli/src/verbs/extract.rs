@@ -21,9 +21,8 @@ use crate::parse::{self, Bound};
 use crate::query_args::{self, ErrorLimit, FocusArg, QueryRequest};
 use crate::session::Session;
 
-/// Extract one mesh from a multiresolution file: fine where it is needed, coarse elsewhere. To glTF it
-/// writes the whole scene, with nodes, materials, skins and animations, and to other formats its
-/// surface
+/// Extract one level from a multiresolution file: fine where it is needed, coarse elsewhere. glTF
+/// gets the whole scene, with nodes, materials, skins and animations, other formats its surface
 #[derive(Args)]
 pub struct Extract {
     /// Multiresolution file to read

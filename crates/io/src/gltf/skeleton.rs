@@ -62,8 +62,9 @@ impl Skeleton {
     /// Makes a scene of the skeleton, with the images given by number; the marked meshes are empty,
     /// with a material label for each primitive.
     ///
-    /// Images that were embedded are embedded again, and so are previews, which are not the files they
-    /// stand for. `has_animations` is false if their key frames are lost: then there are no animations.
+    /// Images that were embedded are embedded again, and so are previews, which are not the files
+    /// they stand for. `has_animations` is false if the key frames are lost: then there are no
+    /// animations.
     ///
     /// # Errors
     /// The place and the reason, as of [`read`](super::read), if the document is damaged.

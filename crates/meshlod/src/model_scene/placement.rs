@@ -40,8 +40,9 @@ pub(super) fn placements(scene: &Scene) -> Vec<Option<Placement>> {
 fn placement(transforms: &[DMat4], middle: DVec3) -> Placement {
     let stretches: Vec<f64> = transforms.iter().map(|&t| stretch(t)).collect();
     let can_be_undone = |i: usize| {
-        let back = stretch(transforms[i].inverse());
-        (stretches[i] * back).is_finite() && stretches[i] * back <= MAX_STRETCH_RATIO
+        let back = transforms[i].inverse();
+        let ratio = stretches[i] * stretch(back);
+        back.is_finite() && ratio.is_finite() && ratio <= MAX_STRETCH_RATIO
     };
     let usable: Vec<usize> = (0..transforms.len()).filter(|&i| can_be_undone(i)).collect();
     let most = usable.iter().map(|&i| stretches[i]).fold(0.0, f64::max);

@@ -127,7 +127,7 @@ fn corners(mesh: &Mesh) -> Vec<[Vec<i64>; 3]> {
     let rounded = |x: f64| (x * 1e4).round() as i64;
     let corner = |face: usize, k: usize| {
         let mut values = mesh.positions[mesh.faces[face][k].index()].map(rounded).to_vec();
-        for attributes in &mesh.attributes {
+        if let Some(attributes) = &mesh.attributes {
             let mut layers: Vec<&Layer> = attributes.layers.iter().collect();
             layers.sort_by(|a, b| a.name.cmp(&b.name));
             let wedge = attributes.corners[face][k];
