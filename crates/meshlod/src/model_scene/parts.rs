@@ -67,8 +67,7 @@ pub(super) fn interleave(head: Vec<u8>, parts: &[ScenePart], chunks: &[u64]) -> 
         if part.side > FIRST_SIDE {
             of_parts += part.bytes.len() as u64;
         }
-        // Parts are ahead by less than a chunk.
-        while after < chunks.len() && of_chunks + chunks[after] < of_parts {
+        while after < chunks.len() && of_chunks < of_parts {
             of_chunks += chunks[after];
             after += 1;
         }
@@ -97,7 +96,7 @@ mod tests {
             let all = interleave(vec![7], &parts, chunks);
             all.iter().map(|resource| resource.after_chunks).collect::<Vec<_>>()
         };
-        assert_eq!(after(&[20; 5]), [0, 0, 0, 0, 2, 5]);
+        assert_eq!(after(&[20; 5]), [0, 0, 0, 1, 3, 5]);
         assert_eq!(after(&[]), [0; 6]);
     }
 }

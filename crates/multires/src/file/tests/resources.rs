@@ -95,10 +95,13 @@ fn an_index_that_lies_is_refused() {
     let put = |bytes: &mut Vec<u8>, at: usize, number: u32| {
         bytes[at..at + 4].copy_from_slice(&number.to_le_bytes());
     };
-    // Number of resources, place of the last, place of the first, length of the first.
-    for (offset, number) in [(0, 7), (0, u32::MAX), (72, 1 << 20), (12, 3), (4, u32::MAX)] {
+    // Number of resources, place of the last, place of the first.
+    for (offset, number) in [(0, 7), (0, u32::MAX), (72, 1 << 20), (12, 3)] {
         assert!(opened(&|bytes| put(bytes, at + offset, number)).is_err(), "{offset} {number}");
     }
+    // A length that no file has: all that follows is missing, and no memory is taken for it.
+    let long = opened(&|bytes| put(bytes, at + 4, u32::MAX)).unwrap();
+    assert!(long.complete_chunks() == 0 && long.resource(0).unwrap().is_none());
     // The last one stored in no known form.
     let last = bytes.len() - 5;
     let wrong = opened(&|bytes| bytes[last] = 7).unwrap();
