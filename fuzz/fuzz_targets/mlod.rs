@@ -19,6 +19,9 @@ libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("mlod"), |bytes: &[u8]| {
 
 /// Runs queries directly on an uncertified file, and walks the certified models read from it.
 fn take_parts(archive: &Archive<Vec<u8>>) {
+    for index in 0..archive.resource_count() {
+        let _ = archive.resource(index);
+    }
     let queries = queries(archive.diagonal());
     for query in &queries {
         if let Ok(taken) = archive.extract(query) {

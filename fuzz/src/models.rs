@@ -1,7 +1,9 @@
 //! Multiresolution files without entropy coding, so that mutations hit the numbers themselves.
 
 use meshlod_fixtures as fixtures;
-use meshlod_multires::{Archive, BuildError, Forest, HeightField, HeightPrecision, Storage};
+use meshlod_multires::{
+    Archive, BuildError, Forest, HeightField, HeightPrecision, Resource, Storage,
+};
 use meshlod_samples as samples;
 use meshlod_simplify::{Method, Options};
 
@@ -54,19 +56,29 @@ pub(crate) fn seeds() -> Vec<Vec<u8>> {
             [Forest::new, Forest::lossless].map(|record| contractions(record(mesh, &options)))
         })
     });
+    let files: Vec<Vec<u8>> = files.collect();
+    let attached = with_resources(&files[0]);
     let fields = [fixtures::grid(4), samples::terrain(100)];
     let precisions = [HeightPrecision::Exact, HeightPrecision::Within(0.01)];
     let fields = fields.iter().filter_map(|mesh| HeightField::from_mesh(mesh).ok());
     let fields = fields.flat_map(|field| {
         precisions.map(|precision| plain_field(&field.to_file(precision).expect("a precision")))
     });
-    files.chain(fields).collect()
+    files.into_iter().chain([attached]).chain(fields).collect()
 }
 
 /// Builds a file with chunks small enough that there are several.
 fn contractions(forest: Result<Forest, BuildError>) -> Vec<u8> {
     let storage = Storage { updates_per_chunk: 8, ..Storage::default() };
     plain(&Archive::write(&forest.expect("a mesh"), &storage).expect("a proof").0)
+}
+
+/// Attaches resources to a file, before its chunks and after them.
+fn with_resources(bytes: &[u8]) -> Vec<u8> {
+    let archive = Archive::open(bytes.to_vec()).expect("a file");
+    let resource = |after_chunks| Resource { after_chunks, bytes: vec![7; 100] };
+    let attached = archive.with_resources(&[resource(0), resource(1)]);
+    attached.expect("they are short").into_source()
 }
 
 /// Decompresses a file of contractions.

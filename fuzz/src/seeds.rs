@@ -5,7 +5,8 @@ use meshlod_codec::{
     TransportOptions, TransportQuantization, compress,
 };
 use meshlod_fixtures as fixtures;
-use meshlod_io::{Precision, Scene, gltf, obj, off, ply, smf, stl};
+use meshlod_io::gltf::Skeleton;
+use meshlod_io::{Precision, Scene, Weld, gltf, obj, off, ply, smf, stl};
 use meshlod_mesh::{AttributeBounds, Mesh};
 use meshlod_samples as samples;
 use meshlod_simplify::{self as simplify, History, Options, Progressive, Simplifier};
@@ -32,6 +33,7 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
         "mlod" => return models::seeds(),
         "mlq" => return compressed(),
         "mlz" => return transports(),
+        "skeleton" => return skeletons(),
         _ => {}
     }
     let by_hand: &[&str] = match target {
@@ -46,6 +48,13 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
     let written = meshes.iter().map(|mesh| write(target, mesh));
     let small = if target == "gltf" { small_gltf(&meshes) } else { Vec::new() };
     written.chain(small).chain(by_hand.iter().map(|text| text.as_bytes().to_vec())).collect()
+}
+
+/// Makes skeletons of the documents written by hand.
+fn skeletons() -> Vec<Vec<u8>> {
+    let read = |text: &&str| gltf::read(text.as_bytes(), &mut |_| None, Weld::Exact).ok();
+    let of = |scene: Scene| Skeleton::of(&scene, vec![true; scene.meshes.len()]).ok();
+    GLTF.iter().filter_map(read).filter_map(of).map(|skeleton| skeleton.document).collect()
 }
 
 fn write(target: &str, mesh: &Mesh) -> Vec<u8> {

@@ -3,8 +3,7 @@
 use std::path::Path;
 
 use clap::Args;
-use meshlod::io::{Image, Material};
-use meshlod::{Constraints, Mesh, Options, Scene, Target, VertexLocking};
+use meshlod::{Constraints, Mesh, Options, PlacedScene, Scene, Target, VertexLocking, place_scene};
 
 use crate::args::ReadArgs;
 use crate::failure::Failure;
@@ -30,11 +29,6 @@ pub struct FlatInput {
     pub mesh: Mesh,
     pub options: Options,
     pub fused: Option<FuseReport>,
-    /// Materials of the scene: label `i` of the mesh is the `i`-th.
-    pub materials: Vec<Material>,
-    pub images: Vec<Image>,
-    /// True if the scene is glTF, whose materials have more than that.
-    pub is_gltf: bool,
 }
 
 impl ConstraintArgs {
@@ -48,19 +42,6 @@ impl ConstraintArgs {
         let constraints = self.constraints(input)?;
         note_search(&constraints, session);
         constraints.options(input.scene, options).map_err(Failure::new)
-    }
-
-    /// Reads a scene, fuses it if that is asked for and merges it into one mesh, with the
-    /// constraints added to the options.
-    pub fn read_flat(
-        &self,
-        path: &Path,
-        reading: &ReadArgs,
-        options: Options,
-        session: &Session,
-    ) -> Result<FlatInput, Failure> {
-        let read = self.read_fused(path, reading, session)?;
-        self.flatten(read, (path, reading), options, session)
     }
 
     /// Reads a scene and fuses it if that is asked for.
@@ -78,17 +59,31 @@ impl ConstraintArgs {
     /// Merges a scene read from a path into one mesh, with the constraints added to the options.
     pub fn flatten(
         &self,
-        (mut scene, fused): (Scene, Option<FuseReport>),
+        (scene, fused): (Scene, Option<FuseReport>),
         (path, reading): (&Path, &ReadArgs),
         options: Options,
         session: &Session,
     ) -> Result<FlatInput, Failure> {
         let constraints = self.constraints(&InputScene { scene: &scene, path, reading })?;
         note_search(&constraints, session);
-        let (materials, images) = (scene.materials.clone(), std::mem::take(&mut scene.images));
-        let is_gltf = scene.source.is_some();
         let (mesh, options) = constraints.flatten(scene, options).map_err(Failure::new)?;
-        Ok(FlatInput { mesh, options, fused, materials, images, is_gltf })
+        Ok(FlatInput { mesh, options, fused })
+    }
+
+    /// Reads a scene, fuses it if that is asked for and merges it into one mesh that has each of its
+    /// meshes once, with the constraints added to the options.
+    pub fn read_placed(
+        &self,
+        path: &Path,
+        reading: &ReadArgs,
+        options: Options,
+        session: &Session,
+    ) -> Result<(PlacedScene, Option<FuseReport>), Failure> {
+        let (scene, fused) = self.read_fused(path, reading, session)?;
+        let constraints = self.constraints(&InputScene { scene: &scene, path, reading })?;
+        note_search(&constraints, session);
+        let placed = place_scene(scene, &constraints, options);
+        Ok((placed.map_err(|error| Failure::at(path, error))?, fused))
     }
 
     /// Returns true if vertices are to be held or objects to be fused.

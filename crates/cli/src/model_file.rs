@@ -3,9 +3,7 @@
 use std::fs::File;
 use std::path::Path;
 
-use meshlod::io::{Image, Material};
 use meshlod::multires::{Archive, Certificate, ErrorKind, Fit, ModelFile, Source};
-use meshlod::unpack_materials;
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
@@ -53,22 +51,6 @@ pub fn open(path: &Path, session: &Session) -> Result<ModelFile<File>, Failure> 
         session.warn(Failure::at(path, reason));
     }
     Ok(model)
-}
-
-/// Reads the materials and images of a multiresolution file, with a warning if a truncated file has
-/// previews of the images only.
-pub fn materials(
-    path: &Path,
-    file: &ModelFile<File>,
-    session: &Session,
-) -> Result<(Vec<Material>, Vec<Image>), Failure> {
-    let ModelFile::Contractions(archive) = file else { return Ok(Default::default()) };
-    let resources = archive.resources().map_err(|error| Failure::at(path, error))?;
-    let Some(resources) = resources else { return Ok(Default::default()) };
-    if resources.late.is_none() {
-        session.warn(Failure::at(path, "large images are replaced by previews"));
-    }
-    unpack_materials(&resources).map_err(|error| Failure::at(path, error))
 }
 
 pub fn certificate_json(certificate: &Certificate) -> Value {

@@ -188,6 +188,32 @@ impl Scene {
     }
 }
 
+/// Moves a mesh by a column-major 4×4 matrix, as [`Scene::flatten`] moves it: normals and tangents
+/// turn with it, and a mirroring matrix turns its faces over.
+///
+/// Cost: linear.
+pub fn transform(mesh: &mut Mesh, transform: &[[f64; 4]; 4]) {
+    if *transform == IDENTITY {
+        return;
+    }
+    let moved = MeshInstance { node: 0, mesh: 0, transform: *transform };
+    let world = DMat4::from_cols_array_2d(transform);
+    for position in &mut mesh.positions {
+        *position = world.transform_point3((*position).into()).to_array();
+    }
+    if moved.mirrors() {
+        mesh.faces.iter_mut().for_each(|face| face.swap(1, 2));
+    }
+    let Some(attributes) = &mut mesh.attributes else { return };
+    if moved.mirrors() {
+        attributes.corners.iter_mut().for_each(|corners| corners.swap(1, 2));
+    }
+    let directions = Directions::new(moved.linear());
+    for layer in &mut attributes.layers {
+        directions.turn(layer.kind, layer.width, &mut layer.values);
+    }
+}
+
 /// Collects every distinct layer of the meshes, without values; colours get the largest width
 /// found.
 fn union_of_layers<'a>(meshes: impl Iterator<Item = &'a Mesh>) -> Vec<Layer> {

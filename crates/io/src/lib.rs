@@ -39,7 +39,7 @@ pub use files::{
     ReadOptions, Resolve, Weld, WriteOptions, read, read_bytes, write, write_compressed,
     write_lods, write_strips,
 };
-pub use flatten::MeshInstance;
+pub use flatten::{MeshInstance, transform};
 pub use format::Format;
 pub use meshlod_mesh::{merge_equal_wedges, weld};
 pub use replace::{abandon_files, write_file};

@@ -89,7 +89,7 @@ impl Constraints {
         Ok((scene.into_mesh(), self.with_locks(locks, options)))
     }
 
-    fn locks_of_meshes(&self, scene: &Scene) -> Vec<Locks> {
+    pub(crate) fn locks_of_meshes(&self, scene: &Scene) -> Vec<Locks> {
         match &self.locks {
             VertexLocking::None => Vec::new(),
             VertexLocking::Given(locks) => locks.clone(),

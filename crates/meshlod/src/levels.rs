@@ -121,7 +121,8 @@ pub enum LevelsError {
 /// Writes all levels of detail of a mesh to a `.mlod` file, and proves that no level has a crack.
 ///
 /// The file holds the surface with its attributes, and the names of materials and objects;
-/// [`pack_materials`](crate::pack_materials) has the materials themselves. It is written whole or not at all. [`multires`](crate::multires) has the parts, also for height fields.
+/// [`place_scene`](crate::place_scene) has what it takes to put a whole scene into it. It is written
+/// whole or not at all. [`multires`](crate::multires) has the parts, also for height fields.
 ///
 /// Cost: O(n log n), n = faces, and several times that for [`ErrorKind::Bound`].
 /// # Errors

@@ -228,7 +228,7 @@ mod fuse;
 mod levels;
 mod locks;
 mod materials;
-mod model_materials;
+mod model_scene;
 mod place;
 mod repair;
 mod scene;
@@ -267,7 +267,10 @@ pub use materials::{UnreadImage, materials_of, single_sided_materials};
 pub use meshlod_io::{Format, IoError, ReadOptions, Scene, WriteOptions, read, write};
 pub use meshlod_mesh::{Borders, Mesh};
 pub use meshlod_simplify::{Method, Options, Report, SimplifyError, Target, Topology};
-pub use model_materials::{BadMaterials, pack_materials, scene_with_materials, unpack_materials};
+pub use model_scene::{
+    MissingParts, ModelScene, ModelSceneError, PackedScene, PlaceError, PlacedScene, SceneCounts,
+    place_scene,
+};
 pub use place::{moved_at_most, rounding_of_level, world_bounds};
 pub use repair::repair_scene;
 pub use scene::{SceneError, SceneSimplifier, simplify_scene};

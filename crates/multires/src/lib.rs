@@ -90,7 +90,7 @@ pub use bounds::ErrorKind;
 pub use cut::{Certificate, CertifyError, Cut, CutChange, Flaw, Located, Patch, UpdateLimits};
 pub use explicit::{Explicit, ExplicitCut};
 pub use file::{
-    Archive, Extract, FieldParts, FileError, ModelFile, Resources, Source, Storage, StoredErrors,
+    Archive, Extract, FieldParts, FileError, ModelFile, Resource, Source, Storage, StoredErrors,
     Surroundings,
 };
 pub use forest::{BuildError, Forest, Recorder};

@@ -104,9 +104,18 @@ impl<'a> ReferenceImages<'a> {
     /// # Errors
     /// Errors of [`render`].
     pub fn error_of(&self, level: &Mesh) -> Result<ImageError, PictureError> {
+        self.error_with(level, &self.style.paint)
+    }
+
+    /// Compares pictures of a level of detail that has a paint of its own, such as smaller textures.
+    ///
+    /// # Errors
+    /// Errors of [`render`].
+    pub fn error_with(&self, level: &Mesh, paint: &Paint<'_>) -> Result<ImageError, PictureError> {
+        let style = Style { paint: paint.clone(), ..self.style.clone() };
         let mut views = [ViewError::default(); 12];
         for (error, view) in views.iter_mut().zip(&self.views) {
-            *error = view.error_of(level, &self.style)?;
+            *error = view.error_of(level, &style)?;
         }
         let mean = |of: fn(&ViewError) -> f64| views.iter().map(of).sum::<f64>() / 12.0;
         Ok(ImageError { flip: mean(|view| view.flip), ssim: mean(|view| view.ssim), views })
@@ -264,6 +273,17 @@ mod tests {
         let expected: Vec<f32> = crop.rows(160).flat_map(|row| whole[row].to_vec()).collect();
         assert_eq!(part, expected);
         assert!(part.iter().any(|&error| error > 0.1));
+    }
+
+    #[test]
+    fn another_paint_is_an_error() {
+        let sheet = sheet_with_uv(8);
+        let style =
+            Style { size: [160, 160], paint: Paint::Checker { squares: 4 }, ..Style::comparison() };
+        let portrait = ReferenceImages::with_style(&sheet, style).unwrap();
+        let error = |squares| portrait.error_with(&sheet, &Paint::Checker { squares }).unwrap();
+        assert_eq!(error(4).flip, 0.0);
+        assert!(error(16).flip > 0.02);
     }
 
     #[test]

@@ -7,10 +7,10 @@ use clap::{Args, ValueEnum};
 use meshlod::io::write_file;
 use meshlod::multires::{
     Archive, BuildError, Certificate, Fit, Forest, HeightField, HeightPrecision, ModelFile,
-    Recorder, Resources, Storage, StoredErrors,
+    Recorder, Storage, StoredErrors,
 };
 use meshlod::simplify::Simplifier;
-use meshlod::{Mesh, Method, Options, Target, pack_materials};
+use meshlod::{Mesh, Method, Options, PackedScene, PlacedScene, SceneCounts, Target};
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
@@ -18,19 +18,22 @@ use crate::args::{AttributeErrorArgs, ReadArgs};
 use crate::constraints::{ConstraintArgs, FlatInput};
 use crate::failure::Failure;
 use crate::files;
-use crate::fuse;
+use crate::fuse::{self, FuseReport};
 use crate::locks;
 use crate::model_file;
+use crate::model_scene;
 use crate::numbers::{count, faces, percent, value};
 use crate::parse::{self, Bound};
 use crate::session::Session;
 use crate::volume;
 
-/// Write all levels of a mesh to one multiresolution file (.mlod). The topology of the mesh is kept,
-/// and locks hold in every level: tied vertices are locked
+/// Write all levels of a mesh or scene to one multiresolution file (.mlod). The topology is kept,
+/// and locks hold in every level: tied vertices are locked. Nodes, materials, images, skins, morph
+/// targets and animations come back with extract. A mesh that several nodes show is stored once;
+/// errors hold for the largest of them, in the pose of the file
 #[derive(Args)]
 pub struct Build {
-    /// Mesh to read, or -
+    /// Mesh or scene to read, or -
     #[arg(value_name = "IN")]
     input: PathBuf,
     /// File to write
@@ -132,8 +135,12 @@ impl Build {
             ));
         }
         let options = Options { method: self.method, ..Options::default() };
-        let FlatInput { mesh, options, fused, materials, images, is_gltf } =
-            self.constraints.read_flat(&self.input, &self.reading, options, session)?;
+        let (PlacedScene { mesh, options, rest, counts }, fused) = match self.model {
+            ModelArg::Contractions => {
+                self.constraints.read_placed(&self.input, &self.reading, options, session)?
+            }
+            ModelArg::RightTriangles => self.read_field(options, session)?,
+        };
         if mesh.faces.is_empty() {
             return Err(Failure::at(&self.input, "the mesh has no faces"));
         }
@@ -144,18 +151,10 @@ impl Build {
         let start = Instant::now();
         let built = match self.model {
             ModelArg::Contractions => {
-                if is_gltf && !materials.is_empty() {
-                    session.warn(
-                        "materials keep their base colour and its texture; skins, animations and other textures are left out",
-                    );
-                }
-                let resources = pack_materials(&materials, &images);
-                self.contractions(&mesh, &options, resources, session)?
+                model_scene::warn_of_losses(&self.input, &counts, session);
+                self.contractions(&mesh, &options, rest.as_ref(), session)?
             }
-            ModelArg::RightTriangles => {
-                warn_of_attributes(&mesh, session);
-                self.right_triangles(&mesh)?
-            }
+            ModelArg::RightTriangles => self.right_triangles(&mesh)?,
         };
         self.warn(&mesh, &built, session);
         session.progress.stage(&format!("writing {}", files::name(&self.output)));
@@ -163,7 +162,11 @@ impl Build {
         let time = start.elapsed();
         let mut json = self.json(&mesh, &built, time);
         json["fused"] = fuse::to_json(fused.as_ref());
-        let text = fuse::to_text(fused.as_ref()) + &self.text(&mesh, &built, time);
+        let mut text = fuse::to_text(fused.as_ref()) + &self.text(&mesh, &built, time);
+        if rest.is_some() {
+            json["scene"] = model_scene::counts_json(&counts);
+            text += &model_scene::counts_text(&counts);
+        }
         Ok(Answer::new(json, text))
     }
 
@@ -186,7 +189,7 @@ impl Build {
         &self,
         mesh: &Mesh,
         options: &Options,
-        resources: Option<Resources>,
+        rest: Option<&PackedScene>,
         session: &Session,
     ) -> Result<Built, Failure> {
         let failed = |error: BuildError| Failure::at(&self.input, error);
@@ -215,8 +218,12 @@ impl Build {
         let storage = Storage { rounding, updates_per_chunk: self.in_chunk, errors, attributes };
         let written = Archive::write(&forest, &storage);
         let (bytes, certificate) = written.map_err(|error| Failure::at(&self.input, error))?;
-        let archive = Archive::open(bytes).and_then(|archive| match resources {
-            Some(resources) => archive.with_resources(&resources),
+        let archive = Archive::open(bytes).and_then(|archive| match rest {
+            Some(rest) => {
+                session.progress.stage("packing images");
+                let resources = rest.resources(&archive.chunk_lengths());
+                archive.with_resources(&resources)
+            }
             None => Ok(archive),
         });
         let archive = archive.map_err(|error| Failure::at(&self.output, error))?;
@@ -234,6 +241,26 @@ impl Build {
             bytes: archive.into_source(),
             levels,
         })
+    }
+
+    /// Reads a height field, of which nothing but the surface is used.
+    fn read_field(
+        &self,
+        options: Options,
+        session: &Session,
+    ) -> Result<(PlacedScene, Option<FuseReport>), Failure> {
+        let read = self.constraints.read_fused(&self.input, &self.reading, session)?;
+        let is_scene = read.0.source.is_some();
+        let path = (self.input.as_path(), &self.reading);
+        let FlatInput { mesh, options, fused } =
+            self.constraints.flatten(read, path, options, session)?;
+        if mesh.attributes.is_some() || mesh.materials.is_some() || is_scene {
+            session.warn(
+                "attributes, materials and nodes are left out: right triangles hold heights only",
+            );
+        }
+        let counts = SceneCounts::default();
+        Ok((PlacedScene { mesh, options, rest: None, counts }, fused))
     }
 
     fn right_triangles(&self, mesh: &Mesh) -> Result<Built, Failure> {
@@ -318,13 +345,6 @@ impl Build {
             ),
         };
         text + &format!("build_seconds: {}\n", value(time.as_secs_f64()))
-    }
-}
-
-/// Warns of attributes and materials, which right triangles do not have.
-fn warn_of_attributes(mesh: &Mesh, session: &Session) {
-    if mesh.attributes.is_some() || mesh.materials.is_some() {
-        session.warn("attributes and materials are left out: right triangles hold heights only");
     }
 }
 

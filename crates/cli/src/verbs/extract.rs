@@ -10,8 +10,8 @@ use clap::{Args, ValueEnum};
 use meshlod::multires::{Extract as MeshExtract, FileError, Level, ModelFile, Query, ViewCamera};
 use meshlod::simplify::{Digits, VolumeResidual};
 use meshlod::{
-    CutVolumeError, Mesh, VerifiedExtract, conserve_cut_volume, digits_of, extract_verified,
-    measure_extract, scene_with_materials,
+    CutVolumeError, Format, Mesh, ModelScene, VerifiedExtract, conserve_cut_volume, digits_of,
+    extract_verified, measure_extract,
 };
 
 use crate::answer::Answer;
@@ -20,13 +20,15 @@ use crate::failure::Failure;
 use crate::files;
 use crate::kept_error::{Asked, KeptError, Known};
 use crate::model_file;
+use crate::model_scene;
 use crate::numbers::{faces, value};
 use crate::parse::{self, Bound};
 use crate::query_args::{self, ErrorLimit, FocusArg, QueryRequest};
 use crate::session::Session;
 use crate::verbs::extract::report::{Extracted, volume_text};
 
-/// Extract one mesh from a multiresolution file: fine where it is needed, coarse elsewhere
+/// Extract one level from a multiresolution file: fine where it is needed, coarse elsewhere. glTF
+/// gets the whole scene, with nodes, materials, skins and animations, other formats its surface
 #[derive(Args)]
 pub struct Extract {
     /// Multiresolution file to read
@@ -85,7 +87,8 @@ struct ExtractTarget {
     /// point of the mesh to the result, which is proven
     #[arg(long, value_name = "BOUND", value_parser = query_args::error_limit, allow_hyphen_values = true)]
     error: Option<ErrorLimit>,
-    /// The best mesh of at most N faces: for the camera if there is one, else from all sides
+    /// The best mesh of at most N faces: for the camera if there is one, else from all sides. A mesh
+    /// that several nodes show counts once
     #[arg(long, value_name = "N", value_parser = parse::whole, allow_negative_numbers = true)]
     faces: Option<usize>,
 }
@@ -111,8 +114,9 @@ impl Extract {
             );
             session.warn(Failure::at(&self.input, reason));
         }
-        let materials = model_file::materials(&self.input, &file, session)?;
-        let mut scene = scene_with_materials(name(&self.input), mesh, materials);
+        let model = model_scene::read(&self.input, &file, session)?;
+        self.warn_of_instances(&model, format, session);
+        let mut scene = model.flat_scene(name(&self.input), mesh);
         let spare = taken.error.spare(taken.rounding);
         let writing = self.writing.within(spare, &scene, format);
         let moves = writing.moves(&scene, format);
@@ -140,6 +144,8 @@ impl Extract {
         if let Some(restored) = &restored {
             text += &volume_text(restored, taken.lossless);
         }
+        let scene = model_scene::restored(&self.input, model, scene, format)?;
+        json["shown_faces"] = model_scene::shown_faces(&scene).into();
         files::write(&self.output, &scene, &writing, session)?;
         Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
     }
@@ -228,6 +234,21 @@ impl Extract {
                 session.warn(format_args!("--exact-volume: {error}"));
                 Ok(None)
             }
+        }
+    }
+
+    /// Warns of what does not hold for each instance of a mesh, or not in its own space.
+    fn warn_of_instances(&self, model: &ModelScene, format: Format, session: &Session) {
+        if !model.is_flat() && (self.focus.is_some() || self.camera.is_some()) {
+            session.warn(Failure::at(
+                &self.input,
+                "focus and camera count for the largest instance of each mesh; others are the same",
+            ));
+        }
+        if self.exact_volume && model_scene::is_gltf(format) && !model.is_unmoved() {
+            session.warn(
+                "--exact-volume: nodes move, turn or scale meshes, whose coordinates are rounded again",
+            );
         }
     }
 

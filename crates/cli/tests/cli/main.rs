@@ -11,6 +11,7 @@ mod flock;
 mod hostile;
 mod kept_error;
 mod levels;
+mod model_scenes;
 mod models;
 mod pipes;
 mod queries;

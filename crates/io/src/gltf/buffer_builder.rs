@@ -220,38 +220,48 @@ impl BufferBuilder {
         }
     }
 
-    /// Copies the bytes of the kept views, overlapping ones once, and points the views at the
-    /// copies.
+    /// Copies the bytes of the kept views and points the views at the copies.
     fn keep_bytes(&mut self, document: &Document<'_>, free: &[bool]) {
-        let mut kept: Vec<usize> = (0..free.len()).filter(|&view| !free[view]).collect();
-        let range = |view: usize| {
-            let view = &document.views[view];
-            (view.buffer, view.byte_offset, view.byte_offset + view.byte_length)
-        };
-        kept.sort_by_key(|&view| range(view));
-        // Current run of overlapping views: its buffer, its byte range there, and where the copy of
-        // that range begins.
-        let mut run: Option<(usize, Range<usize>, usize)> = None;
-        for view in kept {
-            let (buffer, start, end) = range(view);
-            let (run_range, run_at) = match &mut run {
-                Some((b, range, at)) if *b == buffer && start < range.end => (range, *at),
-                _ => {
-                    // Same offset modulo 8, so that every alignment holds.
-                    while self.bytes.len() % 8 != start % 8 {
-                        self.bytes.push(0);
-                    }
-                    let (_, range, at) = run.insert((buffer, start..start, self.bytes.len()));
-                    (range, *at)
+        let kept = (0..free.len()).filter(|&view| !free[view]).collect();
+        copy_views(document, kept, &mut self.views, (0, &mut self.bytes));
+    }
+}
+
+/// Appends the bytes of some views to the buffer of this number, overlapping ones once, and points
+/// the views at the copies.
+pub(super) fn copy_views(
+    document: &Document<'_>,
+    mut kept: Vec<usize>,
+    views: &mut [Value],
+    (number, bytes): (usize, &mut Vec<u8>),
+) {
+    let range = |view: usize| {
+        let view = &document.views[view];
+        (view.buffer, view.byte_offset, view.byte_offset + view.byte_length)
+    };
+    kept.sort_by_key(|&view| range(view));
+    // Current run of overlapping views: its buffer, its byte range there, and where the copy of
+    // that range begins.
+    let mut run: Option<(usize, Range<usize>, usize)> = None;
+    for view in kept {
+        let (buffer, start, end) = range(view);
+        let (run_range, run_at) = match &mut run {
+            Some((b, range, at)) if *b == buffer && start < range.end => (range, *at),
+            _ => {
+                // Same offset modulo 8, so that every alignment holds.
+                while bytes.len() % 8 != start % 8 {
+                    bytes.push(0);
                 }
-            };
-            if end > run_range.end {
-                self.bytes.extend_from_slice(&document.buffers[buffer][run_range.end..end]);
-                run_range.end = end;
+                let (_, range, at) = run.insert((buffer, start..start, bytes.len()));
+                (range, *at)
             }
-            self.views[view]["buffer"] = 0.into();
-            self.views[view]["byteOffset"] = (run_at + start - run_range.start).into();
+        };
+        if end > run_range.end {
+            bytes.extend_from_slice(&document.buffers[buffer][run_range.end..end]);
+            run_range.end = end;
         }
+        views[view]["buffer"] = number.into();
+        views[view]["byteOffset"] = (run_at + start - run_range.start).into();
     }
 }
 
@@ -305,7 +315,7 @@ fn free_views(document: &Document<'_>, accessors: &[Value], free_accessors: &[bo
 }
 
 /// Marks every number under a key `bufferView`; the JSON parser bounds the depth.
-fn mark_views(value: &Value, marks: &mut [bool]) {
+pub(super) fn mark_views(value: &Value, marks: &mut [bool]) {
     match value {
         Value::Array(values) => values.iter().for_each(|value| mark_views(value, marks)),
         Value::Object(entries) => {

@@ -1,6 +1,7 @@
 //! glTF 2.0 and GLB. Parts of a document other than geometry are passed through unchanged.
 
 mod accessor;
+mod accessor_use;
 mod buffer_builder;
 mod compress;
 mod container;
@@ -19,6 +20,8 @@ mod primitives;
 mod quantize;
 mod read;
 mod schema;
+mod skeleton;
+mod skeleton_images;
 mod strips;
 #[cfg(test)]
 mod tests;
@@ -31,5 +34,7 @@ pub use lod::Level;
 pub use parts::{QuantizedPart, write_parts_glb};
 pub use primitive_rows::PrimitiveRows;
 pub use read::{SourceDocument, read};
+pub use skeleton::Skeleton;
+pub use skeleton_images::SkeletonImage;
 pub use strips::{StripCorner, StripMesh, write_strips, write_strips_glb};
 pub use write::{GltfFiles, write, write_compressed, write_compressed_glb, write_glb};

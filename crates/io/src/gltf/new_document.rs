@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::buffer_builder::BufferBuilder;
 use crate::scene::IDENTITY;
-use crate::{Material, Node, Scene, SceneMesh};
+use crate::{Image, Material, Node, Scene, SceneMesh};
 
 /// Builds the JSON of a scene without geometry; each mesh has an empty primitive per material
 /// label.
@@ -12,6 +12,31 @@ pub(super) fn document(scene: &Scene, builder: &mut BufferBuilder) -> Value {
     let mut images = Images::default();
     let materials: Vec<Value> =
         scene.materials.iter().map(|m| material(m, images.texture(m, scene, builder))).collect();
+    with_nodes(scene, materials, images.json)
+}
+
+/// Builds the JSON of a scene as one that only [`Skeleton`](super::Skeleton) reads: with all images,
+/// by name, and base colours of any size.
+pub(super) fn skeleton(scene: &Scene) -> Value {
+    let materials = scene.materials.iter().map(|own| {
+        let mut json = material(own, own.base_color_image);
+        let color = own.base_color.map(|x| if x.is_finite() { x } else { 1.0 });
+        json["pbrMetallicRoughness"]["baseColorFactor"] = json!(color);
+        json
+    });
+    let images = scene.images.iter().map(|image| json!({ "name": image.name }));
+    with_nodes(scene, materials.collect(), images.collect())
+}
+
+/// Returns the images of a document built by [`skeleton`], without their bytes.
+pub(super) fn image_names(json: &Value) -> Vec<Image> {
+    let images = json.get("images").and_then(Value::as_array).into_iter().flatten();
+    let name = |image: &Value| image.get("name").and_then(Value::as_str).unwrap_or_default().into();
+    images.map(|image| Image { name: name(image), bytes: Vec::new() }).collect()
+}
+
+/// Builds the JSON of a scene with these materials and images; image `i` is texture `i`.
+fn with_nodes(scene: &Scene, materials: Vec<Value>, images: Vec<Value>) -> Value {
     let mut json = json!({
         "asset": {
             "version": "2.0",
@@ -24,8 +49,8 @@ pub(super) fn document(scene: &Scene, builder: &mut BufferBuilder) -> Value {
         ("nodes", scene.nodes.iter().map(node).collect()),
         ("meshes", scene.meshes.iter().map(mesh).collect()),
         ("materials", materials),
-        ("textures", (0..images.json.len()).map(|i| json!({ "source": i })).collect()),
-        ("images", images.json),
+        ("textures", (0..images.len()).map(|i| json!({ "source": i })).collect()),
+        ("images", images),
     ] {
         // glTF does not allow empty arrays.
         if !Vec::<Value>::is_empty(&values) {

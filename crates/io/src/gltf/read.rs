@@ -15,12 +15,21 @@ use crate::{ParseError, Resolve, Scene, SceneMesh, Weld};
 #[derive(Clone, Debug)]
 pub struct SourceDocument(pub(super) Arc<Contents>);
 
+impl SourceDocument {
+    /// Returns the number of entries of an array of the document, such as `animations`.
+    pub fn count(&self, array: &str) -> usize {
+        self.0.json.get(array).and_then(Value::as_array).map_or(0, Vec::len)
+    }
+}
+
 /// JSON and buffers of a document, and how its vertices were welded.
 #[derive(Debug)]
 pub(super) struct Contents {
     pub json: Value,
     pub buffers: Buffers,
     pub weld: Weld,
+    /// Marks the meshes whose geometry is in the scene only; empty if all are here.
+    pub emptied: Vec<bool>,
 }
 
 /// Parses a glTF or GLB file, told apart by the first bytes; `resolve` loads the buffers and images
@@ -57,7 +66,8 @@ pub fn read(bytes: &[u8], resolve: Resolve<'_>, weld: Weld) -> Result<Scene, Par
     }
     nodes::read(&json, &mut scene)?;
     forget_uris(&mut json);
-    scene.source = Some(SourceDocument(Arc::new(Contents { json, buffers, weld })));
+    scene.source =
+        Some(SourceDocument(Arc::new(Contents { json, buffers, weld, emptied: Vec::new() })));
     Ok(scene)
 }
 

@@ -3,11 +3,12 @@
 use meshlod_mesh::Mesh;
 use serde_json::{Map, Value};
 
+use super::accessor_use::free_accessors;
 use super::buffer_builder::BufferBuilder;
 use super::compress::{self, Compression, CompressionReport};
 use super::document::Document;
 use super::lod::{self, Level};
-use super::primitives::{Replacer, attributes, is_surface};
+use super::primitives::Replacer;
 use super::read::Contents;
 use super::uri::{self, Uri};
 use super::{container, dequantize_nodes, mesh, new_document};
@@ -140,8 +141,12 @@ impl Output {
         check_meshes(scene, &document)?;
         let mut changed = Vec::new();
         for (index, mesh) in scene.meshes.iter().enumerate() {
-            let old = mesh::read(&document, index, source.weld).map_err(unreadable)?;
-            changed.push(compression.is_some() || !same_geometry(&old, &mesh.mesh));
+            let is_empty = || source.emptied.get(index) == Some(&true);
+            let differs = || {
+                let old = mesh::read(&document, index, source.weld).map_err(unreadable)?;
+                Ok(!same_geometry(&old, &mesh.mesh))
+            };
+            changed.push(compression.is_some() || is_empty() || differs()?);
         }
         let builder = BufferBuilder::of(&document, &free_accessors(&document, &changed));
         let mut replacer = Replacer::new(Some(&document), builder);
@@ -270,43 +275,6 @@ fn same_geometry(a: &Mesh, b: &Mesh) -> bool {
         && a.faces == b.faces
         && a.attributes == b.attributes
         && (0..a.faces.len()).all(|face| label(a, face) == label(b, face))
-}
-
-/// Computes one flag per accessor: true if only triangle primitives of changed meshes use it.
-pub(super) fn free_accessors(document: &Document<'_>, changed: &[bool]) -> Vec<bool> {
-    let count = document.accessors.len();
-    let (mut replaced, mut kept) = (vec![false; count], vec![false; count]);
-    let meshes = document.json.get("meshes").and_then(Value::as_array);
-    for (mesh, &changed) in meshes.into_iter().flatten().zip(changed) {
-        let primitives = mesh.get("primitives").and_then(Value::as_array);
-        for primitive in primitives.into_iter().flatten() {
-            let marks = if changed && is_surface(primitive) { &mut replaced } else { &mut kept };
-            let indices = primitive.get("indices").and_then(Value::as_u64).map(|i| i as usize);
-            for accessor in attributes(primitive).into_values().chain(indices) {
-                if let Some(mark) = marks.get_mut(accessor) {
-                    *mark = true;
-                }
-            }
-        }
-    }
-    mark_others(document.json, &mut kept);
-    replaced.iter().zip(kept).map(|(&replaced, kept)| replaced && !kept).collect()
-}
-
-/// Marks the accessors of skins and animations.
-fn mark_others(json: &Value, marks: &mut [bool]) {
-    let array = |value: &'_ Value, key: &str| {
-        value.get(key).and_then(Value::as_array).cloned().unwrap_or_default()
-    };
-    let skins = array(json, "skins").into_iter().map(|skin| skin["inverseBindMatrices"].clone());
-    let samplers = array(json, "animations").into_iter().flat_map(|a| array(&a, "samplers"));
-    let animated =
-        samplers.flat_map(|sampler| [sampler["input"].clone(), sampler["output"].clone()]);
-    for accessor in skins.chain(animated).filter_map(|value| value.as_u64()) {
-        if let Some(mark) = marks.get_mut(accessor as usize) {
-            *mark = true;
-        }
-    }
 }
 
 fn to_bytes(json: Map<String, Value>) -> Result<Vec<u8>, Unsupported> {

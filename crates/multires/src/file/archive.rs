@@ -3,7 +3,9 @@
 use meshlod_mesh::Bounds;
 
 use super::decoder_state::DecoderState;
-use super::header::{self, FIXED_LEN, Header, Section};
+use super::header::{self, FIXED_LEN, Header, ResourceIndex, Section};
+use super::layout::Layout;
+use super::resources::{self, OLD_RESOURCES_LEN};
 use super::source::{Source, read_range};
 use super::{FileError, Storage, base, chunk, write};
 use crate::bounds::ErrorKind;
@@ -17,19 +19,11 @@ use crate::query::{Criterion, Query, closest_point};
 /// Open `.mlod` file that stores all levels of a mesh as its contractions, coarsest level first.
 #[derive(Debug)]
 pub struct Archive<S> {
-    source: S,
+    pub(super) source: S,
     pub(super) header: Header,
+    pub(super) layout: Layout,
     /// Number of chunks that are present in full.
     complete: usize,
-}
-
-/// Bytes attached to a `.mlod` file, such as materials and images.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Resources {
-    /// Bytes that belong to every level, read with the coarsest one.
-    pub early: Vec<u8>,
-    /// Bytes that only the whole file has; `None` if it is truncated.
-    pub late: Option<Vec<u8>>,
 }
 
 /// Mesh extracted from a `.mlod` file, with statistics of what was read to build it.
@@ -59,23 +53,6 @@ impl Archive<Vec<u8>> {
         write::write(forest, storage)
     }
 
-    /// Attaches resources, such as materials and images, which mean nothing to the model itself:
-    /// early ones, which are read with the coarsest level, and late ones, at the end of the file.
-    /// # Errors
-    /// Resources of 4 GiB or more.
-    pub fn with_resources(self, resources: &Resources) -> Result<Self, FileError> {
-        let late = resources.late.as_deref().unwrap_or_default();
-        if [resources.early.len(), late.len()].iter().any(|&bytes| u32::try_from(bytes).is_err()) {
-            return Err(FileError::ResourcesTooLarge);
-        }
-        let both = [&resources.early, late].map(Section::of);
-        let (base, body) =
-            self.source[self.header.len() as usize..].split_at(self.header.base.bytes as usize);
-        let header = Header { resources: Some(both), ..self.header.clone() };
-        let bytes = [&header.to_bytes(), base, &resources.early, body, late].concat();
-        Self::open(bytes)
-    }
-
     /// Recomputes all checksums of a modified `.mlod` file, for tests of [`Archive::read`].
     #[doc(hidden)]
     pub fn rewrite_checksums(bytes: &mut [u8]) {
@@ -90,35 +67,24 @@ impl<S: Source> Archive<S> {
     pub fn open(source: S) -> Result<Self, FileError> {
         let length = source.length()?;
         let start = read_range(&source, 0, FIXED_LEN as u64, "the header")?;
-        let header = Header::length(&start)? as u64;
+        let (chunks_end, index) = Header::length(&start)?;
+        let header = chunks_end as u64
+            + match index {
+                ResourceIndex::None => 0,
+                ResourceIndex::Old => OLD_RESOURCES_LEN as u64,
+                ResourceIndex::Counted => {
+                    let count = read_range(&source, chunks_end as u64, 4, "the index")?;
+                    resources::index_len(std::array::from_fn(|k| count[k])) as u64
+                }
+            };
         let header = Header::from_bytes(&read_range(&source, 0, header, "the index")?)?;
-        let mut this = Self { source, header, complete: 0 };
+        let layout = Layout::new(&header);
+        let mut this = Self { source, header, layout, complete: 0 };
         let there = this.chunk_ends().take_while(|&end| end <= length).count();
         let truncated = FileError::Truncated { at: length, what: "the coarsest mesh" };
         this.complete = there.checked_sub(1).ok_or(truncated)?;
-        let end = this.end();
+        let end = this.layout.end;
         if end < length { Err(FileError::TrailingData { at: end }) } else { Ok(this) }
-    }
-
-    /// Returns the length of the whole file.
-    fn end(&self) -> u64 {
-        let late = self.header.resources.map_or(0, |[_, late]| u64::from(late.bytes));
-        self.chunk_ends().last().unwrap_or(0) + late
-    }
-
-    /// Reads the resources that were [attached](Archive::with_resources) to the file: early ones, and
-    /// late ones unless the file is truncated. `None` if there are none.
-    /// # Errors
-    /// A file that is damaged.
-    pub fn resources(&self) -> Result<Option<Resources>, FileError> {
-        let Some([early, late]) = self.header.resources else { return Ok(None) };
-        let name = || "the resources".to_owned();
-        let start = self.header.len() + u64::from(self.header.base.bytes);
-        let early = self.read_section(start, early, name)?;
-        let is_there = self.source.length()? >= self.end();
-        let late =
-            is_there.then(|| self.read_section(self.end() - u64::from(late.bytes), late, name));
-        Ok(Some(Resources { early, late: late.transpose()? }))
     }
 
     /// Returns the number of chunks of updates listed in the file's index, including any that are
@@ -136,14 +102,20 @@ impl<S: Source> Archive<S> {
     /// Iterates over byte offsets in the file: the end of the base mesh, then the end of each
     /// chunk.
     pub fn chunk_ends(&self) -> impl Iterator<Item = u64> + '_ {
-        let early = self.header.resources.map_or(0, |[early, _]| u64::from(early.bytes));
-        let base = self.header.len() + u64::from(self.header.base.bytes) + early;
-        let sizes = self.header.chunks.iter().map(|chunk| u64::from(chunk.stored.bytes));
-        let ends = sizes.scan(base, |end, size| {
-            *end += size;
-            Some(*end)
-        });
-        std::iter::once(base).chain(ends)
+        let chunks = self.layout.chunks.iter().zip(&self.header.chunks);
+        let ends = chunks.map(|(&start, entry)| start + u64::from(entry.stored.bytes));
+        std::iter::once(self.layout.base_end).chain(ends)
+    }
+
+    /// Returns the number of bytes of each chunk, including any that are cut off.
+    pub fn chunk_lengths(&self) -> Vec<u64> {
+        self.header.chunks.iter().map(|chunk| u64::from(chunk.stored.bytes)).collect()
+    }
+
+    /// Returns the number of bytes of the header, the base mesh and these chunks.
+    fn bytes_of(&self, chunks: impl Iterator<Item = usize>) -> u64 {
+        let stored = chunks.map(|chunk| u64::from(self.header.chunks[chunk].stored.bytes));
+        self.layout.base_end + stored.sum::<u64>()
     }
 
     /// Returns the number of updates (vertex splits) listed in the file's index, including any that
@@ -250,7 +222,7 @@ impl<S: Source> Archive<S> {
             let rest = &self.header.chunks[chunks..self.complete];
             let urgent = rest.iter().rposition(|chunk| chunk.area.error >= least);
             let Some(more) = urgent.filter(|_| is_uniform) else {
-                let bytes = self.chunk_ends().nth(chunks).unwrap_or(0);
+                let bytes = self.bytes_of(0..chunks);
                 let updates = model.implicit().update_count();
                 return Ok(Extract { level, chunks, updates, bytes });
             };
@@ -282,8 +254,7 @@ impl<S: Source> Archive<S> {
         let wanted = |&chunk: &usize| criterion.may_require_in(&self.header.chunks[chunk].area);
         let chunks: Vec<usize> = (0..self.complete).filter(wanted).collect();
         let state = self.load(&chunks)?;
-        let stored = chunks.iter().map(|&chunk| u64::from(self.header.chunks[chunk].stored.bytes));
-        let bytes = self.chunk_ends().next().unwrap_or(0) + stored.sum::<u64>();
+        let bytes = self.bytes_of(chunks.iter().copied());
         let updates = state.updates.len();
         let model = state.assemble(self.header.about)?;
         let level = Cut::at(&model, query)?.level();
@@ -310,7 +281,8 @@ impl<S: Source> Archive<S> {
     pub(super) fn load(&self, chunks: &[usize]) -> Result<DecoderState, FileError> {
         let mut state = self.read_base()?;
         let (mut first, mut wanted) = (0, chunks.iter().peekable());
-        for (at, (entry, offset)) in self.header.chunks.iter().zip(self.chunk_ends()).enumerate() {
+        for (at, (entry, &offset)) in self.header.chunks.iter().zip(&self.layout.chunks).enumerate()
+        {
             if wanted.next_if(|&&chunk| chunk == at).is_some() {
                 let name = || format!("chunk {at}");
                 let bytes = self.read_section(offset, entry.stored, name)?;
@@ -330,7 +302,7 @@ impl<S: Source> Archive<S> {
     }
 
     /// Reads a section and verifies its checksum.
-    fn read_section(
+    pub(super) fn read_section(
         &self,
         offset: u64,
         stored: Section,

@@ -4,6 +4,7 @@ use glam::{DVec3, Vec3};
 use meshlod_mesh::Frame;
 
 use super::lattice::Lattice;
+use super::resources::{self, OLD_RESOURCES_LEN, ResourceEntry};
 use super::{FileError, MAGIC, VERSION};
 use crate::bounds::ErrorKind;
 use crate::implicit::ModelInfo;
@@ -26,8 +27,10 @@ pub(super) struct Header {
     pub(super) base_faces: u32,
     pub(super) base: Section,
     pub(super) chunks: Vec<ChunkEntry>,
-    /// Resources after the base and after the last chunk, if there are any.
-    pub(super) resources: Option<[Section; 2]>,
+    /// Resources between the chunks, in the order of the file.
+    pub(super) resources: Vec<ResourceEntry>,
+    /// True if the resources have the form of an earlier version: materials and base colours.
+    pub(super) has_old_resources: bool,
 }
 
 /// Length and checksum of a section of the file.
@@ -49,9 +52,22 @@ pub(super) struct ChunkEntry {
     pub(super) area: Area,
 }
 
+/// Form of the index of resources, which follows that of the chunks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ResourceIndex {
+    /// There is none.
+    None,
+    /// Two entries, in the form of an earlier version.
+    Old,
+    /// A number of entries, and the entries.
+    Counted,
+}
+
 /// Length of the header without its index, in bytes.
 pub(super) const FIXED_LEN: usize = 88;
-const ENTRY_LEN: usize = 44;
+pub(super) const ENTRY_LEN: usize = 44;
+/// Offset of length and checksum of the base mesh.
+pub(super) const BASE_AT: usize = 28;
 /// Offset of the checksum, followed by the offset from which it covers the header.
 const CHECKSUM_AT: usize = 12;
 const BODY_AT: usize = 16;
@@ -74,7 +90,11 @@ fn kind_code(kind: ErrorKind) -> u8 {
 impl Header {
     /// Length of the header and its index, in bytes.
     pub(super) fn len(&self) -> u64 {
-        let resources = if self.resources.is_some() { RESOURCES_LEN } else { 0 };
+        let resources = match (self.has_old_resources, self.resources.len()) {
+            (true, _) => OLD_RESOURCES_LEN,
+            (false, 0) => 0,
+            (false, count) => resources::COUNT_LEN + resources::ENTRY_LEN * count,
+        };
         (FIXED_LEN + ENTRY_LEN * self.chunks.len() + resources) as u64
     }
 
@@ -93,7 +113,7 @@ impl Header {
         let flags = [
             (LOSSLESS, self.lossless),
             (WEDGES, self.has_wedges),
-            (RESOURCES, self.resources.is_some()),
+            (RESOURCES, !self.resources.is_empty()),
         ];
         let flags = flags.iter().filter(|(_, is_so)| *is_so).map(|(flag, _)| flag).sum();
         out.extend([kind_code(kind), flags]);
@@ -114,18 +134,15 @@ impl Header {
             out.extend(numbers.as_flattened().iter().flat_map(|x| x.to_le_bytes()));
             out.extend(round_up(DVec3::splat(area.error)).x.to_le_bytes());
         }
-        for section in self.resources.iter().flatten() {
-            out.extend(
-                [section.bytes, section.checksum].iter().flat_map(|word| word.to_le_bytes()),
-            );
-        }
+        resources::write_index(&self.resources, &mut out);
         let checksum = crc32fast::hash(&out[BODY_AT..]);
         out[CHECKSUM_AT..BODY_AT].copy_from_slice(&checksum.to_le_bytes());
         out
     }
 
-    /// Returns the length of a header, given at least its first [`FIXED_LEN`] bytes.
-    pub(super) fn length(start: &[u8]) -> Result<usize, FileError> {
+    /// Returns the length of a header without the index of its resources, given at least its first
+    /// [`FIXED_LEN`] bytes, and what follows it.
+    pub(super) fn length(start: &[u8]) -> Result<(usize, ResourceIndex), FileError> {
         if !start.starts_with(MAGIC) {
             return Err(FileError::Magic);
         }
@@ -133,11 +150,15 @@ impl Header {
         if version != VERSION {
             return Err(FileError::Version(version));
         }
-        let resources = if start[BODY_AT + 3] & RESOURCES != 0 { RESOURCES_LEN } else { 0 };
-        Ok(FIXED_LEN + ENTRY_LEN * u32_at(start, 36) as usize + resources)
+        let index = match start[BODY_AT + 3] & (RESOURCES | OLD_RESOURCES) {
+            0 => ResourceIndex::None,
+            OLD_RESOURCES => ResourceIndex::Old,
+            _ => ResourceIndex::Counted,
+        };
+        Ok((FIXED_LEN + ENTRY_LEN * u32_at(start, 36) as usize, index))
     }
 
-    /// Decodes a header of exactly the length that [`Header::length`] returned.
+    /// Decodes a header with its whole index, of which [`Header::length`] told where resources begin.
     pub(super) fn from_bytes(bytes: &[u8]) -> Result<Self, FileError> {
         if crc32fast::hash(&bytes[BODY_AT..]) != u32_at(bytes, CHECKSUM_AT) {
             return Err(FileError::Checksum("the header".into()));
@@ -146,8 +167,15 @@ impl Header {
         let frame = Frame::from_unit(origin, f64_at(bytes, 64));
         let lattice = Lattice::from_bytes([bytes[BODY_AT], bytes[BODY_AT + 1]]);
         let bad = |why| FileError::Header(why);
-        let has_resources = bytes[BODY_AT + 3] & RESOURCES != 0;
-        let end = bytes.len() - if has_resources { RESOURCES_LEN } else { 0 };
+        let (end, index) = Self::length(bytes)?;
+        let chunks: Vec<ChunkEntry> =
+            bytes[FIXED_LEN..end].chunks_exact(ENTRY_LEN).map(ChunkEntry::from_bytes).collect();
+        let resources = match index {
+            ResourceIndex::None => Vec::new(),
+            ResourceIndex::Old => resources::read_old_index(&bytes[end..], chunks.len()),
+            ResourceIndex::Counted => resources::read_index(&bytes[end..], chunks.len())
+                .ok_or(bad("its resources are out of order"))?,
+        };
         let this = Self {
             about: ModelInfo {
                 frame: frame
@@ -167,16 +195,11 @@ impl Header {
             roots: u32_at(bytes, 20),
             base_faces: u32_at(bytes, 24),
             base: Section { bytes: u32_at(bytes, 28), checksum: u32_at(bytes, 32) },
-            chunks: bytes[FIXED_LEN..end]
-                .chunks_exact(ENTRY_LEN)
-                .map(ChunkEntry::from_bytes)
-                .collect(),
-            resources: has_resources.then(|| {
-                [end, end + 8]
-                    .map(|at| Section { bytes: u32_at(bytes, at), checksum: u32_at(bytes, at + 4) })
-            }),
+            chunks,
+            resources,
+            has_old_resources: index == ResourceIndex::Old,
         };
-        if bytes[BODY_AT + 3] & !(LOSSLESS | WEDGES | RESOURCES) != 0 {
+        if bytes[BODY_AT + 3] & !(LOSSLESS | WEDGES | OLD_RESOURCES | RESOURCES) != 0 {
             return Err(bad(UNKNOWN_FLAGS));
         }
         if this.updates() > MAX_UPDATES || this.roots as usize > MAX_UPDATES {
@@ -200,10 +223,10 @@ const FAR: f64 = 1e30;
 const LOSSLESS: u8 = 1;
 /// Flag of a file with attributes, materials or objects.
 const WEDGES: u8 = 2;
+/// Flag of a file whose resources have the form of an earlier version.
+const OLD_RESOURCES: u8 = 4;
 /// Flag of a file with resources.
-const RESOURCES: u8 = 4;
-/// Length of the index of the resources.
-const RESOURCES_LEN: usize = 16;
+const RESOURCES: u8 = 8;
 /// Message for any other flag.
 pub(super) const UNKNOWN_FLAGS: &str = "it has flags unknown to this program";
 /// Upper limit on updates and on roots, so that roots and two nodes per update stay below 2³¹.
@@ -227,20 +250,20 @@ impl ChunkEntry {
 
 /// Recomputes the checksums of the header, the base, all chunks and the resources that are present.
 pub(super) fn rewrite_checksums(bytes: &mut [u8]) {
-    let Some(index) = bytes.get(..FIXED_LEN).and_then(|start| Header::length(start).ok()) else {
-        return;
+    let start = bytes.get(..FIXED_LEN).and_then(|start| Header::length(start).ok());
+    let Some((chunks_end, kind)) = start else { return };
+    let count = bytes.get(chunks_end..).and_then(|rest| rest.first_chunk());
+    let index = match (kind, count) {
+        (ResourceIndex::None, _) => chunks_end,
+        (ResourceIndex::Old, _) => chunks_end + OLD_RESOURCES_LEN,
+        (ResourceIndex::Counted, Some(&count)) => chunks_end + resources::index_len(count),
+        (ResourceIndex::Counted, None) => return,
     };
     if bytes.len() < index {
         return;
     }
-    // Length and checksum of a section are side by side in the header: first those of the base.
-    let has_resources = bytes[BODY_AT + 3] & RESOURCES != 0;
-    let chunks_end = index - if has_resources { RESOURCES_LEN } else { 0 };
-    let (early, late) =
-        (has_resources.then_some(chunks_end), has_resources.then_some(chunks_end + 8));
-    let chunks = (FIXED_LEN..chunks_end).step_by(ENTRY_LEN);
     let mut from = index;
-    for at in std::iter::once(28).chain(early).chain(chunks).chain(late) {
+    for at in resources::sections(bytes, chunks_end, kind) {
         let size = u32_at(bytes, at) as usize;
         let Some(piece) = bytes.get(from..).and_then(|rest| rest.get(..size)) else { break };
         let checksum = crc32fast::hash(piece);
@@ -251,7 +274,7 @@ pub(super) fn rewrite_checksums(bytes: &mut [u8]) {
     bytes[CHECKSUM_AT..BODY_AT].copy_from_slice(&checksum.to_le_bytes());
 }
 
-fn u32_at(bytes: &[u8], at: usize) -> u32 {
+pub(super) fn u32_at(bytes: &[u8], at: usize) -> u32 {
     u32::from_le_bytes(std::array::from_fn(|k| bytes[at + k]))
 }
 

@@ -6,6 +6,7 @@
 //! docs/formats/mlod.md specifies the bytes.
 
 mod archive;
+mod attached;
 mod base;
 mod child_offsets;
 mod chunk;
@@ -16,8 +17,10 @@ mod exact_coding;
 mod header;
 mod lattice;
 mod layer_coding;
+mod layout;
 mod normal_predictor;
 mod quantize;
+mod resources;
 mod slope;
 mod source;
 mod streams;
@@ -33,8 +36,9 @@ use std::io;
 
 use thiserror::Error;
 
-pub use archive::{Archive, Extract, Resources};
+pub use archive::{Archive, Extract};
 pub use container::{FieldParts, ModelFile};
+pub use resources::Resource;
 pub use source::Source;
 pub use surroundings::Surroundings;
 pub use write::{Storage, StoredErrors};
@@ -93,9 +97,9 @@ pub enum FileError {
     /// The requested rounding is negative, larger than the diagonal or not a number.
     #[error("the rounding must be between 0 and the diagonal of the mesh, not {0}")]
     Rounding(f64),
-    /// The resources of a file are too large.
+    /// A resource is too large.
     #[error(
-        "the materials and images take 4 GiB or more, which a multiresolution file cannot hold"
+        "an image or the animations take 4 GiB or more, which a multiresolution file cannot hold"
     )]
     ResourcesTooLarge,
     /// The model could not be built from the simplification.

@@ -1,6 +1,7 @@
 //! Round trips of whole files, prefixes and queries, and the refusal of damaged files.
 
 mod lossless;
+mod resources;
 mod wrong;
 
 use meshlod_mesh::Mesh;

@@ -10,10 +10,17 @@ use meshlod_mesh::LayerKind;
 use meshlod_mesh::octahedral;
 
 /// Limits that keep a short file from asking for much memory.
-const MAX_LAYERS: u32 = 64;
+const MAX_LAYERS: u32 = 4096;
 const MAX_WIDTH: u32 = 64;
 
 pub(super) fn write(wedges: &WedgeState, packer: &mut Packer) -> io::Result<()> {
+    let is_wide = |layer: &LayerCoding| layer.width > MAX_WIDTH as usize;
+    if wedges.coding.len() > MAX_LAYERS as usize || wedges.coding.iter().any(is_wide) {
+        let most = format!(
+            "the mesh has more than {MAX_LAYERS} attributes, or one of more than {MAX_WIDTH} values"
+        );
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, most));
+    }
     packer.numbers(&[wedges.coding.len() as u32])?;
     for layer in &wedges.coding {
         let (kind, set) = layer.kind.tag();

@@ -101,7 +101,8 @@ pub(super) fn write(
         base_faces: mt.base_faces() as u32,
         base: Section::of(&sections.base),
         chunks: sections.chunks,
-        resources: None,
+        resources: Vec::new(),
+        has_old_resources: false,
     };
     let bytes = [header.to_bytes(), sections.base, sections.bodies.concat()].concat();
     Ok((bytes, certificate))

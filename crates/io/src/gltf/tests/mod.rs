@@ -6,6 +6,7 @@ mod levels;
 mod mutated;
 mod packed;
 mod shared;
+mod skeleton;
 mod small;
 
 use serde_json::{Value, json};

@@ -1,0 +1,121 @@
+//! Scenes of multiresolution files: what they have, what they lack, and how they come out.
+
+use std::fs::File;
+use std::path::Path;
+
+use meshlod::multires::ModelFile;
+use meshlod::{Format, MissingParts, ModelScene, Scene, SceneCounts};
+use serde_json::{Value, json};
+
+use crate::failure::Failure;
+use crate::numbers::count;
+use crate::session::Session;
+
+/// Warns of what a scene refers to and a multiresolution file of it does not hold.
+pub fn warn_of_losses(path: &Path, counts: &SceneCounts, session: &Session) {
+    let found = (counts.missing_images, "image that was not found", "images that were not found");
+    let lost = list(&[found]);
+    if !lost.is_empty() {
+        session.warn(Failure::at(path, format_args!("left out: {lost}")));
+    }
+}
+
+/// Describes what a scene has beside its surface, and the pose for which errors hold.
+pub fn counts_text(counts: &SceneCounts) -> String {
+    let has = list(&[
+        (counts.nodes, "node", "nodes"),
+        (counts.meshes, "mesh", "meshes"),
+        (counts.materials, "material", "materials"),
+        (counts.images, "image", "images"),
+        (counts.skins, "skin", "skins"),
+        (counts.animations, "animation", "animations"),
+    ]);
+    let mut text = format!("scene: {has}");
+    if counts.instances > counts.meshes {
+        let shown = count(counts.instances);
+        text += &format!("; meshes are shown {shown} times, and errors hold for the largest");
+    }
+    let moving = list(&[
+        (counts.skinned_meshes, "skinned mesh", "skinned meshes"),
+        (counts.morphing_meshes, "mesh with morph targets", "meshes with morph targets"),
+        (counts.animations, "animation", "animations"),
+    ]);
+    if !moving.is_empty() {
+        text += &format!("\nerrors hold in the pose of the file, not in those of {moving}");
+    }
+    text + "\n"
+}
+
+pub fn counts_json(counts: &SceneCounts) -> Value {
+    json!({
+        "nodes": counts.nodes,
+        "meshes": counts.meshes,
+        "instances": counts.instances,
+        "materials": counts.materials,
+        "images": counts.images,
+        "missing_images": counts.missing_images,
+        "skins": counts.skins,
+        "animations": counts.animations,
+        "skinned_meshes": counts.skinned_meshes,
+        "morphing_meshes": counts.morphing_meshes,
+    })
+}
+
+/// Reads the scene of a multiresolution file, with a warning of what a truncated file lacks.
+pub fn read(path: &Path, file: &ModelFile<File>, session: &Session) -> Result<ModelScene, Failure> {
+    let ModelFile::Contractions(archive) = file else { return Ok(ModelScene::default()) };
+    if archive.has_old_resources() {
+        session.warn(Failure::at(
+            path,
+            "its materials are in the form of an earlier version and left out; build it again",
+        ));
+    }
+    let model = ModelScene::read(archive).map_err(|error| Failure::at(path, error))?;
+    let MissingParts { scene, previews, images, animations } = model.missing;
+    let lacks = list(&[
+        (previews, "image, but for a smaller version", "images, but for smaller versions"),
+        (images, "image", "images"),
+        (animations.into(), "set of animations", ""),
+    ]);
+    if scene {
+        session.warn(Failure::at(path, "nodes and materials are missing from the truncated file"));
+    } else if !lacks.is_empty() {
+        let reason = format_args!("missing from the truncated file: {lacks}");
+        session.warn(Failure::at(path, reason));
+    }
+    Ok(model)
+}
+
+/// Returns a scene of the level in `flat`, as the format can hold it: glTF has the nodes of the
+/// scene, and other formats get a copy for each instance of a mesh.
+pub fn restored(
+    path: &Path,
+    model: ModelScene,
+    mut flat: Scene,
+    format: Format,
+) -> Result<Scene, Failure> {
+    if model.is_flat() && !is_gltf(format) {
+        return Ok(flat);
+    }
+    let level = std::mem::take(&mut flat.meshes[0]);
+    model.into_scene(level.name, level.mesh).map_err(|error| Failure::at(path, error))
+}
+
+pub fn is_gltf(format: Format) -> bool {
+    matches!(format, Format::Gltf | Format::Glb)
+}
+
+/// Returns the number of faces that a scene shows, over all instances.
+pub fn shown_faces(scene: &Scene) -> usize {
+    scene.instances().iter().map(|instance| scene.meshes[instance.mesh].mesh.faces.len()).sum()
+}
+
+/// Lists numbers of things, without those of which there are none.
+fn list(numbers: &[(usize, &str, &str)]) -> String {
+    let some = numbers.iter().filter(|(number, ..)| *number > 0);
+    let texts = some.map(|&(number, one, many)| match number {
+        1 => format!("1 {one}"),
+        _ => format!("{} {many}", count(number)),
+    });
+    texts.collect::<Vec<_>>().join(", ")
+}

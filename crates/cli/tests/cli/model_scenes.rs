@@ -1,0 +1,182 @@
+//! Scenes through multiresolution files: built, and extracted again.
+
+use std::path::Path;
+
+use meshlod::{ReadOptions, Scene};
+use meshlod_fixtures::shared_mesh;
+use serde_json::Value;
+
+use crate::models::{bytes, extract, number, write};
+use crate::run::Run;
+
+const MODELS: [&str; 5] = [
+    "fox.glb",
+    "cesium-man.glb",
+    "cesium-milk-truck.glb",
+    "duck.glb",
+    "flight-helmet/FlightHelmet.gltf",
+];
+
+fn read(path: &Path) -> Scene {
+    meshlod::read(path, &ReadOptions::default()).unwrap()
+}
+
+/// Returns the JSON of a glTF or GLB file, without what says where arrays are.
+fn document(path: &Path) -> Value {
+    let bytes = std::fs::read(path).unwrap();
+    let text = match bytes.strip_prefix(b"glTF") {
+        None => &bytes[..],
+        Some(rest) => {
+            let length = u32::from_le_bytes(rest[8..12].try_into().unwrap()) as usize;
+            &rest[16..16 + length]
+        }
+    };
+    let mut json: Value = serde_json::from_slice(text).unwrap();
+    let rest = json.as_object_mut().unwrap();
+    for key in ["accessors", "bufferViews", "buffers", "asset"] {
+        rest.remove(key);
+    }
+    forget_arrays(&mut json);
+    json
+}
+
+fn forget_arrays(json: &mut Value) {
+    match json {
+        Value::Array(values) => values.iter_mut().for_each(forget_arrays),
+        Value::Object(entries) => {
+            // Images may have moved from files into the buffer.
+            let places =
+                ["bufferView", "uri", "mimeType", "inverseBindMatrices", "input", "output"];
+            places.iter().for_each(|place| drop(entries.remove(*place)));
+            entries.remove("mode");
+            if entries.contains_key("attributes") {
+                entries.remove("indices");
+            }
+            for (key, value) in entries.iter_mut() {
+                match (key.as_str(), value) {
+                    ("attributes", Value::Object(names)) => {
+                        let mut list: Vec<_> = names.keys().cloned().collect();
+                        list.sort();
+                        *names = list.into_iter().map(|name| (name, Value::Null)).collect();
+                    }
+                    (_, value) => forget_arrays(value),
+                }
+            }
+        }
+        _ => {}
+    }
+}
+
+#[test]
+fn real_scenes_come_back_whole() {
+    for name in MODELS {
+        let Some(path) = shared_mesh(name) else { continue };
+        let run = Run::new();
+        let input = path.to_str().unwrap();
+        // Otherwise faces without which nothing changes in the file's pose are left out.
+        let built = run.json(&["build", input, "a.mlod", "--estimates", "--lossless"]);
+        extract(&run, "a.mlod", "b.glb", &["--error", "0"]);
+        let (old, new) = (document(&path), document(&run.path("b.glb")));
+        assert_eq!(old, new, "{name}: nodes, materials, skins, animations");
+        let [old, new] = [read(&path), read(&run.path("b.glb"))];
+        assert!(old.images == new.images || name.starts_with("flight"), "{name}");
+        let contents = |scene: &Scene| -> Vec<_> {
+            scene.images.iter().map(|image| image.bytes.clone()).collect()
+        };
+        assert!(contents(&old) == contents(&new) && !contents(&new).contains(&vec![]), "{name}");
+        for (old, new) in old.meshes.iter().zip(&new.meshes) {
+            let mut places = [old, new].map(|mesh| {
+                let used = mesh.mesh.faces.iter().flatten().map(|v| mesh.mesh.positions[v.index()]);
+                used.map(|p| p.map(|x| (x * 1e4).round() as i64)).collect::<Vec<_>>()
+            });
+            places.iter_mut().for_each(|places| places.sort_unstable());
+            assert!(places[0] == places[1], "{name}: {}", old.name);
+        }
+        let count = |key: &str| document(&path)[key].as_array().map_or(0, Vec::len) as u64;
+        for key in ["nodes", "materials", "images", "skins", "animations"] {
+            assert_eq!(number(&built["scene"][key]), count(key), "{name} {key}");
+        }
+    }
+}
+
+#[test]
+fn a_gltf_file_has_its_images_beside_it() {
+    let Some(path) = shared_mesh("flight-helmet/FlightHelmet.gltf") else { return };
+    let run = Run::new();
+    run.json(&["build", path.to_str().unwrap(), "a.mlod", "--estimates"]);
+    extract(&run, "a.mlod", "b.gltf", &["--faces", "5000"]);
+    let images = run.files().iter().filter(|name| name.ends_with(".png")).count();
+    assert_eq!(images, 15);
+    assert_eq!(read(&run.path("b.gltf")).images, read(&path).images);
+}
+
+#[test]
+fn instances_are_stored_once_and_shown_by_all() {
+    let Some(path) = shared_mesh("cesium-milk-truck.glb") else { return };
+    let run = Run::new();
+    let built = run.json(&["build", path.to_str().unwrap(), "a.mlod", "--estimates"]);
+    let scene = &built["scene"];
+    assert_eq!((number(&scene["meshes"]), number(&scene["instances"])), (2, 3));
+    let all = ["--faces", "1000000"];
+    let [glb, obj] = ["b.glb", "b.obj"].map(|out| extract(&run, "a.mlod", out, &all));
+    assert!(glb["shown_faces"] == obj["shown_faces"]);
+    assert!(number(&glb["shown_faces"]) > number(&glb["faces"]));
+    for out in ["b.glb", "b.obj"] {
+        assert_eq!(run.json(&["info", out])["faces"], glb["shown_faces"], "{out}");
+    }
+    let measured = run.json(&["measure", "b.glb", "b.obj", "--samples", "2000"]);
+    let far = measured["max"].as_f64().unwrap();
+    assert!(far < 1e-5, "{far}");
+    let seen = ["--error", "1px", "--camera", "eye=9,2,9 look=0,1,0 fov=40 640x480"];
+    let told = run.run(&[&["extract", "a.mlod", "c.glb"], &seen[..]].concat());
+    assert!(told.code == 0 && told.err.contains("largest instance"), "{told:?}");
+}
+
+#[test]
+fn the_pose_for_which_errors_hold_is_told() {
+    let Some(path) = shared_mesh("fox.glb") else { return };
+    let run = Run::new();
+    let told = run.run(&["build", path.to_str().unwrap(), "a.mlod", "--estimates"]);
+    let line = "errors hold in the pose of the file, not in those of 1 skinned mesh, 3 animations";
+    assert!(told.code == 0 && told.text().contains(line), "{told:?}");
+    run.sample("torus", 200, "torus.ply");
+    let told = run.run(&["build", "torus.ply", "b.mlod"]);
+    assert!(told.code == 0 && !told.text().contains("scene:"), "{told:?}");
+}
+
+#[test]
+fn truncated_files_say_what_they_lack() {
+    let Some(path) = shared_mesh("fox.glb") else { return };
+    let run = Run::new();
+    run.json(&["build", path.to_str().unwrap(), "a.mlod", "--estimates", "--in-chunk", "50"]);
+    let whole = bytes(&run, "a.mlod");
+    let (mut faces, mut lines) = (0, Vec::new());
+    for end in (0..whole.len()).step_by(1009) {
+        write(&run, "part.mlod", &whole[..end]);
+        let done = run.run(&["extract", "part.mlod", "b.glb", "--error", "0", "--json"]);
+        if done.code != 0 {
+            assert!(faces == 0 && done.only_line().contains("truncated"), "{done:?}");
+            continue;
+        }
+        let found = number(&done.json()["faces"]);
+        assert!(found >= faces, "{found} after {faces}");
+        faces = found;
+        lines.push(done.err.clone());
+        assert!(run.run(&["render", "b.glb", "b.png", "--size", "64x64"]).code == 0);
+    }
+    let told = |what: &str| lines.iter().filter(|line| line.contains(what)).count();
+    assert!(told("set of animations") > 3 && told("smaller version") > 3, "{lines:?}");
+}
+
+#[test]
+fn images_that_are_not_found_are_told() {
+    let run = Run::new();
+    write(&run, "in.mtl", b"newmtl sea\nmap_Kd sea.png\n");
+    let obj = "mtllib in.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl sea\nf 1 2 3\n";
+    write(&run, "in.obj", obj.as_bytes());
+    let told = run.run(&["build", "in.obj", "a.mlod"]);
+    assert!(told.code == 0 && told.only_line().contains("1 image that was not found"), "{told:?}");
+    extract(&run, "a.mlod", "b.obj", &["--error", "0"]);
+    let library = String::from_utf8(bytes(&run, "b.mtl")).unwrap();
+    assert!(library.contains("map_Kd sea.png"), "{library}");
+}

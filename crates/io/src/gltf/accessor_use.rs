@@ -1,0 +1,75 @@
+//! Uses of the accessors of a document.
+
+use serde_json::Value;
+
+use super::document::Document;
+use super::primitives::{attributes, is_surface};
+
+/// Computes one flag per accessor: true if only triangle primitives of changed meshes use it, or if
+/// it is empty and nothing uses it.
+pub(super) fn free_accessors(document: &Document<'_>, changed: &[bool]) -> Vec<bool> {
+    let count = document.accessors.len();
+    let (mut replaced, mut kept) = (vec![false; count], vec![false; count]);
+    let meshes = document.json.get("meshes").and_then(Value::as_array);
+    for (mesh, &changed) in meshes.into_iter().flatten().zip(changed) {
+        mark_primitives(mesh, |primitive| changed && is_surface(primitive), &mut replaced);
+        mark_primitives(mesh, |primitive| !(changed && is_surface(primitive)), &mut kept);
+    }
+    mark_others(document.json, &mut kept);
+    let is_empty = document.accessors.iter().map(|accessor| accessor.count == 0);
+    let free = replaced.iter().zip(is_empty).map(|(&replaced, is_empty)| replaced || is_empty);
+    free.zip(kept).map(|(free, kept)| free && !kept).collect()
+}
+
+/// Computes one flag per accessor: true if animations use it and, but for triangles of the marked
+/// meshes, nothing else.
+pub(super) fn animation_accessors(document: &Document<'_>, emptied: &[bool]) -> Vec<bool> {
+    let mut animated = vec![false; document.accessors.len()];
+    mark_samplers(document.json, &mut animated);
+    let mut others = vec![false; animated.len()];
+    mark_skins(document.json, &mut others);
+    let meshes = document.json.get("meshes").and_then(Value::as_array);
+    for (mesh, &emptied) in meshes.into_iter().flatten().zip(emptied) {
+        mark_primitives(mesh, |primitive| !(emptied && is_surface(primitive)), &mut others);
+    }
+    animated.iter().zip(others).map(|(&animated, other)| animated && !other).collect()
+}
+
+/// Marks the accessors of skins and animations.
+fn mark_others(json: &Value, marks: &mut [bool]) {
+    mark_skins(json, marks);
+    mark_samplers(json, marks);
+}
+
+fn mark_skins(json: &Value, marks: &mut [bool]) {
+    let skins = json.get("skins").and_then(Value::as_array);
+    for skin in skins.into_iter().flatten() {
+        mark(skin.get("inverseBindMatrices"), marks);
+    }
+}
+
+fn mark_samplers(json: &Value, marks: &mut [bool]) {
+    let animations = json.get("animations").and_then(Value::as_array).into_iter().flatten();
+    let samplers = animations.filter_map(|all| all.get("samplers").and_then(Value::as_array));
+    for sampler in samplers.flatten() {
+        ["input", "output"].into_iter().for_each(|key| mark(sampler.get(key), marks));
+    }
+}
+
+/// Marks the accessors of those primitives of a mesh for which `is_meant` holds.
+fn mark_primitives(mesh: &Value, is_meant: impl Fn(&Value) -> bool, marks: &mut [bool]) {
+    let primitives = mesh.get("primitives").and_then(Value::as_array);
+    for primitive in primitives.into_iter().flatten().filter(|&primitive| is_meant(primitive)) {
+        mark(primitive.get("indices"), marks);
+        for accessor in attributes(primitive).into_values() {
+            marks.get_mut(accessor).into_iter().for_each(|mark| *mark = true);
+        }
+    }
+}
+
+fn mark(accessor: Option<&Value>, marks: &mut [bool]) {
+    let index = accessor.and_then(Value::as_u64);
+    if let Some(mark) = index.and_then(|index| marks.get_mut(index as usize)) {
+        *mark = true;
+    }
+}

@@ -1,0 +1,93 @@
+//! Images of skeletons: taken out of a document, and put back.
+
+use serde_json::{Value, json};
+
+use super::{document, lod, new_document};
+use crate::ParseError;
+
+/// Image for a scene made from a skeleton.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SkeletonImage {
+    /// Encoded bytes of the image; empty if there are none.
+    pub bytes: Vec<u8>,
+    /// True if this is a smaller PNG in place of the image.
+    pub is_preview: bool,
+}
+
+/// Gives images in data URIs a view without bytes, as those in buffers have it.
+pub(super) fn detach_images(json: &mut Value) {
+    let count = json.get("bufferViews").and_then(Value::as_array).map_or(0, Vec::len);
+    let mut added = Vec::new();
+    let images = json.get_mut("images").and_then(Value::as_array_mut);
+    for image in images.into_iter().flatten() {
+        let is_data = |uri: &str| uri.get(..5).is_some_and(|s| s.eq_ignore_ascii_case("data:"));
+        if image.get("uri").and_then(Value::as_str).is_some_and(is_data) {
+            embed(image, count + added.len());
+            added.push(json!({ "buffer": 0, "byteLength": 0 }));
+        }
+    }
+    if !added.is_empty() {
+        lod::extend(json, "bufferViews", added);
+    }
+}
+
+/// Makes an image refer to a view.
+fn embed(image: &mut Value, view: usize) {
+    if let Some(image) = image.as_object_mut() {
+        image.shift_remove("uri");
+        image.insert("bufferView".into(), view.into());
+        image.entry("mimeType").or_insert("image/png".into());
+    }
+}
+
+/// Puts images into the buffers: those that were embedded, and previews. Returns the other ones,
+/// which are files, with nothing in the place of these.
+pub(super) fn attach_images(
+    json: &mut Value,
+    images: Vec<SkeletonImage>,
+    buffers: &mut Vec<Vec<u8>>,
+) -> Result<Vec<SkeletonImage>, ParseError> {
+    let mut files = vec![SkeletonImage::default(); images.len()];
+    for (index, SkeletonImage { mut bytes, is_preview }) in images.into_iter().enumerate() {
+        let image = &mut json["images"][index];
+        let kind = new_document::mime_type(&bytes);
+        let view = image.get("bufferView").and_then(Value::as_u64).map(|view| view as usize);
+        if view.is_none() && !is_preview {
+            // As when a document is read, what is no image is not taken for one.
+            if kind.is_some() {
+                files[index].bytes = bytes;
+            }
+            continue;
+        }
+        if bytes.is_empty() {
+            // No valid document has an embedded image without bytes.
+            bytes = NO_IMAGE.to_vec();
+        }
+        let whole = json!({ "buffer": buffers.len(), "byteLength": bytes.len() });
+        buffers.push(bytes);
+        let view = match view {
+            Some(view) => {
+                let views = json.get_mut("bufferViews").and_then(Value::as_array_mut);
+                let count = views.as_ref().map_or(0, |views| views.len());
+                let place = views.and_then(|views| views.get_mut(view));
+                *place.ok_or_else(|| document::missing("bufferView", view, count))? = whole;
+                view
+            }
+            None => lod::extend(json, "bufferViews", vec![whole]),
+        };
+        embed(&mut json["images"][index], view);
+        if let (Some(kind), Some(image)) = (kind, json["images"][index].as_object_mut()) {
+            image.insert("mimeType".into(), kind.into());
+        }
+    }
+    Ok(files)
+}
+
+/// Returns the name of a preview of an image file.
+pub(super) fn preview_name(name: &str) -> String {
+    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+    format!("{stem}.preview.png")
+}
+
+/// A white pixel as PNG, in place of an embedded image that is missing.
+const NO_IMAGE: &[u8] = b"\x89\x50\x4e\x47\x0d\x0a\x1a\x0a\x00\x00\x00\x0d\x49\x48\x44\x52\x00\x00\x00\x01\x00\x00\x00\x01\x08\x00\x00\x00\x00\x3a\x7e\x9b\x55\x00\x00\x00\x0a\x49\x44\x41\x54\x78\xda\x63\xf8\x0f\x00\x01\x01\x01\x00\x1c\xb0\x8c\x99\x00\x00\x00\x00\x49\x45\x4e\x44\xae\x42\x60\x82";
