@@ -6,9 +6,13 @@ use meshlod_codec::{
     CompressError, Compressed, CompressionTarget, Lattice, LatticeError, Malformed, Scheme,
     Transport, TransportError, TransportFile, TransportOptions, TransportQuantization,
 };
-use meshlod_io::{IoError, write_file};
+use meshlod_io::{IoError, Scene, write_file};
 use meshlod_mesh::{AttributeBounds, Mesh};
 use thiserror::Error;
+
+use crate::model_materials::{
+    pack_whole_materials, scene_with_materials, unpack_whole_materials,
+};
 
 /// Options for writing a compressed mesh file with [`compress`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,8 +22,7 @@ pub struct CompressOptions {
     /// Scheme by which positions are encoded: any in `.mlq`, by default blocks; only the lattice in
     /// `.mlz`.
     pub scheme: Option<Scheme>,
-    /// Largest errors allowed for normals, texture coordinates and colours, which only `.mlq`
-    /// stores.
+    /// Largest errors allowed for normals, texture coordinates, colours and all other attributes.
     pub attributes: AttributeBounds,
 }
 
@@ -77,8 +80,9 @@ pub enum CompressedFileError {
 /// Compresses a mesh to a file: `.mlq`, which can be drawn from directly, or the smaller `.mlz`,
 /// for transmission.
 ///
-/// Both hold a single surface, without materials and objects; `.mlz` leaves attributes out too. The
-/// file is written whole or not at all. [`codec`](crate::codec) has the parts.
+/// Both hold the faces with their attributes, and the names of materials and objects;
+/// [`compress_scene`] adds the materials themselves. The file is written whole or not at all.
+/// [`codec`](crate::codec) has the parts.
 ///
 /// # Errors
 /// Another suffix, an invalid mesh, a target that the format does not support, and errors of the
@@ -100,10 +104,34 @@ pub fn compress(
     path: &Path,
     options: &CompressOptions,
 ) -> Result<CompressReport, CompressedFileError> {
+    compress_with(mesh, Vec::new(), path, options)
+}
+
+/// Compresses a scene to a file as [`compress`] does, merged into one mesh, with its materials: their
+/// base colours and the textures of those. Decompress it with [`decompress_scene`].
+///
+/// # Errors
+/// As [`compress`].
+pub fn compress_scene(
+    mut scene: Scene,
+    path: &Path,
+    options: &CompressOptions,
+) -> Result<CompressReport, CompressedFileError> {
+    let images = std::mem::take(&mut scene.images);
+    let resources = pack_whole_materials(&scene.materials, &images);
+    compress_with(&scene.into_mesh(), resources, path, options)
+}
+
+fn compress_with(
+    mesh: &Mesh,
+    resources: Vec<u8>,
+    path: &Path,
+    options: &CompressOptions,
+) -> Result<CompressReport, CompressedFileError> {
     let suffix = path.extension().map(|suffix| suffix.to_ascii_lowercase());
     let (bytes, report) = match suffix.as_ref().and_then(|suffix| suffix.to_str()) {
-        Some("mlq") => for_drawing(mesh, options)?,
-        Some("mlz") => for_transport(mesh, options)?,
+        Some("mlq") => for_drawing(mesh, resources, options)?,
+        Some("mlz") => for_transport(mesh, &resources, options)?,
         _ => return Err(CompressedFileError::UnknownFormat(path.to_owned())),
     };
     write_file(path, &bytes)?;
@@ -112,23 +140,26 @@ pub fn compress(
 
 fn for_drawing(
     mesh: &Mesh,
+    resources: Vec<u8>,
     options: &CompressOptions,
 ) -> Result<(Vec<u8>, CompressReport), CompressedFileError> {
     let scheme = options.scheme.unwrap_or(Scheme::Blocks);
     let done = meshlod_codec::compress(mesh, scheme, options.target, &options.attributes)?;
     let (vertices, faces) = (done.compressed.vertices(), done.compressed.faces());
-    let bytes = done.compressed.to_bytes();
+    let bytes = done.compressed.with_resources(resources).to_bytes();
     let report = CompressReport { vertices, faces, bytes: bytes.len(), reached: done.reached };
     Ok((bytes, report))
 }
 
 fn for_transport(
     mesh: &Mesh,
+    resources: &[u8],
     options: &CompressOptions,
 ) -> Result<(Vec<u8>, CompressReport), CompressedFileError> {
     let quantization = transport_quantization(mesh, options)?;
-    let options = TransportOptions { quantization, ..TransportOptions::default() };
-    let done = Transport::encode(mesh, &options)?;
+    let attributes = options.attributes;
+    let options = TransportOptions { quantization, attributes, ..TransportOptions::default() };
+    let done = Transport::encode_with_resources(mesh, resources, &options)?;
     let file = TransportFile::open(&done.bytes).expect("a file just encoded opens");
     let (vertices, faces) = (file.vertices(), file.faces());
     let report = CompressReport { vertices, faces, bytes: done.bytes.len(), reached: true };
@@ -172,17 +203,44 @@ pub fn decompress(path: &Path) -> Result<Mesh, CompressedFileError> {
 /// # Errors
 /// Bytes that are damaged or have another format.
 pub fn decompress_bytes(bytes: &[u8]) -> Result<Mesh, Malformed> {
+    decode(bytes).map(|(mesh, _)| mesh)
+}
+
+/// Decodes the mesh and the resources of a compressed file.
+fn decode(bytes: &[u8]) -> Result<(Mesh, Vec<u8>), Malformed> {
     if bytes.starts_with(&TransportFile::MAGIC) {
-        return TransportFile::open(bytes)?.decode();
+        let file = TransportFile::open(bytes)?;
+        return Ok((file.decode()?, file.resources()?.to_vec()));
     }
     if !bytes.starts_with(&Compressed::MAGIC) {
         return Err(Malformed { at: 0, reason: "not an .mlq or .mlz file".into() });
     }
-    Compressed::from_bytes(bytes)?.decode()
+    let compressed = Compressed::from_bytes(bytes)?;
+    Ok((compressed.decode()?, compressed.resources().to_vec()))
+}
+
+/// Decodes a scene from the bytes of a compressed file: one mesh called `name`, with the materials
+/// that [`compress_scene`] stored. A file without materials gives white ones, by the names of the
+/// mesh.
+///
+/// # Errors
+/// Bytes that are damaged or have another format.
+pub fn decompress_scene(bytes: &[u8], name: impl Into<String>) -> Result<Scene, Malformed> {
+    let (mesh, resources) = decode(bytes)?;
+    if resources.is_empty() {
+        return Ok(Scene::from_mesh(name, mesh));
+    }
+    let materials = unpack_whole_materials(&resources).map_err(|error| Malformed {
+        at: bytes.len() - resources.len(),
+        reason: error.to_string(),
+    })?;
+    Ok(scene_with_materials(name, mesh, materials))
 }
 
 #[cfg(test)]
 mod tests {
+    use meshlod_io::Image;
+    use meshlod_mesh::Labels;
     use meshlod_samples as samples;
 
     use super::*;
@@ -207,11 +265,64 @@ mod tests {
             assert_eq!(report.bytes as u64, std::fs::metadata(&path).unwrap().len(), "{name}");
             assert_eq!((report.reached, report.faces), (true, mesh.faces.len()), "{name}");
             assert_eq!(decoded.faces.len(), mesh.faces.len(), "{name}");
-            assert_eq!(
-                decoded.attributes.is_some(),
-                name.to_lowercase().ends_with("mlq"),
-                "{name}"
-            );
+            let layers = |mesh: &Mesh| mesh.attributes.as_ref().map(|of| of.layers.len());
+            assert_eq!(layers(&decoded), layers(&mesh), "{name}");
+        }
+    }
+
+    /// A scene of a strip with seams whose faces have two materials, one of them with an image.
+    fn scene() -> Scene {
+        let mut mesh = meshlod_fixtures::seam_strip();
+        let of_face = (0..mesh.faces.len()).map(|f| (f % 2) as u32).collect();
+        mesh.materials = Some(Labels { names: vec!["red".into(), "wood".into()], of_face });
+        mesh.objects = Some(Labels { names: vec!["strip".into()], of_face: vec![0; mesh.faces.len()] });
+        let mut scene = Scene::from_mesh("strip", mesh);
+        scene.materials[0].base_color = [1.0, 0.0, 0.0, 0.5];
+        scene.materials[1].base_color_image = Some(0);
+        scene.materials[1].is_double_sided = false;
+        scene.images.push(Image { name: "wood.png".into(), bytes: vec![7; 100_000] });
+        scene
+    }
+
+    #[test]
+    fn scenes_come_back_with_their_materials() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["a.mlq", "a.mlz"] {
+            let path = folder.path().join(name);
+            let report = compress_scene(scene(), &path, &CompressOptions::default()).unwrap();
+            assert!(report.bytes > 100_000);
+            let bytes = std::fs::read(&path).unwrap();
+            let is = decompress_scene(&bytes, "strip").unwrap();
+            let was = scene();
+            assert_eq!((&is.materials, &is.images), (&was.materials, &was.images), "{name}");
+            assert_eq!(is.meshes[0].materials, was.meshes[0].materials);
+            let count = |scene: &Scene, label| {
+                let materials = scene.meshes[0].mesh.materials.as_ref().unwrap();
+                materials.of_face.iter().filter(|&&of| of == label).count()
+            };
+            assert_eq!([count(&is, 0), count(&is, 1)], [count(&was, 0), count(&was, 1)]);
+            let names = |scene: &Scene| scene.meshes[0].mesh.objects.clone().unwrap().names;
+            assert_eq!(names(&is), names(&was));
+            assert_eq!(decompress(&path).unwrap().faces.len(), was.meshes[0].mesh.faces.len());
+            for at in [bytes.len() - 1, bytes.len() - 50_000] {
+                let mut damaged = bytes.clone();
+                damaged[at] ^= 1;
+                assert!(decompress_scene(&damaged, "strip").is_err());
+            }
+        }
+    }
+
+    #[test]
+    fn a_mesh_alone_has_white_materials_by_name() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["a.mlq", "a.mlz"] {
+            let path = folder.path().join(name);
+            let mesh = scene().into_mesh();
+            compress(&mesh, &path, &CompressOptions::default()).unwrap();
+            let is = decompress_scene(&std::fs::read(&path).unwrap(), "strip").unwrap();
+            let names: Vec<_> = is.materials.iter().map(|material| &material.name[..]).collect();
+            assert_eq!(names, ["red", "wood"]);
+            assert!(is.images.is_empty());
         }
     }
 

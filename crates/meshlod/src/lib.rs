@@ -249,7 +249,8 @@ pub use meshlod_strip as strip;
 pub use appearance::{OwnedPaint, normals_of};
 pub use check_report::{CheckReport, check_report};
 pub use compressed::{
-    CompressOptions, CompressReport, CompressedFileError, compress, decompress, decompress_bytes,
+    CompressOptions, CompressReport, CompressedFileError, compress, compress_scene, decompress,
+    decompress_bytes, decompress_scene,
 };
 pub use conditioned::{ConditionedScene, simplify};
 pub use constraints::{Constraints, VertexLocking};
@@ -264,7 +265,10 @@ pub use materials::{UnreadImage, materials_of, single_sided_materials};
 pub use meshlod_io::{Format, IoError, ReadOptions, Scene, WriteOptions, read, write};
 pub use meshlod_mesh::{Borders, Mesh};
 pub use meshlod_simplify::{Method, Options, Report, SimplifyError, Target, Topology};
-pub use model_materials::{BadMaterials, pack_materials, scene_with_materials, unpack_materials};
+pub use model_materials::{
+    BadMaterials, pack_materials, pack_whole_materials, scene_with_materials, unpack_materials,
+    unpack_whole_materials,
+};
 pub use place::world_bounds;
 pub use repair::repair_scene;
 pub use scene::{SceneError, SceneSimplifier, simplify_scene};

@@ -1,7 +1,8 @@
-//! Materials and images of a scene as resources of a multiresolution file.
+//! Materials and images of a scene as resources of our files.
 //!
-//! Small images come early, and so does a preview of each large one; the large ones come last. So a
-//! truncated file has its textures, if only coarse ones. docs/formats/mlod.md specifies the bytes.
+//! In a multiresolution file small images come early, and so does a preview of each large one; the
+//! large ones come last. So a truncated file has its textures, if only coarse ones. In a compressed
+//! file there are no previews. docs/formats/mlod.md specifies the bytes.
 
 use meshlod_io::{Image, Material, Scene};
 use meshlod_mesh::Mesh;
@@ -16,7 +17,7 @@ const PREVIEW: u32 = 128;
 /// No image.
 const NONE: u32 = u32::MAX;
 
-/// The materials or images of a multiresolution file are damaged.
+/// The materials or images of a file are damaged.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 #[error("the materials in the file are damaged")]
 pub struct BadMaterials;
@@ -26,6 +27,29 @@ pub struct BadMaterials;
 ///
 /// Of a material only what [`Material`] has is kept. Cost: decoding each large image.
 pub fn pack_materials(materials: &[Material], images: &[Image]) -> Option<Resources> {
+    pack(materials, images, SMALL)
+}
+
+/// Encodes the materials and images of a scene for a compressed file of its flattened mesh, `.mlq`
+/// or `.mlz`; no bytes if there are no materials.
+///
+/// Of a material only what [`Material`] has is kept.
+pub fn pack_whole_materials(materials: &[Material], images: &[Image]) -> Vec<u8> {
+    pack(materials, images, usize::MAX).map_or_else(Vec::new, |resources| resources.early)
+}
+
+/// Decodes what [`pack_whole_materials`] encoded.
+/// # Errors
+/// Damaged bytes.
+pub fn unpack_whole_materials(bytes: &[u8]) -> Result<(Vec<Material>, Vec<Image>), BadMaterials> {
+    if bytes.is_empty() {
+        return Ok(Default::default());
+    }
+    unpack(bytes, None)
+}
+
+/// Encodes materials and images; of images larger than `small`, previews come early.
+fn pack(materials: &[Material], images: &[Image], small: usize) -> Option<Resources> {
     if materials.is_empty() {
         return None;
     }
@@ -40,7 +64,7 @@ pub fn pack_materials(materials: &[Material], images: &[Image]) -> Option<Resour
     }
     put_count(&mut early, images.len());
     for image in images {
-        let preview = if image.bytes.len() > SMALL { preview(image) } else { None };
+        let preview = if image.bytes.len() > small { preview(image) } else { None };
         put(&mut early, image.name.as_bytes());
         early.push(preview.is_some().into());
         put(&mut early, preview.as_deref().unwrap_or(&image.bytes));
@@ -57,7 +81,14 @@ pub fn pack_materials(materials: &[Material], images: &[Image]) -> Option<Resour
 pub fn unpack_materials(
     resources: &Resources,
 ) -> Result<(Vec<Material>, Vec<Image>), BadMaterials> {
-    let mut input = Input(&resources.early);
+    unpack(&resources.early, resources.late.as_deref())
+}
+
+fn unpack(
+    early: &[u8],
+    late: Option<&[u8]>,
+) -> Result<(Vec<Material>, Vec<Image>), BadMaterials> {
+    let mut input = Input(early);
     let count = input.count()?;
     let mut materials = Vec::new();
     for _ in 0..count {
@@ -67,7 +98,7 @@ pub fn unpack_materials(
         let is_double_sided = input.take(1)?[0] != 0;
         materials.push(Material { name, base_color, base_color_image, is_double_sided });
     }
-    let mut late = resources.late.as_deref().map(Input);
+    let mut late = late.map(Input);
     let mut images = Vec::new();
     for _ in 0..input.count()? {
         let name = input.text()?;
@@ -82,7 +113,7 @@ pub fn unpack_materials(
     is_sound.then_some((materials, images)).ok_or(BadMaterials)
 }
 
-/// Returns a scene of a mesh extracted from a multiresolution file with these materials and images.
+/// Returns a scene of a mesh read from one of our files with these materials and images.
 pub fn scene_with_materials(
     name: impl Into<String>,
     mesh: Mesh,
@@ -178,6 +209,18 @@ mod tests {
         let packed = pack_materials(&materials, &images).unwrap();
         assert_eq!(unpack_materials(&packed), Ok((materials, images)));
         assert_eq!(pack_materials(&[], &[]), None);
+    }
+
+    #[test]
+    fn compressed_files_have_no_previews() {
+        let (materials, images) = materials();
+        let packed = pack_whole_materials(&materials, &images);
+        assert_eq!(unpack_whole_materials(&packed), Ok((materials, images)));
+        assert!(pack_whole_materials(&[], &[]).is_empty());
+        assert_eq!(unpack_whole_materials(&[]), Ok(Default::default()));
+        for length in 1..packed.len().min(300) {
+            assert_eq!(unpack_whole_materials(&packed[..length]), Err(BadMaterials), "{length}");
+        }
     }
 
     #[test]

@@ -144,9 +144,7 @@ impl Build {
         let built = match self.model {
             ModelArg::Contractions => {
                 if is_gltf && !materials.is_empty() {
-                    session.warn(
-                        "materials keep their base colour and its texture; skins, animations and other textures are left out",
-                    );
+                    session.warn(files::KEPT_OF_GLTF);
                 }
                 let resources = pack_materials(&materials, &images);
                 self.contractions(&mesh, &options, resources, session)?

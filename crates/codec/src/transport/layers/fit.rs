@@ -1,0 +1,87 @@
+//! Choice of how each layer is predicted, and fitting of the tables.
+
+use super::coder::Statistics;
+use super::format::{Contexts, Format, LayerFormat, Predictor};
+use super::models::TableCodes;
+use super::values::VALUE_MODES;
+use super::wedges::{BlockWedges, WEDGE_BITS, code_wedges};
+use super::{Block, BlockGeometry, BlockLayer, BlockSource, code_block};
+
+/// Chooses the predictions of all layers and fits tables, given the blocks of a mesh.
+pub(in super::super) fn fit(
+    format: &mut Format,
+    blocks: &[(BlockGeometry, BlockSource)],
+) -> TableCodes {
+    if !format.layers.is_empty() {
+        choose_modes(format, blocks);
+    }
+    let (_, _, all) = format.contexts();
+    let mut counted = Statistics::new(all.bits, all.residuals);
+    for (geometry, source) in blocks {
+        code_block(geometry, format, &mut counted, usize::MAX, Some(source));
+    }
+    TableCodes::fit(&counted)
+}
+
+/// Approximate number of blocks by which predictions are chosen.
+const SAMPLES: usize = 32;
+
+/// Block by which predictions are chosen, with the layers that are coded already.
+struct Sample<'a> {
+    geometry: &'a BlockGeometry<'a>,
+    source: &'a BlockSource,
+    wedges: BlockWedges,
+    layers: Vec<Option<BlockLayer>>,
+}
+
+fn choose_modes(format: &mut Format, blocks: &[(BlockGeometry, BlockSource)]) {
+    let stride = blocks.len().div_ceil(SAMPLES).max(1);
+    let mut samples: Vec<_> = blocks
+        .iter()
+        .step_by(stride)
+        .map(|(geometry, source)| {
+            let mut counted = Statistics::new(WEDGE_BITS, 0);
+            let wedges = code_wedges(&geometry.faces, &mut counted, Some(&source.corners));
+            Sample { geometry, source, wedges, layers: vec![None; format.layers.len()] }
+        })
+        .collect();
+    for at in format.order() {
+        let mut best = f64::INFINITY;
+        let modes = modes(&format.layers[at]);
+        let mut best_mode = modes[0];
+        for &mode in &modes {
+            format.layers[at].mode = mode;
+            let bits = code_layer(format, at, &mut samples).cost();
+            if bits < best {
+                (best, best_mode) = (bits, mode);
+            }
+        }
+        format.layers[at].mode = best_mode;
+        code_layer(format, at, &mut samples);
+    }
+}
+
+/// Returns the ways in which a layer may be predicted.
+fn modes(layer: &LayerFormat) -> Vec<u8> {
+    match layer.predictor() {
+        Predictor::Uvs => vec![0, 2, 4, 6, 8],
+        Predictor::Normals => (0..3).flat_map(|weight| [0, 4, 8].map(|trust| 3 * trust + weight)).collect(),
+        Predictor::Tangents => vec![0, 4, 8],
+        Predictor::Values => (0..VALUE_MODES).collect(),
+    }
+}
+
+/// Codes a layer of all samples, and counts.
+fn code_layer(format: &Format, at: usize, samples: &mut [Sample]) -> Statistics {
+    let layer = &format.layers[at];
+    let Contexts { bits, residuals } = layer.contexts();
+    let mut counted = Statistics::new(bits, residuals);
+    for sample in samples {
+        let Sample { geometry, source, ref wedges, ref layers } = *sample;
+        let block = Block { geometry, wedges, format, layers };
+        let contexts = Contexts { bits: 0, residuals: 0 };
+        let coded = block.layer(layer, contexts, &mut counted, Some(&source.numbers[at]));
+        sample.layers[at] = Some(coded);
+    }
+    counted
+}
