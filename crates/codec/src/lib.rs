@@ -58,6 +58,6 @@ pub use resident::{
     StoredPositions, compress, parts_for,
 };
 pub use transport::{
-    Transport, TransportError, TransportFile, TransportOptions,
-    TransportQuantization, TransportSizes,
+    Transport, TransportError, TransportFile, TransportOptions, TransportQuantization,
+    TransportSizes,
 };

@@ -221,6 +221,7 @@ mod compressed;
 mod conditioned;
 mod constraints;
 mod contacts;
+mod decompressed;
 mod exact_volume;
 mod fuse;
 mod levels;
@@ -249,12 +250,12 @@ pub use meshlod_strip as strip;
 pub use appearance::{OwnedPaint, normals_of};
 pub use check_report::{CheckReport, check_report};
 pub use compressed::{
-    CompressOptions, CompressReport, CompressedFileError, compress, compress_scene, decompress,
-    decompress_bytes, decompress_scene,
+    CompressOptions, CompressReport, CompressedFileError, compress, compress_scene,
 };
 pub use conditioned::{ConditionedScene, simplify};
 pub use constraints::{Constraints, VertexLocking};
 pub use contacts::scene_locks;
+pub use decompressed::{decompress, decompress_bytes, decompress_scene};
 pub use exact_volume::{
     CutVolumeError, closed_volume, conserve_cut_volume, conserve_volumes, digits_of,
 };

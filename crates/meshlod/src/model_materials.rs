@@ -84,10 +84,7 @@ pub fn unpack_materials(
     unpack(&resources.early, resources.late.as_deref())
 }
 
-fn unpack(
-    early: &[u8],
-    late: Option<&[u8]>,
-) -> Result<(Vec<Material>, Vec<Image>), BadMaterials> {
+fn unpack(early: &[u8], late: Option<&[u8]>) -> Result<(Vec<Material>, Vec<Image>), BadMaterials> {
     let mut input = Input(early);
     let count = input.count()?;
     let mut materials = Vec::new();

@@ -24,8 +24,8 @@ use crate::numbers::{count, faces, percent, value};
 use crate::parse::{self, Bound};
 use crate::session::Session;
 
-/// Compress a mesh for rendering or transmission. No face is removed, and every vertex moves to a
-/// grid: --lock-contacts keeps vertices at one place together, and other locks are refused
+/// Compress a mesh for rendering or transmission, with its attributes, materials and objects. No
+/// face is removed, and every vertex moves to a grid: --lock-contacts keeps vertices at one place together, and other locks are refused
 #[derive(Args)]
 pub struct Compress {
     /// Mesh to read, or -

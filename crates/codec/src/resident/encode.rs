@@ -64,8 +64,7 @@ impl Compressed {
     ) -> Result<Compression, CompressError> {
         check(mesh)?;
         let nodes = Nodes::of_parts(mesh, parts);
-        let (patches, order, made) =
-            Patches::new(&nodes.faces, &nodes.row_of, nodes.rows, 1);
+        let (patches, order, made) = Patches::new(&nodes.faces, &nodes.row_of, nodes.rows, 1);
         let labels = FaceLabels::of_mesh(mesh, &nodes, &patches, &made);
         let vertices: Vec<_> = order.iter().map(|&node| nodes.vertex_of[node as usize]).collect();
         let positions = PackedParts::new(parts, patches.rows().clone(), &vertices);

@@ -158,9 +158,9 @@ fn section<'a>(
     let section = reader.section(usize::try_from(len).unwrap_or(usize::MAX))?;
     match crc32fast::hash(section.rest()) == sum {
         true => Ok(section),
-        false => Err(
-            section.wrong(format!("the {what} are damaged: their checksum does not match"))
-        ),
+        false => {
+            Err(section.wrong(format!("the {what} are damaged: their checksum does not match")))
+        }
     }
 }
 

@@ -3,13 +3,15 @@
 use glam::{BVec4A, Vec4};
 
 use super::border::{Border, NODES, Step};
-use super::encode::{CHUNK_BITS, JOINT_LOW_BITS, LENGTH_BITS};
 use super::gate::{CONTEXTS, Gate, NEARBY, NEARBY_BITS, NODE_BITS, context, node_at_offset};
 use super::header::{OpenHeader, max_values};
-use super::layers::{BlockGeometry, BlockLayers, Format, Reader, Tables, code_block};
-use super::models::{ESCAPE, MAX_RESIDUAL, Models, RESIDUAL_BITS, ResidualTable, STEP_BITS};
+use super::layers::{
+    BlockGeometry, BlockLayers, LayerTables, LayersFormat, SymbolReader, code_block,
+};
+use super::models::{Models, STEP_BITS};
 use super::predict::{CellVec, LANES, MAX_CELLS, Prediction, SpreadScales};
 use super::rans::Symbols;
+use super::read::{any_number, number, residual};
 use super::weld_blocks::checksum;
 use crate::bytes::Malformed;
 
@@ -231,12 +233,12 @@ impl Lane {
     fn read_layers(
         &mut self,
         symbols: &mut Symbols,
-        (format, tables): (&Format, &Tables),
+        (format, tables): (&LayersFormat, &LayerTables),
         max_values: usize,
     ) -> Result<(), Malformed> {
         let points = self.cells().map(|cell| cell.as_dvec3()).collect();
         let geometry = BlockGeometry::new(&self.faces, points);
-        let mut reader = Reader::new(tables, symbols);
+        let mut reader = SymbolReader::new(tables, symbols);
         let layers = code_block(&geometry, format, &mut reader, max_values, None);
         self.layers = Some(layers.ok_or_else(|| wrong("a block has impossible attributes"))?);
         Ok(())
@@ -253,33 +255,6 @@ impl Lane {
             out[usize::from(vertex)] = Sharing::Shared(tag);
         }
     }
-}
-
-/// Decodes the difference of a number from its prediction.
-#[inline(always)]
-pub(super) fn residual(symbols: &mut Symbols, table: &ResidualTable, low_bits: u32) -> i32 {
-    let (symbol, size, offset) = table.at(symbols.place(RESIDUAL_BITS));
-    if symbol == ESCAPE || low_bits > u32::from(JOINT_LOW_BITS) {
-        return rare(symbols, (symbol, size, offset), low_bits);
-    }
-    let low = symbols.consume(RESIDUAL_BITS, size, offset, low_bits);
-    ((symbol as i32 - MAX_RESIDUAL) << low_bits) + low as i32 - (1 << low_bits >> 1)
-}
-
-#[cold]
-fn rare(symbols: &mut Symbols, (symbol, size, offset): (usize, u32, u32), low_bits: u32) -> i32 {
-    let with = if low_bits <= u32::from(JOINT_LOW_BITS) { low_bits } else { 0 };
-    let mut low = symbols.consume(RESIDUAL_BITS, size, offset, with);
-    if with < low_bits {
-        low = number(symbols, low_bits);
-    }
-    let mut far = symbol as i32 - MAX_RESIDUAL;
-    if symbol == ESCAPE {
-        let is_below = symbols.uniform(1) == 1;
-        far = any_number(symbols) as i32;
-        far = if is_below { far.wrapping_neg() } else { far };
-    }
-    far.wrapping_shl(low_bits).wrapping_add(low as i32).wrapping_sub(1 << low_bits >> 1)
 }
 
 #[cold]
@@ -300,23 +275,6 @@ fn other(border: &Border, at: u16, symbols: &mut Symbols) -> u16 {
         0,
     );
     border.known(number(symbols, NODE_BITS) as u16)
-}
-
-pub(super) fn number(symbols: &mut Symbols, bits: u32) -> u32 {
-    let mut number = 0;
-    let mut at = 0;
-    while at < bits {
-        let chunk = (bits - at).min(CHUNK_BITS);
-        number |= symbols.uniform(chunk) << at;
-        at += chunk;
-    }
-    number
-}
-
-/// Decodes a number of any length.
-fn any_number(symbols: &mut Symbols) -> u32 {
-    let bits = symbols.uniform(u32::from(LENGTH_BITS));
-    number(symbols, bits)
 }
 
 fn wrong(reason: &str) -> Malformed {

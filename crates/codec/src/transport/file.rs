@@ -109,8 +109,7 @@ impl<'a> TransportFile<'a> {
         self.decode_all(place, &mut faces, |block| {
             layers.iter_mut().for_each(|layers| layers.add(block));
         })?;
-        let mut mesh =
-            Mesh::new(positions, faces.iter().map(|face| face.map(VertexId)).collect());
+        let mut mesh = Mesh::new(positions, faces.iter().map(|face| face.map(VertexId)).collect());
         layers.into_iter().for_each(|layers| layers.finish(&mut mesh));
         Ok(mesh)
     }
@@ -171,7 +170,8 @@ impl<'a> TransportFile<'a> {
         if numbers.vertices as usize == self.header.vertices {
             return Ok(());
         }
-        let reason = format!("expected {} vertices, found {}", self.header.vertices, numbers.vertices);
+        let reason =
+            format!("expected {} vertices, found {}", self.header.vertices, numbers.vertices);
         Err(Malformed { at: self.at, reason })
     }
 

@@ -3,8 +3,7 @@
 use super::border::Step;
 use super::encode::Residual;
 use super::gate::{CONTEXTS, Gate};
-use super::layers::Shape;
-use super::models::{CLASSES, ESCAPE, MAX_RESIDUAL, ModelCodes, SYMBOLS, StepTable, parts};
+use super::models::{CLASSES, ModelCodes, SYMBOLS, StepTable, parts};
 use super::predict::{CellVec, FEATURES, GATES};
 use super::walk::BlockWalk;
 
@@ -226,22 +225,4 @@ fn shape(class: usize, counts: &[u32; SYMBOLS]) -> u8 {
         }
         (least, best) = (cost, to);
     }
-}
-
-/// Returns the bits that a shape takes for residuals, given how many there are of each.
-pub(super) fn histogram_cost(shape: Shape, counts: &[(i32, u32)]) -> f64 {
-    let (class, low_bits) = shape.class();
-    let parts = parts(class, shape.code());
-    let all: f64 = parts.iter().sum();
-    let bits = |part: f64| -(part / all).max(1.0 / 2048.0).log2();
-    let cost = |&(residual, count): &(i32, u32)| {
-        let far = (residual + (1 << low_bits >> 1)) >> low_bits;
-        let known = (far.abs() <= MAX_RESIDUAL).then(|| parts[(far + MAX_RESIDUAL) as usize]);
-        let symbol = match known.filter(|part| part / all * 2048.0 >= 0.5) {
-            Some(part) => bits(part),
-            None => bits(parts[ESCAPE]) + f64::from(6 + u32::BITS - far.unsigned_abs().leading_zeros()),
-        };
-        f64::from(count) * (symbol + f64::from(low_bits))
-    };
-    counts.iter().map(cost).sum()
 }

@@ -3,7 +3,7 @@
 use meshlod_mesh::{Attributes, Labels, Layer, Mesh, WedgeId, merge_equal_wedges};
 
 use super::decode::{Lane, Sharing};
-use super::layers::{BlockLayers, Format};
+use super::layers::{BlockLayers, LayersFormat};
 use super::predict::CellVec;
 use super::weld_blocks::{WeldTable, key};
 
@@ -50,13 +50,13 @@ impl VertexNumbers {
 /// Attributes and labels, block after block.
 #[derive(Clone, Debug)]
 pub(super) struct LayersBuilder<'f> {
-    format: &'f Format,
+    format: &'f LayersFormat,
     attributes: Attributes,
     labels: [Vec<u32>; 2],
 }
 
 impl<'f> LayersBuilder<'f> {
-    pub(super) fn new(format: &'f Format) -> Self {
+    pub(super) fn new(format: &'f LayersFormat) -> Self {
         let layers = format.layers.iter().map(|layer| Layer {
             kind: layer.coding.kind,
             name: layer.coding.name.clone(),

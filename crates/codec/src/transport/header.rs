@@ -3,7 +3,7 @@
 use super::TransportFile;
 use super::border::MAX_FACES;
 use super::grid::{MAX_BITS, MAX_COORDINATE, QuantizationGrid};
-use super::layers::{Format, TableCodes, Tables};
+use super::layers::{LayerTables, LayersFormat, TableCodes};
 use super::models::{ModelCodes, Models};
 use super::predict::MAX_CELLS;
 use crate::bits::Bits;
@@ -18,9 +18,9 @@ pub(super) struct Header {
     pub(super) faces: usize,
     pub(super) vertices: usize,
     pub(super) codes: ModelCodes,
-    /// What blocks have besides positions and faces, and the tables by which it is coded; `None` if
+    /// Attributes and labels that blocks have, and the tables by which it is coded; `None` if
     /// they have nothing and there are no resources.
-    pub(super) layers: Option<(Format, TableCodes)>,
+    pub(super) layers: Option<(LayersFormat, TableCodes)>,
     /// Number of bytes after the last block.
     pub(super) resources: usize,
     pub(super) entries: Vec<Entry>,
@@ -34,7 +34,7 @@ pub(super) struct OpenHeader {
     pub(super) faces: usize,
     pub(super) vertices: usize,
     pub(super) models: Models,
-    pub(super) layers: Option<(Format, Tables)>,
+    pub(super) layers: Option<(LayersFormat, LayerTables)>,
     pub(super) resources: usize,
     pub(super) places: Vec<BlockSpan>,
 }
@@ -131,7 +131,7 @@ impl OpenHeader {
         let codes = ModelCodes::restore(reader)?;
         let (mut layers, mut resources) = (None, 0);
         if version == VERSIONS[1] {
-            let (format, tables) = Format::restore(reader)?;
+            let (format, tables) = LayersFormat::restore(reader)?;
             layers = (!format.is_empty()).then_some((format, tables));
             resources = usize::try_from(reader.u64()?).unwrap_or(usize::MAX);
         }

@@ -3,6 +3,7 @@
 mod border;
 mod decode;
 mod encode;
+mod encoded_layers;
 mod face_blocks;
 mod file;
 mod fit;
@@ -10,12 +11,16 @@ mod gate;
 mod gather;
 mod grid;
 mod header;
+#[cfg(test)]
+mod hostile_layer_tests;
+#[cfg(test)]
+mod layer_tests;
 mod layers;
 mod models;
 mod predict;
 mod rans;
-#[cfg(test)]
-mod layer_tests;
+mod read;
+mod symbol_bits;
 #[cfg(test)]
 mod tests;
 mod walk;

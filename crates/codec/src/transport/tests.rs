@@ -175,10 +175,8 @@ fn on_a_lattice_shared_vertices_coincide() {
     let lattice = crate::Lattice::new(-9).unwrap();
     let mesh = samples::knot(4000);
     let halves = mesh.faces.split_at(1500);
-    let options = TransportOptions {
-        quantization: TransportQuantization::Lattice(lattice),
-        ..options(200)
-    };
+    let options =
+        TransportOptions { quantization: TransportQuantization::Lattice(lattice), ..options(200) };
     for faces in [halves.0, halves.1] {
         let part = Mesh::new(mesh.positions.clone(), faces.to_vec());
         assert_same(&part, &options);

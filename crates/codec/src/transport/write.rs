@@ -2,25 +2,21 @@
 
 use meshlod_mesh::{Connectivity, Mesh, VertexId};
 
-use super::encode::{residuals, symbols};
+use super::encode::{Residual, residuals, symbols};
+use super::encoded_layers::EncodedLayers;
 use super::face_blocks::face_blocks;
-use super::fit::shapes;
+use super::fit::{fit, shapes};
 use super::grid::QuantizationGrid;
 use super::header::{Entry, Header, least_bytes};
-use super::layers::{
-    self, BlockGeometry, BlockSource, Format, MeshLayers, Part, TableCodes, Tables, Writer,
-    code_block,
-};
-use super::models::Models;
+use super::layers::{LayersFormat, MeshLayers};
+use super::models::{ModelCodes, Models};
 use super::predict::{CellVec, LANES};
-use super::rans::{Symbol, encode};
+use super::rans::encode;
+use super::symbol_bits::SymbolBits;
 use super::walk::{BlockWalk, Walker};
 use super::weld_blocks::{WeldTable, checksum, key};
-use super::{
-    MAX_LAYER_VALUES, Transport, TransportError, TransportOptions, TransportSizes,
-    max_block_faces,
-};
-use crate::attributes::{LayerCoding, LayerReport};
+use super::{MAX_LAYER_VALUES, Transport, TransportError, TransportOptions, max_block_faces};
+use crate::attributes::LayerCoding;
 
 /// Greatest number of faces, for 32-bit numbers of faces and of their sides.
 const MAX_MESH_FACES: usize = 1 << 30;
@@ -60,9 +56,9 @@ impl Transport {
         let (grid, cells) = QuantizationGrid::of(mesh, options.quantization)?;
         check_attributes(mesh)?;
         let walks = walks(&mesh.faces, &cells, options.block_faces);
-        let layers = MeshLayers::new(mesh, &options.attributes);
+        let (format, layers) = MeshLayers::new(mesh, &options.attributes);
         let unused = mesh.used_vertices().iter().filter(|&&used| !used).count();
-        let this = write(grid, &cells, &walks, layers, resources);
+        let this = write((grid, &cells), &walks, (format, &layers), resources);
         Ok(Self { unused_vertices: unused, ..this })
     }
 }
@@ -93,34 +89,26 @@ pub(super) fn walks(faces: &[[VertexId; 3]], cells: &[CellVec], size: usize) -> 
 }
 
 fn write(
-    grid: QuantizationGrid,
-    cells: &[CellVec],
+    (grid, cells): (QuantizationGrid, &[CellVec]),
     walks: &[BlockWalk],
-    mut layers: MeshLayers,
+    (mut format, layers): (LayersFormat, &MeshLayers),
     resources: &[u8],
 ) -> Transport {
-    let mut codes = super::fit::fit(walks, cells);
+    let (codes, residuals) = fit_models(walks, cells);
     let models = Models::new(&codes);
-    let residuals = walks.chunks(LANES).flat_map(|walks| residuals(walks, cells, &models));
-    let residuals: Vec<_> = residuals.take(walks.len()).collect();
-    codes.shapes = shapes(residuals.iter().flatten());
-    let models = Models::new(&codes);
-    let first_bits = [0, 1, 2].map(|k| {
-        let most = walks.iter().map(|walk| cells[walk.vertices[0] as usize][k] as u32).max();
-        (u32::BITS - most.unwrap_or(0).leading_zeros()) as u8
-    });
-    let attributes = EncodedLayers::new(&mut layers, walks, cells);
+    let first_bits = first_bits(walks, cells);
+    let attributes = EncodedLayers::new(&mut format, layers, walks, cells);
     let (tags, vertices) = tags(walks, cells);
     let mut payload = Vec::new();
     let mut entries = Vec::with_capacity(walks.len());
     let mut row = Vec::new();
-    let mut bits = SymbolBits::new(layers.format.layers.len());
+    let mut bits = SymbolBits::new(format.layers.len());
     for (at, ((walk, residuals), tags)) in walks.iter().zip(&residuals).zip(&tags).enumerate() {
         row.clear();
         let first = cells[walk.vertices[0] as usize];
         let parts = symbols(walk, (first, first_bits), tags, residuals, &models, &mut row);
         bits.add(&row, parts);
-        let values = attributes.push(at, &layers.format, &mut row, &mut bits);
+        let values = attributes.push(at, &format, &mut row, &mut bits);
         let start = payload.len();
         let sum = checksum(walk.vertices.iter().map(|&v| cells[v as usize]));
         encode(&row, sum, &mut payload);
@@ -129,115 +117,34 @@ fn write(
         entries.push(Entry { faces: walk.faces.len(), bytes: payload.len() - start });
     }
     payload.extend(resources);
-    let reports = layers.format.layers.iter().zip(&bits.layers).map(|(layer, bits)| {
-        let LayerCoding { kind, name, max_error, .. } = layer.coding.clone();
-        LayerReport { kind, name, bytes: (bits / 8.0).round() as usize, max_error }
-    });
-    let reports = reports.collect();
-    let is_bare = layers.format.is_empty() && resources.is_empty();
-    let layers = (!is_bare).then_some((layers.format, attributes.codes));
+    let reports = bits.reports(&format);
+    let is_bare = format.is_empty() && resources.is_empty();
+    let layers = (!is_bare).then_some((format, attributes.codes));
     let faces = walks.iter().map(|walk| walk.faces.len()).sum();
     let resources = resources.len();
-    let header =
-        Header { grid, first_bits, faces, vertices, codes, layers, resources, entries };
+    let header = Header { grid, first_bits, faces, vertices, codes, layers, resources, entries };
     let mut bytes = header.store(&payload);
     bytes.extend(payload);
     let sizes = bits.sizes(bytes.len(), resources);
     Transport { bytes, blocks: walks.len(), sizes, layers: reports, unused_vertices: 0 }
 }
 
-/// Attributes and labels of all blocks, ready to be coded.
-struct EncodedLayers<'a> {
-    blocks: Vec<(BlockGeometry<'a>, BlockSource)>,
-    codes: TableCodes,
-    tables: Tables,
+/// Fits the models of positions and faces, and returns the residuals of each block, too.
+fn fit_models(walks: &[BlockWalk], cells: &[CellVec]) -> (ModelCodes, Vec<Vec<Residual>>) {
+    let mut codes = fit(walks, cells);
+    let models = Models::new(&codes);
+    let residuals = walks.chunks(LANES).flat_map(|walks| residuals(walks, cells, &models));
+    let residuals: Vec<_> = residuals.take(walks.len()).collect();
+    codes.shapes = shapes(residuals.iter().flatten());
+    (codes, residuals)
 }
 
-impl<'a> EncodedLayers<'a> {
-    fn new(layers: &mut MeshLayers, walks: &'a [BlockWalk], cells: &[CellVec]) -> Self {
-        let mut blocks = Vec::new();
-        if !layers.format.is_empty() {
-            blocks.extend(walks.iter().map(|walk| {
-                let point = |&v: &u32| cells[v as usize].as_dvec3();
-                let points = walk.vertices.iter().map(point).collect();
-                (BlockGeometry::new(&walk.faces, points), layers.of_block(walk))
-            }));
-        }
-        let codes = layers::fit(&mut layers.format, &blocks);
-        let tables = Tables::new(&codes);
-        Self { blocks, codes, tables }
-    }
-
-    /// Appends the symbols of a block. Returns its number of values.
-    fn push(
-        &self,
-        block: usize,
-        format: &Format,
-        symbols: &mut Vec<Symbol>,
-        bits: &mut SymbolBits,
-    ) -> usize {
-        let Some((geometry, source)) = self.blocks.get(block) else { return 0 };
-        let mut writer = Writer::new(&self.tables, symbols);
-        let coded = code_block(geometry, format, &mut writer, usize::MAX, Some(source));
-        let wedges = coded.map_or(0, |coded| coded.wedges.vertex.len());
-        let parts = std::mem::take(&mut writer.parts);
-        bits.add_layers(symbols, &parts);
-        wedges * format.width()
-    }
-}
-
-/// Counts the bits of symbols.
-struct SymbolBits {
-    positions: f64,
-    connectivity: f64,
-    /// Wedges and labels.
-    wedges: f64,
-    layers: Vec<f64>,
-    log2: Vec<f64>,
-}
-
-impl SymbolBits {
-    fn new(layers: usize) -> Self {
-        let log2 = (0..=4096).map(|size| f64::from(size).log2()).collect();
-        Self { positions: 0.0, connectivity: 0.0, wedges: 0.0, layers: vec![0.0; layers], log2 }
-    }
-
-    fn of(&self, symbols: &[Symbol]) -> f64 {
-        let bits = |s: &Symbol| {
-            f64::from(s.bits) + f64::from(s.low_bits) - self.log2[usize::from(s.size)]
-        };
-        symbols.iter().map(bits).sum()
-    }
-
-    /// Adds the parts of a block that follow the positions, given where each starts.
-    fn add_layers(&mut self, symbols: &[Symbol], parts: &[(Part, usize)]) {
-        let ends = parts.iter().skip(1).map(|&(_, start)| start).chain([symbols.len()]);
-        for (&(part, start), end) in parts.iter().zip(ends) {
-            let bits = self.of(&symbols[start..end]);
-            match part {
-                Part::Layer(at) => self.layers[at] += bits,
-                Part::Wedges | Part::Labels => self.wedges += bits,
-            }
-        }
-    }
-
-    /// Returns the sizes of a file's contents in bytes, given that of all and that of resources.
-    fn sizes(&self, total: usize, resources: usize) -> TransportSizes {
-        let positions = self.positions / 8.0;
-        let connectivity = self.connectivity / 8.0;
-        let attributes = (self.wedges + self.layers.iter().sum::<f64>()) / 8.0;
-        let headers = (total - resources) as f64 - positions - connectivity - attributes;
-        TransportSizes { positions, connectivity, attributes, resources, headers }
-    }
-
-    /// Adds the symbols of a block. Residuals of positions are in the given range, all else is
-    /// connectivity.
-    fn add(&mut self, symbols: &[Symbol], [connectivity, positions]: [usize; 2]) {
-        let of_positions = self.of(&symbols[connectivity..positions]);
-        let all = self.of(symbols);
-        self.positions += of_positions;
-        self.connectivity += all - of_positions;
-    }
+/// Returns how many bits the first vertices of all blocks take along each axis.
+fn first_bits(walks: &[BlockWalk], cells: &[CellVec]) -> [u8; 3] {
+    [0, 1, 2].map(|k| {
+        let most = walks.iter().map(|walk| cells[walk.vertices[0] as usize][k] as u32).max();
+        (u32::BITS - most.unwrap_or(0).leading_zeros()) as u8
+    })
 }
 
 /// Returns the vertices of each block that need a tag, and the number of vertices of the mesh.

@@ -30,8 +30,7 @@ impl Compress {
         let share = 1.0 + headers / (positions + connectivity + attributes);
         let [positions, attributes] =
             [positions, attributes].map(|size| (size * share).round() as usize);
-        let connectivity =
-            (done.bytes.len() - resources).saturating_sub(positions + attributes);
+        let connectivity = (done.bytes.len() - resources).saturating_sub(positions + attributes);
         Ok(CompressedFile {
             sizes: [positions, connectivity, attributes],
             materials: resources,

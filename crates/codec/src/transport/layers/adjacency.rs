@@ -4,7 +4,7 @@
 #[derive(Clone, Debug)]
 pub(in super::super) struct BlockFaces<'a> {
     pub(super) faces: &'a [[u16; 3]],
-    /// For each side, numbered 3 · face + corner, the opposite one; [`NONE`] on the block's border.
+    /// For each side, numbered 3 · face + corner, the opposite one; [`NONE`] on the border.
     twins: Vec<u16>,
 }
 

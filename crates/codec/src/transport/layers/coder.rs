@@ -1,16 +1,26 @@
 //! One walk over a block for encoder, decoder and statistics: what differs is what becomes of a
 //! decision.
 
-use super::super::decode::{number, residual};
 use super::super::encode::{push_number, push_residual};
 use super::super::rans::{Symbol, Symbols};
-use super::Part;
-use super::models::{BIT_BITS, Chance, ResidualModel, Tables};
+use super::super::read::{number, residual};
+use super::models::{BIT_BITS, Chance, LayerTables, ResidualModel};
+
+/// Part of a block that is coded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in super::super) enum BlockPart {
+    /// Wedges of corners.
+    Wedges,
+    /// Attribute layer with this number.
+    Layer(usize),
+    /// Materials and objects.
+    Labels,
+}
 
 /// Receiver of the decisions of a block. Encoders are told what to code, decoders return it.
 pub(in super::super) trait Coder {
     /// Notes that a part of the block begins.
-    fn begin(&mut self, _: Part) {}
+    fn begin(&mut self, _: BlockPart) {}
     /// Codes a bit whose probability is adapted as the block goes on.
     fn bit(&mut self, context: usize, bit: Option<bool>) -> bool;
     /// Codes the difference of a number from its prediction.
@@ -21,31 +31,31 @@ pub(in super::super) trait Coder {
 
 /// Probabilities of a block's bits, which all blocks start with.
 #[derive(Clone, Debug, Default)]
-struct Bits(Vec<Chance>);
+struct AdaptiveBits(Vec<Chance>);
 
-impl Bits {
-    fn of(tables: &Tables) -> Self {
+impl AdaptiveBits {
+    fn of(tables: &LayerTables) -> Self {
         Self(tables.bits.clone())
     }
 }
 
 /// Appends what is coded as symbols.
-pub(in super::super) struct Writer<'a> {
-    tables: &'a Tables,
-    bits: Bits,
+pub(in super::super) struct SymbolWriter<'a> {
+    tables: &'a LayerTables,
+    bits: AdaptiveBits,
     symbols: &'a mut Vec<Symbol>,
     /// Each part with the number of symbols before it.
-    pub(in super::super) parts: Vec<(Part, usize)>,
+    pub(in super::super) parts: Vec<(BlockPart, usize)>,
 }
 
-impl<'a> Writer<'a> {
-    pub(in super::super) fn new(tables: &'a Tables, symbols: &'a mut Vec<Symbol>) -> Self {
-        Self { tables, bits: Bits::of(tables), symbols, parts: Vec::new() }
+impl<'a> SymbolWriter<'a> {
+    pub(in super::super) fn new(tables: &'a LayerTables, symbols: &'a mut Vec<Symbol>) -> Self {
+        Self { tables, bits: AdaptiveBits::of(tables), symbols, parts: Vec::new() }
     }
 }
 
-impl Coder for Writer<'_> {
-    fn begin(&mut self, part: Part) {
+impl Coder for SymbolWriter<'_> {
+    fn begin(&mut self, part: BlockPart) {
         self.parts.push((part, self.symbols.len()));
     }
 
@@ -73,19 +83,19 @@ impl Coder for Writer<'_> {
 }
 
 /// Reads what is coded.
-pub(in super::super) struct Reader<'a, 's, 'b> {
-    tables: &'a Tables,
-    bits: Bits,
+pub(in super::super) struct SymbolReader<'a, 's, 'b> {
+    tables: &'a LayerTables,
+    bits: AdaptiveBits,
     symbols: &'s mut Symbols<'b>,
 }
 
-impl<'a, 's, 'b> Reader<'a, 's, 'b> {
-    pub(in super::super) fn new(tables: &'a Tables, symbols: &'s mut Symbols<'b>) -> Self {
-        Self { tables, bits: Bits::of(tables), symbols }
+impl<'a, 's, 'b> SymbolReader<'a, 's, 'b> {
+    pub(in super::super) fn new(tables: &'a LayerTables, symbols: &'s mut Symbols<'b>) -> Self {
+        Self { tables, bits: AdaptiveBits::of(tables), symbols }
     }
 }
 
-impl Coder for Reader<'_, '_, '_> {
+impl Coder for SymbolReader<'_, '_, '_> {
     #[inline]
     fn bit(&mut self, context: usize, _: Option<bool>) -> bool {
         let chance = &mut self.bits.0[context];
@@ -105,38 +115,5 @@ impl Coder for Reader<'_, '_, '_> {
 
     fn number(&mut self, bits: u32, _: Option<u32>) -> u32 {
         number(self.symbols, bits)
-    }
-}
-
-/// Counts what would be coded, for the tables to be fitted to.
-#[derive(Clone, Debug)]
-pub(in super::super) struct Statistics {
-    /// Number of bits that are clear and set, for each context.
-    pub(super) bits: Vec<[u32; 2]>,
-    /// All residuals of each context.
-    pub(super) residuals: Vec<Vec<i32>>,
-}
-
-impl Statistics {
-    pub(in super::super) fn new(bits: usize, residuals: usize) -> Self {
-        Self { bits: vec![[0; 2]; bits], residuals: vec![Vec::new(); residuals] }
-    }
-}
-
-impl Coder for Statistics {
-    fn bit(&mut self, context: usize, bit: Option<bool>) -> bool {
-        let bit = bit.expect("an encoder is told");
-        self.bits[context][usize::from(bit)] += 1;
-        bit
-    }
-
-    fn residual(&mut self, context: usize, residual: Option<i32>) -> i32 {
-        let residual = residual.expect("an encoder is told");
-        self.residuals[context].push(residual);
-        residual
-    }
-
-    fn number(&mut self, _: u32, number: Option<u32>) -> u32 {
-        number.expect("an encoder is told")
     }
 }

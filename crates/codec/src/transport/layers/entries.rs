@@ -7,7 +7,7 @@ use super::wedges::BlockWedges;
 
 /// Distinct values of a layer, called entries, in the order in which they are coded.
 #[derive(Clone, Debug)]
-pub(super) struct Entries {
+pub(super) struct LayerEntries {
     /// Entry of each wedge.
     pub(super) of_wedge: Vec<u16>,
     /// Entry of each corner.
@@ -22,7 +22,7 @@ pub(super) struct Entries {
 /// Contexts of the bits.
 pub(super) const ENTRY_BITS: usize = 3;
 
-impl Entries {
+impl LayerEntries {
     /// Codes which wedges share their values; `same` compares two of them.
     pub(super) fn code(
         faces: &BlockFaces,

@@ -1,15 +1,17 @@
 //! Choice of how each layer is predicted, and fitting of the tables.
 
-use super::coder::Statistics;
-use super::format::{Contexts, Format, LayerFormat, Predictor};
+use super::block::{BlockCoding, BlockLayer, code_block};
+use super::format::{LayerContexts, LayerFormat, LayersFormat, Predictor};
+use super::geometry::BlockGeometry;
 use super::models::TableCodes;
+use super::source::BlockSource;
+use super::statistics::Statistics;
 use super::values::VALUE_MODES;
 use super::wedges::{BlockWedges, WEDGE_BITS, code_wedges};
-use super::{Block, BlockGeometry, BlockLayer, BlockSource, code_block};
 
 /// Chooses the predictions of all layers and fits tables, given the blocks of a mesh.
 pub(in super::super) fn fit(
-    format: &mut Format,
+    format: &mut LayersFormat,
     blocks: &[(BlockGeometry, BlockSource)],
 ) -> TableCodes {
     if !format.layers.is_empty() {
@@ -20,21 +22,21 @@ pub(in super::super) fn fit(
     for (geometry, source) in blocks {
         code_block(geometry, format, &mut counted, usize::MAX, Some(source));
     }
-    TableCodes::fit(&counted)
+    counted.codes()
 }
 
 /// Approximate number of blocks by which predictions are chosen.
 const SAMPLES: usize = 32;
 
 /// Block by which predictions are chosen, with the layers that are coded already.
-struct Sample<'a> {
+struct SampleBlock<'a> {
     geometry: &'a BlockGeometry<'a>,
-    source: &'a BlockSource,
+    source: &'a BlockSource<'a>,
     wedges: BlockWedges,
     layers: Vec<Option<BlockLayer>>,
 }
 
-fn choose_modes(format: &mut Format, blocks: &[(BlockGeometry, BlockSource)]) {
+fn choose_modes(format: &mut LayersFormat, blocks: &[(BlockGeometry, BlockSource)]) {
     let stride = blocks.len().div_ceil(SAMPLES).max(1);
     let mut samples: Vec<_> = blocks
         .iter()
@@ -42,7 +44,7 @@ fn choose_modes(format: &mut Format, blocks: &[(BlockGeometry, BlockSource)]) {
         .map(|(geometry, source)| {
             let mut counted = Statistics::new(WEDGE_BITS, 0);
             let wedges = code_wedges(&geometry.faces, &mut counted, Some(&source.corners));
-            Sample { geometry, source, wedges, layers: vec![None; format.layers.len()] }
+            SampleBlock { geometry, source, wedges, layers: vec![None; format.layers.len()] }
         })
         .collect();
     for at in format.order() {
@@ -65,21 +67,23 @@ fn choose_modes(format: &mut Format, blocks: &[(BlockGeometry, BlockSource)]) {
 fn modes(layer: &LayerFormat) -> Vec<u8> {
     match layer.predictor() {
         Predictor::Uvs => vec![0, 2, 4, 6, 8],
-        Predictor::Normals => (0..3).flat_map(|weight| [0, 4, 8].map(|trust| 3 * trust + weight)).collect(),
+        Predictor::Normals => {
+            (0..3).flat_map(|weight| [0, 4, 8].map(|trust| 3 * trust + weight)).collect()
+        }
         Predictor::Tangents => vec![0, 4, 8],
         Predictor::Values => (0..VALUE_MODES).collect(),
     }
 }
 
 /// Codes a layer of all samples, and counts.
-fn code_layer(format: &Format, at: usize, samples: &mut [Sample]) -> Statistics {
+fn code_layer(format: &LayersFormat, at: usize, samples: &mut [SampleBlock]) -> Statistics {
     let layer = &format.layers[at];
-    let Contexts { bits, residuals } = layer.contexts();
+    let LayerContexts { bits, residuals } = layer.contexts();
     let mut counted = Statistics::new(bits, residuals);
     for sample in samples {
-        let Sample { geometry, source, ref wedges, ref layers } = *sample;
-        let block = Block { geometry, wedges, format, layers };
-        let contexts = Contexts { bits: 0, residuals: 0 };
+        let SampleBlock { geometry, source, ref wedges, ref layers } = *sample;
+        let block = BlockCoding { geometry, wedges, format, layers };
+        let contexts = LayerContexts { bits: 0, residuals: 0 };
         let coded = block.layer(layer, contexts, &mut counted, Some(&source.numbers[at]));
         sample.layers[at] = Some(coded);
     }

@@ -1,4 +1,4 @@
-//! What the header says of attributes, materials and objects.
+//! Description of attributes, materials and objects in the header.
 
 use meshlod_mesh::LayerKind;
 
@@ -6,7 +6,7 @@ use super::super::MAX_LAYER_VALUES;
 use super::directions::DIRECTION_RESIDUALS;
 use super::entries::ENTRY_BITS;
 use super::labels::LABEL_BITS;
-use super::models::{TableCodes, Tables};
+use super::models::{LayerTables, TableCodes};
 use super::tangents::TANGENT_BITS;
 use super::uv::UV_RESIDUALS;
 use super::values::{VALUE_BITS, VALUE_RESIDUALS};
@@ -27,7 +27,7 @@ pub(in super::super) struct LayerFormat {
 
 /// Everything that a block has besides its positions and faces.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(in super::super) struct Format {
+pub(in super::super) struct LayersFormat {
     pub(in super::super) layers: Vec<LayerFormat>,
     /// Names of materials and of objects.
     pub(in super::super) names: [Option<Vec<String>>; 2],
@@ -44,7 +44,7 @@ pub(super) enum Predictor {
 
 /// First contexts of a layer: of bits and of residuals.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Contexts {
+pub(super) struct LayerContexts {
     pub(super) bits: usize,
     pub(super) residuals: usize,
 }
@@ -63,14 +63,14 @@ impl LayerFormat {
     }
 
     /// Returns how many contexts the layer has.
-    pub(super) fn contexts(&self) -> Contexts {
+    pub(super) fn contexts(&self) -> LayerContexts {
         let (bits, residuals) = match self.predictor() {
             Predictor::Normals => (0, DIRECTION_RESIDUALS),
             Predictor::Tangents => (TANGENT_BITS, DIRECTION_RESIDUALS),
             Predictor::Uvs => (0, UV_RESIDUALS),
             Predictor::Values => (VALUE_BITS, VALUE_RESIDUALS),
         };
-        Contexts { bits: ENTRY_BITS + bits, residuals }
+        LayerContexts { bits: ENTRY_BITS + bits, residuals }
     }
 
     fn store(&self, out: &mut Vec<u8>) {
@@ -95,7 +95,7 @@ impl LayerFormat {
     }
 }
 
-impl Format {
+impl LayersFormat {
     /// Returns true if blocks have nothing but positions and faces.
     pub(in super::super) fn is_empty(&self) -> bool {
         self.layers.is_empty() && self.names == [None, None]
@@ -106,8 +106,8 @@ impl Format {
         self.layers.iter().map(|layer| layer.coding.width).sum()
     }
 
-    /// Returns the layers in the order in which they are coded: tangents last, since they follow from
-    /// texture coordinates and normals.
+    /// Returns the layers in the order in which they are coded: tangents last, since they follow
+    /// from texture coordinates and normals.
     pub(super) fn order(&self) -> Vec<usize> {
         let is_last = |&at: &usize| self.layers[at].predictor() == Predictor::Tangents;
         let (last, first): (Vec<_>, Vec<_>) = (0..self.layers.len()).partition(is_last);
@@ -116,13 +116,13 @@ impl Format {
 
     /// Returns the first contexts of each layer; then those of the two kinds of labels, and the
     /// number of all.
-    pub(super) fn contexts(&self) -> (Vec<Contexts>, [usize; 2], Contexts) {
+    pub(super) fn contexts(&self) -> (Vec<LayerContexts>, [usize; 2], LayerContexts) {
         let bits = if self.layers.is_empty() { 0 } else { WEDGE_BITS };
-        let mut at = Contexts { bits, residuals: 0 };
+        let mut at = LayerContexts { bits, residuals: 0 };
         let mut layers = Vec::with_capacity(self.layers.len());
         for layer in &self.layers {
             layers.push(at);
-            let Contexts { bits, residuals } = layer.contexts();
+            let LayerContexts { bits, residuals } = layer.contexts();
             at.bits += bits;
             at.residuals += residuals;
         }
@@ -138,7 +138,7 @@ impl Format {
         codes.store(out);
     }
 
-    pub(in super::super) fn restore(reader: &mut Reader) -> Result<(Self, Tables), Malformed> {
+    pub(in super::super) fn restore(reader: &mut Reader) -> Result<(Self, LayerTables), Malformed> {
         let mut this = Self::default();
         for _ in 0..reader.u8()? {
             this.layers.push(LayerFormat::restore(reader)?);
@@ -149,6 +149,6 @@ impl Format {
         this.names = [restore_names(reader)?, restore_names(reader)?];
         let (_, _, all) = this.contexts();
         let codes = TableCodes::restore(all.bits, all.residuals, reader)?;
-        Ok((this, Tables::new(&codes)))
+        Ok((this, LayerTables::new(&codes)))
     }
 }

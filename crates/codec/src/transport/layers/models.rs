@@ -1,8 +1,7 @@
 //! Probability tables of attributes, fitted to the mesh and shared by all blocks of a file.
 
-use super::super::fit::histogram_cost;
-use super::super::models::{CLASSES, ResidualTable};
-use super::coder::Statistics;
+use super::super::models::ResidualTable;
+use super::shape::{FREEDOM_BITS, ResidualShape, WIDTH_BITS};
 use crate::bits::Bits;
 use crate::bytes::{Malformed, Reader};
 
@@ -25,7 +24,8 @@ impl Chance {
         }
     }
 
-    fn code([clear, set]: [u32; 2]) -> u8 {
+    /// Returns the code for the numbers of clear and set bits.
+    pub(super) fn code([clear, set]: [u32; 2]) -> u8 {
         let all = f64::from(clear + set) + 1.0;
         let half = |count: u32| {
             let code = 2.0 * (all / (f64::from(count) + 0.5)).log2() - 2.0;
@@ -71,7 +71,7 @@ pub(super) struct ResidualModel {
 
 /// Tables of a file.
 #[derive(Clone, Debug)]
-pub(in super::super) struct Tables {
+pub(in super::super) struct LayerTables {
     pub(super) bits: Vec<Chance>,
     /// Different distributions, and which of them each context has.
     models: Vec<ResidualModel>,
@@ -82,56 +82,30 @@ pub(in super::super) struct Tables {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(in super::super) struct TableCodes {
     bits: Vec<Option<u8>>,
-    residuals: Vec<Option<Shape>>,
+    residuals: Vec<Option<ResidualShape>>,
 }
 
-/// Student's distribution: its width in quarter octaves above a quarter, and a code of its degrees
-/// of freedom.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(in super::super) struct Shape {
-    pub(in super::super) width: u8,
-    pub(in super::super) freedom: u8,
-}
-
-/// Bits of a width and of the degrees of freedom.
-const WIDTH_BITS: u32 = 6;
-const FREEDOM_BITS: u32 = 3;
-
-impl Shape {
-    /// Greatest width: low bits are at most 12.
-    pub(in super::super) const WIDEST: u8 = (1 << WIDTH_BITS) - 1;
-    pub(in super::super) const FREEST: u8 = (1 << FREEDOM_BITS) - 1;
-
-    /// Returns the class of a width, and the number of bits that are coded without a model.
-    pub(in super::super) fn class(self) -> (usize, u8) {
-        let low_bits = (self.width / 4).saturating_sub(CLASSES as u8 / 4 - 1);
-        (usize::from(self.width - 4 * low_bits), low_bits)
-    }
-
-    /// Returns the code of its shape within the class.
-    pub(in super::super) fn code(self) -> u8 {
-        self.freedom << 5 | 16
-    }
-
+impl ResidualShape {
     fn model(self) -> ResidualModel {
         let (class, low_bits) = self.class();
         ResidualModel { table: ResidualTable::of(class, self.code()), low_bits }
     }
 }
 
-impl Tables {
+impl LayerTables {
     pub(in super::super) fn new(codes: &TableCodes) -> Self {
         // A damaged file may use a context that it has no codes of.
         let bits = codes.bits.iter().map(|code| Chance::of(code.unwrap_or_default()));
         let mut shapes: Vec<_> = codes.residuals.iter().map(|of| of.unwrap_or_default()).collect();
-        let place = |shapes: &[Shape], shape| shapes.binary_search(shape).unwrap_or(0) as u16;
+        let place =
+            |shapes: &[ResidualShape], shape| shapes.binary_search(shape).unwrap_or(0) as u16;
         let all = shapes.clone();
         shapes.sort_unstable();
         shapes.dedup();
         Self {
             bits: bits.collect(),
             of_context: all.iter().map(|shape| place(&shapes, shape)).collect(),
-            models: shapes.into_iter().map(Shape::model).collect(),
+            models: shapes.into_iter().map(ResidualShape::model).collect(),
         }
     }
 
@@ -143,14 +117,9 @@ impl Tables {
 }
 
 impl TableCodes {
-    /// Fits codes to what was counted.
-    pub(in super::super) fn fit(counted: &Statistics) -> Self {
-        let chance = |&counts: &[u32; 2]| (counts != [0; 2]).then(|| Chance::code(counts));
-        let shape = |residuals: &Vec<i32>| (!residuals.is_empty()).then(|| fit_shape(residuals).0);
-        Self {
-            bits: counted.bits.iter().map(chance).collect(),
-            residuals: counted.residuals.iter().map(shape).collect(),
-        }
+    /// Creates codes of all contexts.
+    pub(super) fn new(bits: Vec<Option<u8>>, residuals: Vec<Option<ResidualShape>>) -> Self {
+        Self { bits, residuals }
     }
 
     pub(in super::super) fn store(&self, out: &mut Vec<u8>) {
@@ -196,62 +165,8 @@ impl TableCodes {
             let shape = is_there.then(|| Ok([take(WIDTH_BITS)?, take(FREEDOM_BITS)?]));
             let shape = shape.transpose()?;
             this.residuals
-                .push(shape.map(|[w, f]| Shape { width: w as u8, freedom: f as u8 }));
+                .push(shape.map(|[w, f]| ResidualShape { width: w as u8, freedom: f as u8 }));
         }
         Ok(this)
-    }
-}
-
-impl Statistics {
-    /// Returns about how many bits what was counted will take, tables included.
-    pub(super) fn cost(&self) -> f64 {
-        let residuals = self.residuals.iter().filter(|of| !of.is_empty());
-        let residuals: f64 = residuals.map(|of| fit_shape(of).1 + 9.0).sum();
-        let entropy = |[clear, set]: [u32; 2]| {
-            let part = |count: u32| {
-                let count = f64::from(count);
-                if count > 0.0 { count * (f64::from(clear + set) / count).log2() } else { 0.0 }
-            };
-            part(clear) + part(set)
-        };
-        residuals + self.bits.iter().map(|&counts| entropy(counts)).sum::<f64>()
-    }
-}
-
-/// Returns the shape that codes residuals in the fewest bits, and their number: descends from a
-/// usual one.
-fn fit_shape(residuals: &[i32]) -> (Shape, f64) {
-    let mut counts: Vec<(i32, u32)> = Vec::new();
-    let mut sorted = residuals.to_vec();
-    sorted.sort_unstable();
-    for residual in sorted {
-        match counts.last_mut() {
-            Some((last, count)) if *last == residual => *count += 1,
-            _ => counts.push((residual, 1)),
-        }
-    }
-    let middle = counts.iter().map(|&(r, count)| f64::from(count) * (f64::from(r).abs() + 0.1).log2());
-    let octaves = middle.sum::<f64>() / residuals.len() as f64 + 2.0;
-    let width = (4.0 * octaves).round().clamp(0.0, f64::from(Shape::WIDEST)) as i32;
-    let cost = |[width, freedom]: [i32; 2]| {
-        let is_valid = (0..=i32::from(Shape::WIDEST)).contains(&width)
-            && (0..=i32::from(Shape::FREEST)).contains(&freedom);
-        match is_valid {
-            true => histogram_cost(Shape { width: width as u8, freedom: freedom as u8 }, &counts),
-            false => f64::INFINITY,
-        }
-    };
-    let mut best = [width, 2];
-    let mut least = cost(best);
-    loop {
-        let [w, f] = best;
-        let around = [[w - 1, f], [w + 1, f], [w, f - 1], [w, f + 1], [w - 1, f - 1], [w + 1, f + 1], [w - 3, f], [w + 3, f]];
-        let costs = around.map(|to| (cost(to), to));
-        let (lower, to) =
-            costs.into_iter().fold((f64::INFINITY, best), |a, b| if b.0 < a.0 { b } else { a });
-        if lower >= least {
-            return (Shape { width: best[0] as u8, freedom: best[1] as u8 }, least);
-        }
-        (least, best) = (lower, to);
     }
 }

@@ -4,19 +4,19 @@ use glam::DVec3;
 
 use super::adjacency::previous;
 use super::directions::Guess;
-use super::entries::Entries;
+use super::entries::LayerEntries;
 use super::geometry::BlockGeometry;
 
 /// Weight of a face at a corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Weight {
+pub(super) enum FaceWeight {
     Area,
     Angle,
     /// Area over the squared lengths of both edges [Max99].
     Max,
 }
 
-impl Weight {
+impl FaceWeight {
     pub(super) const ALL: [Self; 3] = [Self::Area, Self::Angle, Self::Max];
 
     /// Returns the weight of a face's normal, which has twice its area as length.
@@ -32,9 +32,9 @@ impl Weight {
 /// Returns the weighted normal of the faces around an entry.
 pub(super) fn normal_of(
     entry: usize,
-    entries: &Entries,
+    entries: &LayerEntries,
     geometry: &BlockGeometry,
-    weight: Weight,
+    weight: FaceWeight,
 ) -> Guess {
     let (mut sum, mut all, mut count) = (DVec3::ZERO, 0.0, 0);
     let mut is_open = false;

@@ -5,13 +5,14 @@ use glam::{DVec2, DVec3};
 use super::adjacency::{next, previous};
 use super::coder::Coder;
 use super::directions::Guess;
-use super::entries::Entries;
+use super::entries::LayerEntries;
 use super::geometry::BlockGeometry;
+use super::job::LayerJob;
 
 /// Contexts of the bits: handedness by that of the chart.
 pub(super) const TANGENT_BITS: usize = 3;
 
-/// What tangents follow from: texture coordinates and normals by corner.
+/// Texture coordinates and normals of all corners, from which tangents follow.
 pub(super) struct TangentFrame<'a> {
     pub(super) geometry: &'a BlockGeometry<'a>,
     pub(super) uv: Option<Vec<DVec2>>,
@@ -20,7 +21,7 @@ pub(super) struct TangentFrame<'a> {
 
 impl TangentFrame<'_> {
     /// Returns the direction in which u grows around an entry, at right angles to the normal.
-    pub(super) fn tangent_of(&self, entry: usize, entries: &Entries) -> Guess {
+    pub(super) fn tangent_of(&self, entry: usize, entries: &LayerEntries) -> Guess {
         let Some(uv) = &self.uv else { return Guess { bend: 1, ..Guess::default() } };
         let mut sum = DVec3::ZERO;
         let mut is_open = false;
@@ -46,24 +47,17 @@ impl TangentFrame<'_> {
     }
 
     /// Codes the signs of tangents, the third of their numbers.
-    pub(super) fn code_signs(
-        &self,
-        entries: &Entries,
-        context: usize,
-        coder: &mut impl Coder,
-        numbers: &mut [i32],
-        source: Option<&[i32]>,
-    ) {
-        for entry in 0..entries.len() {
+    pub(super) fn code_signs(&self, job: &LayerJob, coder: &mut impl Coder, numbers: &mut [i32]) {
+        for entry in 0..job.entries.len() {
             let side = self.uv.as_ref().map_or(0, |uv| {
-                let corners = entries.around(entry);
+                let corners = job.entries.around(entry);
                 let area: f64 = corners
                     .map(|at| (uv[next(at)] - uv[at]).perp_dot(uv[previous(at)] - uv[at]))
                     .sum();
                 if area > 0.0 { 1 } else { 2 }
             });
-            let wanted = source.map(|source| source[3 * entry + 2] == 1);
-            numbers[3 * entry + 2] = coder.bit(context + side, wanted).into();
+            let wanted = job.wanted(entry).map(|wanted| wanted[2] == 1);
+            numbers[3 * entry + 2] = coder.bit(job.contexts.bits + side, wanted).into();
         }
     }
 }

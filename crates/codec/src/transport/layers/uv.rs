@@ -6,18 +6,18 @@ use glam::DVec2;
 use super::adjacency::{NONE, next, previous};
 use super::coder::Coder;
 use super::energy::{Energy, LEVELS};
-use super::entries::Entries;
+use super::entries::LayerEntries;
 use super::geometry::BlockGeometry;
-use super::nearest;
+use super::job::{LayerJob, nearest};
 
 /// Contexts of the residuals: kinds of surroundings, levels of the residuals around, components.
 pub(super) const UV_RESIDUALS: usize = KINDS * LEVELS * 2;
 /// Nothing known, one neighbour, one face, several faces.
 const KINDS: usize = 4;
 
-/// What is known around an entry.
+/// Known values around an entry, and predictions from them.
 #[derive(Clone, Copy, Debug, Default)]
-struct Surroundings {
+struct UvSurroundings {
     /// Weighted sum of what the faces predict, and of their weights.
     by_faces: DVec2,
     weight: f64,
@@ -28,36 +28,24 @@ struct Surroundings {
 }
 
 /// Codes the texture coordinates of all entries.
-pub(super) fn code_uvs(
-    geometry: &BlockGeometry,
-    entries: &Entries,
-    (context, mode): (usize, u8),
-    coder: &mut impl Coder,
-    numbers: &mut [i32],
-    most: &[u32],
-    source: Option<&[i32]>,
-) {
+pub(super) fn code_uvs(job: &LayerJob, coder: &mut impl Coder, numbers: &mut [i32]) {
+    let &LayerJob { geometry, entries, layer, .. } = job;
+    let most = &layer.most;
     let mut energy = Energy::new(entries.len());
     let mut uvs: Vec<DVec2> = Vec::with_capacity(entries.len());
-    let mut charts = Charts { geometry, entries, sign: 1.0, mode };
+    let trust = f64::from(layer.mode) / 8.0;
+    let mut charts = Charts { geometry, entries, sign: 1.0, trust };
     let mut last = DVec2::new(f64::from(most[0]), f64::from(most[1])) * 0.5;
     for entry in 0..entries.len() {
         let around = charts.around(entry, &uvs, &mut energy);
-        let (kind, predicted) = match around {
-            Surroundings { faces: 1.., .. } => {
-                (if around.faces == 1 { 2 } else { 3 }, around.by_faces / around.weight)
-            }
-            Surroundings { neighbours: 1.., .. } => {
-                (1, around.by_neighbours / around.neighbours as f64)
-            }
-            _ => (0, last),
-        };
+        let (kind, predicted) = around.predict(last);
         let mut magnitude = energy.around();
         let mut value = [0; 2];
         for k in 0..2 {
             let predicted = nearest(predicted[k], most[k]);
-            let at = context + (kind * LEVELS + Energy::level(magnitude)) * 2 + k;
-            let wanted = source.map(|source| source[2 * entry + k] - predicted);
+            let context = (kind * LEVELS + Energy::level(magnitude)) * 2 + k;
+            let at = job.contexts.residuals + context;
+            let wanted = job.wanted(entry).map(|wanted| wanted[k] - predicted);
             let residual = coder.residual(at, wanted);
             value[k] = predicted.wrapping_add(residual);
             numbers[2 * entry + k] = value[k];
@@ -71,19 +59,33 @@ pub(super) fn code_uvs(
     }
 }
 
+impl UvSurroundings {
+    /// Returns the kind of the surroundings, and the prediction.
+    fn predict(&self, last: DVec2) -> (usize, DVec2) {
+        match *self {
+            Self { faces: 1, .. } => (2, self.by_faces / self.weight),
+            Self { faces: 2.., .. } => (3, self.by_faces / self.weight),
+            Self { neighbours: 1.., .. } => (1, self.by_neighbours / self.neighbours as f64),
+            _ => (0, last),
+        }
+    }
+}
+
 /// Charts of a block, as far as they are known.
 struct Charts<'a> {
     geometry: &'a BlockGeometry<'a>,
-    entries: &'a Entries,
+    entries: &'a LayerEntries,
     /// −1 if the last chart seen is mirrored.
     sign: f64,
-    mode: u8,
+    /// Part to which a chart is expected to stretch on as it did beyond an edge; otherwise it keeps
+    /// angles.
+    trust: f64,
 }
 
 impl Charts<'_> {
     /// Gathers what is known around an entry.
-    fn around(&self, entry: usize, uvs: &[DVec2], energy: &mut Energy) -> Surroundings {
-        let mut all = Surroundings::default();
+    fn around(&self, entry: usize, uvs: &[DVec2], energy: &mut Energy) -> UvSurroundings {
+        let mut all = UvSurroundings::default();
         energy.clear();
         for corner in self.entries.around(entry) {
             let ends = [next(corner), previous(corner)];
@@ -123,8 +125,7 @@ impl Charts<'_> {
             let across = (uv - uv_b + there.x * edge) / -there.y;
             let cross = edge.perp_dot(uv - uv_a);
             up = edge.perp() * if cross < 0.0 { 1.0 } else { -1.0 };
-            let trust = f64::from(self.mode) / 8.0;
-            up = (1.0 - trust) * up + trust * across;
+            up = (1.0 - self.trust) * up + self.trust * across;
         }
         let far = frame.x * frame.x + (1.0 - frame.x) * (1.0 - frame.x) + 2.0 * frame.y * frame.y;
         Some((uv_a + frame.x * edge + frame.y * up, 1.0 / (0.25 + far)))

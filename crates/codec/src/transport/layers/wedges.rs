@@ -36,8 +36,9 @@ pub(super) fn code_wedges(
     for corner in 0..corners {
         let vertex = faces.faces.as_flattened()[corner];
         let wanted = source.map(|source| source.as_flattened()[corner]);
-        let candidates = Candidates::at(corner, faces, &out.of_corner);
-        let is = |wedge: u16, out: &BlockWedges| wanted.map(|w| out.sources[usize::from(wedge)] == w);
+        let candidates = WedgeCandidates::at(corner, faces, &out.of_corner);
+        let is =
+            |wedge: u16, out: &BlockWedges| wanted.map(|w| out.sources[usize::from(wedge)] == w);
         let mut found = None;
         let all = candidates.all(latest[usize::from(vertex)], &before);
         for (wedge, context) in all {
@@ -59,14 +60,14 @@ pub(super) fn code_wedges(
 }
 
 /// Wedges of the faces across the two sides at a corner.
-struct Candidates {
+struct WedgeCandidates {
     known: [Option<u16>; 2],
     /// For each side: 0 if nothing is known of its other end, 1 if both faces use the same wedge
     /// there, 2 if there is a seam.
     ends: [usize; 2],
 }
 
-impl Candidates {
+impl WedgeCandidates {
     fn at(corner: usize, faces: &BlockFaces, of_corner: &[u16]) -> Self {
         // Before this corner everything is known, and nothing from it on.
         let known = |at: usize| Some(of_corner[at]).filter(|&wedge| wedge != NONE);
@@ -98,12 +99,17 @@ impl Candidates {
             [None, None] => (None, None, 0),
         };
         let ends = self.ends[1];
-        let others = std::iter::successors(Some(latest), |&wedge| before.get(usize::from(wedge)).copied())
-            .take_while(|&wedge| wedge != NONE)
-            .filter(move |&wedge| Some(wedge) != first && Some(wedge) != second)
-            .take(OTHERS)
-            .enumerate()
-            .map(|(k, wedge)| (wedge, 30 + k));
-        first.map(|wedge| (wedge, context)).into_iter().chain(second.map(|wedge| (wedge, 27 + ends))).chain(others)
+        let others =
+            std::iter::successors(Some(latest), |&wedge| before.get(usize::from(wedge)).copied())
+                .take_while(|&wedge| wedge != NONE)
+                .filter(move |&wedge| Some(wedge) != first && Some(wedge) != second)
+                .take(OTHERS)
+                .enumerate()
+                .map(|(k, wedge)| (wedge, 30 + k));
+        first
+            .map(|wedge| (wedge, context))
+            .into_iter()
+            .chain(second.map(|wedge| (wedge, 27 + ends)))
+            .chain(others)
     }
 }
