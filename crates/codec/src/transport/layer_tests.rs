@@ -209,6 +209,8 @@ fn seams_stay_seams_and_the_rest_stays_smooth() {
         assert_same(&mesh, &options(block_faces));
         let encoded = Transport::encode(&mesh, &options(block_faces)).unwrap();
         assert!(encoded.blocks > 10);
+        let again = Transport::encode(&mesh, &options(block_faces)).unwrap();
+        assert!(again.bytes == encoded.bytes, "the same bytes each time");
         let decoded = TransportFile::open(&encoded.bytes).unwrap().decode().unwrap();
         let wedges = |mesh: &Mesh| {
             let mut used = mesh.attributes.as_ref().unwrap().corners.concat();
