@@ -1,8 +1,8 @@
 //! Seed files, made by our writers and by hand, so that mutations start near the grammar.
 
 use meshlod_codec::{
-    CompressionTarget, Lattice, Reconstruction, Scheme, Transport,
-    TransportOptions, TransportQuantization, compress,
+    CompressionTarget, Lattice, Reconstruction, Scheme, Transport, TransportOptions,
+    TransportQuantization, compress,
 };
 use meshlod_fixtures as fixtures;
 use meshlod_io::{Precision, Scene, gltf, obj, off, ply, smf, stl};
