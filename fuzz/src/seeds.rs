@@ -1,13 +1,13 @@
 //! Seed files, made by our writers and by hand, so that mutations start near the grammar.
 
 use meshlod_codec::{
-    CompressionTarget, Lattice, Reconstruction, Scheme, Transport,
-    TransportOptions, TransportQuantization, compress,
+    CompressionTarget, Lattice, Reconstruction, Scheme, Transport, TransportOptions,
+    TransportQuantization, compress,
 };
 use meshlod_fixtures as fixtures;
 use meshlod_io::gltf::Skeleton;
 use meshlod_io::{Precision, Scene, Weld, gltf, obj, off, ply, smf, stl};
-use meshlod_mesh::{AttributeBounds, Mesh};
+use meshlod_mesh::{AttributeBounds, Attributes, Labels, Layer, LayerKind, Mesh, WedgeId};
 use meshlod_samples as samples;
 use meshlod_simplify::{self as simplify, History, Options, Progressive, Simplifier};
 
@@ -93,17 +93,57 @@ fn small_gltf(meshes: &[Mesh]) -> Vec<Vec<u8>> {
     all
 }
 
-/// Meshes of one block and of several, on a grid and on a lattice.
+/// Meshes of one block and of several, on a grid and on a lattice, with attributes and labels and
+/// without.
 fn transports() -> Vec<Vec<u8>> {
     let lattice = Lattice::new(-6).expect("an exponent");
-    let meshes =
-        [fixtures::cube(), fixtures::hourglass(), fixtures::moebius(20), samples::knot(90)];
+    let meshes = [
+        fixtures::cube(),
+        fixtures::hourglass(),
+        fixtures::moebius(20),
+        samples::knot(90),
+        fixtures::seam_strip(),
+        fixtures::two_objects(),
+        with_every_layer(fixtures::grid(4)),
+    ];
     let write = |mesh: &Mesh, quantization| {
-        let options = TransportOptions { quantization, block_faces: 16 };
-        Transport::encode(mesh, &options).expect("a fixture fits").bytes
+        let bare = TransportOptions::default();
+        let options = TransportOptions { quantization, block_faces: 16, ..bare };
+        let resources: &[u8] = if mesh.materials.is_some() { b"materials" } else { b"" };
+        let done = Transport::encode_with_resources(mesh, resources, &options);
+        done.expect("a fixture fits").bytes
     };
     let grids = [TransportQuantization::Bits(5), TransportQuantization::Lattice(lattice)];
     meshes.iter().flat_map(|mesh| grids.map(|quantization| write(mesh, quantization))).collect()
+}
+
+/// Gives a mesh layers of all kinds, and materials and objects.
+fn with_every_layer(mut mesh: Mesh) -> Mesh {
+    let kinds = [
+        (LayerKind::Normal, 3),
+        (LayerKind::Uv(0), 2),
+        (LayerKind::Tangent, 4),
+        (LayerKind::Color(0), 3),
+        (LayerKind::Joints(0), 4),
+        (LayerKind::Weights(0), 4),
+        (LayerKind::Other, 2),
+    ];
+    let corners: Vec<_> = mesh.faces.iter().map(|face| face.map(|v| WedgeId(v.0))).collect();
+    let count = mesh.positions.len();
+    let layer = |(kind, width): (LayerKind, usize)| {
+        let value = |at: usize| (at * 7 % 11) as f32 / 11.0;
+        let values = (0..width * count).map(value).collect();
+        Layer { kind, name: format!("{kind:?}"), width, values }
+    };
+    let layers = kinds.map(layer).into();
+    mesh.attributes = Some(Attributes { corners, wedge_count: count, layers });
+    let of_face: Vec<u32> = (0..mesh.faces.len() as u32).map(|face| face / 5 % 2).collect();
+    let labels = |name: &str| {
+        let names = [1, 2].map(|k| format!("{name} {k}")).into();
+        Some(Labels { names, of_face: of_face.clone() })
+    };
+    (mesh.materials, mesh.objects) = (labels("material"), labels("object"));
+    mesh
 }
 
 /// A progressive mesh of all possible contractions.
@@ -122,6 +162,7 @@ fn compressed() -> Vec<Vec<u8>> {
         fixtures::hourglass(),
         fixtures::grid(9),
         samples::torus(300),
+        with_every_layer(fixtures::grid(4)),
     ];
     let schemes = [
         Scheme::Parts(Reconstruction::Centred),
@@ -132,7 +173,11 @@ fn compressed() -> Vec<Vec<u8>> {
     let bounds = AttributeBounds::default();
     let by = |mesh: &Mesh, scheme| compress(mesh, scheme, CompressionTarget::Bits(8), &bounds);
     let done = meshes.iter().flat_map(|mesh| schemes.map(|scheme| by(mesh, scheme)));
-    done.map(|done| done.expect("a mesh").compressed.to_bytes()).collect()
+    done.map(|done| {
+        let compressed = done.expect("a mesh").compressed;
+        compressed.with_resources(b"materials".to_vec()).to_bytes()
+    })
+    .collect()
 }
 
 /// Small meshes in the input format of the target `check`, with its options for attributes and

@@ -39,6 +39,7 @@ mod blocks;
 mod bytes;
 mod header_field;
 mod kd;
+mod labels;
 mod lattice;
 mod parts;
 mod patch;
@@ -57,6 +58,6 @@ pub use resident::{
     StoredPositions, compress, parts_for,
 };
 pub use transport::{
-    LeftOut, Transport, TransportBlock, TransportError, TransportFile, TransportOptions,
-    TransportQuantization, TransportSizes,
+    Transport, TransportError, TransportFile, TransportOptions, TransportQuantization,
+    TransportSizes,
 };

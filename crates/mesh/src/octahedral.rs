@@ -8,11 +8,17 @@ use glam::DVec3;
 pub fn fold(direction: DVec3, bits: u32) -> [u32; 2] {
     let direction = direction.try_normalize().unwrap_or(DVec3::X);
     let most = last(bits);
-    let [x, y] = flat(direction).map(|x| ((x + 1.0) / 2.0 * most).floor());
+    let [x, y] = project(direction, bits).map(f64::floor);
     let near = [[x, y], [x + 1.0, y], [x, y + 1.0], [x + 1.0, y + 1.0]];
     let near = near.map(|at| at.map(|x| x.min(most) as u32));
     let distance = |at: &[u32; 2]| unfold(*at, bits).distance_squared(direction);
     near.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).expect("there are four")
+}
+
+/// Projects a direction of any length but zero to the plane of the codes: between those that are
+/// nearest.
+pub fn project(direction: DVec3, bits: u32) -> [f64; 2] {
+    flat(direction).map(|x| (x + 1.0) / 2.0 * last(bits))
 }
 
 /// Decodes a unit direction from two integers below 2^`bits`, identically on every machine.

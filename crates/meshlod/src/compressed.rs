@@ -1,14 +1,16 @@
-//! Compressed files in one call: a mesh to a file, or a file to a mesh.
+//! A mesh or a scene to a compressed file in one call.
 
 use std::path::{Path, PathBuf};
 
 use meshlod_codec::{
-    CompressError, Compressed, CompressionTarget, Lattice, LatticeError, Malformed, Scheme,
-    Transport, TransportError, TransportFile, TransportOptions, TransportQuantization,
+    CompressError, CompressionTarget, Lattice, LatticeError, Malformed, Scheme, Transport,
+    TransportError, TransportFile, TransportOptions, TransportQuantization,
 };
-use meshlod_io::{IoError, write_file};
+use meshlod_io::{IoError, Scene, write_file};
 use meshlod_mesh::{AttributeBounds, Mesh};
 use thiserror::Error;
+
+use crate::packed_materials::pack_materials;
 
 /// Options for writing a compressed mesh file with [`compress`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,8 +20,7 @@ pub struct CompressOptions {
     /// Scheme by which positions are encoded: any in `.mlq`, by default blocks; only the lattice in
     /// `.mlz`.
     pub scheme: Option<Scheme>,
-    /// Largest errors allowed for normals, texture coordinates and colours, which only `.mlq`
-    /// stores.
+    /// Largest errors allowed for normals, texture coordinates, colours and all other attributes.
     pub attributes: AttributeBounds,
 }
 
@@ -77,8 +78,9 @@ pub enum CompressedFileError {
 /// Compresses a mesh to a file: `.mlq`, which can be drawn from directly, or the smaller `.mlz`,
 /// for transmission.
 ///
-/// Both hold a single surface, without materials and objects; `.mlz` leaves attributes out too. The
-/// file is written whole or not at all. [`codec`](crate::codec) has the parts.
+/// Both hold the faces with their attributes, and the names of materials and objects;
+/// [`compress_scene`] adds the materials themselves. The file is written whole or not at all.
+/// [`codec`](crate::codec) has the parts.
 ///
 /// # Errors
 /// Another suffix, an invalid mesh, a target that the format does not support, and errors of the
@@ -100,10 +102,34 @@ pub fn compress(
     path: &Path,
     options: &CompressOptions,
 ) -> Result<CompressReport, CompressedFileError> {
+    compress_with(mesh, Vec::new(), path, options)
+}
+
+/// Compresses a scene to a file as [`compress`] does, merged into one mesh, with its materials: their
+/// base colours and the textures of those. Decompress it with [`decompress_scene`].
+///
+/// # Errors
+/// As [`compress`].
+pub fn compress_scene(
+    mut scene: Scene,
+    path: &Path,
+    options: &CompressOptions,
+) -> Result<CompressReport, CompressedFileError> {
+    let images = std::mem::take(&mut scene.images);
+    let resources = pack_materials(&scene.materials, &images);
+    compress_with(&scene.into_mesh(), resources, path, options)
+}
+
+fn compress_with(
+    mesh: &Mesh,
+    resources: Vec<u8>,
+    path: &Path,
+    options: &CompressOptions,
+) -> Result<CompressReport, CompressedFileError> {
     let suffix = path.extension().map(|suffix| suffix.to_ascii_lowercase());
     let (bytes, report) = match suffix.as_ref().and_then(|suffix| suffix.to_str()) {
-        Some("mlq") => for_drawing(mesh, options)?,
-        Some("mlz") => for_transport(mesh, options)?,
+        Some("mlq") => for_drawing(mesh, resources, options)?,
+        Some("mlz") => for_transport(mesh, &resources, options)?,
         _ => return Err(CompressedFileError::UnknownFormat(path.to_owned())),
     };
     write_file(path, &bytes)?;
@@ -112,23 +138,26 @@ pub fn compress(
 
 fn for_drawing(
     mesh: &Mesh,
+    resources: Vec<u8>,
     options: &CompressOptions,
 ) -> Result<(Vec<u8>, CompressReport), CompressedFileError> {
     let scheme = options.scheme.unwrap_or(Scheme::Blocks);
     let done = meshlod_codec::compress(mesh, scheme, options.target, &options.attributes)?;
     let (vertices, faces) = (done.compressed.vertices(), done.compressed.faces());
-    let bytes = done.compressed.to_bytes();
+    let bytes = done.compressed.with_resources(resources).to_bytes();
     let report = CompressReport { vertices, faces, bytes: bytes.len(), reached: done.reached };
     Ok((bytes, report))
 }
 
 fn for_transport(
     mesh: &Mesh,
+    resources: &[u8],
     options: &CompressOptions,
 ) -> Result<(Vec<u8>, CompressReport), CompressedFileError> {
     let quantization = transport_quantization(mesh, options)?;
-    let options = TransportOptions { quantization, ..TransportOptions::default() };
-    let done = Transport::encode(mesh, &options)?;
+    let attributes = options.attributes;
+    let options = TransportOptions { quantization, attributes, ..TransportOptions::default() };
+    let done = Transport::encode_with_resources(mesh, resources, &options)?;
     let file = TransportFile::open(&done.bytes).expect("a file just encoded opens");
     let (vertices, faces) = (file.vertices(), file.faces());
     let report = CompressReport { vertices, faces, bytes: done.bytes.len(), reached: true };
@@ -156,36 +185,12 @@ fn transport_quantization(
     }
 }
 
-/// Reads a mesh from a compressed file. The format, `.mlq` or `.mlz`, is recognised by the content.
-///
-/// # Errors
-/// A file that cannot be read, is damaged or has another format.
-pub fn decompress(path: &Path) -> Result<Mesh, CompressedFileError> {
-    let bytes = std::fs::read(path).map_err(|error| IoError::system(path, error))?;
-    decompress_bytes(&bytes)
-        .map_err(|source| CompressedFileError::Malformed { path: path.to_owned(), source })
-}
-
-/// Decodes a mesh from the bytes of a compressed file. The format, `.mlq` or `.mlz`, is recognised
-/// by the content.
-///
-/// # Errors
-/// Bytes that are damaged or have another format.
-pub fn decompress_bytes(bytes: &[u8]) -> Result<Mesh, Malformed> {
-    if bytes.starts_with(&TransportFile::MAGIC) {
-        return TransportFile::open(bytes)?.decode();
-    }
-    if !bytes.starts_with(&Compressed::MAGIC) {
-        return Err(Malformed { at: 0, reason: "not an .mlq or .mlz file".into() });
-    }
-    Compressed::from_bytes(bytes)?.decode()
-}
-
 #[cfg(test)]
 mod tests {
     use meshlod_samples as samples;
 
     use super::*;
+    use crate::decompress;
 
     #[test]
     fn every_format_and_target_comes_back() {
@@ -207,11 +212,8 @@ mod tests {
             assert_eq!(report.bytes as u64, std::fs::metadata(&path).unwrap().len(), "{name}");
             assert_eq!((report.reached, report.faces), (true, mesh.faces.len()), "{name}");
             assert_eq!(decoded.faces.len(), mesh.faces.len(), "{name}");
-            assert_eq!(
-                decoded.attributes.is_some(),
-                name.to_lowercase().ends_with("mlq"),
-                "{name}"
-            );
+            let layers = |mesh: &Mesh| mesh.attributes.as_ref().map(|of| of.layers.len());
+            assert_eq!(layers(&decoded), layers(&mesh), "{name}");
         }
     }
 

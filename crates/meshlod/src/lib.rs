@@ -223,12 +223,14 @@ mod compressed;
 mod conditioned;
 mod constraints;
 mod contacts;
+mod decompressed;
 mod exact_volume;
 mod fuse;
 mod levels;
 mod locks;
 mod materials;
 mod model_scene;
+mod packed_materials;
 mod place;
 mod repair;
 mod scene;
@@ -252,11 +254,12 @@ pub use meshlod_strip as strip;
 pub use appearance::{OwnedPaint, normals_of};
 pub use check_report::{CheckReport, check_report};
 pub use compressed::{
-    CompressOptions, CompressReport, CompressedFileError, compress, decompress, decompress_bytes,
+    CompressOptions, CompressReport, CompressedFileError, compress, compress_scene,
 };
 pub use conditioned::{ConditionedScene, simplify};
 pub use constraints::{Constraints, VertexLocking};
 pub use contacts::scene_locks;
+pub use decompressed::{decompress, decompress_bytes, decompress_scene};
 pub use exact_volume::{
     CutVolumeError, closed_volume, conserve_cut_volume, conserve_volumes, digits_of,
 };
@@ -271,6 +274,7 @@ pub use model_scene::{
     MissingParts, ModelScene, ModelSceneError, PackedScene, PlaceError, PlacedScene, SceneCounts,
     place_scene,
 };
+pub use packed_materials::{BadMaterials, pack_materials, scene_with_materials, unpack_materials};
 pub use place::{moved_at_most, rounding_of_level, world_bounds};
 pub use repair::repair_scene;
 pub use scene::{SceneError, SceneSimplifier, simplify_scene};

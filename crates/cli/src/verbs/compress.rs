@@ -24,8 +24,8 @@ use crate::numbers::{count, faces, percent, value};
 use crate::parse::{self, Bound};
 use crate::session::Session;
 
-/// Compress a mesh for rendering or transmission. No face is removed, and every vertex moves to a
-/// grid: --lock-contacts keeps vertices at one place together, and other locks are refused
+/// Compress a mesh for rendering or transmission, with its attributes, materials and objects. No
+/// face is removed, and every vertex moves to a grid: --lock-contacts keeps vertices at one place together, and other locks are refused
 #[derive(Args)]
 pub struct Compress {
     /// Mesh to read, or -
@@ -95,6 +95,8 @@ struct CompressedFile {
     bytes: Vec<u8>,
     /// Bytes of positions, connectivity and attributes.
     sizes: [usize; 3],
+    /// Bytes of materials with their images.
+    materials: usize,
     vertices: usize,
     faces: usize,
     /// Kind and number of pieces: blocks, parts or meshes.
@@ -112,6 +114,7 @@ impl Compress {
         files::check_apart(&self.output, &[&self.input])?;
         let mut scene = files::read(&self.input, &self.reading, session)?;
         self.check_scene(kind, &scene)?;
+        let is_gltf = scene.source.is_some() && !scene.materials.is_empty();
         let fused = self.constraints.fuse.apply(&mut scene, session);
         session.progress.stage("compressing");
         let start = Instant::now();
@@ -121,6 +124,9 @@ impl Compress {
             Kind::Gltf => self.gltf(scene)?,
         };
         let time = start.elapsed();
+        if is_gltf && kind != Kind::Gltf {
+            session.warn(files::KEPT_OF_GLTF);
+        }
         for left_out in &packed.left_out {
             session.warn(Failure::at(&self.input, left_out));
         }
@@ -166,7 +172,7 @@ impl Compress {
         }
         let AttributeErrorArgs { normal_error, uv_error, color_error } = &self.attributes;
         let bounds = match (kind, self.scheme) {
-            (Kind::Resident, _) => None,
+            (Kind::Resident | Kind::Transport, _) => None,
             (Kind::Gltf, None) => *color_error,
             _ => normal_error.or(*uv_error).or(*color_error),
         };
@@ -213,9 +219,10 @@ impl Compress {
             "bytes_positions": positions,
             "bytes_connectivity": connectivity,
             "bytes_attributes": attributes,
-            "bytes_headers": packed.bytes.len() - positions - connectivity - attributes,
+            "bytes_materials": packed.materials,
+            "bytes_headers": packed.surface() - positions - connectivity - attributes,
             "bytes_total": packed.bytes.len(),
-            "bytes_per_triangle": packed.bytes.len() as f64 / packed.faces as f64,
+            "bytes_per_triangle": packed.surface() as f64 / packed.faces as f64,
             "reduction": packed.reduction(),
             "reached": packed.reached,
             "layers": packed.layers.iter().map(layer_json).collect::<Vec<_>>(),
@@ -239,7 +246,7 @@ impl Compress {
             files::name(&self.output),
             faces(packed.faces),
             count(packed.bytes.len()),
-            packed.bytes.len() as f64 / packed.faces as f64,
+            packed.surface() as f64 / packed.faces as f64,
             count(pieces),
             percent(100.0 * packed.reduction()),
         );
@@ -247,11 +254,19 @@ impl Compress {
             let (bytes, error) = (count(layer.bytes), value(layer.max_error));
             text += &format!("{}: {bytes} bytes, largest error {error}\n", layer.name);
         }
+        if packed.materials > 0 {
+            text += &format!("materials and images: {} bytes\n", count(packed.materials));
+        }
         text + &format!("encode_seconds: {}\n", value(time.as_secs_f64()))
     }
 }
 
 impl CompressedFile {
+    /// Returns the bytes of everything but materials.
+    fn surface(&self) -> usize {
+        self.bytes.len() - self.materials
+    }
+
     fn reduction(&self) -> f64 {
         1.0 - self.sizes[0] as f64 / (12 * self.vertices) as f64
     }
@@ -266,7 +281,7 @@ fn layer_json(layer: &LayerReport) -> Value {
     })
 }
 
-/// Lists what a file with a single surface leaves out of a mesh.
+/// Lists the vertices and faces that a file leaves out of a mesh.
 fn left_out(mesh: &Mesh, faces_there: usize) -> Vec<String> {
     let mut left_out = Vec::new();
     let alone = mesh.used_vertices().iter().filter(|&&used| !used).count();
@@ -277,9 +292,6 @@ fn left_out(mesh: &Mesh, faces_there: usize) -> Vec<String> {
     let odd = mesh.faces.len() - faces_there;
     if odd > 0 {
         left_out.push(format!("left out: {}, degenerate", faces(odd)));
-    }
-    if mesh.materials.is_some() || mesh.objects.is_some() {
-        left_out.push("left out: materials and objects; the file holds a single surface".into());
     }
     left_out
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use meshlod::{Mesh, Scene, decompress_bytes};
+use meshlod::{Mesh, decompress_scene};
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
@@ -34,11 +34,12 @@ impl Decompress {
         session.progress.stage(&format!("reading {}", files::name(&self.input)));
         let bytes = files::read_all(&self.input)?;
         let start = Instant::now();
-        let mesh = decompress_bytes(&bytes).map_err(|error| Failure::at(&self.input, error))?;
-        let time = start.elapsed();
-        let (json, text) = (self.json(&mesh, time), self.text(&mesh, time));
         let name = self.input.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy());
-        let scene = Scene::from_mesh(name, mesh);
+        let scene = decompress_scene(&bytes, name);
+        let scene = scene.map_err(|error| Failure::at(&self.input, error))?;
+        let time = start.elapsed();
+        let mesh = &scene.meshes[0].mesh;
+        let (json, text) = (self.json(mesh, time), self.text(mesh, time));
         files::write(&self.output, &scene, &self.writing, session)?;
         Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
     }

@@ -55,6 +55,74 @@ fn attributes_and_seams_come_back() {
     }
 }
 
+/// A strip of a seamed quad and two more, in two materials, one of them with a texture.
+const TEXTURED: &str = "mtllib two.mtl\no strip\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 .5\n\
+    vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt .25 .5\nvn 0 0 1\nvn .6 0 .8\nusemtl sea\n\
+    f 1/1/1 2/2/1 3/3/1\nf 1/1/1 3/3/1 4/4/1\nusemtl sky\nf 2/5/1 5/2/2 6/3/2\nf 2/5/1 6/3/2 3/4/1\n";
+
+#[test]
+fn attributes_materials_and_textures_come_back_from_both_formats() {
+    let run = Run::new();
+    let material = "newmtl sky\nKd 0 0 1\nnewmtl sea\nKd 0 1 0\nmap_Kd sea.png\n";
+    std::fs::write(run.path("two.mtl"), material).unwrap();
+    run.sample("torus", 400, "torus.obj");
+    run.json(&["render", "torus.obj", "sea.png", "--size", "60x60"]);
+    std::fs::write(run.path("in.obj"), TEXTURED).unwrap();
+    let image = std::fs::metadata(run.path("sea.png")).unwrap().len() as f64;
+    let mut pictures = Vec::new();
+    for file in ["out.mlq", "out.mlz"] {
+        let way = ["--uv-error", "1e-3", "--scheme", "lattice"];
+        let packed = run.json(&[&["compress", "in.obj", file], &way[..]].concat());
+        let layers = packed["layers"].as_array().unwrap();
+        assert_eq!(layers.len(), 2, "{packed}");
+        for layer in layers {
+            assert!(number(layer, "bytes") > 0.0 && number(layer, "max_error") < 0.01, "{packed}");
+        }
+        assert!(number(&packed, "bytes_attributes") > 0.0);
+        let materials = number(&packed, "bytes_materials");
+        assert!(materials > image && materials < image + 200.0, "{packed}");
+        let parts = ["positions", "connectivity", "attributes", "materials", "headers"]
+            .map(|part| number(&packed, &format!("bytes_{part}")));
+        assert_eq!(parts.iter().sum::<f64>(), number(&packed, "bytes_total"));
+
+        run.json(&["decompress", file, "back.glb"]);
+        run.json(&["decompress", file, "back.obj"]);
+        let [was, is] = ["in.obj", "back.obj"].map(|file| run.json(&["info", file]));
+        for key in ["vertices", "faces", "wedges", "attributes", "materials"] {
+            assert_eq!(was[key], is[key], "{file}: {key}");
+        }
+        run.json(&["render", "back.glb", "back.png", "--size", "80x80"]);
+        pictures.push(std::fs::read(run.path("back.png")).unwrap());
+    }
+    // Both round to the same lattice and the same steps.
+    assert!(pictures[0] == pictures[1]);
+    std::fs::write(run.path("in.obj"), TEXTURED.replace("mtllib two.mtl\n", "")).unwrap();
+    run.json(&["compress", "in.obj", "out.mlz", "--scheme", "lattice"]);
+    run.json(&["decompress", "out.mlz", "plain.glb"]);
+    run.json(&["render", "plain.glb", "plain.png", "--size", "80x80"]);
+    assert!(std::fs::read(run.path("plain.png")).unwrap() != pictures[0]);
+}
+
+#[test]
+fn bounds_on_attributes_are_kept_in_both_formats() {
+    let run = Run::new();
+    std::fs::write(run.path("in.obj"), TEXTURED.replace("mtllib two.mtl\n", "")).unwrap();
+    for file in ["out.mlq", "out.mlz"] {
+        let errors = |way: &[&str]| -> Vec<f64> {
+            let packed = run.json(&[&["compress", "in.obj", file], way].concat());
+            let layers = packed["layers"].as_array().unwrap();
+            layers.iter().map(|layer| number(layer, "max_error")).collect()
+        };
+        let coarse = errors(&["--normal-error", "5", "--uv-error", "0.05"]);
+        let fine = errors(&["--normal-error", "0.1", "--uv-error", "1e-5"]);
+        for (coarse, fine) in coarse.iter().zip(&fine) {
+            assert!(fine <= coarse, "{file}: {fine} {coarse}");
+        }
+        assert!(fine.iter().all(|&error| error < 0.1f64.to_radians()), "{file}: {fine:?}");
+        assert!(coarse.iter().sum::<f64>() > fine.iter().sum(), "{file}");
+    }
+}
+
 #[test]
 fn what_is_sent_comes_back() {
     let run = Run::new();
@@ -148,7 +216,7 @@ fn what_is_asked_wrongly_is_wrong_usage() {
         assert_eq!(run.run(&["compress", "in.ply", out]).code, 2);
     }
     let cases: [&[&str]; 12] = [
-        &["out.mlz", "--normal-error", "1"],
+        &["out.mlz", "--normal-error", "-1"],
         &["out.glb", "--color-error", "0.1"],
         &["out.glb", "--scheme", "parts", "--uv-error", "0.1"],
         &["out.mlz", "--scheme", "parts"],

@@ -84,6 +84,12 @@ impl PackedRows {
         numbers
     }
 
+    /// Decodes the integers of all nodes of a row.
+    pub(crate) fn row(&self, row: usize) -> Vec<u32> {
+        let count = self.rows.range(row).len();
+        (0..count).flat_map(|number| self.get(row, number)).collect()
+    }
+
     /// Decodes all integers.
     pub(crate) fn all(&self) -> Vec<u32> {
         let mut numbers = Vec::with_capacity(self.components() * self.rows.nodes());

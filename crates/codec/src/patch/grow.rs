@@ -44,8 +44,8 @@ impl PatchGrower {
         Self { numbers: vec![UNMET; nodes] }
     }
 
-    /// Returns the steps that produce all these faces.
-    pub(super) fn grow(&mut self, faces: &[[u32; 3]]) -> Vec<GrowthStep> {
+    /// Returns the steps that produce all these faces, and the faces in that order.
+    pub(super) fn grow(&mut self, faces: &[[u32; 3]]) -> (Vec<GrowthStep>, Vec<u32>) {
         let mut sides = Sides::new(faces);
         let mut front = Front::default();
         let mut steps = Vec::with_capacity(faces.len() * 3 / 2);
@@ -73,7 +73,7 @@ impl PatchGrower {
             steps.push(GrowthStep { gate: Some(nodes), finds });
         }
         met.into_iter().for_each(|node| self.numbers[node as usize] = UNMET);
-        steps
+        (steps, sides.made)
     }
 
     fn corner(&mut self, node: u32, front: &mut Front, met: &mut Vec<u32>) -> Found {
@@ -106,6 +106,8 @@ impl PatchGrower {
 struct Sides<'a> {
     faces: &'a [[u32; 3]],
     is_made: Vec<bool>,
+    /// The faces that are made, in order.
+    made: Vec<u32>,
     left: usize,
     /// All faces before this one are made.
     first: usize,
@@ -125,6 +127,7 @@ impl<'a> Sides<'a> {
         Self {
             faces,
             is_made: vec![false; faces.len()],
+            made: Vec::with_capacity(faces.len()),
             left: faces.len(),
             first: 0,
             passed: vec![0; sides.len()],
@@ -158,6 +161,7 @@ impl<'a> Sides<'a> {
 
     fn make(&mut self, face: usize) -> usize {
         self.is_made[face] = true;
+        self.made.push(face as u32);
         self.left -= 1;
         face
     }

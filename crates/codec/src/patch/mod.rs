@@ -123,8 +123,8 @@ impl Rows {
 }
 
 impl Patches {
-    /// Encodes faces in patches, and returns the nodes in row order. Within a row they are in the
-    /// order in which its patch meets them.
+    /// Encodes faces in patches, and returns the nodes in row order, and the faces patch by patch.
+    /// Within a row nodes are in the order in which its patch meets them.
     ///
     /// `row_of` is the row of each node. A patch has `rows_per_patch` rows.
     pub(crate) fn new(
@@ -132,10 +132,16 @@ impl Patches {
         row_of: &[u32],
         rows: usize,
         rows_per_patch: usize,
-    ) -> (Self, Vec<u32>) {
+    ) -> (Self, Vec<u32>, Vec<u32>) {
         let members = members(faces, row_of, rows_per_patch, rows.div_ceil(rows_per_patch));
         let mut grower = PatchGrower::new(row_of.len());
-        let grown: Vec<_> = members.iter().map(|faces| grower.grow(faces)).collect();
+        let (mut grown, mut made) = (Vec::new(), Vec::with_capacity(faces.len()));
+        for members in &members {
+            let own: Vec<_> = members.iter().map(|&face| faces[face as usize]).collect();
+            let (steps, order) = grower.grow(&own);
+            grown.push(steps);
+            made.extend(order.iter().map(|&at| members[at as usize]));
+        }
         let order = in_rows(&grown, row_of, rows, rows_per_patch);
         let rows = Rows::new(order.iter().map(Vec::len));
         let mut numbers = vec![0; row_of.len()];
@@ -149,7 +155,7 @@ impl Patches {
             this.push(steps, faces.len(), place);
         }
         this.bits.fill_byte();
-        (this, order.concat())
+        (this, order.concat(), made)
     }
 
     pub(crate) fn rows(&self) -> &Rows {
@@ -162,7 +168,12 @@ impl Patches {
     }
 
     pub(crate) fn face_count(&self) -> usize {
-        self.heads.iter().map(|head| head.faces as usize).sum()
+        self.face_counts().sum()
+    }
+
+    /// Returns the number of faces of each patch.
+    pub(crate) fn face_counts(&self) -> impl Iterator<Item = usize> {
+        self.heads.iter().map(|head| head.faces as usize)
     }
 
     /// Decodes the faces of one patch, as nodes in row order.
@@ -230,11 +241,11 @@ fn members(
     row_of: &[u32],
     rows_per_patch: usize,
     patches: usize,
-) -> Vec<Vec<[u32; 3]>> {
+) -> Vec<Vec<u32>> {
     let mut members = vec![Vec::new(); patches];
-    for &face in faces {
-        let of = face.map(|node| row_of[node as usize] as usize / rows_per_patch);
-        members[of[0].min(of[1]).min(of[2])].push(face);
+    for (at, face) in (0..).zip(faces) {
+        let of = face.map(|node: u32| row_of[node as usize] as usize / rows_per_patch);
+        members[of[0].min(of[1]).min(of[2])].push(at);
     }
     members
 }

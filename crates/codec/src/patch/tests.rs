@@ -32,7 +32,7 @@ fn all_faces(patches: &Patches) -> Result<Vec<[u32; 3]>, Malformed> {
 
 fn assert_same(faces: &[[u32; 3]], row_of: &[u32], rows_per_patch: usize) -> Patches {
     let rows = row_of.iter().max().map_or(0, |&row| row as usize + 1);
-    let (patches, order) = Patches::new(faces, row_of, rows, rows_per_patch);
+    let (patches, order, _) = Patches::new(faces, row_of, rows, rows_per_patch);
     let mut sorted = order.clone();
     sorted.sort_unstable();
     assert!(sorted.iter().zip(0..row_of.len()).all(|(&node, at)| node as usize == at));
@@ -97,7 +97,7 @@ fn damaged_bits_are_refused_or_give_other_faces() {
     let mesh = samples::gyroid(3000);
     let row_of = rows_of(&mesh);
     let rows = row_of.iter().max().map_or(0, |&row| row as usize + 1);
-    let (patches, _) = Patches::new(&faces_of(&mesh), &row_of, rows, 4);
+    let (patches, _, _) = Patches::new(&faces_of(&mesh), &row_of, rows, 4);
     let mut bytes = Vec::new();
     patches.store(&mut bytes);
     let mut refused = 0;

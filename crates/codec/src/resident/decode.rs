@@ -2,6 +2,7 @@
 
 use meshlod_mesh::{Attributes, Mesh, VertexId, WedgeId, merge_equal_wedges};
 
+use super::face_labels::FaceLabels;
 use super::{Compressed, WedgeVertices};
 use crate::attributes::PackedLayer;
 use crate::bytes::Malformed;
@@ -30,6 +31,9 @@ impl Compressed {
                 merge_equal_wedges(&mut mesh);
             }
         }
+        let [materials, objects] = &self.labels;
+        mesh.materials = materials.as_ref().map(FaceLabels::all);
+        mesh.objects = objects.as_ref().map(FaceLabels::all);
         Ok(mesh)
     }
 
@@ -65,6 +69,9 @@ impl Compressed {
             let layers = self.layers.iter().map(|layer| layer.decode_some(&places)).collect();
             mesh.attributes = Some(Attributes { corners, wedge_count: nodes.len(), layers });
         }
+        let [materials, objects] = &self.labels;
+        mesh.materials = materials.as_ref().map(|labels| labels.of_patch(at));
+        mesh.objects = objects.as_ref().map(|labels| labels.of_patch(at));
         Ok(mesh)
     }
 }

@@ -2,13 +2,14 @@
 
 use meshlod_mesh::{AttributeBounds, Mesh, VertexId, WedgeId};
 
+use super::face_labels::FaceLabels;
 use super::nodes::Nodes;
 use super::weld_parts::WeldExceptions;
 use super::{
     BLOCKS_PER_PATCH, CompressError, Compressed, Compression, MAX_FACES, MAX_VALUES, Positions,
     WedgeVertices,
 };
-use crate::attributes::PackedLayer;
+use crate::attributes::{LayerCoding, PackedLayer};
 use crate::blocks::{Accuracy, VertexBlocks};
 use crate::kd::blocks_of;
 use crate::lattice::{Lattice, LatticeBlocks};
@@ -63,7 +64,8 @@ impl Compressed {
     ) -> Result<Compression, CompressError> {
         check(mesh)?;
         let nodes = Nodes::of_parts(mesh, parts);
-        let (patches, order) = Patches::new(&nodes.faces, &nodes.row_of, nodes.rows, 1);
+        let (patches, order, made) = Patches::new(&nodes.faces, &nodes.row_of, nodes.rows, 1);
+        let labels = FaceLabels::of_mesh(mesh, &nodes, &patches, &made);
         let vertices: Vec<_> = order.iter().map(|&node| nodes.vertex_of[node as usize]).collect();
         let positions = PackedParts::new(parts, patches.rows().clone(), &vertices);
         let mut number = vec![0; order.len()];
@@ -77,7 +79,8 @@ impl Compressed {
         let mut is_first = |v: &VertexId| !std::mem::replace(&mut seen[v.index()], true);
         let vertices = vertices.into_iter().filter(&mut is_first).collect();
         let positions = Positions::Parts(positions);
-        let compressed = Self { positions, patches, wedge_vertices, layers };
+        let resources = Vec::new();
+        let compressed = Self { positions, patches, wedge_vertices, layers, labels, resources };
         Ok(Compression { compressed, vertices, reached: true })
     }
 
@@ -93,8 +96,9 @@ impl Compressed {
         let nodes = Nodes::of_blocks(mesh, &blocks);
         let has_extra = nodes.vertex_of.len() > blocks.len();
         let rows_per_patch = BLOCKS_PER_PATCH * if has_extra { 2 } else { 1 };
-        let (patches, order) =
+        let (patches, order, made) =
             Patches::new(&nodes.faces, &nodes.row_of, nodes.rows, rows_per_patch);
+        let labels = FaceLabels::of_mesh(mesh, &nodes, &patches, &made);
         let vertex = |&node: &u32| nodes.vertex_of[node as usize];
         let is_first = |node: &&u32| !has_extra || nodes.row_of[**node as usize].is_multiple_of(2);
         let vertices: Vec<_> = order.iter().filter(is_first).map(vertex).collect();
@@ -104,7 +108,8 @@ impl Compressed {
         };
         let layers = pack_layers(mesh, &nodes, &order, patches.rows(), bounds);
         let positions = positions(&vertices)?;
-        let compressed = Self { positions, patches, wedge_vertices, layers };
+        let resources = Vec::new();
+        let compressed = Self { positions, patches, wedge_vertices, layers, labels, resources };
         Ok(Compression { compressed, vertices, reached: true })
     }
 }
@@ -120,7 +125,7 @@ pub(super) fn check(mesh: &Mesh) -> Result<(), CompressError> {
     let mut values = 0;
     for layer in mesh.attributes.iter().flat_map(|attributes| &attributes.layers) {
         values += layer.width;
-        if values > MAX_VALUES || !PackedLayer::is_storable(layer) {
+        if values > MAX_VALUES || !LayerCoding::is_storable(layer) {
             return Err(CompressError::Layer(layer.name.clone()));
         }
         if let Some(at) = layer.values.iter().position(|x| !x.is_finite()) {

@@ -1,5 +1,6 @@
 //! Reading and writing `.mlq` files, which docs/formats/mlq.md describes.
 
+use super::face_labels::FaceLabels;
 use super::weld_parts::WeldExceptions;
 use super::{BLOCKS_PER_PATCH, Compressed, MAX_VALUES, Positions, WedgeVertices};
 use crate::attributes::{PackedLayer, PackedRows};
@@ -13,6 +14,11 @@ const VERSION: u32 = 1;
 pub(super) const HEADER: usize = SUMS + 3 * SUM + 4;
 const SUMS: usize = 8 + 4 + 1 + 1 + 2;
 const SUM: usize = 8 + 4;
+/// Size of what stands before labels and resources: their length and checksum.
+pub(super) const MORE: usize = SUM;
+/// Flags: some vertex has a second wedge; labels or resources follow the attributes.
+const HAS_EXTRA: u8 = 1;
+const HAS_MORE: u8 = 2;
 
 impl Compressed {
     /// The first eight bytes of every `.mlq` file.
@@ -37,7 +43,8 @@ impl Compressed {
         bytes.extend(Self::MAGIC);
         bytes.extend(VERSION.to_le_bytes());
         bytes.push(self.positions.tag());
-        bytes.push(matches!(self.wedge_vertices, WedgeVertices::Extra(_)).into());
+        let has_extra = u8::from(matches!(self.wedge_vertices, WedgeVertices::Extra(_)));
+        bytes.push(has_extra | if self.has_more() { HAS_MORE } else { 0 });
         bytes.extend((self.layers.len() as u16).to_le_bytes());
         for section in &sections {
             bytes.extend((section.len() as u64).to_le_bytes());
@@ -45,6 +52,14 @@ impl Compressed {
         }
         bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
         sections.iter().for_each(|section| bytes.extend(section));
+        if self.has_more() {
+            let mut more = Vec::new();
+            self.labels.iter().for_each(|labels| FaceLabels::store(labels.as_ref(), &mut more));
+            more.extend(&self.resources);
+            bytes.extend((more.len() as u64).to_le_bytes());
+            bytes.extend(crc32fast::hash(&more).to_le_bytes());
+            bytes.extend(more);
+        }
         bytes
     }
 
@@ -62,6 +77,10 @@ impl Compressed {
             let hash = crc32fast::hash(bytes.get(at..end).unwrap_or_default());
             bytes[sum + 8..sum + SUM].copy_from_slice(&hash.to_le_bytes());
             at = end;
+        }
+        if let Some(more) = bytes.get_mut(at..).filter(|more| more.len() >= MORE) {
+            let hash = crc32fast::hash(&more[MORE..]);
+            more[SUM - 4..SUM].copy_from_slice(&hash.to_le_bytes());
         }
         let hash = crc32fast::hash(&bytes[..HEADER - 4]);
         bytes[HEADER - 4..HEADER].copy_from_slice(&hash.to_le_bytes());
@@ -94,33 +113,54 @@ impl Compressed {
         if crc32fast::hash(head).to_le_bytes() != sum {
             return Err(reader.wrong("the header is damaged: its checksum does not match"));
         }
-        let (scheme, has_extra, count) = (reader.u8()?, reader.u8()?, reader.u16()?);
-        if has_extra > 1 {
-            return Err(reader.wrong(format!("unknown flags {has_extra:#x}")));
+        let (scheme, flags, count) = (reader.u8()?, reader.u8()?, reader.u16()?);
+        if flags > HAS_EXTRA | HAS_MORE {
+            return Err(reader.wrong(format!("unknown flags {flags:#x}")));
         }
+        let has_extra = flags & HAS_EXTRA != 0;
         let mut sums = [(0, 0); 3];
         for sum in &mut sums {
             *sum = (reader.u64()?, reader.u32()?);
         }
         reader.take(4)?;
-        let mut section =
-            |what: &str, (len, sum): (u64, u32)| {
-                let section = reader.section(usize::try_from(len).unwrap_or(usize::MAX))?;
-                match crc32fast::hash(section.rest()) == sum {
-                    true => Ok(section),
-                    false => Err(section
-                        .wrong(format!("the {what} are damaged: their checksum does not match"))),
-                }
-            };
-        let positions = section("positions", sums[0])?;
-        let faces = section("faces", sums[1])?;
-        let attributes = section("attributes", sums[2])?;
+        let positions = section(&mut reader, "positions", sums[0])?;
+        let faces = section(&mut reader, "faces", sums[1])?;
+        let attributes = section(&mut reader, "attributes", sums[2])?;
+        let more = match flags & HAS_MORE {
+            0 => None,
+            _ => {
+                let sum = (reader.u64()?, reader.u32()?);
+                Some(section(&mut reader, "materials", sum)?)
+            }
+        };
         reader.finish()?;
         let positions = whole(positions, |reader| Positions::restore(scheme, reader))?;
         let (patches, wedge_vertices) =
-            whole(faces, |reader| restore_faces(reader, &positions, has_extra == 1))?;
+            whole(faces, |reader| restore_faces(reader, &positions, has_extra))?;
         let layers = whole(attributes, |reader| restore_layers(reader, count, patches.rows()))?;
-        Ok(Self { positions, patches, wedge_vertices, layers })
+        let (mut labels, mut resources) = ([None, None], Vec::new());
+        if let Some(mut more) = more {
+            for labels in &mut labels {
+                *labels = FaceLabels::restore(&patches, &mut more)?;
+            }
+            resources = more.rest().to_vec();
+        }
+        Ok(Self { positions, patches, wedge_vertices, layers, labels, resources })
+    }
+}
+
+/// Reads a section and checks its sum, given its length and that.
+fn section<'a>(
+    reader: &mut Reader<'a>,
+    what: &str,
+    (len, sum): (u64, u32),
+) -> Result<Reader<'a>, Malformed> {
+    let section = reader.section(usize::try_from(len).unwrap_or(usize::MAX))?;
+    match crc32fast::hash(section.rest()) == sum {
+        true => Ok(section),
+        false => {
+            Err(section.wrong(format!("the {what} are damaged: their checksum does not match")))
+        }
     }
 }
 

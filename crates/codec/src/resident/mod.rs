@@ -4,6 +4,7 @@
 mod decode;
 mod encode;
 mod error;
+mod face_labels;
 mod file;
 mod nodes;
 mod positions;
@@ -15,6 +16,7 @@ mod wedge_vertices;
 mod weld_parts;
 
 pub use self::error::CompressError;
+use self::face_labels::FaceLabels;
 use self::positions::Positions;
 pub use self::stored::{StoredMesh, StoredPositions};
 pub use self::target::{Compression, CompressionTarget, Scheme, compress, parts_for};
@@ -26,13 +28,16 @@ use crate::patch::Patches;
 /// Compressed mesh in memory, of which any block of vertices and any patch of faces can be decoded
 /// alone.
 ///
-/// It holds the faces and what they use, in an order of its own, but no materials or objects.
+/// It holds the faces and what they use, in an order of its own, with their materials and objects.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compressed {
     positions: Positions,
     patches: Patches,
     wedge_vertices: WedgeVertices,
     layers: Vec<PackedLayer>,
+    /// Materials and objects.
+    labels: [Option<FaceLabels>; 2],
+    resources: Vec<u8>,
 }
 
 /// Size of a compressed mesh by content, in bytes.
@@ -44,8 +49,11 @@ pub struct CompressedSizes {
     pub connectivity: usize,
     /// Size of all attribute layers in bytes.
     pub attributes: usize,
-    /// Size of the whole `.mlq` file in bytes: positions, connectivity, attributes and the file
-    /// header.
+    /// Size of the materials and objects of faces in bytes.
+    pub labels: usize,
+    /// Size of the resources in bytes.
+    pub resources: usize,
+    /// Size of the whole `.mlq` file in bytes: all of these and the file header.
     pub total: usize,
 }
 
@@ -64,8 +72,30 @@ impl Compressed {
         let positions = self.positions.bytes();
         let connectivity = self.patches.bytes() + self.wedge_vertices.bytes();
         let attributes = self.layers.iter().map(PackedLayer::bytes).sum();
-        let total = file::HEADER + positions + connectivity + attributes;
-        CompressedSizes { positions, connectivity, attributes, total }
+        let (mut labels, mut headers) = (0, file::HEADER);
+        if self.has_more() {
+            labels = self.labels.iter().map(|labels| FaceLabels::bytes(labels.as_ref())).sum();
+            headers += file::MORE;
+        }
+        let resources = self.resources.len();
+        let total = headers + positions + connectivity + attributes + labels + resources;
+        CompressedSizes { positions, connectivity, attributes, labels, resources, total }
+    }
+
+    /// Attaches bytes, such as materials with their images, that mean nothing to this crate. They
+    /// replace earlier ones.
+    pub fn with_resources(self, resources: Vec<u8>) -> Self {
+        Self { resources, ..self }
+    }
+
+    /// Returns the bytes attached by [`Compressed::with_resources`].
+    pub fn resources(&self) -> &[u8] {
+        &self.resources
+    }
+
+    /// Returns true if there are labels or resources.
+    fn has_more(&self) -> bool {
+        self.labels != [None, None] || !self.resources.is_empty()
     }
 
     /// Returns the number of vertices of the mesh.

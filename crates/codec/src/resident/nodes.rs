@@ -8,6 +8,8 @@ use crate::parts::Parts;
 /// Nodes of a mesh, each in a row.
 pub(super) struct Nodes {
     pub(super) faces: Vec<[u32; 3]>,
+    /// Face of the mesh that each face is.
+    pub(super) face_of: Vec<u32>,
     /// Vertex of each node.
     pub(super) vertex_of: Vec<VertexId>,
     /// Vertex or wedge of each node.
@@ -49,8 +51,14 @@ impl Nodes {
         let corners = attributes.map(|attributes| &attributes.corners);
         let count = attributes.map_or(mesh.positions.len(), |of| of.wedge_count);
         let mut number_of = vec![None; count];
-        let (faces, vertex_of) = (Vec::with_capacity(mesh.faces.len()), Vec::new());
-        let mut this = Self { faces, vertex_of, corner_of: vec![], row_of: vec![], rows: 0 };
+        let mut this = Self {
+            faces: Vec::with_capacity(mesh.faces.len()),
+            face_of: Vec::with_capacity(mesh.faces.len()),
+            vertex_of: Vec::new(),
+            corner_of: Vec::new(),
+            row_of: Vec::new(),
+            rows: 0,
+        };
         for group in groups {
             let first = this.vertex_of.len();
             for face in group {
@@ -65,6 +73,7 @@ impl Nodes {
                     })
                 };
                 this.faces.push([0, 1, 2].map(node));
+                this.face_of.push(face.0);
             }
             this.corner_of[first..].iter().for_each(|&corner| number_of[corner as usize] = None);
             this.row_of.resize(this.vertex_of.len(), this.rows as u32);

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use meshlod_fixtures as fixtures;
 use meshlod_mesh::{
-    AttributeBounds, Attributes, Connectivity, Layer, LayerKind, Mesh, VertexId, WedgeId,
+    AttributeBounds, Attributes, Connectivity, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId,
     face_components,
 };
 use meshlod_samples as samples;
@@ -31,6 +31,9 @@ fn meshes() -> Vec<Mesh> {
             values: (0..count).flat_map(uv).collect(),
         }],
     });
+    let names = ["a", "b", "c"].map(String::from).into();
+    let of_face = (0..seamed.faces.len() as u32).map(|f| f / 7 % 3).collect();
+    seamed.materials = Some(Labels { names, of_face });
     vec![
         samples::sphere(3000),
         samples::gyroid(4000),
@@ -62,14 +65,17 @@ fn compressions(mesh: &Mesh) -> Vec<Compression> {
     ]
 }
 
-/// Faces of a mesh as positions and values of their corners, from the least corner on, sorted.
+/// Faces of a mesh as positions and values of their corners, from the least corner on, with their
+/// material and object, sorted.
 fn drawn(mesh: &Mesh, at: impl Fn(f64) -> f64) -> Vec<[String; 3]> {
     let corner = |face: usize, k: usize| {
         let place = mesh.positions[mesh.faces[face][k].index()].map(&at);
         let values = mesh.attributes.iter().flat_map(|of| {
             of.layers.iter().map(move |layer| layer.of(of.corners[face][k]).to_vec())
         });
-        format!("{place:?} {:?}", values.collect::<Vec<_>>())
+        let labels = [&mesh.materials, &mesh.objects];
+        let labels = labels.map(|of| of.as_ref().map(|of| &of.names[of.of(face) as usize]));
+        format!("{place:?} {:?} {labels:?}", values.collect::<Vec<_>>())
     };
     let turned = |face: usize| {
         let mut corners = [0, 1, 2].map(|k| corner(face, k));
@@ -181,6 +187,27 @@ fn patches_decoded_alone_are_the_mesh() {
             let mut alone: Vec<_> = patches.flat_map(|patch| drawn(&patch, |x| x)).collect();
             alone.sort_unstable();
             assert!(alone == drawn(&compressed.decode().unwrap(), |x| x));
+        }
+    }
+}
+
+#[test]
+fn resources_come_back_and_are_covered_by_a_checksum() {
+    for mesh in [samples::sphere(200), meshes().remove(3)] {
+        for compressed in by_schemes(&mesh) {
+            let bare = compressed.to_bytes().len();
+            let compressed = compressed.with_resources(vec![9; 500]);
+            let bytes = compressed.to_bytes();
+            assert_eq!(bytes.len(), compressed.sizes().total);
+            assert!(bytes.len() > bare + 499);
+            let read = Compressed::from_bytes(&bytes).unwrap();
+            assert!(read == compressed && read.resources() == [9; 500]);
+            let mut damaged = bytes.clone();
+            *damaged.last_mut().unwrap() ^= 1;
+            assert!(Compressed::from_bytes(&damaged).is_err());
+            assert!(Compressed::from_bytes(&bytes[..bytes.len() - 1]).is_err());
+            Compressed::seal(&mut damaged);
+            assert_eq!(Compressed::from_bytes(&damaged).unwrap().resources()[499], 8);
         }
     }
 }

@@ -3,11 +3,15 @@
 use glam::{BVec4A, Vec4};
 
 use super::border::{Border, NODES, Step};
-use super::encode::{CHUNK_BITS, JOINT_LOW_BITS, LENGTH_BITS};
 use super::gate::{CONTEXTS, Gate, NEARBY, NEARBY_BITS, NODE_BITS, context, node_at_offset};
-use super::models::{ESCAPE, MAX_RESIDUAL, Models, RESIDUAL_BITS, STEP_BITS};
+use super::header::{OpenHeader, max_values};
+use super::layers::{
+    BlockGeometry, BlockLayers, LayerTables, LayersFormat, SymbolReader, code_block,
+};
+use super::models::{Models, STEP_BITS};
 use super::predict::{CellVec, LANES, MAX_CELLS, Prediction, SpreadScales};
 use super::rans::Symbols;
+use super::read::{any_number, number, residual};
 use super::weld_blocks::checksum;
 use crate::bytes::Malformed;
 
@@ -26,6 +30,8 @@ pub(super) struct Lane {
     pub(super) faces: Vec<[u16; 3]>,
     /// Tags of vertices that are not welded by cell alone.
     tags: Vec<(u16, u32)>,
+    /// Attributes and labels, if the file has any.
+    pub(super) layers: Option<BlockLayers>,
 }
 
 /// Bytes of a block, and its number of faces: at most [`super::border::MAX_FACES`].
@@ -53,13 +59,13 @@ impl Decoder {
     pub(super) fn decode(
         &mut self,
         blocks: &[BlockBytes],
-        models: &Models,
-        first_bits: [u8; 3],
+        header: &OpenHeader,
     ) -> Result<&[Lane], (usize, Malformed)> {
+        let models = &header.models;
         let mut symbols: [Symbols; LANES] = std::array::from_fn(|_| Symbols::empty());
         for (k, block) in blocks.iter().enumerate() {
             symbols[k] = Symbols::new(block.bytes).map_err(|wrong| (k, wrong))?;
-            self.lanes[k].begin(&mut symbols[k], first_bits);
+            self.lanes[k].begin(&mut symbols[k], header.first_bits);
         }
         for lane in &mut self.lanes[blocks.len()..] {
             lane.gates.clear();
@@ -67,7 +73,13 @@ impl Decoder {
         connect(&mut self.lanes[..blocks.len()], &mut symbols, blocks, models);
         let inside = place(&mut self.lanes, &mut symbols, models);
         for (k, lane) in self.lanes[..blocks.len()].iter_mut().enumerate() {
-            lane.finish(&mut symbols[k], inside[k]).map_err(|wrong| (k, wrong))?;
+            lane.read_tags(&mut symbols[k]).map_err(|wrong| (k, wrong))?;
+            if let Some((format, tables)) = &header.layers {
+                let most = max_values(blocks[k].bytes.len());
+                let read = lane.read_layers(&mut symbols[k], (format, tables), most);
+                read.map_err(|wrong| (k, wrong))?;
+            }
+            lane.finish(&symbols[k], inside[k]).map_err(|wrong| (k, wrong))?;
         }
         Ok(&self.lanes[..blocks.len()])
     }
@@ -120,7 +132,8 @@ fn place(
                 _ => predictions.of(k),
             };
             places[k] = prediction.take(|_, nearest, (class, low_bits)| {
-                let residual = residual(&mut symbols[k], models, class, low_bits);
+                let table = &models.residuals[class];
+                let residual = residual(&mut symbols[k], table, low_bits);
                 let cell = nearest.wrapping_add(residual);
                 outside[k] |= cell;
                 cell & (MAX_CELLS - 1)
@@ -144,6 +157,7 @@ impl Lane {
             cells: cells.try_into().expect("as many as there are"),
             faces: Vec::new(),
             tags: Vec::new(),
+            layers: None,
         }
     }
 
@@ -160,8 +174,7 @@ impl Lane {
         self.cells[0] = CellVec::from(first).extend(0.0);
     }
 
-    fn finish(&mut self, symbols: &mut Symbols, is_inside: bool) -> Result<(), Malformed> {
-        self.read_tags(symbols)?;
+    fn finish(&self, symbols: &Symbols, is_inside: bool) -> Result<(), Malformed> {
         symbols.finish(checksum(self.cells()))?;
         if is_inside { Ok(()) } else { Err(wrong("a vertex is outside the grid")) }
     }
@@ -216,6 +229,21 @@ impl Lane {
         Ok(())
     }
 
+    /// Decodes attributes and labels; the block has at most this many values.
+    fn read_layers(
+        &mut self,
+        symbols: &mut Symbols,
+        (format, tables): (&LayersFormat, &LayerTables),
+        max_values: usize,
+    ) -> Result<(), Malformed> {
+        let points = self.cells().map(|cell| cell.as_dvec3()).collect();
+        let geometry = BlockGeometry::new(&self.faces, points);
+        let mut reader = SymbolReader::new(tables, symbols);
+        let layers = code_block(&geometry, format, &mut reader, max_values, None);
+        self.layers = Some(layers.ok_or_else(|| wrong("a block has impossible attributes"))?);
+        Ok(())
+    }
+
     /// Lists which vertices may also be in other blocks, or in this one again.
     pub(super) fn sharing(&self, out: &mut Vec<Sharing>) {
         out.clear();
@@ -227,33 +255,6 @@ impl Lane {
             out[usize::from(vertex)] = Sharing::Shared(tag);
         }
     }
-}
-
-/// Decodes the difference of a coordinate from its prediction.
-#[inline(always)]
-fn residual(symbols: &mut Symbols, models: &Models, class: usize, low_bits: u32) -> i32 {
-    let (symbol, size, offset) = models.residuals[class].at(symbols.place(RESIDUAL_BITS));
-    if symbol == ESCAPE || low_bits > u32::from(JOINT_LOW_BITS) {
-        return rare(symbols, (symbol, size, offset), low_bits);
-    }
-    let low = symbols.consume(RESIDUAL_BITS, size, offset, low_bits);
-    ((symbol as i32 - MAX_RESIDUAL) << low_bits) + low as i32 - (1 << low_bits >> 1)
-}
-
-#[cold]
-fn rare(symbols: &mut Symbols, (symbol, size, offset): (usize, u32, u32), low_bits: u32) -> i32 {
-    let with = if low_bits <= u32::from(JOINT_LOW_BITS) { low_bits } else { 0 };
-    let mut low = symbols.consume(RESIDUAL_BITS, size, offset, with);
-    if with < low_bits {
-        low = number(symbols, low_bits);
-    }
-    let mut far = symbol as i32 - MAX_RESIDUAL;
-    if symbol == ESCAPE {
-        let is_below = symbols.uniform(1) == 1;
-        far = any_number(symbols) as i32;
-        far = if is_below { far.wrapping_neg() } else { far };
-    }
-    far.wrapping_shl(low_bits).wrapping_add(low as i32).wrapping_sub(1 << low_bits >> 1)
 }
 
 #[cold]
@@ -274,23 +275,6 @@ fn other(border: &Border, at: u16, symbols: &mut Symbols) -> u16 {
         0,
     );
     border.known(number(symbols, NODE_BITS) as u16)
-}
-
-fn number(symbols: &mut Symbols, bits: u32) -> u32 {
-    let mut number = 0;
-    let mut at = 0;
-    while at < bits {
-        let chunk = (bits - at).min(CHUNK_BITS);
-        number |= symbols.uniform(chunk) << at;
-        at += chunk;
-    }
-    number
-}
-
-/// Decodes a number of any length.
-fn any_number(symbols: &mut Symbols) -> u32 {
-    let bits = symbols.uniform(u32::from(LENGTH_BITS));
-    number(symbols, bits)
 }
 
 fn wrong(reason: &str) -> Malformed {

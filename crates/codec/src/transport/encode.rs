@@ -27,6 +27,7 @@ impl Residual {
         (symbol, far, (raised & ((1 << self.low_bits) - 1)) as u16)
     }
 
+    /// Appends the symbols of the residual.
     fn push(&self, table: &ResidualTable, symbols: &mut Vec<Symbol>) {
         let (symbol, far, low) = self.symbol();
         let with = if self.low_bits <= JOINT_LOW_BITS { self.low_bits } else { 0 };
@@ -52,7 +53,18 @@ pub(super) const LENGTH_BITS: u8 = 5;
 /// Greatest number of bits that are coded at once.
 pub(super) const CHUNK_BITS: u32 = 12;
 
-fn push_number(number: u32, bits: u32, symbols: &mut Vec<Symbol>) {
+/// Encodes a residual with this many low bits in a table.
+pub(super) fn push_residual(
+    value: i32,
+    low_bits: u8,
+    table: &ResidualTable,
+    symbols: &mut Vec<Symbol>,
+) {
+    Residual { value, class: 0, low_bits }.push(table, symbols);
+}
+
+/// Encodes a number of a known length.
+pub(super) fn push_number(number: u32, bits: u32, symbols: &mut Vec<Symbol>) {
     let mut at = 0;
     while at < bits {
         let chunk = (bits - at).min(CHUNK_BITS);

@@ -3,26 +3,37 @@
 mod border;
 mod decode;
 mod encode;
+mod encoded_layers;
 mod face_blocks;
 mod file;
 mod fit;
 mod gate;
+mod gather;
 mod grid;
+mod header;
+#[cfg(test)]
+mod hostile_layer_tests;
+#[cfg(test)]
+mod layer_tests;
+mod layers;
 mod models;
 mod predict;
 mod rans;
+mod read;
+mod symbol_bits;
 #[cfg(test)]
 mod tests;
 mod walk;
 mod weld_blocks;
 mod write;
 
-pub use file::{TransportBlock, TransportFile};
-use meshlod_mesh::VertexId;
+pub use file::TransportFile;
+use meshlod_mesh::{AttributeBounds, MeshError, VertexId};
 use thiserror::Error;
 
 use self::border::MAX_FACES;
 use self::grid::MAX_BITS;
+use crate::attributes::LayerReport;
 use crate::lattice::Lattice;
 
 /// Encoded `.mlz` file, whose blocks can be decoded independently.
@@ -34,30 +45,23 @@ pub struct Transport {
     pub blocks: usize,
     /// Size of the `.mlz` file by content, in bytes.
     pub sizes: TransportSizes,
-    /// Parts of the input mesh that the file does not store.
-    pub left_out: Vec<LeftOut>,
+    /// Size and largest error of each attribute layer.
+    pub layers: Vec<LayerReport>,
+    /// Number of vertices of the input mesh that the file does not store: no face uses them.
+    pub unused_vertices: usize,
 }
 
-/// Part of a mesh that an `.mlz` file does not store.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LeftOut {
-    /// Normals, texture coordinates and all other attributes.
-    Attributes,
-    /// Materials assigned to faces.
-    Materials,
-    /// Objects that faces belong to.
-    Objects,
-    /// Vertices that no face uses.
-    UnusedVertices,
-}
-
-/// Size of an `.mlz` file by content, in bytes; the three numbers add up to the whole file.
+/// Size of an `.mlz` file by content, in bytes; the numbers add up to the whole file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransportSizes {
     /// Size of the vertex positions, in bytes.
     pub positions: f64,
     /// Size of the vertex indices of all faces, with the welding of blocks, in bytes.
     pub connectivity: f64,
+    /// Size of attributes, and of the materials and objects of faces, in bytes.
+    pub attributes: f64,
+    /// Size of what was given as resources, in bytes.
+    pub resources: usize,
     /// Size of everything else in bytes: header, index, models, and the coder's final state of each
     /// block.
     pub headers: f64,
@@ -70,7 +74,12 @@ pub struct TransportOptions {
     pub quantization: TransportQuantization,
     /// Approximate number of faces per block; some blocks have a quarter more.
     pub block_faces: usize,
+    /// Largest errors of attributes.
+    pub attributes: AttributeBounds,
 }
+
+/// Limit on the attribute values of a wedge over all layers.
+const MAX_LAYER_VALUES: usize = 255;
 
 /// Grid of cubic cells to which vertex positions are rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,7 +93,8 @@ pub enum TransportQuantization {
 
 impl Default for TransportOptions {
     fn default() -> Self {
-        Self { quantization: TransportQuantization::Bits(11), block_faces: 256 }
+        let attributes = AttributeBounds::default();
+        Self { quantization: TransportQuantization::Bits(11), block_faces: 256, attributes }
     }
 }
 
@@ -117,6 +127,22 @@ pub enum TransportError {
     /// The mesh is so far from the origin that neighbouring cells coincide in `f64`.
     #[error("the mesh is too far from the origin for cells of this size: use larger cells")]
     TooFar,
+    /// Attributes, materials or objects do not match the mesh.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// An attribute layer has too many values, or its name is too long.
+    #[error(
+        "attribute layer \"{0}\" does not fit: a file holds {MAX_LAYER_VALUES} values per wedge"
+    )]
+    Layer(String),
+    /// An attribute value is infinite or NaN.
+    #[error("attribute layer \"{layer}\": wedge {wedge} has a value that is not finite")]
+    NotFiniteValue {
+        /// Name of the attribute layer.
+        layer: String,
+        /// Index of the wedge.
+        wedge: usize,
+    },
     /// The requested number of faces per block is out of range.
     #[error("faces per block must be between 16 and {most}, not {0}", most = max_block_faces())]
     Block(usize),

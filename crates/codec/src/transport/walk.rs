@@ -8,8 +8,10 @@ use super::gate::{Gate, NEARBY, context, node_at_offset};
 /// Block as a sequence of steps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BlockWalk {
-    /// Number of faces.
-    pub(super) faces: usize,
+    /// Faces over the block's vertices, in the order in which they are decoded.
+    pub(super) faces: Vec<[u16; 3]>,
+    /// First side of each face, in the mesh.
+    pub(super) sides: Vec<Side>,
     /// Each step, with the context in which it is coded.
     pub(super) steps: Vec<(u8, Step)>,
     /// Target of each [`Step::Other`]: its index in [`NEARBY`], else its node.
@@ -53,7 +55,8 @@ impl<'a> Walker<'a> {
     /// first face left.
     pub(super) fn walk(&mut self, block: u32, members: &[u32]) -> BlockWalk {
         let mut out = BlockWalk {
-            faces: members.len(),
+            faces: Vec::with_capacity(members.len()),
+            sides: Vec::with_capacity(members.len()),
             steps: Vec::with_capacity(2 * members.len()),
             gates: Vec::with_capacity(members.len()),
             vertices: Vec::with_capacity(members.len()),
@@ -98,6 +101,8 @@ impl<'a> Walker<'a> {
         let corners = self.faces[f as usize];
         let vertices = [0, 1, 2].map(|k| self.vertex(corners[k], Gate::corner(k as u8), out));
         self.border.start(vertices);
+        out.faces.push(vertices);
+        out.sides.push(Side::new(FaceId(f), 0));
         self.sides.extend((0..3).map(|k| Side::new(FaceId(f), k)));
         self.block_of[f as usize] = DONE;
     }
@@ -112,17 +117,18 @@ impl<'a> Walker<'a> {
         let to_apex = Side::new(side.face(), (k + 1) % 3);
         let from_apex = Side::new(side.face(), (k + 2) % 3);
         self.block_of[side.face().index()] = DONE;
+        out.sides.push(side);
         let local = self.local[apex.index()];
         let node = *self.border.node(at);
         let previous = self.border.node(node.previous);
         let second = self.border.node(node.next);
         if previous.vertex == local && previous.state == EdgeState::Open {
-            self.border.add_previous(at);
+            out.faces.push(self.border.add_previous(at));
             self.sides[usize::from(node.previous)] = from_apex;
             return Step::Previous;
         }
         if self.border.node(second.next).vertex == local && second.state == EdgeState::Open {
-            self.border.add_next(at);
+            out.faces.push(self.border.add_next(at));
             self.sides[usize::from(at)] = to_apex;
             return Step::Next;
         }
@@ -134,14 +140,14 @@ impl<'a> Walker<'a> {
                     .iter()
                     .position(|&(by, _)| node_at_offset(&self.border, at, by) == other);
                 out.others.push(by.ok_or(other));
-                self.border.add_other(at, other);
+                out.faces.push(self.border.add_other(at, other));
                 self.sides.push(self.sides[usize::from(other)]);
                 (Step::Other, other)
             }
             None => {
                 let gate = Gate::at(&self.border, at);
                 let vertex = self.vertex(apex, gate, out);
-                self.border.add_new(at, vertex);
+                out.faces.push(self.border.add_new(at, vertex));
                 self.sides.push(from_apex);
                 (Step::New, self.sides.len() as u16 - 1)
             }

@@ -2,33 +2,48 @@
 
 use meshlod_mesh::{Connectivity, Mesh, VertexId};
 
-use super::encode::{residuals, symbols};
+use super::encode::{Residual, residuals, symbols};
+use super::encoded_layers::EncodedLayers;
 use super::face_blocks::face_blocks;
-use super::file::{Entry, FACES_PER_BYTE, Header};
 use super::fit::{fit, shapes};
 use super::grid::QuantizationGrid;
-use super::models::Models;
+use super::header::{Entry, Header, least_bytes};
+use super::layers::{LayersFormat, MeshLayers};
+use super::models::{ModelCodes, Models};
 use super::predict::{CellVec, LANES};
-use super::rans::{Symbol, encode};
+use super::rans::encode;
+use super::symbol_bits::SymbolBits;
 use super::walk::{BlockWalk, Walker};
 use super::weld_blocks::{WeldTable, checksum, key};
-use super::{
-    LeftOut, Transport, TransportError, TransportOptions, TransportSizes, max_block_faces,
-};
+use super::{MAX_LAYER_VALUES, Transport, TransportError, TransportOptions, max_block_faces};
+use crate::attributes::LayerCoding;
 
 /// Greatest number of faces, for 32-bit numbers of faces and of their sides.
 const MAX_MESH_FACES: usize = 1 << 30;
 
 impl Transport {
-    /// Encodes a mesh as an `.mlz` file, with positions rounded to a grid.
+    /// Encodes a mesh as an `.mlz` file, with positions rounded to a grid and attributes within
+    /// bounds.
     ///
-    /// Faces are unchanged except for the corner they start at.
-    ///
-    /// Every vertex that a face uses comes back once. [`Transport::left_out`] lists what is not
-    /// stored: attributes, materials, objects and unused vertices. Cost: O(n).
+    /// Faces are unchanged except for the corner they start at, and so are their materials and
+    /// objects. Every vertex that a face uses comes back once. Wedges of a vertex whose values are
+    /// equal after rounding become one. Cost: O(n).
     /// # Errors
-    /// A mesh without faces, an invalid position or vertex index, or an option out of range.
+    /// A mesh without faces, an invalid position, attribute or vertex index, or an option out of
+    /// range.
     pub fn encode(mesh: &Mesh, options: &TransportOptions) -> Result<Self, TransportError> {
+        Self::encode_with_resources(mesh, &[], options)
+    }
+
+    /// Encodes a mesh, and appends bytes that [`TransportFile::resources`](super::TransportFile)
+    /// gives back: they mean nothing to this crate.
+    /// # Errors
+    /// As [`Transport::encode`].
+    pub fn encode_with_resources(
+        mesh: &Mesh,
+        resources: &[u8],
+        options: &TransportOptions,
+    ) -> Result<Self, TransportError> {
         if mesh.faces.is_empty() {
             return Err(TransportError::Empty);
         }
@@ -39,21 +54,30 @@ impl Transport {
             return Err(TransportError::Block(options.block_faces));
         }
         let (grid, cells) = QuantizationGrid::of(mesh, options.quantization)?;
+        check_attributes(mesh)?;
         let walks = walks(&mesh.faces, &cells, options.block_faces);
-        let mut this = write(grid, &cells, &walks, mesh.faces.len());
-        this.left_out = left_out(mesh);
-        Ok(this)
+        let (format, layers) = MeshLayers::new(mesh, &options.attributes);
+        let unused = mesh.used_vertices().iter().filter(|&&used| !used).count();
+        let this = write((grid, &cells), &walks, (format, &layers), resources);
+        Ok(Self { unused_vertices: unused, ..this })
     }
 }
 
-fn left_out(mesh: &Mesh) -> Vec<LeftOut> {
-    let is_left = [
-        (mesh.attributes.is_some(), LeftOut::Attributes),
-        (mesh.materials.is_some(), LeftOut::Materials),
-        (mesh.objects.is_some(), LeftOut::Objects),
-        (mesh.used_vertices().contains(&false), LeftOut::UnusedVertices),
-    ];
-    is_left.into_iter().filter(|(is_left, _)| *is_left).map(|(_, what)| what).collect()
+/// Checks that attributes and labels are valid, and within the limits of a file.
+fn check_attributes(mesh: &Mesh) -> Result<(), TransportError> {
+    mesh.validate_attributes()?;
+    let mut width = 0;
+    for layer in mesh.attributes.iter().flat_map(|attributes| &attributes.layers) {
+        width += layer.width;
+        if width > MAX_LAYER_VALUES || !LayerCoding::is_storable(layer) {
+            return Err(TransportError::Layer(layer.name.clone()));
+        }
+        if let Some(at) = layer.values.iter().position(|x| !x.is_finite()) {
+            let (layer, wedge) = (layer.name.clone(), at / layer.width);
+            return Err(TransportError::NotFiniteValue { layer, wedge });
+        }
+    }
+    Ok(())
 }
 
 /// Partitions faces into blocks and walks over each.
@@ -65,77 +89,62 @@ pub(super) fn walks(faces: &[[VertexId; 3]], cells: &[CellVec], size: usize) -> 
 }
 
 fn write(
-    grid: QuantizationGrid,
-    cells: &[CellVec],
+    (grid, cells): (QuantizationGrid, &[CellVec]),
     walks: &[BlockWalk],
-    faces: usize,
+    (mut format, layers): (LayersFormat, &MeshLayers),
+    resources: &[u8],
 ) -> Transport {
+    let (codes, residuals) = fit_models(walks, cells);
+    let models = Models::new(&codes);
+    let first_bits = first_bits(walks, cells);
+    let attributes = EncodedLayers::new(&mut format, layers, walks, cells);
+    let (tags, vertices) = tags(walks, cells);
+    let mut payload = Vec::new();
+    let mut entries = Vec::with_capacity(walks.len());
+    let mut row = Vec::new();
+    let mut bits = SymbolBits::new(format.layers.len());
+    for (at, ((walk, residuals), tags)) in walks.iter().zip(&residuals).zip(&tags).enumerate() {
+        row.clear();
+        let first = cells[walk.vertices[0] as usize];
+        let parts = symbols(walk, (first, first_bits), tags, residuals, &models, &mut row);
+        bits.add(&row, parts);
+        let values = attributes.push(at, &format, &mut row, &mut bits);
+        let start = payload.len();
+        let sum = checksum(walk.vertices.iter().map(|&v| cells[v as usize]));
+        encode(&row, sum, &mut payload);
+        let least = least_bytes(walk.faces.len(), values);
+        payload.resize(payload.len().max(start + least), 0);
+        entries.push(Entry { faces: walk.faces.len(), bytes: payload.len() - start });
+    }
+    payload.extend(resources);
+    let reports = bits.reports(&format);
+    let is_bare = format.is_empty() && resources.is_empty();
+    let layers = (!is_bare).then_some((format, attributes.codes));
+    let faces = walks.iter().map(|walk| walk.faces.len()).sum();
+    let resources = resources.len();
+    let header = Header { grid, first_bits, faces, vertices, codes, layers, resources, entries };
+    let mut bytes = header.store(&payload);
+    bytes.extend(payload);
+    let sizes = bits.sizes(bytes.len(), resources);
+    Transport { bytes, blocks: walks.len(), sizes, layers: reports, unused_vertices: 0 }
+}
+
+/// Fits the models of positions and faces, and returns the residuals of each block, too.
+fn fit_models(walks: &[BlockWalk], cells: &[CellVec]) -> (ModelCodes, Vec<Vec<Residual>>) {
     let mut codes = fit(walks, cells);
     let models = Models::new(&codes);
     let residuals = walks.chunks(LANES).flat_map(|walks| residuals(walks, cells, &models));
     let residuals: Vec<_> = residuals.take(walks.len()).collect();
     codes.shapes = shapes(residuals.iter().flatten());
-    let models = Models::new(&codes);
-    let first_bits = [0, 1, 2].map(|k| {
+    (codes, residuals)
+}
+
+/// Returns how many bits the first vertices of all blocks take along each axis.
+fn first_bits(walks: &[BlockWalk], cells: &[CellVec]) -> [u8; 3] {
+    [0, 1, 2].map(|k| {
         let most = walks.iter().map(|walk| cells[walk.vertices[0] as usize][k] as u32).max();
         (u32::BITS - most.unwrap_or(0).leading_zeros()) as u8
-    });
-    let (tags, vertices) = tags(walks, cells);
-    let mut payload = Vec::new();
-    let mut entries = Vec::with_capacity(walks.len());
-    let mut row = Vec::new();
-    let mut bits = SymbolBits::default();
-    for ((walk, residuals), tags) in walks.iter().zip(&residuals).zip(&tags) {
-        row.clear();
-        let first = cells[walk.vertices[0] as usize];
-        let parts = symbols(walk, (first, first_bits), tags, residuals, &models, &mut row);
-        bits.add(&row, parts);
-        let start = payload.len();
-        let sum = checksum(walk.vertices.iter().map(|&v| cells[v as usize]));
-        encode(&row, sum, &mut payload);
-        let least = (walk.faces / FACES_PER_BYTE).next_multiple_of(2);
-        payload.resize(payload.len().max(start + least), 0);
-        entries.push(Entry { faces: walk.faces, bytes: payload.len() - start });
-    }
-    let header = Header { grid, first_bits, faces, vertices, codes, entries };
-    let mut bytes = header.store(&payload);
-    bytes.extend(payload);
-    let positions = bits.positions / 8.0;
-    let connectivity = bits.connectivity / 8.0;
-    let headers = bytes.len() as f64 - positions - connectivity;
-    let sizes = TransportSizes { positions, connectivity, headers };
-    Transport { bytes, blocks: walks.len(), sizes, left_out: Vec::new() }
-}
-
-/// Counts the bits of symbols.
-struct SymbolBits {
-    positions: f64,
-    connectivity: f64,
-    log2: Vec<f64>,
-}
-
-impl Default for SymbolBits {
-    fn default() -> Self {
-        let log2 = (0..=4096).map(|size| f64::from(size).log2()).collect();
-        Self { positions: 0.0, connectivity: 0.0, log2 }
-    }
-}
-
-impl SymbolBits {
-    /// Adds the symbols of a block. Residuals of positions are in the given range, all else is
-    /// connectivity.
-    fn add(&mut self, symbols: &[Symbol], [connectivity, positions]: [usize; 2]) {
-        let bits = |symbols: &[Symbol]| -> f64 {
-            let bits = |s: &Symbol| {
-                f64::from(s.bits) + f64::from(s.low_bits) - self.log2[usize::from(s.size)]
-            };
-            symbols.iter().map(bits).sum()
-        };
-        let of_positions = bits(&symbols[connectivity..positions]);
-        let all = bits(symbols);
-        self.positions += of_positions;
-        self.connectivity += all - of_positions;
-    }
+    })
 }
 
 /// Returns the vertices of each block that need a tag, and the number of vertices of the mesh.

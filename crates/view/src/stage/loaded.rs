@@ -10,7 +10,7 @@ use meshlod::mesh::Bounds;
 use meshlod::multires::{FileError, Hierarchy, ModelFile, Query, UpdateLimits};
 use meshlod::picture::Normals;
 use meshlod::{
-    IoError, Mesh, OwnedPaint, ReadOptions, decompress_bytes, materials_of, normals_of,
+    IoError, Mesh, OwnedPaint, ReadOptions, Scene, decompress_scene, materials_of, normals_of,
     single_sided_materials,
 };
 use thiserror::Error;
@@ -145,28 +145,30 @@ impl Loaded {
 }
 
 fn mesh_file(path: &Path, options: &ReadOptions) -> Result<Loaded, LoadError> {
-    let scene = meshlod::read(path, options)?;
+    Ok(of_scene(path, meshlod::read(path, options)?, LoadedContent::Mesh))
+}
+
+fn of_scene(path: &Path, scene: Scene, content: LoadedContent) -> Loaded {
     let (materials, unread) = materials_of(&scene);
     let paint = OwnedPaint::of(&scene, materials);
     let warning = |image: meshlod::UnreadImage| format!("image {}: {}", image.name, image.reason);
     let warnings = unread.into_iter().map(warning).collect();
     let single_sided = single_sided_materials(&scene).into();
-    let loaded = Loaded::of(path, scene.into_mesh(), paint, LoadedContent::Mesh);
-    Ok(Loaded { warnings, single_sided, ..loaded })
+    let loaded = Loaded::of(path, scene.into_mesh(), paint, content);
+    Loaded { warnings, single_sided, ..loaded }
 }
 
 fn compressed(path: &Path) -> Result<Loaded, LoadError> {
     let damaged = |source| LoadError::Compressed { path: path.to_owned(), source };
     let bytes = std::fs::read(path).map_err(|error| IoError::system(path, error))?;
-    let (mesh, content) = if bytes.starts_with(&Compressed::MAGIC) {
-        let compressed = Compressed::from_bytes(&bytes).map_err(damaged)?;
-        let mesh = compressed.decode().map_err(damaged)?;
-        (mesh, LoadedContent::Compressed(Arc::new(compressed)))
-    } else {
-        (decompress_bytes(&bytes).map_err(damaged)?, LoadedContent::Transport)
-    };
+    if !bytes.starts_with(&Compressed::MAGIC) {
+        let scene = decompress_scene(&bytes, "").map_err(damaged)?;
+        return Ok(of_scene(path, scene, LoadedContent::Transport));
+    }
+    let compressed = Compressed::from_bytes(&bytes).map_err(damaged)?;
+    let mesh = compressed.decode().map_err(damaged)?;
     let paint = paint_of_bare(&mesh);
-    Ok(Loaded::of(path, mesh, paint, content))
+    Ok(Loaded::of(path, mesh, paint, LoadedContent::Compressed(Arc::new(compressed))))
 }
 
 fn levels(path: &Path) -> Result<Loaded, LoadError> {

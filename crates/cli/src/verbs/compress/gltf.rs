@@ -30,6 +30,7 @@ impl Compress {
         let meshes = scene.meshes.iter().map(|mesh| &mesh.mesh);
         Ok(CompressedFile {
             sizes: [positions, connectivity, attributes].map(|bytes| bytes.stored),
+            materials: 0,
             vertices: meshes.clone().map(|mesh| mesh.positions.len()).sum(),
             faces: meshes.map(|mesh| mesh.faces.len()).sum(),
             pieces: ("meshes", scene.meshes.len()),
@@ -74,6 +75,9 @@ impl Compress {
         let bytes = write_parts_glb(&quantized).map_err(|error| self.failed(error))?;
         let faces = parts.parts().iter().map(|part| part.faces.len()).sum();
         let mut left_out = left_out(&mesh, faces);
+        if mesh.materials.is_some() || mesh.objects.is_some() {
+            left_out.push("left out: materials and objects; parts hold the surface only".into());
+        }
         if mesh.attributes.is_some() {
             left_out.push("left out: attributes; parts hold the surface only".into());
         }
@@ -84,6 +88,7 @@ impl Compress {
         let indices: usize = quantized.iter().map(|part| 3 * part.faces.len() * index(part)).sum();
         Ok(CompressedFile {
             sizes: [positions, indices.min(bytes.len().saturating_sub(positions)), 0],
+            materials: 0,
             vertices: parts.vertices(),
             faces,
             pieces: ("parts", quantized.len()),

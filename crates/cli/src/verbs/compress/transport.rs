@@ -1,43 +1,45 @@
 //! Compressed `.mlz` files for transmission.
 
-use meshlod::Mesh;
-use meshlod::Scene;
 use meshlod::codec::{
     Lattice, Transport, TransportError, TransportFile, TransportOptions, TransportQuantization,
     TransportSizes,
 };
+use meshlod::{Mesh, Scene, pack_materials};
 
 use super::{Compress, CompressedFile, left_out};
 use crate::failure::Failure;
 
 impl Compress {
-    pub(super) fn transport(&self, scene: Scene) -> Result<CompressedFile, Failure> {
+    pub(super) fn transport(&self, mut scene: Scene) -> Result<CompressedFile, Failure> {
+        let images = std::mem::take(&mut scene.images);
+        let materials = pack_materials(&scene.materials, &images);
         let mesh = scene.into_mesh();
         let options = TransportOptions {
             quantization: self.quantization(&mesh)?,
+            attributes: self.attributes.bounds(),
             ..TransportOptions::default()
         };
-        let done = Transport::encode(&mesh, &options).map_err(|error| match error {
+        let done = Transport::encode_with_resources(&mesh, &materials, &options);
+        let done = done.map_err(|error| match error {
             TransportError::Bits(_) => Failure::usage(error),
             error => self.failed(error),
         })?;
         let file = TransportFile::open(&done.bytes).map_err(|error| self.failed(error))?;
-        let mut left_out = left_out(&mesh, file.faces());
-        if mesh.attributes.is_some() {
-            left_out.push("left out: attributes; .mlz holds the surface only".into());
-        }
-        let TransportSizes { positions, connectivity, headers } = done.sizes;
-        // Tables, index and coder states serve both parts, so they are shared out in proportion.
-        let of_positions = headers * positions / (positions + connectivity);
-        let positions = (positions + of_positions).round() as usize;
+        let TransportSizes { positions, connectivity, attributes, resources, headers } = done.sizes;
+        // Tables, index and coder states serve all parts, so they are shared out in proportion.
+        let share = 1.0 + headers / (positions + connectivity + attributes);
+        let [positions, attributes] =
+            [positions, attributes].map(|size| (size * share).round() as usize);
+        let connectivity = (done.bytes.len() - resources).saturating_sub(positions + attributes);
         Ok(CompressedFile {
-            sizes: [positions, done.bytes.len() - positions, 0],
+            sizes: [positions, connectivity, attributes],
+            materials: resources,
             vertices: file.vertices(),
             faces: file.faces(),
             pieces: ("blocks", done.blocks),
-            layers: Vec::new(),
+            layers: done.layers,
             reached: true,
-            left_out,
+            left_out: left_out(&mesh, file.faces()),
             bytes: done.bytes,
         })
     }
