@@ -95,7 +95,7 @@ fn scene() -> Scene {
     }
 }
 
-/// The same scene as a glTF document.
+/// Returns a scene as a glTF document.
 fn as_gltf(scene: &Scene) -> Scene {
     let glb = gltf::write_glb(scene, &[]).unwrap();
     gltf::read(&glb, &mut |_| None, ReadOptions::default().weld).unwrap()

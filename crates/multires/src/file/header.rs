@@ -55,7 +55,7 @@ pub(super) struct ChunkEntry {
 /// Form of the index of resources, which follows that of the chunks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ResourceIndex {
-    /// There is none.
+    /// No resources.
     None,
     /// Two entries, in the form of an earlier version.
     Old,
