@@ -142,6 +142,29 @@ fn a_cell_size_is_kept_where_it_saves_space() {
     );
 }
 
+#[test]
+fn no_parts_are_wasted_on_cells_that_the_largest_face_forbids() {
+    // One face is as long as a side of the mesh, all others are small.
+    let mut mesh = samples::gyroid(6000);
+    let longest = mesh.bounds();
+    let first = mesh.positions.len();
+    mesh.positions.extend([longest.min, longest.max, longest.center()]);
+    mesh.faces.push([0, 1, 2].map(|k| VertexId::new(first + k)));
+    let partitioner = partitioner(&mesh);
+    let parts = partitioner.within_cell(1e-3, Reconstruction::Centred);
+    let sides = (0..3).map(|k| (longest.max[k] - longest.min[k]) / 255.0);
+    assert!(parts.mean_side() >= 0.999 * sides.sum::<f64>() / 3.0);
+    assert!(parts.parts().len() < 4, "{}", parts.parts().len());
+}
+
+#[test]
+fn parts_of_a_plate_have_both_its_sides() {
+    let mesh = samples::plate(60_000);
+    let parts = partitioner(&mesh).with_count(16, Reconstruction::Centred);
+    // A part with one side only has a border around each of its holes.
+    assert!(parts.overhead() < 0.1, "{}", parts.overhead());
+}
+
 fn mesh_of_one() -> Mesh {
     mesh(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]])
 }
