@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use meshlod::measure::PreparedSurface;
+use meshlod::measure::{DistanceOptions, PreparedSurface};
 use meshlod::{Report, Scene, Target};
 
 use crate::failure::Failure;
@@ -80,7 +80,8 @@ impl BoundSearch<'_> {
     fn level(&self, run: &mut SimplifyRun<'_>, estimate: f64) -> Result<Simplified, Failure> {
         let mut report = run.simplify_to(Target::Error(estimate))?;
         let meshes = run.level(&mut report);
-        let measured = measure(Some(self.original), self.scene, &meshes, self.session);
+        let original = (self.original, DistanceOptions::default());
+        let measured = measure(Some(original), self.scene, &meshes, self.session);
         Ok(Simplified { meshes, report, measured, sequence: None })
     }
 

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::Args;
+use meshlod::measure::DistanceOptions;
 use meshlod::simplify::AttributeWeights;
 use meshlod::{Method, Options, Report, Scene, Target, digits_of, world_bounds};
 use serde_json::{Value, json};
@@ -262,7 +263,8 @@ impl Simplify {
             return BoundSearch { scene, ready, original, bound, session }.run();
         }
         let (reduced, time) = self.plain_run(task, session)?;
-        let measured = simplify_run::measure(surface.as_ref(), scene, &reduced.meshes, session);
+        let original = surface.as_ref().map(|surface| (surface, DistanceOptions::default()));
+        let measured = simplify_run::measure(original, scene, &reduced.meshes, session);
         Ok((Simplified { measured, ..reduced }, time))
     }
 
