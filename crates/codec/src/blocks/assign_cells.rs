@@ -41,6 +41,7 @@ pub(super) struct AssignOptions {
 /// Blocks that are assigned one after the other, so that each sees what the one before has done.
 /// Chunks of this size have a twentieth of their vertices on their borders.
 const CHUNK: usize = 256;
+
 impl BlockGrid {
     /// Returns the fractional cell coordinates of a point.
     fn at(&self, place: DVec3) -> [f64; 3] {
@@ -208,11 +209,8 @@ fn assign_one(
             for c in grid.within(2, c) - beside..=grid.within(2, c) + beside {
                 let c = c.clamp(0, grid.counts[2] - 1);
                 let moved = base + grid.sides[2] * f64::from(c);
-                if best.0.0 > 0 || judge.effect(moved) < best.0.1 {
-                    let cost = judge.cost(moved);
-                    if cost < best.0 {
-                        best = (cost, [a, b, c], moved);
-                    }
+                if let Some(cost) = judge.less(moved, best.0) {
+                    best = (cost, [a, b, c], moved);
                 }
             }
         }

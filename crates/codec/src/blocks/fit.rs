@@ -172,7 +172,7 @@ impl Fit {
                 over = over.min(scale);
             }
             let under = best.as_ref().map_or(0.0, |best| best.1.scale);
-            if NEAR[0] <= part && part < NEAR[1] || next == scale || over < CLOSE * under {
+            if (NEAR[0]..NEAR[1]).contains(&part) || next == scale || over < CLOSE * under {
                 break;
             }
             scale = match under < next && next < over {

@@ -106,19 +106,42 @@ impl<'s> MoveCost<'s> {
         Self { surface, vertex, square, pull, penalty, limit: options.limit, hinges }
     }
 
-    /// Returns the change of the summed squares for a displacement.
-    pub(super) fn effect(&self, moved: DVec3) -> f64 {
+    /// Returns the cost of a displacement.
+    pub(super) fn cost(&self, moved: DVec3) -> Cost {
+        (self.flips(moved).count(), self.effect(moved) + self.excess(moved))
+    }
+
+    /// Returns the cost of a displacement if it is less than `best`, without working out more of
+    /// it than that takes.
+    pub(super) fn less(&self, moved: DVec3, best: Cost) -> Option<Cost> {
+        let effect = self.effect(moved);
+        if best.0 == 0 && effect >= best.1 {
+            return None;
+        }
+        let flips = self.flips(moved).take(best.0 + 1).count();
+        if (flips, effect) >= best {
+            return None;
+        }
+        let cost = (flips, effect + self.excess(moved));
+        (cost < best).then_some(cost)
+    }
+
+    fn flips(&self, moved: DVec3) -> impl Iterator<Item = &Hinge> {
+        self.hinges.iter().filter(move |hinge| hinge.is_flipped(moved))
+    }
+
+    /// Returns the change of the summed squares.
+    fn effect(&self, moved: DVec3) -> f64 {
         moved.dot(self.square * moved + self.pull * 2.0)
     }
 
-    pub(super) fn cost(&self, moved: DVec3) -> Cost {
-        let flips = self.hinges.iter().filter(|hinge| hinge.is_flipped(moved)).count();
-        let mut effect = self.effect(moved);
-        if moved.length_squared() > self.limit * self.limit {
-            let over = (self.surface.plane_distance(self.vertex, moved) - self.limit).max(0.0);
-            effect += self.penalty * over * over;
+    /// Returns the penalty for a distance beyond the limit.
+    fn excess(&self, moved: DVec3) -> f64 {
+        if moved.length_squared() <= self.limit * self.limit {
+            return 0.0;
         }
-        (flips, effect)
+        let over = (self.surface.plane_distance(self.vertex, moved) - self.limit).max(0.0);
+        self.penalty * over * over
     }
 
     /// Returns the best multiple of `side` to add; `None` if it makes no difference.

@@ -93,7 +93,7 @@ fn sides(of: &Bounds) -> DVec3 {
 /// its upper or its lower side only, and borders around each hole.
 fn counted_axes(graph: &FaceGraph, boxes: &[Bounds]) -> Vec3 {
     let is_spanned = common_sides(boxes).cmpge(graph.extent() * SPANNING);
-    Vec3::select(is_spanned.into(), Vec3::ZERO, Vec3::ONE)
+    Vec3::select(is_spanned, Vec3::ZERO, Vec3::ONE)
 }
 
 /// Increases the weights of parts with large boxes, and decreases those of the others.

@@ -23,9 +23,6 @@ const CLOSE_CELL: f64 = 0.97;
 /// Ratio of too many parts to too few at which it stops, too: the sides of nearly equal numbers of
 /// parts differ by chance.
 const CLOSE_COUNT: f64 = 1.03;
-/// Ratio of the side to be reached to the least possible one, which the largest face takes. The
-/// last tenth takes parts of single faces: sponza took 33,000 of them.
-const ABOVE_LEAST: f64 = 1.1;
 /// Longest side of the largest box before relaxation, relative to the mean side after it, where it is
 /// large: the search should start from too few parts, since flat ones gain from more of them forever.
 const GAIN: f64 = 1.3;
@@ -115,14 +112,14 @@ impl<'m> Partitioner<'m> {
     /// model units.
     ///
     /// The largest face must fit into a part. Where that alone takes larger cells, the parts are
-    /// the fewest found whose cells are at most a tenth larger than that.
+    /// the fewest found whose cells are no larger than that.
     /// If those would take more than uncompressed positions, returns about as many parts as take
     /// less.
     ///
     /// Cost: that of several [`Partitioner::with_count`].
     pub fn within_cell(&self, cell: f64, cells: Reconstruction) -> Parts {
         let least = SharedGrid::new(self.graph.boxes(), cells).mean_side();
-        let goal = cell.max(ABOVE_LEAST * least);
+        let goal = cell.max(least);
         let (mut few, mut many): (Option<Division>, Option<Division>) = (None, None);
         let mut next = Some(self.merges.count_within(GAIN * ACROSS * goal));
         for _ in 0..MAX_TRIES {

@@ -152,9 +152,20 @@ fn no_parts_are_wasted_on_cells_that_the_largest_face_forbids() {
     mesh.faces.push([0, 1, 2].map(|k| VertexId::new(first + k)));
     let partitioner = partitioner(&mesh);
     let parts = partitioner.within_cell(1e-3, Reconstruction::Centred);
-    let sides = (0..3).map(|k| (longest.max[k] - longest.min[k]) / 255.0);
-    assert!(parts.mean_side() >= 0.999 * sides.sum::<f64>() / 3.0);
+    assert!(parts.mean_side() >= 0.999 * sides_over(&longest));
     assert!(parts.parts().len() < 4, "{}", parts.parts().len());
+    // With one of half that length, the finest cells that are left need several parts.
+    let half = [0, 1, 2].map(|k| longest.min[k].midpoint(longest.max[k]));
+    mesh.positions[first + 1] = half;
+    mesh.positions[first + 2] = [half[0], longest.min[1], longest.min[2]];
+    let parts = self::partitioner(&mesh).within_cell(1e-3, Reconstruction::Centred);
+    let ratio = parts.mean_side() / (sides_over(&longest) / 2.0);
+    assert!((0.999..1.001).contains(&ratio) && parts.parts().len() > 4, "{ratio}");
+}
+
+/// Returns the mean side of the cells of one box.
+fn sides_over(bounds: &Bounds) -> f64 {
+    (0..3).map(|k| (bounds.max[k] - bounds.min[k]) / 255.0).sum::<f64>() / 3.0
 }
 
 #[test]
