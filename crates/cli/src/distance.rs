@@ -38,8 +38,8 @@ pub fn ready<'m>(mesh: &'m Mesh, path: &Path) -> Result<PreparedSurface<'m>, Fai
 }
 
 /// Number of samples each way for every face of a chain's original, and limits on all of them. At
-/// ten a face, means are within .2 % of those by half a million; the maximum, a lower bound, was up
-/// to 5 % lower.
+/// ten a face, means were within .3 % of those by half a million; the maximum, a lower bound, was up
+/// to 8 % lower.
 const SAMPLES_PER_FACE: usize = 10;
 const CHAIN_SAMPLES: [usize; 2] = [50_000, 500_000];
 
