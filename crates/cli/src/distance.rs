@@ -37,15 +37,31 @@ pub fn ready<'m>(mesh: &'m Mesh, path: &Path) -> Result<PreparedSurface<'m>, Fai
     PreparedSurface::new(mesh).map_err(|error| Failure::at(path, error))
 }
 
+/// Number of samples each way for every face of a chain's original, and limits on all of them. At
+/// ten a face, means were within .3 % of those by half a million; the maximum, a lower bound, was up
+/// to 8 % lower.
+const SAMPLES_PER_FACE: usize = 10;
+const CHAIN_SAMPLES: [usize; 2] = [50_000, 500_000];
+
+/// Returns options for measuring the levels of a chain, with as many samples as the size of the
+/// original calls for.
+pub fn for_chain(original: &PreparedSurface<'_>) -> DistanceOptions {
+    let [least, most] = CHAIN_SAMPLES;
+    let faces = original.bvh().faces_in_leaf_order().len();
+    let samples = faces.saturating_mul(SAMPLES_PER_FACE).clamp(least, most);
+    DistanceOptions { samples, ..DistanceOptions::default() }
+}
+
 /// Measures the distance between a scene's original surface and a simplified level.
 pub fn of_level(
     original: &PreparedSurface<'_>,
     scene: &Scene,
     level: &[Mesh],
+    options: &DistanceOptions,
 ) -> Result<Distance, MeasureError> {
     let level = surface_of(scene, level);
     let level = PreparedSurface::new(&level).map_err(MeasureError::Second)?;
-    surface_distance(original, &level, &DistanceOptions::default())
+    surface_distance(original, &level, options)
 }
 
 /// Returns the distances in each direction and combined as JSON, in model units and percent of the

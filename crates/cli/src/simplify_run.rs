@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use meshlod::measure::{Distance, PreparedSurface};
+use meshlod::measure::{Distance, DistanceOptions, PreparedSurface};
 use meshlod::simplify::{History, Progressive, SimplifyError};
 use meshlod::{
     Borders, ConditionedScene, Mesh, Options, Report, Scene, SceneError, SceneSimplifier, Target,
@@ -121,17 +121,20 @@ impl<'s> SimplifyRun<'s> {
     }
 }
 
+/// Original surface, and how levels are measured against it.
+pub type Original<'s, 'm> = (&'s PreparedSurface<'m>, DistanceOptions);
+
 /// Measures the distance of a level from the original; prints a warning and returns `None` if that
 /// is not possible.
 pub fn measure(
-    original: Option<&PreparedSurface<'_>>,
+    original: Option<Original<'_, '_>>,
     scene: &Scene,
     level: &[Mesh],
     session: &Session,
 ) -> Option<Distance> {
-    let original = original?;
+    let (original, options) = original?;
     session.progress.stage("measuring");
-    crate::distance::of_level(original, scene, level)
+    crate::distance::of_level(original, scene, level, &options)
         .inspect_err(|error| session.warn(format_args!("not measured: {error}")))
         .ok()
 }

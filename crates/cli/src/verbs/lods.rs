@@ -125,6 +125,7 @@ impl Lods {
         let surface = distance::ready(&original, &self.input)
             .inspect_err(|failure| session.warn(format_args!("not measured: {failure}")))
             .ok();
+        let surface = surface.as_ref().map(|surface| (surface, distance::for_chain(surface)));
         let mut run = SimplifyRun::start(ready, session)?;
         check_order(&self.levels, run.input_faces())?;
         let mut chain: Vec<LodLevel> = Vec::new();
@@ -133,7 +134,7 @@ impl Lods {
             let mut report = run.simplify_to(fused.map_or(target, |fused| fused.target(target)))?;
             let mut meshes = run.level(&mut report);
             let residual = self.volume.restore(&ready.scene, &mut meshes, digits, session);
-            let measured = simplify_run::measure(surface.as_ref(), scene, &meshes, session);
+            let measured = simplify_run::measure(surface, scene, &meshes, session);
             let finer = chain.last().map_or(1.0, |level| level.screen_coverage);
             let before = chain.last().map(|level| level.simplified.report.output_faces);
             // No contraction leaves the number of faces as it is.

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::Args;
+use meshlod::measure::DistanceOptions;
 use meshlod::simplify::AttributeWeights;
 use meshlod::{
     Format, Mesh, Method, Options, Report, Scene, Target, digits_of, moved_at_most, world_bounds,
@@ -288,7 +289,8 @@ impl Simplify {
             Err(failure) if self.measured => return Err(failure),
             Err(_) => None,
         };
-        done.measured = simplify_run::measure(surface.as_ref(), task.scene, &done.meshes, session);
+        let original = surface.as_ref().map(|surface| (surface, DistanceOptions::default()));
+        done.measured = simplify_run::measure(original, task.scene, &done.meshes, session);
         let Some(asked) = task.asked else { return Ok(None) };
         Ok(Some(match done.report.proof {
             Some(_) => asked.by_report(&done.report, moved),

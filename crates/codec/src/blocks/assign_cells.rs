@@ -4,11 +4,12 @@
 //! than the closest one. Each vertex takes the cell around it with the least mean square distance
 //! of its faces to their planes, with all other vertices fixed: iterated conditional modes [Bes86].
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::deviation::{Limits, Neighbourhood};
-use super::original::{OriginalSurface, outer};
+use super::move_cost::{Hinge, MoveCost, Moves};
+use super::original::OriginalSurface;
 use crate::kd::BLOCK;
 
 /// Cells of a block.
@@ -37,25 +38,9 @@ pub(super) struct AssignOptions {
     pub(super) sweeps: usize,
 }
 
-/// Cost of moving one vertex.
-struct MoveCost<'s> {
-    surface: &'s OriginalSurface,
-    vertex: usize,
-    /// Quadratic and linear term of the squared distances to planes, given the neighbours.
-    square: DMat3,
-    pull: DVec3,
-    /// Penalty for the squared distance beyond the limit.
-    penalty: f64,
-    limit: f64,
-    /// True if no candidate cell can flip a face.
-    is_safe: bool,
-}
-
-/// Cost of a cell: the number of flipped faces, then the error.
-type Cost = (usize, f64);
-
-/// Penalty factor beyond the limit: such a cell is a last resort.
-const PENALTY: f64 = 100.0;
+/// Blocks that are assigned one after the other, so that each sees what the one before has done.
+/// Chunks of this size have a twentieth of their vertices on their borders.
+const CHUNK: usize = 256;
 
 impl BlockGrid {
     /// Returns the fractional cell coordinates of a point.
@@ -82,76 +67,74 @@ impl CellAssignment {
         Self { cells: vec![[0; 3]; count], moved: vec![DVec3::ZERO; count] }
     }
 
-    /// Assigns each vertex to its closest cell, then in several passes to the neighbouring cell
-    /// with the least cost.
+    /// Assigns each vertex of some blocks to its closest cell, then in several passes to the
+    /// neighbouring cell with the least cost.
+    ///
+    /// `blocks` are sorted. In parallel, with the same result for any number of threads.
     pub(super) fn assign(
         &mut self,
         surface: &OriginalSurface,
         grids: &[BlockGrid],
         options: &AssignOptions,
-        vertices: impl Iterator<Item = usize> + Clone,
+        blocks: &[usize],
     ) {
-        for v in vertices.clone() {
+        self.for_chunks(blocks, |v, cell, moves, _| {
             let (grid, place) = (&grids[v / BLOCK], surface.places[v]);
             let at = grid.at(place);
-            self.cells[v] = [0, 1, 2].map(|k| grid.within(k, at[k].round()));
-            self.moved[v] = grid.place(self.cells[v]) - place;
-        }
-        for v in (0..options.sweeps).flat_map(|_| vertices.clone()) {
-            self.assign_one(surface, &grids[v / BLOCK], v, options);
+            *cell = [0, 1, 2].map(|k| grid.within(k, at[k].round()));
+            moves.own[v - moves.start] = grid.place(*cell) - place;
+        });
+        for _ in 0..options.sweeps {
+            self.for_chunks(blocks, |v, cell, moves, hinges| {
+                assign_one(surface, &grids[v / BLOCK], v, options, (cell, moves, hinges));
+            });
         }
     }
 
-    fn assign_one(
+    /// Visits the vertices of some blocks, chunk by chunk, with their cells and room for hinges.
+    fn for_chunks(
         &mut self,
-        surface: &OriginalSurface,
-        grid: &BlockGrid,
-        v: usize,
-        options: &AssignOptions,
+        blocks: &[usize],
+        visit: impl Fn(usize, &mut [i32; 3], &mut Moves, &mut Vec<Hinge>) + Sync,
     ) {
-        let judge = MoveCost::new(surface, grid, v, &self.moved, options);
-        let place = surface.places[v];
-        let at = grid.at(place);
-        let mut best = (judge.cost(self.moved[v], &self.moved), self.cells[v], self.moved[v]);
-        // To mend flipped faces, look one cell farther.
-        let (from, to, beside) = if best.0.0 == 0 { (0.0, 1.0, 0) } else { (-1.0, 2.0, 1) };
-        let range =
-            |k: usize| grid.within(k, at[k].floor() + from)..=grid.within(k, at[k].floor() + to);
-        for a in range(0) {
-            for b in range(1) {
-                let base = grid.place([a, b, 0]) - place;
-                let c = judge.best_along(grid.sides[2], base).unwrap_or(at[2]).round();
-                for c in grid.within(2, c) - beside..=grid.within(2, c) + beside {
-                    let c = c.clamp(0, grid.counts[2] - 1);
-                    let moved = base + grid.sides[2] * f64::from(c);
-                    if best.0.0 > 0 || judge.effect(moved) < best.0.1 {
-                        let cost = judge.cost(moved, &self.moved);
-                        if cost < best.0 {
-                            best = (cost, [a, b, c], moved);
-                        }
-                    }
-                }
+        let before = self.moved.clone();
+        let size = CHUNK * BLOCK;
+        let chunks = self.cells.par_chunks_mut(size).zip(self.moved.par_chunks_mut(size));
+        chunks.enumerate().for_each(|(chunk, (cells, own))| {
+            let up_to = |end: usize| blocks.partition_point(|&block| block < end);
+            let blocks = &blocks[up_to(chunk * CHUNK)..up_to((chunk + 1) * CHUNK)];
+            let (start, end) = (chunk * size, chunk * size + own.len());
+            let mut moves = Moves { before: &before, start, own };
+            let mut hinges = Vec::new();
+            let vertices = |&block: &usize| block * BLOCK..((block + 1) * BLOCK).min(end);
+            for v in blocks.iter().flat_map(vertices) {
+                visit(v, &mut cells[v - start], &mut moves, &mut hinges);
             }
-        }
-        (self.cells[v], self.moved[v]) = (best.1, best.2);
+        });
     }
 
-    /// Moves vertices that are farther than `most` from the surface to better cells. Returns those
-    /// that stay too far.
+    /// Returns those of the vertices that are farther than `most` from the surface.
+    pub(super) fn far(
+        &self,
+        surface: &OriginalSurface,
+        most: f64,
+        vertices: &[usize],
+    ) -> Vec<usize> {
+        let limits = Limits { enough: most, most: f64::INFINITY };
+        let is_far = |&v: &usize| surface.deviation(v, &self.moved, limits) > most;
+        vertices.par_iter().copied().filter(is_far).collect()
+    }
+
+    /// Moves vertices that are farther than `most` from the surface, and such neighbours of them,
+    /// to better cells. Returns those that stay too far.
     pub(super) fn repair(
         &mut self,
         surface: &OriginalSurface,
         grids: &[BlockGrid],
         most: f64,
-        vertices: &[usize],
+        far: Vec<usize>,
     ) -> Vec<usize> {
         let limits = Limits { enough: most, most: f64::INFINITY };
-        let deviation = |moved: &[DVec3], hood: &Neighbourhood| hood.deviation(moved, limits);
-        let is_far = |&v: &usize| {
-            !surface.is_near(v, &self.moved, most)
-                && deviation(&self.moved, &Neighbourhood::new(surface, v)) > most
-        };
-        let far: Vec<usize> = vertices.par_iter().copied().filter(is_far).collect();
         // One that is moved changes the faces of those around it.
         let mut far = surface.with_neighbours(far.into_iter());
         far.retain(|&v| {
@@ -159,7 +142,7 @@ impl CellAssignment {
                 return false;
             }
             let hood = Neighbourhood::new(surface, v);
-            let is = deviation(&self.moved, &hood);
+            let is = hood.deviation(&self.moved, limits);
             is > most && self.repair_one(surface, &grids[v / BLOCK], &hood, is, most) > most
         });
         far
@@ -202,67 +185,37 @@ impl CellAssignment {
     }
 }
 
-impl<'s> MoveCost<'s> {
-    fn new(
-        surface: &'s OriginalSurface,
-        grid: &BlockGrid,
-        vertex: usize,
-        moved: &[DVec3],
-        options: &AssignOptions,
-    ) -> Self {
-        let (mut square, mut pull, mut area) = (DMat3::ZERO, DVec3::ZERO, 0.0);
-        let mut height = f64::INFINITY;
-        for face in surface.faces_around(vertex) {
-            // The mean square over a face is (a² + b² + c² + (a + b + c)²) / 12 of its corners'
-            // distances.
-            let others = face.corners.iter().filter(|&&corner| corner as usize != vertex);
-            let distances = others.map(|&other| face.normal.dot(moved[other as usize]));
-            square += outer(face.normal) * face.area;
-            pull += face.normal * (face.area * 0.5 * distances.sum::<f64>());
-            area += face.area;
-            height = height.min(face.height);
+/// Moves a vertex to the cell around it with the least cost.
+fn assign_one(
+    surface: &OriginalSurface,
+    grid: &BlockGrid,
+    v: usize,
+    options: &AssignOptions,
+    (cell, moves, hinges): (&mut [i32; 3], &mut Moves, &mut Vec<Hinge>),
+) {
+    let judge = MoveCost::new(surface, grid, v, moves, options, hinges);
+    let place = surface.places[v];
+    let at = grid.at(place);
+    let moved = moves.of(v);
+    let mut best = (judge.cost(moved), *cell, moved);
+    // To mend flipped faces, look one cell farther.
+    let (from, to, beside) = if best.0.0 == 0 { (0.0, 1.0, 0) } else { (-1.0, 2.0, 1) };
+    let range =
+        |k: usize| grid.within(k, at[k].floor() + from)..=grid.within(k, at[k].floor() + to);
+    for a in range(0) {
+        for b in range(1) {
+            let base = grid.place([a, b, 0]) - place;
+            let c = judge.best_along(grid.sides[2], base).unwrap_or(at[2]).round();
+            for c in grid.within(2, c) - beside..=grid.within(2, c) + beside {
+                let c = c.clamp(0, grid.counts[2] - 1);
+                let moved = base + grid.sides[2] * f64::from(c);
+                if let Some(cost) = judge.less(moved, best.0) {
+                    best = (cost, [a, b, c], moved);
+                }
+            }
         }
-        let boundary = surface.boundary(vertex);
-        square += DMat3::from_diagonal(DVec3::splat(area * options.along));
-        square += boundary.map_or(DMat3::ZERO, |boundary| *boundary * area);
-        let cell: f64 = grid.sides.iter().map(|side| side.length()).sum();
-        let is_safe = height > 4.0 * cell;
-        let penalty = PENALTY * area;
-        Self { surface, vertex, square, pull, penalty, limit: options.limit, is_safe }
     }
-
-    /// Returns the change of the summed squares for a displacement.
-    fn effect(&self, moved: DVec3) -> f64 {
-        moved.dot(self.square * moved + self.pull * 2.0)
-    }
-
-    fn cost(&self, moved: DVec3, all: &[DVec3]) -> Cost {
-        let flips = if self.is_safe { 0 } else { self.flips(moved, all) };
-        let mut effect = self.effect(moved);
-        if moved.length_squared() > self.limit * self.limit {
-            let over = (self.surface.plane_distance(self.vertex, moved) - self.limit).max(0.0);
-            effect += self.penalty * over * over;
-        }
-        (flips, effect)
-    }
-
-    fn flips(&self, moved: DVec3, all: &[DVec3]) -> usize {
-        let place = |v: u32| {
-            let by = if v as usize == self.vertex { moved } else { all[v as usize] };
-            self.surface.places[v as usize] + by
-        };
-        self.surface
-            .faces_around(self.vertex)
-            .filter(|face| face.is_flipped(face.corners.map(place)))
-            .count()
-    }
-
-    /// Returns the best multiple of `side` to add; `None` if it makes no difference.
-    fn best_along(&self, side: DVec3, moved: DVec3) -> Option<f64> {
-        let bend = self.square * side;
-        let times = -(bend.dot(moved) + side.dot(self.pull)) / bend.dot(side);
-        times.is_finite().then_some(times)
-    }
+    (*cell, moves.own[v - moves.start]) = (best.1, best.2);
 }
 
 /// Returns the number of flipped faces around a vertex.

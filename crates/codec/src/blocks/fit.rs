@@ -17,26 +17,35 @@ use crate::bits::Bits;
 use crate::header_field::HeaderField;
 use crate::kd::BLOCK;
 
+/// Blocks that meet a target, with what their errors are measured by.
+pub(super) struct FittedBlocks {
+    pub(super) layout: BlockLayout,
+    pub(super) bits: Bits,
+    refined_blocks: usize,
+    moved: Vec<DVec3>,
+    fit: Fit,
+}
+
 /// Mesh data that stays the same while cell sizes are tried.
-struct Fit {
-    surface: OriginalSurface,
+pub(super) struct Fit {
+    pub(super) surface: OriginalSurface,
     reference: CubicReference,
     /// Unit of `middles`, in model units.
     reach: f64,
     /// Middle of each group.
     middles: Vec<[i8; 3]>,
     /// Frame of each block.
-    frames: Vec<Frame>,
+    pub(super) frames: Vec<Frame>,
     normals: Vec<DMat3>,
 }
 
 /// Cells at one scale, and the vertices assigned to them.
-struct Attempt {
-    scale: f64,
-    units: Units,
-    headers: Vec<BlockHeader>,
-    grids: Vec<BlockGrid>,
-    assignment: CellAssignment,
+pub(super) struct Attempt {
+    pub(super) scale: f64,
+    pub(super) units: Units,
+    pub(super) headers: Vec<BlockHeader>,
+    pub(super) grids: Vec<BlockGrid>,
+    pub(super) assignment: CellAssignment,
 }
 
 /// Target as a fraction of the allowed mean distance. The estimate by planes is up to 1.1 % below
@@ -44,11 +53,9 @@ struct Attempt {
 const AIM: f64 = 0.985;
 /// Ratio of error to target at which the search stops.
 const NEAR: [f64; 2] = [0.99, 1.004];
-const TRIES: usize = 6;
-/// Rounds of refining blocks at most.
-const ROUNDS: usize = 8;
-const FINER: f64 = 0.6;
-const FINEST: f64 = 1.0 / 8.0;
+const TRIES: usize = 4;
+/// Ratio at which it stops, too, of the least scale that is too large to the best one.
+const CLOSE: f64 = 1.04;
 /// Limit on the length of a cell relative to its height, which is used where the surface is flat.
 /// With 5, squirrel-20k and dragon-100k take as much and the bunny 1.3 % less; with 3 they take
 /// .6 % more, as much, and 1.6 % more.
@@ -61,7 +68,7 @@ const ALONG: f64 = 0.03;
 const SWEEPS: usize = 2;
 /// Limits on a vertex's distance, relative to the largest distance in cubic cells: the final one,
 /// and the lower one used while neighbours still move.
-const MAX_DISTANCE: f64 = 1.9;
+pub(super) const MAX_DISTANCE: f64 = 1.9;
 const MAX_DISTANCE_ALONE: f64 = 1.5;
 
 /// Fits blocks to a target accuracy and packs them, in the fewest bits found.
@@ -69,7 +76,7 @@ pub(super) fn fit_blocks(
     mesh: &Mesh,
     ordered: &[VertexId],
     target: Accuracy,
-) -> Result<(BlockLayout, Bits, BlocksReport), BlocksError> {
+) -> Result<FittedBlocks, BlocksError> {
     let bounds = Bounds::of(ordered.iter().map(|v| &mesh.positions[v.index()]));
     let [low, high] = if bounds.is_empty() { [[0.0; 3]; 2] } else { [bounds.min, bounds.max] };
     let [low, high] = [low, high].map(DVec3::from);
@@ -81,14 +88,20 @@ pub(super) fn fit_blocks(
     let too_fine = || BlocksError::TooFine(fit.reference.error);
     let mut attempt = fit.search().ok_or_else(too_fine)?;
     let refined_blocks = fit.refine(&mut attempt).ok_or_else(too_fine)?;
-    let report = BlocksReport {
-        blocks: fit.surface.change(&attempt.assignment.moved),
-        cubes: fit.reference.change,
-        cube_side: fit.reference.cell,
-        refined_blocks,
-    };
     let (layout, bits) = fit.layout(centre, &attempt);
-    Ok((layout, bits, report))
+    Ok(FittedBlocks { layout, bits, refined_blocks, moved: attempt.assignment.moved, fit })
+}
+
+impl FittedBlocks {
+    /// Measures the error of the blocks.
+    pub(super) fn report(&self) -> BlocksReport {
+        BlocksReport {
+            blocks: self.fit.surface.change(&self.moved),
+            cubes: self.fit.reference.change,
+            cube_side: self.fit.reference.cell,
+            refined_blocks: self.refined_blocks,
+        }
+    }
 }
 
 impl Fit {
@@ -115,7 +128,7 @@ impl Fit {
         this
     }
 
-    fn block(&self, block: usize) -> BlockVertices<'_> {
+    pub(super) fn block(&self, block: usize) -> BlockVertices<'_> {
         BlockVertices {
             places: &self.surface.places[self.range(block)],
             middle: self.middle(block),
@@ -124,7 +137,7 @@ impl Fit {
     }
 
     /// Returns the vertices of a block.
-    fn range(&self, block: usize) -> Range<usize> {
+    pub(super) fn range(&self, block: usize) -> Range<usize> {
         block * BLOCK..self.surface.places.len().min((block + 1) * BLOCK)
     }
 
@@ -132,24 +145,43 @@ impl Fit {
         DVec3::from(self.middles[block / GROUP].map(|x| f64::from(x) * self.reach))
     }
 
-    fn sizes(&self, scale: f64) -> CellSizes {
+    pub(super) fn sizes(&self, scale: f64) -> CellSizes {
         CellSizes { across: self.reference.cell * scale, max_elongation: MAX_ELONGATION }
     }
 
-    /// Returns the attempt with the largest cells found within the error; `None` if there are too
+    /// Returns the attempt with the greatest error found within the target; `None` if there are too
     /// many cells.
     fn search(&self) -> Option<Attempt> {
-        let mut attempt = self.attempt(1.0)?;
-        for _ in 0..TRIES {
+        let mut best: Option<(f64, Attempt)> = None;
+        // Least scale with too great an error. On regular meshes, where all blocks are alike, the
+        // error may jump from below the target to above it.
+        let mut over = f64::INFINITY;
+        let mut scale = 1.0;
+        for tries in 0..=TRIES {
+            let attempt = self.attempt(scale)?;
             let error = self.surface.error(&attempt.assignment.moved);
             let part = error / (AIM * self.reference.error);
-            let next = (attempt.scale / part.clamp(0.25, 4.0)).clamp(1.0 / 64.0, 8.0);
-            if (NEAR[0]..NEAR[1]).contains(&part) || next == attempt.scale {
+            let next = (scale / part.clamp(0.25, 4.0)).clamp(1.0 / 64.0, 8.0);
+            if part < NEAR[1] {
+                if best.as_ref().is_none_or(|best| part > best.0) {
+                    best = Some((part, attempt));
+                }
+            } else if tries == TRIES && best.is_none() {
+                return Some(attempt);
+            } else {
+                over = over.min(scale);
+            }
+            let under = best.as_ref().map_or(0.0, |best| best.1.scale);
+            if (NEAR[0]..NEAR[1]).contains(&part) || next == scale || over < CLOSE * under {
                 break;
             }
-            attempt = self.attempt(next)?;
+            scale = match under < next && next < over {
+                true => next,
+                false if over.is_finite() => (under * over).sqrt(),
+                false => break,
+            };
         }
-        Some(attempt)
+        best.map(|best| best.1).or_else(|| self.attempt(scale))
     }
 
     /// Tries cells that are `scale` times as large as the cubic ones.
@@ -162,67 +194,25 @@ impl Fit {
         let grids: Vec<_> =
             (0..).zip(&headers).map(|(b, header)| self.grid(b, header, &units)).collect();
         let mut assignment = CellAssignment::new(&self.surface);
-        assignment.assign(&self.surface, &grids, &self.options(), 0..self.surface.places.len());
+        let all: Vec<usize> = (0..grids.len()).collect();
+        assignment.assign(&self.surface, &grids, &self.options(), &all);
         Some(Attempt { scale, units, headers, grids, assignment })
     }
 
-    fn grid(&self, block: usize, header: &BlockHeader, units: &Units) -> BlockGrid {
+    pub(super) fn grid(&self, block: usize, header: &BlockHeader, units: &Units) -> BlockGrid {
         let (sides, first) = header.cells(units);
         let counts = header.widths.map(|width| numbers(width) as i32);
         BlockGrid { sides, first: first + self.middle(block), counts }
     }
 
-    fn options(&self) -> AssignOptions {
+    pub(super) fn options(&self) -> AssignOptions {
         AssignOptions { along: ALONG, limit: MAX_DISTANCE_ALONE * self.most(), sweeps: SWEEPS }
     }
 
     /// Returns the largest distance in cubic cells, but at least half a cell: on flat meshes
     /// rounding may happen to be exact.
-    fn most(&self) -> f64 {
+    pub(super) fn most(&self) -> f64 {
         self.reference.change.max_estimate.max(0.5 * self.reference.cell)
-    }
-
-    /// Refines blocks with distant vertices or flipped faces, and returns how many were refined.
-    fn refine(&self, attempt: &mut Attempt) -> Option<usize> {
-        let mut finer = vec![1.0; self.frames.len()];
-        let mut doubtful: Vec<usize> = (0..self.surface.places.len()).collect();
-        for _ in 0..ROUNDS {
-            let Attempt { grids, assignment, .. } = &mut *attempt;
-            let most = MAX_DISTANCE * self.most();
-            let far = assignment.repair(&self.surface, grids, most, &doubtful);
-            // The cause may be a neighbour of the distant vertex.
-            let far = self.surface.with_neighbours(far.into_iter());
-            let mut bad = self.blocks_of(far, &assignment.moved);
-            bad.retain(|&block| finer[block] > FINEST);
-            if bad.is_empty() {
-                break;
-            }
-            for &block in &bad {
-                finer[block] *= FINER;
-                let sizes = self.sizes(attempt.scale * finer[block]);
-                let header =
-                    self.block(block).header(self.frames[block], &attempt.units, &sizes)?;
-                attempt.grids[block] = self.grid(block, &header, &attempt.units);
-                attempt.headers[block] = header;
-            }
-            let Attempt { grids, assignment, .. } = &mut *attempt;
-            let vertices = bad.iter().flat_map(|&block| self.range(block));
-            assignment.assign(&self.surface, grids, &self.options(), vertices.clone());
-            doubtful = self.surface.with_neighbours(vertices);
-        }
-        Some(finer.iter().filter(|&&by| by < 1.0).count())
-    }
-
-    /// Returns the blocks of these vertices and of all flipped faces.
-    fn blocks_of(&self, vertices: Vec<usize>, moved: &[DVec3]) -> Vec<usize> {
-        let faces = self.surface.faces.par_iter();
-        let turned = faces.filter(|face| self.surface.is_flipped(face, moved));
-        let corners: Vec<_> = turned.flat_map_iter(|face| face.corners).collect();
-        let corners = corners.into_iter().map(|v| v as usize);
-        let mut blocks: Vec<_> = vertices.into_iter().chain(corners).map(|v| v / BLOCK).collect();
-        blocks.sort_unstable();
-        blocks.dedup();
-        blocks
     }
 
     fn layout(&self, centre: DVec3, attempt: &Attempt) -> (BlockLayout, Bits) {

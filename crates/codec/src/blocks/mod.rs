@@ -7,8 +7,10 @@ mod fit;
 mod frame;
 mod header;
 mod layout;
+mod move_cost;
 mod original;
 mod reference;
+mod refine;
 mod stored;
 #[cfg(test)]
 mod tests;
@@ -17,6 +19,7 @@ use glam::DVec3;
 use meshlod_mesh::{Mesh, VertexId};
 use thiserror::Error;
 
+use self::fit::FittedBlocks;
 use self::header::{BlockHeader, numbers};
 use self::layout::BlockLayout;
 pub use self::stored::{StoredBlock, StoredBlocks};
@@ -119,8 +122,9 @@ impl VertexBlocks {
     /// A coordinate that is not finite, or a target that is invalid or too fine.
     pub fn new(mesh: &Mesh, target: Accuracy) -> Result<(Self, BlocksReport), BlocksError> {
         let ordered = blocks_of(mesh);
-        let (blocks, report) = Self::from_blocks(mesh, &ordered, target)?;
-        Ok((Self { vertices: ordered, ..blocks }, report))
+        let fitted = Self::fit(mesh, &ordered, target)?;
+        let report = fitted.report();
+        Ok((Self { layout: fitted.layout, bits: fitted.bits, vertices: ordered }, report))
     }
 
     /// Encodes vertices in a given order, each [`BLOCK`] of them a block, without keeping their
@@ -129,14 +133,22 @@ impl VertexBlocks {
         mesh: &Mesh,
         ordered: &[VertexId],
         target: Accuracy,
-    ) -> Result<(Self, BlocksReport), BlocksError> {
+    ) -> Result<Self, BlocksError> {
+        let FittedBlocks { layout, bits, .. } = Self::fit(mesh, ordered, target)?;
+        Ok(Self { layout, bits, vertices: Vec::new() })
+    }
+
+    fn fit(
+        mesh: &Mesh,
+        ordered: &[VertexId],
+        target: Accuracy,
+    ) -> Result<FittedBlocks, BlocksError> {
         let is_far =
             |v: &&VertexId| !mesh.positions[v.index()].iter().all(|x| x.abs() < MAX_COORDINATE);
-        if let Some(&v) = ordered.iter().find(is_far) {
-            return Err(BlocksError::NotFinite(v));
+        match ordered.iter().find(is_far) {
+            Some(&v) => Err(BlocksError::NotFinite(v)),
+            None => fit::fit_blocks(mesh, ordered, target),
         }
-        let (layout, bits, report) = fit::fit_blocks(mesh, ordered, target)?;
-        Ok((Self { layout, bits, vertices: Vec::new() }, report))
     }
 
     /// Returns the mesh vertex that each stored vertex comes from, in block order.

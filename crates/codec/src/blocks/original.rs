@@ -138,7 +138,7 @@ impl OriginalSurface {
         }
         let reach = around.clone().fold(f64::INFINITY, height);
         let length = moved[vertex].length();
-        if length <= reach {
+        if length <= reach || around.clone().any(|face| self.is_over(face, vertex, moved[vertex])) {
             return true;
         }
         let beside = |face: &Face| face.corners.into_iter().filter(|&v| v as usize != vertex);
@@ -154,6 +154,15 @@ impl OriginalSurface {
                     && self.ring(v).len() <= WIDEST
                     && self.faces_around(v).all(is_over)
             })
+    }
+
+    /// Returns true if a moved corner of a face is above or below the face.
+    fn is_over(&self, face: &Face, vertex: usize, moved: DVec3) -> bool {
+        let first = face.after(vertex as u32);
+        let away = |v: u32| self.places[v as usize] - self.places[vertex];
+        let [a, b] = [first, face.after(first)].map(away);
+        let (s, t) = (face.normal.dot(moved.cross(b)), face.normal.dot(a.cross(moved)));
+        s >= 0.0 && t >= 0.0 && s + t <= 2.0 * face.area
     }
 
     /// Returns the distance of a moved vertex from the planes around it, and from its boundary.
@@ -193,7 +202,12 @@ impl Face {
     /// Returns true if moved corners turn the face by more than a right angle or leave it (nearly)
     /// no area, when its orientation would be decided by rounding.
     pub(super) fn is_flipped(&self, [a, b, c]: [DVec3; 3]) -> bool {
-        (b - a).cross(c - a).dot(self.normal) <= NO_AREA * self.area
+        (b - a).cross(c - a).dot(self.normal) <= self.least_area()
+    }
+
+    /// Returns twice the area at and below which the face counts as lost.
+    pub(super) fn least_area(&self) -> f64 {
+        NO_AREA * self.area
     }
 
     fn new(corners: [u32; 3], places: &[DVec3]) -> Option<Self> {

@@ -161,7 +161,7 @@ fn vertices_may_be_in_any_order_within_a_block() {
     let mesh = samples::sphere(3000);
     let mut ordered = blocks_of(&mesh);
     ordered.chunks_mut(BLOCK).for_each(<[_]>::reverse);
-    let (blocks, _) = VertexBlocks::from_blocks(&mesh, &ordered, Accuracy::Bits(11)).unwrap();
+    let blocks = VertexBlocks::from_blocks(&mesh, &ordered, Accuracy::Bits(11)).unwrap();
     let plain = of_bits(&mesh, 11).0.bytes() as f64;
     assert!((blocks.bytes() as f64 / plain - 1.0).abs() < 0.02);
 }

@@ -65,13 +65,19 @@ impl SharedGrid {
         self.cell
     }
 
+    pub(super) fn mean_side(&self) -> f64 {
+        self.cell.iter().map(|&side| f64::from(side)).sum::<f64>() / 3.0
+    }
+
+    /// Returns the cell that contains a point.
+    pub(super) fn number(&self, place: [f64; 3]) -> [i32; 3] {
+        [0, 1, 2].map(|axis| number(place[axis], self.cell[axis]) as i32)
+    }
+
     /// Sets the offset of a part, and the local cells of its vertices.
     pub(super) fn quantize(&self, graph: &FaceGraph, part: &mut Part) {
-        let cells = |&vertex| {
-            let place = graph.position(vertex);
-            [0, 1, 2].map(|axis| number(place[axis], self.cell[axis]) as i32)
-        };
-        let cells: Vec<[i32; 3]> = part.vertices.iter().map(cells).collect();
+        let cells = part.vertices.iter().map(|&vertex| self.number(graph.position(vertex)));
+        let cells: Vec<[i32; 3]> = cells.collect();
         part.offset = [0, 1, 2].map(|axis| cells.iter().map(|of| of[axis]).min().unwrap_or(0));
         let from_offset = |of: &[i32; 3]| [0, 1, 2].map(|k| (of[k] - part.offset[k]) as u8);
         part.positions = cells.iter().map(from_offset).collect();

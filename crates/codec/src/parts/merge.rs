@@ -2,7 +2,7 @@
 //! by its longest side [LCL10].
 
 use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use std::collections::{BTreeMap, BinaryHeap};
 
 use meshlod_mesh::Bounds;
 
@@ -27,9 +27,8 @@ impl Merges {
         let neighbours = |f: u32| graph.neighbours(f).filter(move |&other| f < other);
         let faces = 0..graph.faces() as u32;
         forming.merge(faces.clone().flat_map(|f| neighbours(f).map(move |other| [f, other])));
-        // The remaining components, in Morton order so that near ones are mostly adjacent.
-        let mut apart: Vec<u32> = faces.filter(|&f| forming.root(f) == f).collect();
-        apart.sort_by_cached_key(|&f| graph.morton(forming.boxes[f as usize].center()));
+        // The remaining components, in the graph's order, in which near ones are mostly adjacent.
+        let apart: Vec<u32> = faces.filter(|&f| forming.root(f) == f).collect();
         forming.merge(apart.windows(2).map(|pair| [pair[0], pair[1]]));
         Self { faces: graph.faces(), pairs: forming.pairs, sides: forming.sides }
     }
@@ -87,9 +86,9 @@ impl Clusters {
 
     /// Merges pairs, the smallest common box first, until each pair is in one cluster.
     fn merge(&mut self, pairs: impl Iterator<Item = [u32; 2]>) {
-        let pairs: Vec<_> = pairs.map(|pair| Reverse((self.side(pair), pair))).collect();
-        let mut waiting = BinaryHeap::from(pairs);
-        while let Some(Reverse((side, pair))) = waiting.pop() {
+        let mut waiting = WaitingPairs::default();
+        pairs.for_each(|pair| waiting.push((self.side(pair), pair)));
+        while let Some((side, pair)) = waiting.pop() {
             let [a, b] = pair.map(|face| self.root(face));
             if a == b {
                 continue;
@@ -97,7 +96,7 @@ impl Clusters {
             // Boxes only grow: if this one has not, it is the smallest.
             let now = self.side([a, b]);
             if now > side {
-                waiting.push(Reverse((now, [a, b])));
+                waiting.push((now, [a, b]));
                 continue;
             }
             let (first, second) = (a.min(b), a.max(b));
@@ -115,6 +114,42 @@ impl Clusters {
         let mut both = self.boxes[a as usize];
         both.merge(&self.boxes[b as usize]);
         super::longest_side(&both).to_bits()
+    }
+}
+
+/// Common side of two clusters, as bits, and a face of each.
+type WaitingPair = (u64, [u32; 2]);
+
+/// Priority queue of pairs, the least first.
+///
+/// Only pairs of about the least side are in a heap: one of all pairs of a million faces is larger
+/// than a cache, and took three times as long.
+#[derive(Default)]
+struct WaitingPairs {
+    now: BinaryHeap<Reverse<WaitingPair>>,
+    /// Level of the sides in the heap.
+    level: u64,
+    /// Pairs of greater levels.
+    later: BTreeMap<u64, Vec<Reverse<WaitingPair>>>,
+}
+
+/// Low bits of a side that its level leaves out: a level is a sixteenth of an octave.
+const WITHIN_LEVEL: u32 = f64::MANTISSA_DIGITS - 1 - 4;
+
+impl WaitingPairs {
+    fn push(&mut self, pair: WaitingPair) {
+        match pair.0 >> WITHIN_LEVEL {
+            level if level <= self.level => self.now.push(Reverse(pair)),
+            level => self.later.entry(level).or_default().push(Reverse(pair)),
+        }
+    }
+
+    fn pop(&mut self) -> Option<WaitingPair> {
+        while self.now.is_empty() {
+            let (level, pairs) = self.later.pop_first()?;
+            (self.level, self.now) = (level, pairs.into());
+        }
+        self.now.pop().map(|Reverse(pair)| pair)
     }
 }
 

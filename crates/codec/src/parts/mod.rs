@@ -1,5 +1,6 @@
 //! Vertex positions in 8 bits per axis, in parts of the mesh that share one grid [LCL10].
 
+mod division;
 mod face_graph;
 mod grid;
 mod lloyd;
@@ -89,7 +90,7 @@ impl Parts {
 
     /// Returns the mean side of a cell.
     pub(crate) fn mean_side(&self) -> f64 {
-        self.cell().iter().map(|&side| f64::from(side)).sum::<f64>() / 3.0
+        self.grid.mean_side()
     }
 
     /// Returns the matrix that maps the local cells of a part to model units, as three rows of
@@ -136,19 +137,6 @@ impl Parts {
     /// Returns the number of vertices of all parts together.
     fn stored(&self) -> usize {
         self.parts.iter().map(|part| part.positions.len()).sum()
-    }
-
-    /// Estimates how many parts would give a reduction. Vertices are repeated along borders, whose
-    /// length grows as the square root of the number of parts.
-    fn count_for(&self, reduction: f64) -> usize {
-        let (count, header) = (self.parts.len() as f64, self.part_header() as f64);
-        let again = (self.stored() - self.vertices).max(1) as f64 / count.sqrt();
-        let room = (1.0 - reduction) * (12 * self.vertices) as f64;
-        let room = room - (HEADER + 3 * self.vertices) as f64;
-        // header · x² + 3 again · x = room, where x is the root.
-        let half = 1.5 * again / header;
-        let root = (half * half + room.max(0.0) / header).sqrt() - half;
-        (root * root) as usize
     }
 
     /// Returns the fraction of position storage saved, compared with three `f32` for each vertex.

@@ -2,10 +2,11 @@
 
 use meshlod_mesh::{Mesh, VertexId};
 
-use super::face_graph::FaceGraph;
+use super::division::Division;
+use super::face_graph::{FaceGraph, is_whole};
 use super::grid::{ACROSS, Reconstruction, SharedGrid};
 use super::merge::Merges;
-use super::{Part, Parts, PartsError, lloyd};
+use super::{Parts, PartsError, lloyd};
 
 /// Hierarchical clustering of a mesh's faces, from which partitions of any size are made.
 pub struct Partitioner<'m> {
@@ -19,9 +20,12 @@ const FIRST_COUNT: usize = 64;
 const MAX_TRIES: usize = 10;
 /// Ratio of cell to requested cell at which the search stops.
 const CLOSE_CELL: f64 = 0.97;
+/// Ratio of too many parts to too few at which it stops, too: the sides of nearly equal numbers of
+/// parts differ by chance.
+const CLOSE_COUNT: f64 = 1.03;
 /// Longest side of the largest box before relaxation, relative to the mean side after it, where it is
 /// large: the search should start from too few parts, since flat ones gain from more of them forever.
-const GAIN: f64 = 1.6;
+const GAIN: f64 = 1.3;
 /// Factor on the next number of parts, so that it is more likely to meet the request.
 const SLIGHTLY_MORE: f64 = 1.01;
 /// Excess of the reduction at which the search stops.
@@ -34,15 +38,16 @@ impl<'m> Partitioner<'m> {
     /// # Errors
     /// A mesh without faces, or a coordinate that is not finite.
     pub fn new(mesh: &'m Mesh) -> Result<Self, PartsError> {
-        let graph = FaceGraph::new(mesh);
-        if graph.faces() == 0 {
-            return Err(PartsError::Empty);
-        }
         let mut used = vec![false; mesh.positions.len()];
-        graph.triangles.iter().flatten().for_each(|v| used[v.index()] = true);
+        let whole = mesh.faces.iter().filter(|face| is_whole(face));
+        whole.flatten().for_each(|v| used[v.index()] = true);
         let is_far = |v: &usize| !mesh.positions[*v].iter().all(|x| x.abs() < f64::from(f32::MAX));
         if let Some(v) = (0..used.len()).filter(|&v| used[v]).find(is_far) {
             return Err(PartsError::NotFinite(VertexId::new(v)));
+        }
+        let graph = FaceGraph::new(mesh);
+        if graph.faces() == 0 {
+            return Err(PartsError::Empty);
         }
         let merges = Merges::new(&graph);
         Ok(Self { graph, merges, vertices: used.iter().filter(|&&used| used).count() })
@@ -53,12 +58,14 @@ impl<'m> Partitioner<'m> {
     ///
     /// Cost: some dozen times O(n log n).
     pub fn with_count(&self, count: usize, cells: Reconstruction) -> Parts {
+        self.divide(count, cells).parts(&self.graph)
+    }
+
+    fn divide(&self, count: usize, cells: Reconstruction) -> Division {
         let count = count.clamp(1, self.graph.faces());
         let of_faces = lloyd::relax(&self.graph, self.merges.clusters(count), count);
-        let grid = SharedGrid::new(&lloyd::boxes(&self.graph, &of_faces, count), cells);
-        let mut parts = self.members(&of_faces, count);
-        parts.iter_mut().for_each(|part| grid.quantize(&self.graph, part));
-        Parts { grid, vertices: self.vertices, parts }
+        let boxes = lloyd::boxes(&self.graph, &of_faces, count);
+        Division::new(&self.graph, of_faces, &boxes, self.vertices, cells)
     }
 
     /// Partitions the mesh into about as many parts as still save a given fraction of position
@@ -78,82 +85,87 @@ impl<'m> Partitioner<'m> {
         if !(0.0..1.0).contains(&reduction) {
             return Err(PartsError::Reduction(reduction));
         }
-        let mut best = self.with_count(1, cells);
+        let mut best = self.divide(1, cells);
         if best.reduction() < reduction {
             return Err(PartsError::TooSmall { best: best.reduction() });
         }
         let (mut fails, mut next) = (self.graph.faces() + 1, FIRST_COUNT);
         for _ in 0..MAX_TRIES {
-            next = next.clamp(best.parts.len(), fails - 1);
-            if next == best.parts.len() || best.reduction() - reduction < CLOSE {
+            next = next.clamp(best.count(), fails - 1);
+            if next == best.count() || best.reduction() - reduction < CLOSE {
                 break;
             }
-            let parts = self.with_count(next, cells);
-            next = parts.count_for(reduction);
-            if parts.reduction() >= reduction {
-                best = parts;
-                next = next.max(best.parts.len() + 1);
+            let division = self.divide(next, cells);
+            next = division.count_for(reduction);
+            if division.reduction() >= reduction {
+                best = division;
+                next = next.max(best.count() + 1);
             } else {
-                fails = parts.parts.len();
+                fails = division.count();
                 next = next.min(fails - 1);
             }
         }
-        Ok(best)
+        Ok(best.parts(&self.graph))
     }
 
     /// Partitions the mesh into the fewest parts found whose grid cells have a mean side of `cell`
     /// model units.
     ///
+    /// The largest face must fit into a part. Where that alone takes larger cells, the parts are
+    /// the fewest found whose cells are no larger than that.
     /// If those would take more than uncompressed positions, returns about as many parts as take
     /// less.
     ///
     /// Cost: that of several [`Partitioner::with_count`].
     pub fn within_cell(&self, cell: f64, cells: Reconstruction) -> Parts {
-        let (mut few, mut many): (Option<Parts>, Option<Parts>) = (None, None);
-        let mut next = self.merges.count_within(GAIN * ACROSS * cell);
+        let least = SharedGrid::new(self.graph.boxes(), cells).mean_side();
+        let goal = cell.max(least);
+        let (mut few, mut many): (Option<Division>, Option<Division>) = (None, None);
+        let mut next = Some(self.merges.count_within(GAIN * ACROSS * goal));
         for _ in 0..MAX_TRIES {
-            let parts = self.with_count(next, cells);
-            let ratio = parts.mean_side() / cell;
-            let is_small = parts.reduction() > 0.0;
-            let is_few = ratio > 1.0 && is_small;
+            let Some(count) = next else { break };
+            let division = self.divide(count, cells);
+            let ratio = division.mean_side() / goal;
+            let is_few = ratio > 1.0 && division.reduction() > 0.0;
             let side = if is_few { &mut few } else { &mut many };
-            *side = Some(parts);
-            let count = |parts: &Option<Parts>| parts.as_ref().map(|parts| parts.parts.len());
-            let least = count(&few).unwrap_or(0) + 1;
-            let most = count(&many).map_or(self.graph.faces(), |many| many - 1);
-            if least > most || (CLOSE_CELL..=1.0).contains(&ratio) {
+            *side = Some(division);
+            if (CLOSE_CELL..=1.0).contains(&ratio) {
                 break;
             }
-            // Sides of a surface's parts shrink as the square root of their number.
-            let wanted = match is_small {
-                true => next as f64 * ratio * ratio * SLIGHTLY_MORE,
-                false => (least as f64 * most as f64).sqrt(),
-            };
-            next = (wanted as usize).clamp(least, most);
+            next = self.next_count(few.as_ref(), many.as_ref(), goal);
         }
-        let is_enough = |parts: &Parts| parts.mean_side() <= cell;
+        let is_enough = |division: &Division| division.mean_side() <= goal;
         let enough = if many.as_ref().is_some_and(is_enough) { many } else { few.or(many) };
-        enough.unwrap_or_else(|| self.with_count(1, cells))
+        enough.unwrap_or_else(|| self.divide(1, cells)).parts(&self.graph)
     }
 
-    /// Collects the parts with local vertex indices, not yet quantized.
-    fn members(&self, of_faces: &[u32], count: usize) -> Vec<Part> {
-        let mut parts = vec![Part::default(); count];
-        let faces = self.graph.triangles.iter().zip(&self.graph.ids);
-        for ((face, &id), &part) in faces.zip(of_faces) {
-            let part = &mut parts[part as usize];
-            // Mesh indices, for now.
-            part.faces.push(face.map(|vertex| vertex.0));
-            part.ids.push(id);
-        }
-        for part in &mut parts {
-            let mut vertices: Vec<u32> = part.faces.iter().flatten().copied().collect();
-            vertices.sort_unstable();
-            vertices.dedup();
-            let local = |v: u32| vertices.binary_search(&v).unwrap_or_default() as u32;
-            part.faces.iter_mut().flatten().for_each(|v| *v = local(*v));
-            part.vertices = vertices.into_iter().map(VertexId).collect();
-        }
-        parts
+    /// Returns the number of parts to try next for a mean side of `goal`, given the most that are
+    /// too few and the fewest that are enough or too many; `None` if these are close together.
+    fn next_count(
+        &self,
+        few: Option<&Division>,
+        many: Option<&Division>,
+        goal: f64,
+    ) -> Option<usize> {
+        let least = few.map_or(1, |few| few.count() + 1);
+        let most = many.map_or(self.graph.faces(), |many| many.count() - 1);
+        let excess = |division: &Division| (division.mean_side() / goal).ln();
+        let wanted = match (few, many) {
+            (Some(few), Some(many)) if many.count() as f64 <= CLOSE_COUNT * few.count() as f64 => {
+                return None;
+            }
+            (Some(few), Some(many)) if many.reduction() > 0.0 => {
+                let part = excess(few) / (excess(few) - excess(many)).max(f64::MIN_POSITIVE);
+                let between = many.count() as f64 / few.count() as f64;
+                few.count() as f64 * between.powf(part.clamp(0.1, 0.9))
+            }
+            // Sides of a surface's parts shrink as the square root of their number.
+            (Some(one), None) => one.count() as f64 * SLIGHTLY_MORE * (2.0 * excess(one)).exp(),
+            (None, Some(one)) if one.reduction() > 0.0 => {
+                one.count() as f64 * SLIGHTLY_MORE * (2.0 * excess(one)).exp()
+            }
+            _ => (least as f64 * most as f64).sqrt(),
+        };
+        (least <= most).then(|| (wanted as usize).clamp(least, most))
     }
 }

@@ -142,6 +142,40 @@ fn a_cell_size_is_kept_where_it_saves_space() {
     );
 }
 
+#[test]
+fn no_parts_are_wasted_on_cells_that_the_largest_face_forbids() {
+    // One face is as long as a side of the mesh, all others are small.
+    let mut mesh = samples::gyroid(6000);
+    let longest = mesh.bounds();
+    let first = mesh.positions.len();
+    mesh.positions.extend([longest.min, longest.max, longest.center()]);
+    mesh.faces.push([0, 1, 2].map(|k| VertexId::new(first + k)));
+    let partitioner = partitioner(&mesh);
+    let parts = partitioner.within_cell(1e-3, Reconstruction::Centred);
+    assert!(parts.mean_side() >= 0.999 * sides_over(&longest));
+    assert!(parts.parts().len() < 4, "{}", parts.parts().len());
+    // With one of half that length, the finest cells that are left need several parts.
+    let half = [0, 1, 2].map(|k| longest.min[k].midpoint(longest.max[k]));
+    mesh.positions[first + 1] = half;
+    mesh.positions[first + 2] = [half[0], longest.min[1], longest.min[2]];
+    let parts = self::partitioner(&mesh).within_cell(1e-3, Reconstruction::Centred);
+    let ratio = parts.mean_side() / (sides_over(&longest) / 2.0);
+    assert!((0.999..1.001).contains(&ratio) && parts.parts().len() > 4, "{ratio}");
+}
+
+/// Returns the mean side of the cells of one box.
+fn sides_over(bounds: &Bounds) -> f64 {
+    (0..3).map(|k| (bounds.max[k] - bounds.min[k]) / 255.0).sum::<f64>() / 3.0
+}
+
+#[test]
+fn parts_of_a_plate_have_both_its_sides() {
+    let mesh = samples::plate(60_000);
+    let parts = partitioner(&mesh).with_count(16, Reconstruction::Centred);
+    // A part with one side only has a border around each of its holes.
+    assert!(parts.overhead() < 0.1, "{}", parts.overhead());
+}
+
 fn mesh_of_one() -> Mesh {
     mesh(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]])
 }

@@ -44,7 +44,7 @@ impl Compressed {
         bounds: &AttributeBounds,
     ) -> Result<Compression, CompressError> {
         Self::from_blocks(mesh, bounds, |ordered| {
-            Ok(Positions::Blocks(VertexBlocks::from_blocks(mesh, ordered, accuracy)?.0))
+            Ok(Positions::Blocks(VertexBlocks::from_blocks(mesh, ordered, accuracy)?))
         })
     }
 

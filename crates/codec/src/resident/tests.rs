@@ -280,3 +280,19 @@ fn damage_with_valid_checksums_does_no_harm() {
     }
     assert!(read > 200, "{read}");
 }
+
+#[test]
+fn bytes_do_not_depend_on_the_number_of_threads() {
+    // More vertices than are assigned in one chunk, and more faces than have their boxes merged.
+    let mesh = samples::gyroid(70_000);
+    for scheme in [Scheme::Blocks, Scheme::Lattice, Scheme::Parts(Reconstruction::Centred)] {
+        let bytes = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let bounds = AttributeBounds::default();
+            let done =
+                pool.install(|| compress(&mesh, scheme, CompressionTarget::Bits(9), &bounds));
+            done.unwrap().compressed.to_bytes()
+        };
+        assert_eq!(bytes(1), bytes(3));
+    }
+}
