@@ -32,7 +32,7 @@ pub struct AskedError {
 
 /// An error that was asked for with what is proved of it, in world units.
 #[derive(Clone, Copy)]
-pub struct KeptError {
+pub struct ProvedError {
     asked: f64,
     /// Upper bound of the distance between the input and what is written, both ways; `None` if
     /// there is none.
@@ -61,14 +61,14 @@ impl AskedError {
 
     /// Returns what the proof in a report says of the level as it is written, after its vertices
     /// have moved by at most `moved`.
-    pub fn by_report(&self, report: &Report, moved: f64) -> KeptError {
+    pub fn by_report(&self, report: &Report, moved: f64) -> ProvedError {
         let changed = self.rounding + moved;
         let proved = report.proof.map(|proof| match proof.proved <= proof.asked {
             true => (proof.asked + changed).max(self.asked),
             false => proof.proved + changed,
         });
         let rounds = report.proof.map_or(0, |proof| proof.rounds);
-        KeptError { asked: self.asked, proved, rounds, rounding: self.rounding }
+        ProvedError { asked: self.asked, proved, rounds, rounding: self.rounding }
     }
 
     /// Measures an upper bound of the distance between the original surface and a level.
@@ -77,17 +77,17 @@ impl AskedError {
         original: Option<&PreparedSurface<'_>>,
         scene: &Scene,
         level: &[Mesh],
-    ) -> KeptError {
+    ) -> ProvedError {
         let level = distance::surface_of(scene, level);
         let proved = original.zip(PreparedSurface::new(&level).ok()).map(|(original, level)| {
             let options = CertifiedOptions::default();
             certified_surface_distance(original, &level, &options).symmetric().upper + self.rounding
         });
-        KeptError { asked: self.asked, proved, rounds: 0, rounding: self.rounding }
+        ProvedError { asked: self.asked, proved, rounds: 0, rounding: self.rounding }
     }
 }
 
-impl KeptError {
+impl ProvedError {
     /// Returns whether the error is proved to be within what was asked for.
     pub fn is_held(&self) -> bool {
         self.proved.is_some_and(|proved| proved <= self.asked * (1.0 + EQUAL))

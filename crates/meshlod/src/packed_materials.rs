@@ -46,7 +46,7 @@ pub fn unpack_materials(bytes: &[u8]) -> Result<(Vec<Material>, Vec<Image>), Bad
     if bytes.is_empty() {
         return Ok(Default::default());
     }
-    let mut input = Input(bytes);
+    let mut input = PackedBytes(bytes);
     let count = input.count()?;
     let mut materials = Vec::new();
     for _ in 0..count {
@@ -89,9 +89,9 @@ fn put(to: &mut Vec<u8>, bytes: &[u8]) {
 }
 
 /// Bytes still to be decoded.
-struct Input<'b>(&'b [u8]);
+struct PackedBytes<'b>(&'b [u8]);
 
-impl<'b> Input<'b> {
+impl<'b> PackedBytes<'b> {
     fn take(&mut self, count: usize) -> Result<&'b [u8], BadMaterials> {
         let (taken, rest) = self.0.split_at_checked(count).ok_or(BadMaterials)?;
         self.0 = rest;

@@ -15,7 +15,7 @@ use crate::answer::Answer;
 use crate::args::{ReadArgs, WriteArgs};
 use crate::constraints::ConstraintArgs;
 use crate::distance;
-use crate::error_bound::{AskedError, KeptError};
+use crate::error_bound::{AskedError, ProvedError};
 use crate::failure::Failure;
 use crate::files;
 use crate::fuse;
@@ -214,7 +214,7 @@ impl Simplify {
             session.warn(Failure::at(&self.input, reason));
         }
         let mut json = self.json(&done, &task.ready, fused.as_ref(), time);
-        KeptError::add_json(kept.as_ref(), &mut json);
+        ProvedError::add_json(kept.as_ref(), &mut json);
         let mut text = self.text(&done, &task, fused.as_ref(), time);
         text += &kept.map_or(String::new(), |kept| kept.text());
         simplify_run::replace(&mut scene, std::mem::take(&mut done.meshes));
@@ -279,7 +279,7 @@ impl Simplify {
         done: &mut Simplified,
         moved: f64,
         session: &Session,
-    ) -> Result<Option<KeptError>, Failure> {
+    ) -> Result<Option<ProvedError>, Failure> {
         if task.asked.is_none() && !self.measured {
             return Ok(None);
         }

@@ -52,6 +52,15 @@ impl Division {
         reduction(HEADER + self.count * self.header + 3 * self.stored, self.vertices)
     }
 
+    /// Estimates the fraction of the size that is saved by parts whose sides are 1 / `ratio` times as
+    /// long: borders grow as the root of the number of parts.
+    pub(super) fn saving(&self, ratio: f64) -> f64 {
+        let headers = (self.count * self.header) as f64;
+        let borders = (3 * (self.stored - self.vertices)) as f64;
+        let saved = (1.0 - ratio) * borders + (1.0 - ratio * ratio) * headers;
+        saved / (headers + (3 * self.stored) as f64)
+    }
+
     /// Estimates how many parts would give a reduction. Vertices are repeated along borders, whose
     /// length grows as the square root of the number of parts.
     pub(super) fn count_for(&self, reduction: f64) -> usize {

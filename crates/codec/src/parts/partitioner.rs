@@ -20,6 +20,8 @@ const FIRST_COUNT: usize = 64;
 const MAX_TRIES: usize = 10;
 /// Ratio of cell to requested cell at which the search stops.
 const CLOSE_CELL: f64 = 0.97;
+/// Fraction of the size that cells as large as requested may still save when it stops, too.
+const LITTLE: f64 = 0.005;
 /// Ratio of too many parts to too few at which it stops, too: the sides of nearly equal numbers of
 /// parts differ by chance.
 const CLOSE_COUNT: f64 = 1.03;
@@ -112,7 +114,7 @@ impl<'m> Partitioner<'m> {
     /// model units.
     ///
     /// The largest face must fit into a part. Where that alone takes larger cells, the parts are
-    /// the fewest found whose cells are no larger than that.
+    /// the fewest found whose cells are hardly larger than that.
     /// If those would take more than uncompressed positions, returns about as many parts as take
     /// less.
     ///
@@ -126,15 +128,18 @@ impl<'m> Partitioner<'m> {
             let Some(count) = next else { break };
             let division = self.divide(count, cells);
             let ratio = division.mean_side() / goal;
-            let is_few = ratio > 1.0 && division.reduction() > 0.0;
+            let is_small = division.reduction() > 0.0;
+            let is_few = ratio > 1.0 && is_small;
+            let is_close = ratio >= CLOSE_CELL || division.saving(ratio) < LITTLE;
+            let is_done = ratio <= 1.0 && is_small && is_close;
             let side = if is_few { &mut few } else { &mut many };
             *side = Some(division);
-            if (CLOSE_CELL..=1.0).contains(&ratio) {
+            if is_done {
                 break;
             }
             next = self.next_count(few.as_ref(), many.as_ref(), goal);
         }
-        let is_enough = |division: &Division| division.mean_side() <= goal;
+        let is_enough = |of: &Division| of.mean_side() <= goal && of.reduction() > 0.0;
         let enough = if many.as_ref().is_some_and(is_enough) { many } else { few.or(many) };
         enough.unwrap_or_else(|| self.divide(1, cells)).parts(&self.graph)
     }

@@ -135,6 +135,10 @@ fn a_cell_size_is_kept_where_it_saves_space() {
     assert!((0.0017..=0.002).contains(&parts.mean_side()), "{}", parts.mean_side());
     let finest = partitioner.within_cell(1e-9, Reconstruction::Centred);
     assert!(finest.mean_side() < 0.001 && finest.reduction() > 0.0);
+    // Parts of two faces would have the finest cells, but more positions than uncompressed.
+    let squares = grid(8);
+    let finest = self::partitioner(&squares).within_cell(1e-9, Reconstruction::Centred);
+    assert!(finest.parts().len() > 1 && finest.reduction() > 0.0, "{}", finest.reduction());
     let small = mesh_of_one();
     assert_eq!(
         Partitioner::new(&small).unwrap().within_cell(1e-9, Reconstruction::Centred).parts().len(),
