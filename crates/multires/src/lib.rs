@@ -87,7 +87,10 @@ mod wedges;
 mod tests;
 
 pub use bounds::ErrorKind;
-pub use cut::{Certificate, CertifyError, Cut, CutChange, Flaw, Located, Patch, UpdateLimits};
+pub use cut::{
+    Certificate, CertifyError, Cut, CutChange, Flaw, Geomorph, Located, Patch, UpdateLimits,
+    VertexValues,
+};
 pub use explicit::{Explicit, ExplicitCut};
 pub use file::{
     Archive, Extract, FieldParts, FileError, ModelFile, Resources, Source, Storage, StoredErrors,
