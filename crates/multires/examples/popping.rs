@@ -1,4 +1,4 @@
-//! How much the picture jumps when a cut follows an orbit, with and without a geomorph.
+//! Measures how much the picture jumps when a cut follows an orbit, with and without a geomorph.
 //!
 //! `cargo run --release -p meshlod-multires --example popping [MESH…]`; the default is the shared
 //! bunny. Between two cuts the camera stands still: it is the later one's. Cuts change by a degree at

@@ -28,12 +28,12 @@ pub(super) struct Front<'m> {
     /// Scratch memory for the neighbours of a vertex.
     ring: Vec<u32>,
     /// Updates applied and undone since they were last taken, if they are recorded.
-    pub(super) steps: Option<Vec<Step>>,
+    pub(super) steps: Option<Vec<SplitOrMerge>>,
 }
 
 /// An update that was applied, or undone.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Step {
+pub(super) enum SplitOrMerge {
     Split(u32),
     Merge(u32),
 }
@@ -145,7 +145,7 @@ impl<'m> Front<'m> {
 
     /// Applies an update right after [`may_split`](Self::may_split) accepted it.
     pub(super) fn apply(&mut self, update: u32) {
-        self.record(Step::Split(update));
+        self.record(SplitOrMerge::Split(update));
         let (node, level) = (self.mt.parent(update), self.mt.level(update));
         let [first, second] = self.mt.children(update);
         self.vertices[node as usize].corner = SPLIT;
@@ -246,7 +246,7 @@ impl<'m> Front<'m> {
 
     /// Replaces both children of an update by its node.
     fn undo(&mut self, update: u32) {
-        self.record(Step::Merge(update));
+        self.record(SplitOrMerge::Merge(update));
         let node = self.mt.parent(update);
         let [first, second] = self.mt.children(update);
         let above = self.mt.creator(node).map_or(u16::MAX, |up| self.mt.level(up));
@@ -283,7 +283,7 @@ impl<'m> Front<'m> {
     }
 
     #[inline]
-    fn record(&mut self, step: Step) {
+    fn record(&mut self, step: SplitOrMerge) {
         if let Some(steps) = &mut self.steps {
             steps.push(step);
         }

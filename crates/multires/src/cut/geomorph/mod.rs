@@ -17,7 +17,7 @@ use meshlod_mesh::{Layer, Mesh};
 use self::motion::Motion;
 pub use self::vertex_values::VertexValues;
 use super::certificate::CertifyError;
-use super::front::{Front, Step, VertexState};
+use super::front::{Front, SplitOrMerge, VertexState};
 use super::{Cut, CutChange, Patch, UpdateLimits};
 use crate::implicit::Implicit;
 use crate::query::{Query, QueryError};

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::{Geomorph, Step, VertexState, VertexValues};
+use super::{Geomorph, SplitOrMerge, VertexState, VertexValues};
 use crate::implicit::Implicit;
 
 /// Motion of a vertex, from what it was when it set out to what it will be.
@@ -46,13 +46,13 @@ impl Geomorph<'_> {
     }
 
     /// Does what the goal did: a split at once, a merge when its time has come.
-    pub(super) fn follow(&mut self, step: Step) {
+    pub(super) fn follow(&mut self, step: SplitOrMerge) {
         let mt = self.shown.mt;
         match step {
-            Step::Merge(update) => {
+            SplitOrMerge::Merge(update) => {
                 self.ending.insert((mt.level(update), update));
             }
-            Step::Split(update) => {
+            SplitOrMerge::Split(update) => {
                 // One that has not been undone yet stays.
                 if !self.ending.remove(&(mt.level(update), update)) {
                     self.split(update);
@@ -79,11 +79,11 @@ impl Geomorph<'_> {
     }
 
     /// Returns the goal's vertices that steps brought, in rising order.
-    pub(super) fn new_goals(&self, steps: &[Step]) -> Vec<u32> {
+    pub(super) fn new_goals(&self, steps: &[SplitOrMerge]) -> Vec<u32> {
         let (mt, goal) = (self.shown.mt, &self.goal.front);
         let nodes = steps.iter().flat_map(|&step| match step {
-            Step::Merge(update) => [mt.parent(update); 2],
-            Step::Split(update) => mt.children(update),
+            SplitOrMerge::Merge(update) => [mt.parent(update); 2],
+            SplitOrMerge::Split(update) => mt.children(update),
         });
         let mut nodes: Vec<u32> = nodes.filter(|&node| goal.is_active(node)).collect();
         nodes.sort_unstable();
