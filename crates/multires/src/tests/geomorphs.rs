@@ -1,13 +1,14 @@
 //! Cuts that change smoothly: no step makes the surface jump, and each ends at the cut.
 
+use std::collections::BTreeMap;
 use std::time::Duration;
 
-use meshlod_mesh::Mesh;
+use meshlod_mesh::{Layer, LayerKind, Mesh};
 use meshlod_simplify::{Method, Options};
 
 use super::attributes;
 use super::walks::{Dice, each, query};
-use crate::{Cut, Forest, Geomorph, Implicit, Query, UpdateLimits};
+use crate::{Cut, Forest, Geomorph, Implicit, Query, UpdateLimits, VertexValues};
 
 const DURATION: Duration = Duration::from_millis(100);
 const STILL: Duration = Duration::ZERO;
@@ -128,4 +129,34 @@ fn without_time_to_move_the_cut_is_shown_at_once() {
         let expected = Cut::at(&mt, &Query::uniform(error)).unwrap();
         assert_eq!(surface(&morph.mesh()), surface(&expected.level().mesh()), "{error}");
     }
+}
+
+#[test]
+fn numbers_of_joints_are_not_blended() {
+    let mut mesh = meshlod_fixtures::charted(&meshlod_samples::torus(900));
+    let attributes = mesh.attributes.as_mut().unwrap();
+    let values = (0..4 * attributes.wedge_count).map(|i| (i % 97) as f32).collect();
+    let (kind, name) = (LayerKind::Joints(0), "JOINTS_0".to_owned());
+    attributes.layers.push(Layer { kind, name, width: 4, values });
+    let mt = Implicit::new(&Forest::lossless(&mesh, &Options::default()).unwrap()).unwrap();
+    let is_joint: Vec<bool> =
+        mt.layers().iter().flat_map(|layer| vec![layer.kind == kind; layer.width]).collect();
+    let split = |values: &[f32]| -> [Vec<f32>; 2] {
+        [true, false].map(|joints| {
+            let all = values.iter().zip(is_joint.iter().cycle());
+            all.filter(|&(_, &is_joint)| is_joint == joints).map(|(&value, _)| value).collect()
+        })
+    };
+    let mut morph = Geomorph::new(&mt, DURATION).unwrap();
+    morph.update(&Query::uniform(0.0), &UpdateLimits::default()).unwrap();
+    let start: BTreeMap<u32, VertexValues> = morph.moved().collect();
+    morph.advance(DURATION / 2);
+    let mut blended = 0;
+    for (node, now) in morph.moved() {
+        let [[joints, others], [old_joints, old_others]] =
+            [&now, &start[&node]].map(|values| split(&values.values));
+        assert_eq!(joints, old_joints, "vertex {node}");
+        blended += usize::from(others != old_others);
+    }
+    assert!(blended > 100, "{blended} vertices have other values half-way");
 }
