@@ -13,6 +13,7 @@
 //! | | result | use |
 //! |---|---|---|
 //! | [`Cut`] | the smallest cut, updated by each query | moving viewpoints; least memory |
+//! | [`Geomorph`] | the smallest cut, to which vertices move | viewers in which nothing pops |
 //! | [`Extractor::exact`] | the smallest cut | any query, from scratch |
 //! | [`Extractor::saturated`] | a cut a few percent larger | cameras, faster |
 //! | [`Extractor::uniform`] | the smallest cut | one tolerance everywhere: only errors matter |
@@ -87,7 +88,10 @@ mod wedges;
 mod tests;
 
 pub use bounds::ErrorKind;
-pub use cut::{Certificate, CertifyError, Cut, CutChange, Flaw, Located, Patch, UpdateLimits};
+pub use cut::{
+    Certificate, CertifyError, Cut, CutChange, Flaw, Geomorph, Located, Patch, UpdateLimits,
+    VertexValues,
+};
 pub use explicit::{Explicit, ExplicitCut};
 pub use file::{
     Archive, Extract, FieldParts, FileError, ModelFile, Resource, Source, Storage, StoredErrors,

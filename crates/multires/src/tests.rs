@@ -2,6 +2,7 @@
 
 mod attributes;
 mod certificates;
+mod geomorphs;
 mod locate;
 mod long;
 mod motions;

@@ -5,6 +5,7 @@ use super::triangles::{MAX_SEARCHED, NEXT, Spoke, Triangles};
 use crate::forest::MAX_RANKED;
 use crate::forest::{MAX_LEVELS, NONE};
 use crate::implicit::{Implicit, Wing};
+use crate::level::Level;
 
 /// Corner list of a vertex that does not exist yet.
 const ABSENT: u32 = NONE - 1;
@@ -26,6 +27,15 @@ pub(super) struct Front<'m> {
     created: Vec<[u32; 3]>,
     /// Scratch memory for the neighbours of a vertex.
     ring: Vec<u32>,
+    /// Updates applied and undone since they were last taken, if they are recorded.
+    pub(super) steps: Option<Vec<SplitOrMerge>>,
+}
+
+/// An update that was applied, or undone.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum SplitOrMerge {
+    Split(u32),
+    Merge(u32),
 }
 
 /// State of a node: its list of corners, and the levels that splits and merges compare.
@@ -65,6 +75,7 @@ impl<'m> Front<'m> {
             active: 0,
             star: Vec::new(),
             ring: Vec::new(),
+            steps: None,
         };
         for (root, _) in mt.roots() {
             this.activate(root, u16::MAX);
@@ -134,6 +145,7 @@ impl<'m> Front<'m> {
 
     /// Applies an update right after [`may_split`](Self::may_split) accepted it.
     pub(super) fn apply(&mut self, update: u32) {
+        self.record(SplitOrMerge::Split(update));
         let (node, level) = (self.mt.parent(update), self.mt.level(update));
         let [first, second] = self.mt.children(update);
         self.vertices[node as usize].corner = SPLIT;
@@ -234,6 +246,7 @@ impl<'m> Front<'m> {
 
     /// Replaces both children of an update by its node.
     fn undo(&mut self, update: u32) {
+        self.record(SplitOrMerge::Merge(update));
         let node = self.mt.parent(update);
         let [first, second] = self.mt.children(update);
         let above = self.mt.creator(node).map_or(u16::MAX, |up| self.mt.level(up));
@@ -266,6 +279,13 @@ impl<'m> Front<'m> {
                 }
                 _ => {}
             }
+        }
+    }
+
+    #[inline]
+    fn record(&mut self, step: SplitOrMerge) {
+        if let Some(steps) = &mut self.steps {
+            steps.push(step);
         }
     }
 
@@ -333,6 +353,14 @@ impl<'m> Front<'m> {
         ring.clear();
         ring.extend(star.iter().flat_map(|spoke| [spoke.a, spoke.b]));
         ring
+    }
+
+    /// Returns the triangles in the given slots as a level.
+    pub(super) fn level_of(&self, slots: &[u32]) -> Level {
+        let Self { mt, triangles, .. } = self;
+        let faces = slots.iter().map(|&slot| triangles.nodes(slot)).collect();
+        let corners = slots.iter().filter_map(|&slot| triangles.wedges(slot)).collect();
+        mt.level_from_faces(faces, corners)
     }
 
     fn activate(&mut self, node: u32, above: u16) {

@@ -64,7 +64,7 @@ impl Cut<'_> {
         met.sort_unstable();
         met.dedup();
         met.retain(|&t| region.meets_triangle(self.corners(self.front.triangles.nodes(t))));
-        Ok(self.level_of(&met))
+        Ok(self.front.level_of(&met))
     }
 
     /// Returns the triangle of the cut closest to a point in model units, or `None` if the cut has

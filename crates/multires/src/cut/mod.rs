@@ -5,6 +5,7 @@ mod coarse_wedges;
 mod each_triangle;
 mod force;
 mod front;
+mod geomorph;
 mod inspect;
 mod locate;
 mod meter;
@@ -16,6 +17,7 @@ mod triangles;
 mod unpack_wedges;
 
 pub use certificate::{Certificate, CertifyError, Flaw};
+pub use geomorph::{Geomorph, VertexValues};
 pub use locate::Located;
 
 use std::collections::VecDeque;
@@ -204,15 +206,7 @@ impl<'m> Cut<'m> {
 
     /// Returns a copy of the current mesh.
     pub fn level(&self) -> Level {
-        self.level_of(&self.triangles().map(|(slot, _)| slot).collect::<Vec<_>>())
-    }
-
-    /// Returns the triangles in the given slots as a level.
-    fn level_of(&self, slots: &[u32]) -> Level {
-        let Front { mt, triangles, .. } = &self.front;
-        let faces = slots.iter().map(|&slot| triangles.nodes(slot)).collect();
-        let corners = slots.iter().filter_map(|&slot| triangles.wedges(slot)).collect();
-        mt.level_from_faces(faces, corners)
+        self.front.level_of(&self.triangles().map(|(slot, _)| slot).collect::<Vec<_>>())
     }
 }
 

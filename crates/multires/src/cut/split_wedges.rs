@@ -52,10 +52,17 @@ impl<'m> SplitWedges<'m> {
     /// Returns the wedge of the split node that a child's becomes when they are merged.
     #[inline]
     pub(super) fn merged(&self, child: u32, wedge: u32) -> u32 {
-        let Some(record) = &self.record else { return self.all.first(self.node) };
+        self.continued(child, wedge).unwrap_or_else(|| self.all.first(self.node))
+    }
+
+    /// Returns the wedge of the split node that a child's becomes when they are merged; `None` if
+    /// all its faces vanish.
+    #[inline]
+    pub(super) fn continued(&self, child: u32, wedge: u32) -> Option<u32> {
+        let Some(record) = &self.record else { return Some(self.all.first(self.node)) };
         let before = if child == self.children[1] { self.all.count(self.children[0]) } else { 0 };
         let at = before + wedge.wrapping_sub(self.all.first(child));
-        self.all.at(self.node, record.parent(at as usize).unwrap_or(0))
+        record.parent(at as usize).map(|parent| self.all.at(self.node, parent))
     }
 }
 
