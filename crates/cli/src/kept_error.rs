@@ -42,6 +42,8 @@ pub enum Known {
 pub struct KeptError {
     pub asked: Asked,
     pub known: Known,
+    /// False if the file is truncated, so that nothing is known of the distance from the original.
+    pub is_whole: bool,
     /// Distance that vertices have been moved since, in model units.
     pub moved: f64,
     /// Length of the diagonal of the finest mesh, in model units.
@@ -52,6 +54,7 @@ impl KeptError {
     /// Returns the proven error in model units; `None` if it is in pixels or unknown.
     fn proved(&self) -> Option<f64> {
         match (self.known, self.asked) {
+            _ if !self.is_whole => None,
             (Known::Verified(proof), Asked::Length(asked)) => {
                 Some(if proof.holds { asked } else { proof.rounding } + self.moved)
             }
@@ -64,7 +67,7 @@ impl KeptError {
     fn proved_px(&self) -> Option<f64> {
         match (self.known, self.asked) {
             (Known::Verified(proof), Asked::Pixels(asked)) => {
-                (proof.holds && self.moved == 0.0).then_some(asked)
+                (proof.holds && self.is_whole && self.moved == 0.0).then_some(asked)
             }
             _ => None,
         }
@@ -105,8 +108,8 @@ impl KeptError {
             Asked::Faces => [None; 2],
         };
         let proof = match self.known {
-            Known::Verified(proof) => Some(proof),
-            Known::Stored | Known::Measured(_) => None,
+            Known::Verified(proof) if self.is_whole => Some(proof),
+            _ => None,
         };
         json!({
             "asked": asked,
@@ -130,6 +133,7 @@ impl KeptError {
         };
         match self.known {
             Known::Stored => "error: by what the file says, not verified\n".into(),
+            _ if !self.is_whole => "error: unknown, as the file is truncated\n".into(),
             Known::Measured(_) => format!("error: at most {proved}, measured\n"),
             Known::Verified(Verification { added, .. }) => {
                 let more = format!("{} update{} added", count(added), plural(added));

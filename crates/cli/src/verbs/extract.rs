@@ -182,6 +182,7 @@ impl Extract {
                     None => Asked::Faces,
                 },
                 known,
+                is_whole: chunks[0] == chunks[1],
                 moved: 0.0,
                 diagonal: file.diagonal(),
             },

@@ -131,5 +131,7 @@ fn a_truncated_file_and_any_number_of_threads_give_one_answer() {
             bytes(&run, "cut.ply")
         };
         assert_eq!(cut("1"), cut("3"));
+        let error = &extract(&run, "part.mlod", "cut.ply", &["--error", "0.2%"])["error"];
+        assert_eq!(error["proved"].is_null(), end == half, "{error}");
     }
 }
