@@ -91,7 +91,7 @@ pub use cut::{Certificate, CertifyError, Cut, CutChange, Flaw, Located, Patch, U
 pub use explicit::{Explicit, ExplicitCut};
 pub use file::{
     Archive, Extract, FieldParts, FileError, ModelFile, Resource, Source, Storage, StoredErrors,
-    Surroundings,
+    Surroundings, pack_resource, unpack_resource,
 };
 pub use forest::{BuildError, Forest, Recorder};
 pub use hierarchy::{Hierarchy, HierarchyCut};
