@@ -11,10 +11,6 @@ use crate::args::{ReadArgs, WriteArgs};
 use crate::failure::Failure;
 use crate::session::Session;
 
-/// Warning for glTF input of files that hold materials in our own form.
-pub const KEPT_OF_GLTF: &str = "materials keep their base colour and its texture; skins, \
-                                animations and other textures are left out";
-
 /// Returns true if a path is `-`, which stands for standard input or output.
 pub fn is_pipe(path: &Path) -> bool {
     path == Path::new("-")

@@ -8,9 +8,11 @@ use meshlod_codec::{
 };
 use meshlod_io::{IoError, Scene, write_file};
 use meshlod_mesh::{AttributeBounds, Mesh};
+use meshlod_multires::FileError;
+use meshlod_simplify::Options;
 use thiserror::Error;
 
-use crate::packed_materials::pack_materials;
+use crate::{Constraints, PlaceError, place_scene};
 
 /// Options for writing a compressed mesh file with [`compress`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,6 +67,12 @@ pub enum CompressedFileError {
     /// The cells of the lattice would be too small or too large to encode.
     #[error(transparent)]
     Lattice(#[from] LatticeError),
+    /// The scene cannot be merged into one mesh.
+    #[error(transparent)]
+    Place(#[from] PlaceError),
+    /// A part of the scene cannot be stored.
+    #[error(transparent)]
+    Scene(#[from] FileError),
     /// The file is damaged or is not a compressed mesh.
     #[error("{}: {source}", path.display())]
     Malformed {
@@ -79,7 +87,7 @@ pub enum CompressedFileError {
 /// for transmission.
 ///
 /// Both hold the faces with their attributes, and the names of materials and objects;
-/// [`compress_scene`] adds the materials themselves. The file is written whole or not at all.
+/// [`compress_scene`] adds the rest of a scene. The file is written whole or not at all.
 /// [`codec`](crate::codec) has the parts.
 ///
 /// # Errors
@@ -105,19 +113,20 @@ pub fn compress(
     compress_with(mesh, Vec::new(), path, options)
 }
 
-/// Compresses a scene to a file as [`compress`] does, merged into one mesh, with its materials: their
-/// base colours and the textures of those. Decompress it with [`decompress_scene`].
+/// Compresses a scene to a file as [`compress`] does: all its meshes, each once, as [`place_scene`]
+/// merges them, and nodes, materials with images, skins and animations beside them. Decompress it
+/// with [`decompress_scene`](crate::decompress_scene).
 ///
 /// # Errors
-/// As [`compress`].
+/// As [`compress`], and a scene that does not match its source.
 pub fn compress_scene(
-    mut scene: Scene,
+    scene: Scene,
     path: &Path,
     options: &CompressOptions,
 ) -> Result<CompressReport, CompressedFileError> {
-    let images = std::mem::take(&mut scene.images);
-    let resources = pack_materials(&scene.materials, &images);
-    compress_with(&scene.into_mesh(), resources, path, options)
+    let placed = place_scene(scene, &Constraints::default(), Options::default())?;
+    let resources = placed.rest.map(|rest| rest.to_bytes()).transpose()?.unwrap_or_default();
+    compress_with(&placed.mesh, resources, path, options)
 }
 
 fn compress_with(

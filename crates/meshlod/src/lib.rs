@@ -230,7 +230,6 @@ mod levels;
 mod locks;
 mod materials;
 mod model_scene;
-mod packed_materials;
 mod place;
 mod repair;
 mod scene;
@@ -259,7 +258,7 @@ pub use compressed::{
 pub use conditioned::{ConditionedScene, simplify};
 pub use constraints::{Constraints, VertexLocking};
 pub use contacts::scene_locks;
-pub use decompressed::{decompress, decompress_bytes, decompress_scene};
+pub use decompressed::{decompress, decompress_bytes, decompress_model, decompress_scene};
 pub use exact_volume::{
     CutVolumeError, closed_volume, conserve_cut_volume, conserve_volumes, digits_of,
 };
@@ -274,7 +273,6 @@ pub use model_scene::{
     MissingParts, ModelScene, ModelSceneError, PackedScene, PlaceError, PlacedScene, SceneCounts,
     place_scene,
 };
-pub use packed_materials::{BadMaterials, pack_materials, scene_with_materials, unpack_materials};
 pub use place::{moved_at_most, rounding_of_level, world_bounds};
 pub use repair::repair_scene;
 pub use scene::{SceneError, SceneSimplifier, simplify_scene};

@@ -95,7 +95,7 @@ pub use cut::{
 pub use explicit::{Explicit, ExplicitCut};
 pub use file::{
     Archive, Extract, FieldParts, FileError, ModelFile, Resource, Source, Storage, StoredErrors,
-    Surroundings,
+    Surroundings, pack_resource, unpack_resource,
 };
 pub use forest::{BuildError, Forest, Recorder};
 pub use hierarchy::{Hierarchy, HierarchyCut};

@@ -2,6 +2,7 @@
 
 mod constraints;
 mod gltf;
+mod place;
 mod resident;
 mod transport;
 
@@ -9,9 +10,9 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum};
-use meshlod::Mesh;
 use meshlod::codec::{CompressionTarget, LayerReport, Reconstruction, Scheme};
 use meshlod::io::write_file;
+use meshlod::{Mesh, Scene, SceneCounts};
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
@@ -20,12 +21,16 @@ use crate::constraints::ConstraintArgs;
 use crate::failure::Failure;
 use crate::files;
 use crate::fuse;
+use crate::model_scene;
 use crate::numbers::{count, faces, percent, value};
 use crate::parse::{self, Bound};
 use crate::session::Session;
 
-/// Compress a mesh for rendering or transmission, with its attributes, materials and objects. No
-/// face is removed, and every vertex moves to a grid: --lock-contacts keeps vertices at one place together, and other locks are refused
+use self::place::Placed;
+
+/// Compress a scene for rendering or transmission: meshes with attributes and objects, and in .mlq
+/// and .mlz nodes, materials, skins and animations as they are. No face is removed, and every vertex
+/// moves to a grid: --lock-contacts keeps vertices at one place together, and other locks are refused
 #[derive(Args)]
 pub struct Compress {
     /// Mesh to read, or -
@@ -95,8 +100,8 @@ struct CompressedFile {
     bytes: Vec<u8>,
     /// Bytes of positions, connectivity and attributes.
     sizes: [usize; 3],
-    /// Bytes of materials with their images.
-    materials: usize,
+    /// Bytes of nodes, materials, images and all else that is not compressed with the surface.
+    scene: usize,
     vertices: usize,
     faces: usize,
     /// Kind and number of pieces: blocks, parts or meshes.
@@ -114,19 +119,11 @@ impl Compress {
         files::check_apart(&self.output, &[&self.input])?;
         let mut scene = files::read(&self.input, &self.reading, session)?;
         self.check_scene(kind, &scene)?;
-        let is_gltf = scene.source.is_some() && !scene.materials.is_empty();
         let fused = self.constraints.fuse.apply(&mut scene, session);
         session.progress.stage("compressing");
         let start = Instant::now();
-        let packed = match kind {
-            Kind::Resident => self.resident(scene)?,
-            Kind::Transport => self.transport(scene)?,
-            Kind::Gltf => self.gltf(scene)?,
-        };
+        let (packed, counts) = self.pack(kind, scene, session)?;
         let time = start.elapsed();
-        if is_gltf && kind != Kind::Gltf {
-            session.warn(files::KEPT_OF_GLTF);
-        }
         for left_out in &packed.left_out {
             session.warn(Failure::at(&self.input, left_out));
         }
@@ -139,8 +136,29 @@ impl Compress {
         write_file(&self.output, &packed.bytes)?;
         let mut json = self.json(&packed, time);
         json["fused"] = fuse::to_json(fused.as_ref());
-        let text = fuse::to_text(fused.as_ref()) + &self.text(&packed, time);
+        let mut text = fuse::to_text(fused.as_ref()) + &self.text(&packed, time);
+        if let Some(counts) = counts {
+            json["scene"] = model_scene::counts_json(&counts);
+            text += &model_scene::counts_text(&counts);
+        }
         Ok(Answer { missed: self.strict && !packed.reached, ..Answer::new(json, text) })
+    }
+
+    fn pack(
+        &self,
+        kind: Kind,
+        scene: Scene,
+        session: &Session,
+    ) -> Result<(CompressedFile, Option<SceneCounts>), Failure> {
+        if kind == Kind::Gltf {
+            return Ok((self.gltf(scene)?, None));
+        }
+        let Placed { mesh, rest, counts } = self.place(scene, session)?;
+        let packed = match kind {
+            Kind::Resident => self.resident(&mesh, rest)?,
+            _ => self.transport(&mesh, &rest)?,
+        };
+        Ok((packed, counts))
     }
 
     /// Refuses an output that cannot be written and options that do not apply to it, before any
@@ -219,7 +237,7 @@ impl Compress {
             "bytes_positions": positions,
             "bytes_connectivity": connectivity,
             "bytes_attributes": attributes,
-            "bytes_materials": packed.materials,
+            "bytes_scene": packed.scene,
             "bytes_headers": packed.surface() - positions - connectivity - attributes,
             "bytes_total": packed.bytes.len(),
             "bytes_per_triangle": packed.surface() as f64 / packed.faces as f64,
@@ -254,17 +272,17 @@ impl Compress {
             let (bytes, error) = (count(layer.bytes), value(layer.max_error));
             text += &format!("{}: {bytes} bytes, largest error {error}\n", layer.name);
         }
-        if packed.materials > 0 {
-            text += &format!("materials and images: {} bytes\n", count(packed.materials));
+        if packed.scene > 0 {
+            text += &format!("nodes, materials and images: {} bytes\n", count(packed.scene));
         }
         text + &format!("encode_seconds: {}\n", value(time.as_secs_f64()))
     }
 }
 
 impl CompressedFile {
-    /// Returns the bytes of everything but materials.
+    /// Returns the bytes of the surface: of meshes with attributes and labels.
     fn surface(&self) -> usize {
-        self.bytes.len() - self.materials
+        self.bytes.len() - self.scene
     }
 
     fn reduction(&self) -> f64 {

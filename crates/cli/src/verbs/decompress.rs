@@ -1,20 +1,21 @@
-//! `decompress`: decodes a compressed file to a mesh.
+//! `decompress`: decodes a compressed file to a scene.
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use meshlod::{Mesh, decompress_scene};
+use meshlod::decompress_model;
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
 use crate::args::WriteArgs;
 use crate::failure::Failure;
 use crate::files;
-use crate::numbers::{faces, value};
+use crate::model_scene;
+use crate::numbers::{count, faces, value};
 use crate::session::Session;
 
-/// Decode a compressed file (.mlq or .mlz) to a mesh
+/// Decode a compressed file (.mlq or .mlz): to glTF as the scene it was made of, else as its surface
 #[derive(Args)]
 pub struct Decompress {
     /// File to read, .mlq or .mlz, or -
@@ -29,33 +30,41 @@ pub struct Decompress {
 
 impl Decompress {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
-        files::check_output(&self.output, session)?;
+        let format = files::check_output(&self.output, session)?;
         files::check_apart(&self.output, &[&self.input])?;
         session.progress.stage(&format!("reading {}", files::name(&self.input)));
         let bytes = files::read_all(&self.input)?;
         let start = Instant::now();
         let name = self.input.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy());
-        let scene = decompress_scene(&bytes, name);
-        let scene = scene.map_err(|error| Failure::at(&self.input, error))?;
+        let decoded = decompress_model(&bytes);
+        let (mesh, model) = decoded.map_err(|error| Failure::at(&self.input, error))?;
+        let counts = [mesh.positions.len(), mesh.faces.len()];
+        let flat = model.flat_scene(name, mesh);
+        let scene = model_scene::restored(&self.input, model, flat, format)?;
         let time = start.elapsed();
-        let mesh = &scene.meshes[0].mesh;
-        let (json, text) = (self.json(mesh, time), self.text(mesh, time));
+        let shown = model_scene::shown_faces(&scene);
+        let (json, text) = (self.json(counts, shown, time), self.text(counts, shown, time));
         files::write(&self.output, &scene, &self.writing, session)?;
         Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
     }
 
-    fn json(&self, mesh: &Mesh, time: Duration) -> Value {
+    fn json(&self, [vertices, faces]: [usize; 2], shown: usize, time: Duration) -> Value {
         json!({
             "file": files::name(&self.output),
-            "vertices": mesh.positions.len(),
-            "faces": mesh.faces.len(),
+            "vertices": vertices,
+            "faces": faces,
+            "shown_faces": shown,
             "decode_seconds": time.as_secs_f64(),
         })
     }
 
-    fn text(&self, mesh: &Mesh, time: Duration) -> String {
+    fn text(&self, [_, of_meshes]: [usize; 2], shown: usize, time: Duration) -> String {
         let seconds = value(time.as_secs_f64());
         let name = files::name(&self.output);
-        format!("{name}: {}\ndecode_seconds: {seconds}\n", faces(mesh.faces.len()))
+        let shown = match shown == of_meshes {
+            true => String::new(),
+            false => format!(", shown as {}", count(shown)),
+        };
+        format!("{name}: {}{shown}\ndecode_seconds: {seconds}\n", faces(of_meshes))
     }
 }

@@ -3,9 +3,11 @@
 mod check;
 mod compare;
 mod compress;
+mod compressed_scenes;
 mod constraints;
 mod damaged_models;
 mod demo;
+mod documents;
 mod error_bound;
 mod flock;
 mod hostile;

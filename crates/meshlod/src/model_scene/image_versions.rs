@@ -18,19 +18,24 @@ const STEP: usize = 4;
 /// Longest side of the smallest preview, at most. There is one in any case, if it takes fewer bytes.
 const LEAST_SIDE: u32 = 16;
 
+/// Returns an image as its only version; none of an image without bytes.
+pub(super) fn whole(bytes: &[u8]) -> Vec<ImageVersion> {
+    match bytes {
+        [] => Vec::new(),
+        _ => vec![ImageVersion { side: u32::MAX, bytes: bytes.to_vec(), is_preview: false }],
+    }
+}
+
 /// Returns the versions of an image, from the smallest to the image itself; none of an image without
 /// bytes. Texels are averaged in linear light if the image has colours.
 ///
 /// Cost: decoding the image, and encoding about a third of its texels.
 pub(super) fn versions(bytes: &[u8], is_color: bool) -> Vec<ImageVersion> {
-    if bytes.is_empty() {
-        return Vec::new();
-    }
-    let mut whole = ImageVersion { side: u32::MAX, bytes: bytes.to_vec(), is_preview: false };
-    let Ok(texture) = Texture::decode(bytes) else { return vec![whole] };
+    let mut versions = whole(bytes);
+    let Some(whole) = versions.first_mut() else { return versions };
+    let Ok(texture) = Texture::decode(bytes) else { return versions };
     let levels: Vec<_> = texture.levels().collect();
     whole.side = levels[0].0.max(levels[0].1);
-    let mut versions = vec![whole];
     let mut means = Halved { size: [levels[0].0, levels[0].1], texels: levels[0].2.to_vec() };
     for &(width, height, colors) in &levels[1..] {
         means = means.half();

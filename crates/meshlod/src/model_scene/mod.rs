@@ -1,8 +1,10 @@
-//! Scenes in multiresolution files: their meshes as levels, all else as resources.
+//! Scenes in files of one mesh, multiresolution or compressed: the meshes merged, all else as
+//! resources.
 //!
-//! [`place_scene`] puts each mesh of a scene into one mesh in world space, once, of which the levels
-//! are made, and packs the rest: nodes, materials, skins, animations, and images from small to large.
-//! [`ModelScene`] takes a level apart again. docs/formats/mlod.md specifies the bytes.
+//! [`place_scene`] puts each mesh of a scene into one mesh in world space, once, and packs the rest:
+//! nodes, materials, skins, animations and images. Of that mesh the levels are made, or it is
+//! compressed. [`ModelScene`] takes a level, or the decoded mesh, apart again. docs/formats/mlod.md
+//! specifies the bytes.
 
 mod counts;
 mod head;
@@ -10,6 +12,7 @@ mod image_versions;
 mod parts;
 mod place;
 mod placement;
+mod resources;
 mod restore;
 mod selector;
 mod slots;

@@ -1,23 +1,24 @@
-//! Scenes on their way into a multiresolution file.
+//! Scenes on their way into a file of one mesh, multiresolution or compressed.
 
 use std::collections::BTreeMap;
 
 use meshlod_io::gltf::Skeleton;
 use meshlod_io::{Image, Node, Scene, SceneMesh, Unsupported};
 use meshlod_mesh::{LayerKind, Locks, Mesh};
-use meshlod_multires::Resource;
+use meshlod_multires::{FileError, Resource};
 use meshlod_simplify::{Options, SimplifyError};
 use thiserror::Error;
 
 use super::counts::SceneCounts;
 use super::head::{Head, MeshEntry, Slot};
-use super::image_versions::versions;
+use super::image_versions::{ImageVersion, versions, whole};
 use super::parts::{interleave, sort_parts};
 use super::placement::{Placement, placements};
+use super::resources::join_resources;
 use super::slots::{material_of, slots_of, slots_of_labels};
 use crate::{Constraints, VertexLocking, join_locks, locks};
 
-/// A scene merged into one mesh in world space, of which levels are made.
+/// A scene merged into one mesh in world space, of which levels are made or which is compressed.
 #[derive(Clone, Debug)]
 pub struct PlacedScene {
     /// Every mesh that the scene shows, once, as its largest instance.
@@ -33,7 +34,7 @@ pub struct PlacedScene {
     pub counts: SceneCounts,
 }
 
-/// All of a scene but the geometry of its levels, ready to be written.
+/// All of a scene but the geometry of its merged mesh, ready to be written.
 #[derive(Clone, Debug)]
 pub struct PackedScene {
     head: Head,
@@ -123,13 +124,28 @@ impl PackedScene {
         Self { head, animations, images: Vec::new(), is_color: colors(scene) }
     }
 
-    /// Returns the scene as resources of a file whose chunks have these lengths in bytes: what all
-    /// need first, then images by size among the chunks.
+    /// Returns the scene as resources of a multiresolution file whose chunks have these lengths in
+    /// bytes: what all need first, then images by size among the chunks.
     ///
     /// Cost: decoding every image, and encoding about a third of its texels.
     pub fn resources(&self, chunks: &[u64]) -> Vec<Resource> {
         let pairs = self.images.iter().zip(&self.is_color);
         let images = pairs.map(|(image, &is_color)| versions(&image.bytes, is_color)).collect();
+        self.with_images(images, chunks)
+    }
+
+    /// Returns the scene as the resources of a compressed file, images at full size only. Read it
+    /// with [`ModelScene::unpack`](super::ModelScene::unpack).
+    ///
+    /// Cost: linear.
+    /// # Errors
+    /// An image or animations of 4 GiB or more.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, FileError> {
+        let images = self.images.iter().map(|image| whole(&image.bytes)).collect();
+        join_resources(&self.with_images(images, &[]))
+    }
+
+    fn with_images(&self, images: Vec<Vec<ImageVersion>>, chunks: &[u64]) -> Vec<Resource> {
         let parts = sort_parts(self.animations.clone(), images, &self.is_color);
         let kinds = parts.iter().map(|part| part.kind).collect();
         let head = Head { parts: kinds, ..self.head.clone() };

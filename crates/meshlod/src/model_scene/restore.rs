@@ -1,4 +1,4 @@
-//! Scenes that come out of a multiresolution file.
+//! Scenes that come out of a file of one mesh, multiresolution or compressed.
 
 use meshlod_io::gltf::SkeletonImage;
 use meshlod_io::{ParseError, Scene};
@@ -8,9 +8,10 @@ use thiserror::Error;
 
 use super::head::Head;
 use super::parts::PartKind;
+use super::resources::{JoinedResources, Resources};
 use super::split::split;
 
-/// Scene of a multiresolution file, without the geometry of its levels.
+/// Scene of a multiresolution or compressed file, without the geometry of its mesh.
 #[derive(Clone, Debug, Default)]
 pub struct ModelScene {
     head: Head,
@@ -35,17 +36,17 @@ pub struct MissingParts {
     pub animations: bool,
 }
 
-/// Reason why the scene of a multiresolution file cannot be read.
+/// Reason why the scene of a multiresolution or compressed file cannot be read.
 #[derive(Debug, Error)]
 pub enum ModelSceneError {
     /// The file is damaged.
     #[error(transparent)]
     File(#[from] FileError),
     /// The skeleton of the scene is damaged.
-    #[error("the scene in the file is damaged: {0}; build the file again")]
+    #[error("the scene in the file is damaged: {0}; create the file again")]
     Skeleton(#[from] ParseError),
     /// The scene does not fit the levels.
-    #[error("the scene in the file is damaged: {0}; build the file again")]
+    #[error("the scene in the file is damaged: {0}; create the file again")]
     Damaged(&'static str),
 }
 
@@ -55,23 +56,39 @@ impl ModelScene {
     /// # Errors
     /// A file that is damaged.
     pub fn read<S: Source>(archive: &Archive<S>) -> Result<Self, ModelSceneError> {
-        if archive.resource_count() == 0 {
+        Ok(Self { is_rounded: !archive.is_lossless(), ..Self::of_resources(archive)? })
+    }
+
+    /// Decodes the scene in the resources of a compressed file, which
+    /// [`PackedScene::to_bytes`](super::PackedScene::to_bytes) encoded. Without bytes, it has one
+    /// mesh.
+    ///
+    /// # Errors
+    /// Damaged bytes.
+    pub fn unpack(bytes: &[u8]) -> Result<Self, ModelSceneError> {
+        let resources = JoinedResources::split(bytes);
+        let resources = resources.ok_or(ModelSceneError::Damaged("its parts are cut off"))?;
+        Ok(Self { is_rounded: true, ..Self::of_resources(&resources)? })
+    }
+
+    fn of_resources(resources: &impl Resources) -> Result<Self, ModelSceneError> {
+        if resources.count() == 0 {
             return Ok(Self::default());
         }
-        let Some(bytes) = archive.resource(0)? else {
+        let Some(bytes) = resources.read(0)? else {
             let missing = MissingParts { scene: true, ..MissingParts::default() };
             return Ok(Self { missing, ..Self::default() });
         };
         let mut head =
             Head::from_bytes(&bytes).ok_or(ModelSceneError::Damaged("its tables are wrong"))?;
-        if head.parts.len() + 1 != archive.resource_count() {
+        if head.parts.len() + 1 != resources.count() {
             return Err(ModelSceneError::Damaged("its parts are not those of the file"));
         }
         let mut missing = MissingParts::default();
-        let images = read_images(archive, &head, &mut missing)?;
+        let images = read_images(resources, &head, &mut missing)?;
         let place = head.parts.iter().position(|part| *part == PartKind::Animations);
         let animations = match place {
-            Some(place) => archive.resource(place + 1)?,
+            Some(place) => resources.read(place + 1)?,
             None => Some(Vec::new()),
         };
         missing.animations = animations.is_none();
@@ -83,7 +100,7 @@ impl ModelScene {
         if !head.slots.iter().all(|slot| is_material(slot.material)) {
             return Err(ModelSceneError::Damaged("it lacks a material"));
         }
-        Ok(Self { head, scene, is_rounded: !archive.is_lossless(), missing })
+        Ok(Self { head, scene, is_rounded: false, missing })
     }
 
     /// Returns true if a level is what the scene shows: if it has each mesh where it is, and only
@@ -152,8 +169,8 @@ fn shown_size(scene: &Scene) -> usize {
 }
 
 /// Reads the largest version that there is of each image.
-fn read_images<S: Source>(
-    archive: &Archive<S>,
+fn read_images(
+    resources: &impl Resources,
     head: &Head,
     missing: &mut MissingParts,
 ) -> Result<Vec<SkeletonImage>, ModelSceneError> {
@@ -161,7 +178,7 @@ fn read_images<S: Source>(
     let mut is_whole = vec![true; head.images as usize];
     for (part, kind) in head.parts.iter().enumerate() {
         let (PartKind::Preview(image) | PartKind::Image(image)) = *kind else { continue };
-        let is_there = archive.has_resource(part + 1)?;
+        let is_there = resources.has(part + 1)?;
         is_whole[image as usize] = is_there;
         if is_there {
             best[image as usize] = Some(part);
@@ -175,7 +192,7 @@ fn read_images<S: Source>(
             continue;
         };
         missing.previews += usize::from(!is_whole);
-        let bytes = archive.resource(part + 1)?.unwrap_or_default();
+        let bytes = resources.read(part + 1)?.unwrap_or_default();
         images.push(SkeletonImage { bytes, is_preview: !is_whole });
     }
     Ok(images)

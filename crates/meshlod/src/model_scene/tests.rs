@@ -275,6 +275,42 @@ fn damaged_scenes_are_errors_or_scenes() {
 }
 
 #[test]
+fn a_scene_comes_back_from_joined_resources() {
+    for scene in [scene(), as_gltf(&scene())] {
+        let placed = place_scene(scene.clone(), &Constraints::default(), Options::default());
+        let PlacedScene { mesh, rest, .. } = placed.unwrap();
+        let bytes = rest.unwrap().to_bytes().unwrap();
+        let model = ModelScene::unpack(&bytes).unwrap();
+        assert_eq!(model.missing, MissingParts::default());
+        let back = model.into_scene("scene", mesh.clone()).unwrap();
+        assert_eq!((&back.nodes, &back.roots), (&scene.nodes, &scene.roots));
+        assert!(back.materials == scene.materials && back.images == scene.images);
+        for (new, old) in back.meshes.iter().zip(&scene.meshes) {
+            let places = |mesh: &Mesh| {
+                let bare = Mesh::new(mesh.positions.clone(), mesh.faces.clone());
+                corners(&bare)
+            };
+            assert!(places(&new.mesh) == places(&old.mesh), "{}", new.name);
+        }
+        let (mut refused, mut read, mut state) = (0, 0, 5u64);
+        for _ in 0..300 {
+            let mut damaged = bytes.clone();
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            damaged[(state >> 33) as usize % bytes.len().min(1000)] ^= 1 << (state >> 61);
+            let model = ModelScene::unpack(&damaged);
+            match model.and_then(|model| model.into_scene("", mesh.clone())) {
+                Ok(scene) => {
+                    read += 1;
+                    gltf::write_glb(&scene, &[]).ok();
+                }
+                Err(_) => refused += 1,
+            }
+        }
+        assert!(refused > 20 && read > 0, "{refused} {read}");
+    }
+}
+
+#[test]
 fn levels_of_another_scene_are_refused() {
     let archive = Archive::open(file(scene(), false)).unwrap();
     let model = ModelScene::read(&archive).unwrap();

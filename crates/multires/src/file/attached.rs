@@ -19,7 +19,7 @@ impl Archive<Vec<u8>> {
         let all = self.header.chunks.len();
         let mut packed = Vec::with_capacity(resources.len());
         for resource in resources {
-            let bytes = resources::pack(&resource.bytes)?;
+            let bytes = resources::pack_resource(&resource.bytes)?;
             let after = resource.after_chunks.min(all) as u32;
             packed.push((ResourceEntry { stored: Section::of(&bytes), after }, bytes));
         }
@@ -76,7 +76,7 @@ impl<S: Source> Archive<S> {
         }
         let (entry, start) = (self.header.resources[index], self.layout.resources[index]);
         let name = || format!("resource {index}");
-        let bytes = resources::unpack(&self.read_section(start, entry.stored, name)?);
+        let bytes = resources::unpack_resource(&self.read_section(start, entry.stored, name)?);
         let damaged = || FileError::Section { section: name(), why: "it is damaged".into() };
         bytes.ok_or_else(damaged).map(Some)
     }

@@ -38,7 +38,7 @@ use thiserror::Error;
 
 pub use archive::{Archive, Extract};
 pub use container::{FieldParts, ModelFile};
-pub use resources::Resource;
+pub use resources::{Resource, pack_resource, unpack_resource};
 pub use source::Source;
 pub use surroundings::Surroundings;
 pub use write::{Storage, StoredErrors};
@@ -98,9 +98,7 @@ pub enum FileError {
     #[error("the rounding must be between 0 and the diagonal of the mesh, not {0}")]
     Rounding(f64),
     /// A resource is too large.
-    #[error(
-        "an image or the animations take 4 GiB or more, which a multiresolution file cannot hold"
-    )]
+    #[error("an image or the animations take 4 GiB or more, which the file cannot hold")]
     ResourcesTooLarge,
     /// The model could not be built from the simplification.
     #[error(transparent)]

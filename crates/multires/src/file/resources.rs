@@ -95,7 +95,10 @@ pub(super) fn sections(bytes: &[u8], chunks_end: usize, index: ResourceIndex) ->
 }
 
 /// Encodes the bytes of a resource, compressed if that makes them fewer.
-pub(super) fn pack(bytes: &[u8]) -> Result<Vec<u8>, FileError> {
+///
+/// # Errors
+/// 4 GiB or more.
+pub fn pack_resource(bytes: &[u8]) -> Result<Vec<u8>, FileError> {
     let too_large = |_| FileError::ResourcesTooLarge;
     let length = u32::try_from(bytes.len() + 1).map_err(too_large)? - 1;
     let mut packer = Packer::new()?;
@@ -107,8 +110,8 @@ pub(super) fn pack(bytes: &[u8]) -> Result<Vec<u8>, FileError> {
     })
 }
 
-/// Decodes what [`pack`] encoded; `None` if it is damaged.
-pub(super) fn unpack(stored: &[u8]) -> Option<Vec<u8>> {
+/// Decodes what [`pack_resource`] encoded; `None` if it is damaged.
+pub fn unpack_resource(stored: &[u8]) -> Option<Vec<u8>> {
     let (&form, rest) = stored.split_first()?;
     if form != COMPRESSED {
         return (form == PLAIN).then(|| rest.to_vec());
@@ -128,22 +131,22 @@ mod tests {
         let noise: Vec<u8> =
             (0..2000u64).map(|i| ((i * i * i * 2_654_435_761) >> 13) as u8).collect();
         for bytes in [&[][..], b"x", &[7; 100_000], &noise] {
-            let packed = pack(bytes).unwrap();
-            assert_eq!(unpack(&packed).as_deref(), Some(bytes));
+            let packed = pack_resource(bytes).unwrap();
+            assert_eq!(unpack_resource(&packed).as_deref(), Some(bytes));
             assert!(packed.len() <= bytes.len() + 1);
         }
-        assert!(pack(&[7; 100_000]).unwrap().len() < 2_000);
+        assert!(pack_resource(&[7; 100_000]).unwrap().len() < 2_000);
     }
 
     #[test]
     fn a_length_that_lies_is_refused_without_memory() {
-        let mut packed = pack(&[7; 100_000]).unwrap();
+        let mut packed = pack_resource(&[7; 100_000]).unwrap();
         for length in [u32::MAX, 99_999, 100_001] {
             packed[1..5].copy_from_slice(&length.to_le_bytes());
-            assert_eq!(unpack(&packed), None, "{length}");
+            assert_eq!(unpack_resource(&packed), None, "{length}");
         }
         for bad in [&[][..], &[2, 1], &[1], &[1, 0, 0, 0], &[1, 1, 0, 0, 0, 9]] {
-            assert_eq!(unpack(bad), None, "{bad:?}");
+            assert_eq!(unpack_resource(bad), None, "{bad:?}");
         }
     }
 }

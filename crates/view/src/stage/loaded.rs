@@ -10,8 +10,8 @@ use meshlod::mesh::Bounds;
 use meshlod::multires::{FileError, Hierarchy, ModelFile, Query, UpdateLimits};
 use meshlod::picture::Normals;
 use meshlod::{
-    IoError, Mesh, OwnedPaint, ReadOptions, Scene, decompress_scene, materials_of, normals_of,
-    single_sided_materials,
+    IoError, Mesh, ModelScene, OwnedPaint, ReadOptions, Scene, decompress_scene, materials_of,
+    normals_of, single_sided_materials,
 };
 use thiserror::Error;
 
@@ -158,6 +158,10 @@ fn of_scene(path: &Path, scene: Scene, content: LoadedContent) -> Loaded {
     Loaded { warnings, single_sided, ..loaded }
 }
 
+/// Warning for compressed geometry that is drawn as it is stored.
+const SHOWN_ONCE: &str = "each mesh is shown once, as the largest of its instances; decompress the \
+                          file to see all";
+
 fn compressed(path: &Path) -> Result<Loaded, LoadError> {
     let damaged = |source| LoadError::Compressed { path: path.to_owned(), source };
     let bytes = std::fs::read(path).map_err(|error| IoError::system(path, error))?;
@@ -167,8 +171,14 @@ fn compressed(path: &Path) -> Result<Loaded, LoadError> {
     }
     let compressed = Compressed::from_bytes(&bytes).map_err(damaged)?;
     let mesh = compressed.decode().map_err(damaged)?;
+    let warnings = match ModelScene::unpack(compressed.resources()) {
+        Ok(model) if model.is_flat() => Vec::new(),
+        Ok(_) => vec![SHOWN_ONCE.into()],
+        Err(error) => vec![error.to_string()],
+    };
     let paint = paint_of_bare(&mesh);
-    Ok(Loaded::of(path, mesh, paint, LoadedContent::Compressed(Arc::new(compressed))))
+    let content = LoadedContent::Compressed(Arc::new(compressed));
+    Ok(Loaded { warnings, ..Loaded::of(path, mesh, paint, content) })
 }
 
 fn levels(path: &Path) -> Result<Loaded, LoadError> {

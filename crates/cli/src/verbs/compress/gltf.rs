@@ -30,7 +30,7 @@ impl Compress {
         let meshes = scene.meshes.iter().map(|mesh| &mesh.mesh);
         Ok(CompressedFile {
             sizes: [positions, connectivity, attributes].map(|bytes| bytes.stored),
-            materials: 0,
+            scene: 0,
             vertices: meshes.clone().map(|mesh| mesh.positions.len()).sum(),
             faces: meshes.map(|mesh| mesh.faces.len()).sum(),
             pieces: ("meshes", scene.meshes.len()),
@@ -88,7 +88,7 @@ impl Compress {
         let indices: usize = quantized.iter().map(|part| 3 * part.faces.len() * index(part)).sum();
         Ok(CompressedFile {
             sizes: [positions, indices.min(bytes.len().saturating_sub(positions)), 0],
-            materials: 0,
+            scene: 0,
             vertices: parts.vertices(),
             faces,
             pieces: ("parts", quantized.len()),

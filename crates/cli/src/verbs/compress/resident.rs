@@ -1,31 +1,28 @@
 //! Compressed `.mlq` files, which stay compressed in GPU memory.
 
+use meshlod::Mesh;
 use meshlod::codec::{CompressError, compress};
-use meshlod::{Scene, pack_materials};
 
 use super::{Compress, CompressedFile, SchemeArg, left_out};
 use crate::failure::Failure;
 
 impl Compress {
-    pub(super) fn resident(&self, mut scene: Scene) -> Result<CompressedFile, Failure> {
-        let images = std::mem::take(&mut scene.images);
-        let materials = pack_materials(&scene.materials, &images);
-        let mesh = scene.into_mesh();
+    pub(super) fn resident(&self, mesh: &Mesh, scene: Vec<u8>) -> Result<CompressedFile, Failure> {
         let bounds = self.attributes.bounds();
-        let done = compress(&mesh, self.scheme(), self.target(&mesh), &bounds);
+        let done = compress(mesh, self.scheme(), self.target(mesh), &bounds);
         let done = done.map_err(|error| self.refused(error))?;
-        let compressed = done.compressed.with_resources(materials);
+        let compressed = done.compressed.with_resources(scene);
         let sizes = compressed.sizes();
         let pieces = if self.scheme == Some(SchemeArg::Parts) { "parts" } else { "blocks" };
         Ok(CompressedFile {
             sizes: [sizes.positions, sizes.connectivity, sizes.attributes + sizes.labels],
-            materials: sizes.resources,
+            scene: sizes.resources,
             vertices: compressed.vertices(),
             faces: compressed.faces(),
             pieces: (pieces, compressed.blocks()),
             layers: compressed.layers(),
             reached: done.reached,
-            left_out: left_out(&mesh, compressed.faces()),
+            left_out: left_out(mesh, compressed.faces()),
             bytes: compressed.to_bytes(),
         })
     }

@@ -1,25 +1,22 @@
 //! Compressed `.mlz` files for transmission.
 
+use meshlod::Mesh;
 use meshlod::codec::{
     Lattice, Transport, TransportError, TransportFile, TransportOptions, TransportQuantization,
     TransportSizes,
 };
-use meshlod::{Mesh, Scene, pack_materials};
 
 use super::{Compress, CompressedFile, left_out};
 use crate::failure::Failure;
 
 impl Compress {
-    pub(super) fn transport(&self, mut scene: Scene) -> Result<CompressedFile, Failure> {
-        let images = std::mem::take(&mut scene.images);
-        let materials = pack_materials(&scene.materials, &images);
-        let mesh = scene.into_mesh();
+    pub(super) fn transport(&self, mesh: &Mesh, scene: &[u8]) -> Result<CompressedFile, Failure> {
         let options = TransportOptions {
-            quantization: self.quantization(&mesh)?,
+            quantization: self.quantization(mesh)?,
             attributes: self.attributes.bounds(),
             ..TransportOptions::default()
         };
-        let done = Transport::encode_with_resources(&mesh, &materials, &options);
+        let done = Transport::encode_with_resources(mesh, scene, &options);
         let done = done.map_err(|error| match error {
             TransportError::Bits(_) => Failure::usage(error),
             error => self.failed(error),
@@ -33,13 +30,13 @@ impl Compress {
         let connectivity = (done.bytes.len() - resources).saturating_sub(positions + attributes);
         Ok(CompressedFile {
             sizes: [positions, connectivity, attributes],
-            materials: resources,
+            scene: resources,
             vertices: file.vertices(),
             faces: file.faces(),
             pieces: ("blocks", done.blocks),
             layers: done.layers,
             reached: true,
-            left_out: left_out(&mesh, file.faces()),
+            left_out: left_out(mesh, file.faces()),
             bytes: done.bytes,
         })
     }
