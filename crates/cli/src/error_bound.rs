@@ -20,6 +20,13 @@ const MOVES: f64 = 5.0;
 /// Relative difference of two lengths that counts as none: the rounding of their computation.
 const EQUAL: f64 = 1e-9;
 
+/// Part of the diagonal below which an error is not proved, only measured.
+const LEAST_PROVABLE: f64 = 1e-6;
+
+/// Part of the diagonal below which a distance is not told apart from none: simplification rounds to
+/// 32 bits.
+const LEAST_TOLD: f64 = f32::EPSILON as f64;
+
 /// An error asked for, in world units.
 #[derive(Clone, Copy)]
 pub struct AskedError {
@@ -37,6 +44,8 @@ pub struct ProvedError {
     /// Upper bound of the distance between the input and what is written, both ways; `None` if
     /// there is none.
     proved: Option<f64>,
+    /// True if a distance greater than what was asked for was found, false if it is only unproved.
+    is_exceeded: bool,
     rounds: usize,
     rounding: f64,
 }
@@ -68,7 +77,8 @@ impl AskedError {
             false => proof.proved + changed,
         });
         let rounds = report.proof.map_or(0, |proof| proof.rounds);
-        ProvedError { asked: self.asked, proved, rounds, rounding: self.rounding }
+        let is_exceeded = proved.is_none_or(|proved| proved > self.asked * (1.0 + EQUAL));
+        ProvedError { asked: self.asked, proved, is_exceeded, rounds, rounding: self.rounding }
     }
 
     /// Measures an upper bound of the distance between the original surface and a level.
@@ -79,18 +89,27 @@ impl AskedError {
         level: &[Mesh],
     ) -> ProvedError {
         let level = distance::surface_of(scene, level);
-        let proved = original.zip(PreparedSurface::new(&level).ok()).map(|(original, level)| {
+        let bracket = original.zip(PreparedSurface::new(&level).ok()).map(|(original, level)| {
             let options = CertifiedOptions::default();
-            certified_surface_distance(original, &level, &options).symmetric().upper + self.rounding
+            certified_surface_distance(original, &level, &options).symmetric()
         });
-        ProvedError { asked: self.asked, proved, rounds: 0, rounding: self.rounding }
+        let proved = bracket.map(|bracket| bracket.upper + self.rounding);
+        // Distances too small to be proved are not told apart from none.
+        let least = bracket.map_or(0.0, |bracket| bracket.lower);
+        let diagonal = original.map_or(0.0, PreparedSurface::diagonal);
+        let is_exceeded = match self.asked < LEAST_PROVABLE * diagonal {
+            true => least > self.asked.max(LEAST_TOLD * diagonal) + self.rounding,
+            false => proved.is_none_or(|proved| proved > self.asked * (1.0 + EQUAL)),
+        };
+        ProvedError { asked: self.asked, proved, is_exceeded, rounds: 0, rounding: self.rounding }
     }
 }
 
 impl ProvedError {
-    /// Returns whether the error is proved to be within what was asked for.
+    /// Returns whether the error is within what was asked for: proved, or for errors too small to be
+    /// proved, not found to be greater.
     pub fn is_held(&self) -> bool {
-        self.proved.is_some_and(|proved| proved <= self.asked * (1.0 + EQUAL))
+        !self.is_exceeded
     }
 
     /// Formats a warning that says what holds instead, and what would help.
@@ -106,8 +125,8 @@ impl ProvedError {
                 and smf take --precision f64"
             }
             false => {
-                "use lindstrom-turk or qem without --exact-volume, --sequence and locks, or a \
-                larger error"
+                "a larger error can be kept, and lindstrom-turk and qem keep smaller ones without \
+                --exact-volume, --sequence and locks"
             }
         };
         format!("--error {asked}: only {proved} is proved; {help}")

@@ -42,6 +42,8 @@ pub enum Known {
 pub struct KeptError {
     pub asked: Asked,
     pub known: Known,
+    /// True if the error holds in a focus only.
+    pub is_local: bool,
     /// False if the file is truncated, so that nothing is known of the distance from the original.
     pub is_whole: bool,
     /// Distance that vertices have been moved since, in model units.
@@ -101,6 +103,16 @@ impl KeptError {
         ))
     }
 
+    /// Returns whether the error asked for is kept; `None` if that is unknown, or the finest level
+    /// was asked for.
+    pub fn is_kept(&self) -> Option<bool> {
+        match (self.known, self.asked) {
+            (_, Asked::Length(0.0)) => None,
+            (Known::Verified(proof), _) if self.is_whole => Some(proof.holds && self.moved == 0.0),
+            _ => None,
+        }
+    }
+
     pub fn to_json(self) -> Value {
         let [asked, asked_px] = match self.asked {
             Asked::Length(asked) => [Some(asked), None],
@@ -116,7 +128,8 @@ impl KeptError {
             "asked_px": asked_px,
             "proved": self.proved(),
             "proved_px": self.proved_px(),
-            "kept": proof.map(|proof| proof.holds && self.moved == 0.0),
+            "kept": self.is_kept(),
+            "in_focus": self.is_local,
             "updates_added": proof.map(|proof| proof.added),
             "rounds": proof.map(|proof| proof.rounds),
         })
@@ -137,7 +150,8 @@ impl KeptError {
             Known::Measured(_) => format!("error: at most {proved}, measured\n"),
             Known::Verified(Verification { added, .. }) => {
                 let more = format!("{} update{} added", count(added), plural(added));
-                format!("error: at most {proved}, verified; {more}\n")
+                let place = if self.is_local { " in the focus" } else { "" };
+                format!("error: at most {proved}{place}, verified; {more}\n")
             }
         }
     }

@@ -35,14 +35,19 @@ const SLIGHTLY: f64 = 0.95;
 /// Part of the bound that would just have done, for a whole run with a lower bound.
 const CAUTION: f64 = 0.97;
 
+/// Part of the diagonal below which an error is not compared: where flats are divided into other
+/// faces, a proof takes a number of cells inverse to the error.
+const LEAST_PROVABLE: f64 = 1e-6;
+
 /// Limits of the factor by which the bound of a whole run is lowered.
 const FACTOR: [f64; 2] = [0.5, 0.93];
 
 /// Simplifies to an error, in units of the mesh, and proves that it is held.
 ///
-/// What is proved is in the report; nothing is if the mesh has no area, if the error is infinite, or
-/// if the observer wants to see contractions, which then cannot be taken back. `again` is the mesh
-/// with its option `vanish_below`, if the run may be repeated.
+/// What is proved is in the report; nothing is if the mesh has no area, if the error is infinite or
+/// below a millionth of the diagonal, or if the observer wants to see contractions, which then
+/// cannot be taken back. `again` is the mesh with its option `vanish_below`, if the run may be
+/// repeated.
 pub(crate) fn run_within<'m>(
     again: Option<(&'m ConditionedMesh<'_>, Option<f64>)>,
     simplifier: &mut Simplifier<'m>,
@@ -50,7 +55,8 @@ pub(crate) fn run_within<'m>(
     observer: &mut dyn Observe,
 ) -> Result<Report, SimplifyError> {
     let mut report = simplifier.run(Target::Error(error), observer)?;
-    if observer.needs_surface() || error == f64::INFINITY {
+    let least = LEAST_PROVABLE * simplifier.input().bounds().diagonal();
+    if observer.needs_surface() || error == f64::INFINITY || error < least {
         return Ok(report);
     }
     let Ok(input) = PreparedSurface::new(simplifier.input()) else { return Ok(report) };
@@ -77,7 +83,7 @@ pub(crate) fn run_within<'m>(
             (runs, mends) = (runs + 1, 0);
             bound *= if are_many { SLIGHTLY } else { lower(&found) };
             *simplifier = mesh.simplifier(vanish_below)?;
-            comparison = Comparison::new(whole, &input, error);
+            comparison.start_again();
         } else {
             let proved = distance_at_most(&input, &level);
             return Ok(with_proof(report, [error, proved], rounds));

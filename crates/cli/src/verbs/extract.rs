@@ -172,7 +172,7 @@ impl Extract {
         };
         Ok(Extracted {
             whole_faces: taken.level.faces.len(),
-            level: self.cut_out(taken.level, &query, nearest)?,
+            level: self.cut_out(taken.level, &query, nearest, session)?,
             rounding,
             lossless,
             error_kind,
@@ -182,6 +182,7 @@ impl Extract {
                     None => Asked::Faces,
                 },
                 known,
+                is_local: self.focus.is_some() && self.target.error.is_some(),
                 is_whole: chunks[0] == chunks[1],
                 moved: 0.0,
                 diagonal: file.diagonal(),
@@ -282,9 +283,20 @@ impl Extract {
         level: Level,
         query: &Query<'_>,
         nearest: Option<[f64; 3]>,
+        session: &Session,
     ) -> Result<Level, Failure> {
         match nearest {
-            _ if !self.only => Ok(level),
+            _ if !self.only => {
+                let has_focus = self.focus.is_some() && nearest.is_none();
+                let missed = || level.within(&query.focus).map(|near| near.faces.is_empty());
+                if has_focus && missed().map_err(Failure::usage)? {
+                    session.warn(Failure::at(
+                        &self.input,
+                        "no face intersects the focus, so all are as coarse as the file has them",
+                    ));
+                }
+                Ok(level)
+            }
             Some(point) => level.nearest(point).map_err(Failure::usage),
             None => level.within(&query.focus).map_err(Failure::usage),
         }

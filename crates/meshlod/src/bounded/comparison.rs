@@ -17,6 +17,11 @@ const SLACK: f64 = 0.01;
 /// percent of the diagonal and large flats are divided into other faces, more would be needed.
 const MOST_SPLITS: usize = 32_000_000;
 
+/// Limits on the divisions of all comparisons together: for each face of the input, and for all of
+/// them. A mesh of few faces that cannot be proved is given up after a few seconds.
+const SPLITS_PER_FACE: usize = 1000;
+const SPLITS: [usize; 2] = [1 << 23, 1 << 28];
+
 /// Result of the comparison of a level with the input.
 pub(super) enum Outcome {
     /// No point of either is farther from the other than allowed.
@@ -36,6 +41,8 @@ pub(super) struct Comparison<'i, 'm> {
     mesh: &'m Mesh,
     /// Largest distance allowed, in model units.
     error: f64,
+    /// Number of divisions that are left.
+    left: usize,
     last: Option<Compared>,
 }
 
@@ -54,7 +61,14 @@ type Corners = [[u64; 3]; 3];
 
 impl<'i, 'm> Comparison<'i, 'm> {
     pub(super) fn new(mesh: &'m Mesh, input: &'i PreparedSurface<'m>, error: f64) -> Self {
-        Self { input, mesh, error, last: None }
+        let [least, most] = SPLITS;
+        let left = mesh.faces.len().saturating_mul(SPLITS_PER_FACE).clamp(least, most);
+        Self { input, mesh, error, left, last: None }
+    }
+
+    /// Forgets what was proved of the last level.
+    pub(super) fn start_again(&mut self) {
+        self.last = None;
     }
 
     /// Compares a level with the input, in both directions.
@@ -66,10 +80,13 @@ impl<'i, 'm> Comparison<'i, 'm> {
             Some(last) => [Some(last.new_faces(&corners)), Some(self.doubtful(last, &corners))],
         };
         let limit = self.error / (1.0 + SLACK);
-        let far = |from, to, faces: Option<Vec<FaceId>>| {
-            let options =
-                BeyondOptions { slack: SLACK, most_splits: MOST_SPLITS, faces: faces.as_deref() };
-            faces_beyond(from, to, &|_| limit, &options).faces
+        let left = &mut self.left;
+        let mut far = |from, to, faces: Option<Vec<FaceId>>| {
+            let most_splits = MOST_SPLITS.min(*left);
+            let options = BeyondOptions { slack: SLACK, most_splits, faces: faces.as_deref() };
+            let found = faces_beyond(from, to, &|_| limit, &options);
+            *left -= found.splits;
+            found.faces
         };
         let of_level = far(&surface, self.input, of_level);
         let of_input = far(self.input, &surface, of_input);

@@ -45,7 +45,7 @@ impl Extracted {
             "file": files::name(asked.output),
             "vertices": vertices,
             "faces": faces,
-            "reached": self.reaches(asked.max_faces),
+            "reached": self.reaches(asked.max_faces) && self.error.is_kept() != Some(false),
             "error_kind": self.error_kind,
             "error": self.error.to_json(),
             "lossless": self.lossless,
