@@ -89,9 +89,13 @@ fn what_cannot_be_proved_is_told() {
     let (_, report) = simplify(&line, Target::Error(0.1), &Options::default()).unwrap();
     assert_eq!(report.proof, None, "a line has no area to measure");
     let ball = samples::sphere(500);
-    let (_, report) = simplify(&ball, Target::Error(0.0), &Options::default()).unwrap();
-    let proof = report.proof.unwrap();
-    assert!(proof.asked == 0.0 && proof.proved < 1e-6, "{proof:?}");
+    let proof = |error| {
+        let (_, report) = simplify(&ball, Target::Error(error), &Options::default()).unwrap();
+        report.proof.map(|proof| proof.proved)
+    };
+    let diagonal = ball.bounds().diagonal();
+    assert_eq!([0.0, 0.5e-6 * diagonal].map(proof), [None, None], "too small to be proved");
+    assert_eq!(proof(2e-6 * diagonal), Some(2e-6 * diagonal));
 }
 
 #[test]

@@ -100,3 +100,14 @@ fn a_surface_without_area_proves_nothing() {
     assert_eq!(done.code, 0, "{done:?}");
     assert!(done.json()["error_proved"].is_null() && done.only_line().contains("no area"));
 }
+
+#[test]
+fn an_error_too_small_to_be_proved_is_measured() {
+    let run = Run::new();
+    run.sample("knot", 3_000, "in.ply");
+    let done = run.run(&["simplify", "in.ply", "out.ply", "--error", "0", "--json", "--strict"]);
+    let report = done.json();
+    assert!(done.code == 0 && done.err.is_empty() && report["reached"] == true, "{done:?}");
+    assert!(report["error_rounds"] == 0 && report["error_asked"] == 0.0, "{report}");
+    assert!(number(&report["error_proved"]) >= number(&report["error_measured"]["max"]));
+}

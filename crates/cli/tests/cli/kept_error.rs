@@ -135,3 +135,19 @@ fn a_truncated_file_and_any_number_of_threads_give_one_answer() {
         assert_eq!(error["proved"].is_null(), end == half, "{error}");
     }
 }
+
+#[test]
+fn a_focus_bounds_where_the_error_holds() {
+    let run = Run::new();
+    torus(&run);
+    let ask = |focus| {
+        let ask = ["extract", "torus.mlod", "cut.ply", "--error", "0.2%", "--json", "--focus"];
+        run.run(&[&ask[..], &[focus]].concat())
+    };
+    let near = ask("sphere=1,0,0,1");
+    assert!(near.err.is_empty() && near.json()["error"]["in_focus"] == true, "{near:?}");
+    let far = ask("sphere=1000,0,0,1");
+    assert!(far.code == 0 && far.only_line().contains("no face intersects the focus"), "{far:?}");
+    let everywhere = extract(&run, "torus.mlod", "cut.ply", &["--error", "0.2%"]);
+    assert_eq!(everywhere["error"]["in_focus"], false);
+}
