@@ -15,6 +15,10 @@ pub struct GlobalArgs {
     /// Print one JSON object to standard output and nothing else; messages go to standard error
     #[arg(long, global = true)]
     pub json: bool,
+    /// Exit with 1 if something of a file would be left out, then without output, or if a target is
+    /// out of reach
+    #[arg(long, global = true)]
+    pub strict: bool,
     /// Number of threads [default: one per core]
     #[arg(long, global = true, value_name = "N", value_parser = parse::threads,
         allow_negative_numbers = true)]

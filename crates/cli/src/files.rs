@@ -28,14 +28,17 @@ pub fn read(path: &Path, reading: &ReadArgs, session: &Session) -> Result<Scene,
         let reason = format_args!("not a mesh file; use meshlod {verb} to get the mesh it holds");
         return Err(Failure::at(path, reason));
     }
-    if !is_pipe(path) {
-        return Ok(meshlod::read(path, &reading.options())?);
-    }
-    let format = pipe_format(session)?;
-    let bytes = read_all(path)?;
-    // Files referenced by a piped mesh are not available.
-    read_bytes(&bytes, format, &mut |_| None, &reading.options())
-        .map_err(|error| Failure::at(path, error))
+    let scene = match is_pipe(path) {
+        false => meshlod::read(path, &reading.options())?,
+        true => {
+            let format = pipe_format(session)?;
+            // Files referenced by a piped mesh are not available.
+            read_bytes(&read_all(path)?, format, &mut |_| None, &reading.options())
+                .map_err(|error| Failure::at(path, error))?
+        }
+    };
+    session.note(path, &scene.notes)?;
+    Ok(scene)
 }
 
 /// Returns the verb that opens one of our own file formats, which are not meshes themselves.
@@ -152,10 +155,11 @@ pub fn write(
     session: &Session,
 ) -> Result<(), Failure> {
     session.progress.stage(&format!("writing {}", name(path)));
+    let format = check_output(path, session)?;
+    session.note(path, &scene.limits_of(format))?;
     if !is_pipe(path) {
         return Ok(meshlod::write(path, scene, &writing.options())?);
     }
-    let format = check_output(path, session)?;
     let mut out = BufWriter::new(io::stdout().lock());
     write_pipe(format, scene, writing.options(), &mut out)?;
     out.flush().map_err(|error| Failure::at(path, error))

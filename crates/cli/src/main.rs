@@ -39,6 +39,7 @@ mod volume;
 use std::process::{ExitCode, exit};
 
 use clap::Parser;
+use serde_json::Value;
 
 use crate::answer::Answer;
 use crate::command::{Cli, Verb};
@@ -69,5 +70,9 @@ fn main() -> ExitCode {
 
 fn answer(verb: Verb, session: &Session) -> Result<Answer, Failure> {
     session.start_threads()?;
-    verb.run(session)
+    let mut answer = verb.run(session)?;
+    if let Value::Object(json) = &mut answer.json {
+        json.insert("notes".into(), session.take_notes().into());
+    }
+    Ok(answer)
 }

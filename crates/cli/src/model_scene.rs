@@ -11,15 +11,6 @@ use crate::failure::Failure;
 use crate::numbers::count;
 use crate::session::Session;
 
-/// Warns of what a scene refers to and a multiresolution file of it does not hold.
-pub fn warn_of_losses(path: &Path, counts: &SceneCounts, session: &Session) {
-    let found = (counts.missing_images, "image that was not found", "images that were not found");
-    let lost = list(&[found]);
-    if !lost.is_empty() {
-        session.warn(Failure::at(path, format_args!("left out: {lost}")));
-    }
-}
-
 /// Describes what a scene has beside its surface, and the pose for which errors hold.
 pub fn counts_text(counts: &SceneCounts) -> String {
     let has = list(&[

@@ -2,17 +2,24 @@
 
 use std::fmt;
 use std::io::Write;
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use meshlod::Format;
+use meshlod::io::{Note, NoteKind};
+use serde_json::{Value, json};
 
 use crate::args::GlobalArgs;
 use crate::failure::Failure;
+use crate::files;
 use crate::progress::Progress;
 
 /// State of one run of the program.
 pub struct Session {
     pub json: bool,
+    /// True if what is left out of a file, or a target that is missed, is a failure.
+    pub strict: bool,
     /// File format of standard input and output.
     pub format: Option<Format>,
     pub progress: Progress,
@@ -20,12 +27,22 @@ pub struct Session {
     #[cfg_attr(not(feature = "view"), allow(dead_code))]
     pub started: Instant,
     threads: Option<usize>,
+    /// Notes on files so far, for the JSON object.
+    notes: Mutex<Vec<Value>>,
 }
 
 impl Session {
     pub fn new(global: GlobalArgs) -> Self {
-        let GlobalArgs { json, threads, format } = global;
-        Self { json, format, progress: Progress::new(), started: Instant::now(), threads }
+        let GlobalArgs { json, strict, threads, format } = global;
+        Self {
+            json,
+            strict,
+            format,
+            progress: Progress::new(),
+            started: Instant::now(),
+            threads,
+            notes: Mutex::default(),
+        }
     }
 
     pub fn start_threads(&self) -> Result<(), Failure> {
@@ -39,10 +56,43 @@ impl Session {
         self.progress.suspend(|| say(format_args!("warning: {line}")));
     }
 
+    /// Warns of what was left out or changed on the way from or to a file.
+    ///
+    /// # Errors
+    /// With `--strict`, if something was left out.
+    pub fn note(&self, path: &Path, notes: &[Note]) -> Result<(), Failure> {
+        for kind in [NoteKind::LeftOut, NoteKind::Changed] {
+            let Some(list) = Note::list(notes, kind) else { continue };
+            let line = Failure::at(path, format_args!("{}: {list}", kind.word()));
+            if self.strict && kind == NoteKind::LeftOut {
+                return Err(line);
+            }
+            self.warn(line);
+        }
+        let mut all = self.notes.lock().unwrap_or_else(PoisonError::into_inner);
+        all.extend(notes.iter().map(|note| note_json(path, note)));
+        Ok(())
+    }
+
+    /// Returns the notes on all files, for the JSON object.
+    pub fn take_notes(&self) -> Vec<Value> {
+        std::mem::take(&mut *self.notes.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
     /// Prints the reason why a command failed.
     pub fn complain(&self, failure: &Failure) {
         say(failure);
     }
+}
+
+fn note_json(path: &Path, note: &Note) -> Value {
+    json!({
+        "file": files::name(path),
+        "kind": note.kind.word(),
+        "count": note.count,
+        "what": note.what,
+        "names": note.names,
+    })
 }
 
 fn say(line: impl fmt::Display) {

@@ -8,8 +8,8 @@ use meshlod_mesh::{Mesh, VertexId};
 
 use crate::replace::replace;
 use crate::{
-    Format, Image, IoError, ParseError, Precision, Scene, Unsupported, gltf, obj, off, ply, smf,
-    stl, weld,
+    Format, Image, IoError, Note, ParseError, Precision, Scene, Unsupported, gltf, obj, off, ply,
+    smf, stl, weld,
 };
 
 /// Policy for merging vertices at equal or close positions when a file is read.
@@ -79,22 +79,35 @@ pub fn read_bytes(
     resolve: Resolve<'_>,
     options: &ReadOptions,
 ) -> Result<Scene, ParseError> {
+    let is_gltf = matches!(format, Format::Gltf | Format::Glb);
     let mut scene = match format {
-        Format::Gltf | Format::Glb => return gltf::read(bytes, resolve, options.weld),
+        Format::Gltf | Format::Glb => gltf::read(bytes, resolve, options.weld)?,
         Format::Obj => obj::read(bytes, resolve)?,
         Format::Ply => Scene::from_mesh("", ply::read(bytes)?),
         Format::Stl => Scene::from_mesh("", stl::read(bytes)?),
         Format::Off => Scene::from_mesh("", off::read(bytes)?),
         Format::Smf => Scene::from_mesh("", smf::read(bytes)?),
     };
-    for mesh in &mut scene.meshes {
+    // glTF was welded as it was read: its document depends on it.
+    let meshes = if is_gltf { &mut [][..] } else { &mut scene.meshes };
+    for mesh in meshes {
         match options.weld {
             Weld::Within(epsilon) => drop(weld(&mut mesh.mesh, epsilon)),
             Weld::Off if format == Format::Stl => unweld(&mut mesh.mesh),
             Weld::Exact | Weld::Off => {}
         }
     }
+    note_missing_images(&mut scene);
     Ok(scene)
+}
+
+fn note_missing_images(scene: &mut Scene) {
+    let missing = scene.images.iter().filter(|image| image.bytes.is_empty());
+    let names: Vec<String> = missing.map(|image| image.name.clone()).collect();
+    if !names.is_empty() {
+        let (one, many) = ("image that was not found", "images that were not found");
+        scene.notes.push(Note::left_out(names.len(), one, many).named(names));
+    }
 }
 
 /// Writes a scene as a mesh file, with the `.bin`, `.mtl` and image files that belong to it next to

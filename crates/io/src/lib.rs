@@ -21,8 +21,10 @@ mod files;
 mod flatten;
 mod format;
 pub mod gltf;
+mod limits;
 mod line_writer;
 pub mod meshopt;
+mod notes;
 pub mod obj;
 pub mod off;
 pub mod ply;
@@ -42,6 +44,7 @@ pub use files::{
 pub use flatten::{MeshInstance, transform};
 pub use format::Format;
 pub use meshlod_mesh::{merge_equal_wedges, weld};
+pub use notes::{Note, NoteKind};
 pub use replace::{abandon_files, write_file};
 pub use scene::{Image, Material, Node, Scene, SceneMesh};
 

@@ -2,6 +2,7 @@
 
 use meshlod_mesh::Mesh;
 
+use crate::Note;
 use crate::gltf::SourceDocument;
 
 /// Contents of a mesh file: meshes, the nodes that place them, materials and images.
@@ -25,6 +26,8 @@ pub struct Scene {
     /// [`Scene::meshes`]; changes to the other fields are ignored. Set this to `None` to write the
     /// fields instead.
     pub source: Option<SourceDocument>,
+    /// Notes on what the reader left out or changed; writers ignore them.
+    pub notes: Vec<Note>,
 }
 
 /// Mesh of a scene, with its name and the materials of its faces.

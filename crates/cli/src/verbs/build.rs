@@ -150,10 +150,7 @@ impl Build {
         }
         let start = Instant::now();
         let built = match self.model {
-            ModelArg::Contractions => {
-                model_scene::warn_of_losses(&self.input, &counts, session);
-                self.contractions(&mesh, &options, rest.as_ref(), session)?
-            }
+            ModelArg::Contractions => self.contractions(&mesh, &options, rest.as_ref(), session)?,
             ModelArg::RightTriangles => self.right_triangles(&mesh)?,
         };
         self.warn(&mesh, &built, session);

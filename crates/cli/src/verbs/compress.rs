@@ -53,9 +53,6 @@ pub struct Compress {
     resident: bool,
     #[command(flatten)]
     attributes: AttributeErrorArgs,
-    /// Exit with 1 if the target is out of reach
-    #[arg(long)]
-    strict: bool,
     #[command(flatten)]
     constraints: ConstraintArgs,
     #[command(flatten)]
@@ -141,7 +138,7 @@ impl Compress {
             json["scene"] = model_scene::counts_json(&counts);
             text += &model_scene::counts_text(&counts);
         }
-        Ok(Answer { missed: self.strict && !packed.reached, ..Answer::new(json, text) })
+        Ok(Answer { missed: session.strict && !packed.reached, ..Answer::new(json, text) })
     }
 
     fn pack(

@@ -45,9 +45,6 @@ pub struct Lods {
     method: MethodArgs,
     #[command(flatten)]
     volume: ExactVolumeArgs,
-    /// Exit with 1 if a level is out of reach
-    #[arg(long)]
-    strict: bool,
     #[command(flatten)]
     reading: ReadArgs,
     #[command(flatten)]
@@ -95,7 +92,7 @@ impl Lods {
             self.warn_of(level, options.topology, session);
         }
         let missed = chain.iter().any(|level| !level.simplified.report.reached);
-        Ok(Answer { missed: self.strict && missed, ..Answer::new(json, text) })
+        Ok(Answer { missed: session.strict && missed, ..Answer::new(json, text) })
     }
 
     /// Warns of a target that was missed, and of a level that is not written.

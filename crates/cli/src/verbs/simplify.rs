@@ -52,9 +52,6 @@ pub struct Simplify {
     sequence: Option<PathBuf>,
     #[command(flatten)]
     volume: ExactVolumeArgs,
-    /// Exit with 1 if the target is out of reach
-    #[arg(long)]
-    strict: bool,
     #[command(flatten)]
     reading: ReadArgs,
     #[command(flatten)]
@@ -229,7 +226,7 @@ impl Simplify {
         }
         Ok(Answer {
             file_on_stdout: files::is_pipe(&self.output),
-            missed: self.strict && !done.report.reached,
+            missed: session.strict && !done.report.reached,
             ..Answer::new(json, text)
         })
     }

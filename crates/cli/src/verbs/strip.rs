@@ -53,9 +53,6 @@ pub struct Strip {
     /// level; exit with 1 if they differ
     #[arg(long)]
     verify: bool,
-    /// Exit with 1 if a level is out of reach
-    #[arg(long)]
-    strict: bool,
     #[command(flatten)]
     constraints: ConstraintArgs,
     #[command(flatten)]
@@ -141,7 +138,7 @@ impl Strip {
         if let Some(output) = &output {
             output.write(&source.input, &source.tree, &levels, session)?;
         }
-        let missed = self.strict && levels.iter().any(|level| !level.reached);
+        let missed = session.strict && levels.iter().any(|level| !level.reached);
         let wrong = levels.iter().any(|level| level.is_wrong());
         if wrong {
             session.warn(Failure::at(&self.input, "the strips do not draw the faces of the level"));

@@ -22,11 +22,36 @@ fn info_knows_a_cube() {
         "pinched_vertices": 0, "components": 1, "objects": 2, "closed": true,
         "bounds": { "min": [0.0, 0.0, 0.0], "max": [1.0, 1.0, 1.0] }, "diagonal": 3f64.sqrt(),
         "area": 6.0, "volume": 1.0, "wedges": null, "attributes": [], "materials": [],
-        "file": "cube.obj", "meshes": 1,
+        "file": "cube.obj", "meshes": 1, "notes": [],
     });
     assert_eq!(info, expected);
     let text = run.run(&["info", "cube.obj"]);
     assert!(text.text().contains("unused  ") && text.err.is_empty(), "{text:?}");
+}
+
+#[test]
+fn what_a_format_cannot_hold_is_named_and_strictly_refused() {
+    let run = Run::new();
+    let library = "newmtl red\nmap_Kd gone.png\n";
+    std::fs::write(run.path("in.mtl"), library).unwrap();
+    let obj = "mtllib in.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n";
+    std::fs::write(run.path("in.obj"), obj).unwrap();
+    let simplify = ["simplify", "in.obj", "out.stl", "--faces", "1"];
+    let notes = &run.json(&simplify)["notes"];
+    let note = |i: usize| {
+        let note = &notes[i];
+        ["file", "kind", "what"].map(|key| note[key].as_str().unwrap())
+    };
+    assert_eq!(note(0), ["in.obj", "left out", "image that was not found"]);
+    assert_eq!(note(1), ["out.stl", "left out", "material"]);
+    assert_eq!(note(2), ["out.stl", "left out", "texture"]);
+    std::fs::remove_file(run.path("out.stl")).unwrap();
+    let strict = run.run(&[&simplify[..], &["--strict"]].concat());
+    assert_eq!(strict.code, 1);
+    assert!(
+        strict.only_line().ends_with("in.obj: left out: 1 image that was not found (gone.png)")
+    );
+    assert!(!run.path("out.stl").exists());
 }
 
 #[test]

@@ -31,6 +31,7 @@ mod write;
 
 pub use compress::{Bytes, Compression, CompressionReport};
 pub use lod::Level;
+pub(crate) use new_document::has_core_type;
 pub use parts::{QuantizedPart, write_parts_glb};
 pub use primitive_rows::PrimitiveRows;
 pub use read::{SourceDocument, read};

@@ -71,6 +71,11 @@ pub(super) fn mime_type(bytes: &[u8]) -> Option<&'static str> {
     }
 }
 
+/// Reports whether an encoded image is a PNG or JPEG, the only types that core glTF allows.
+pub(crate) fn has_core_type(bytes: &[u8]) -> bool {
+    matches!(mime_type(bytes), Some("image/png" | "image/jpeg"))
+}
+
 /// Images in use; image `i` is texture `i`.
 #[derive(Default)]
 struct Images {
@@ -80,8 +85,7 @@ struct Images {
 }
 
 impl Images {
-    /// Returns the texture of a material; `None` if its image is neither PNG nor JPEG, the only
-    /// types that core glTF allows.
+    /// Returns the texture of a material; `None` if its image is neither PNG nor JPEG.
     fn texture(
         &mut self,
         material: &Material,
@@ -93,8 +97,7 @@ impl Images {
             return Some(texture);
         }
         let image = scene.images.get(index)?;
-        let kind =
-            mime_type(&image.bytes).filter(|kind| matches!(*kind, "image/png" | "image/jpeg"))?;
+        let kind = mime_type(&image.bytes).filter(|_| has_core_type(&image.bytes))?;
         let view = builder.add_view(&image.bytes);
         self.json.push(json!({ "name": image.name, "bufferView": view, "mimeType": kind }));
         self.of_scene.insert(index, self.json.len() - 1);

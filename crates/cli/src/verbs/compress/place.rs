@@ -4,7 +4,6 @@ use meshlod::{Constraints, Mesh, Options, PackedScene, Scene, SceneCounts, place
 
 use super::Compress;
 use crate::failure::Failure;
-use crate::model_scene;
 use crate::session::Session;
 
 /// Scene that is ready to be compressed.
@@ -30,7 +29,6 @@ impl Compress {
         }
         let placed = place_scene(scene, &Constraints::default(), Options::default());
         let placed = placed.map_err(|error| self.failed(error))?;
-        model_scene::warn_of_losses(&self.input, &placed.counts, session);
         let counts = placed.rest.is_some().then_some(placed.counts);
         let rest = placed.rest.as_ref().map(PackedScene::to_bytes).transpose();
         let rest = rest.map_err(|error| self.failed(error))?.unwrap_or_default();

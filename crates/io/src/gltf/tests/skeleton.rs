@@ -164,7 +164,7 @@ fn scenes_of_other_formats_come_back() {
         roots: vec![0],
         materials: [None, Some(1)].map(material).to_vec(),
         images: vec![image("sea.tga"), image("a b.png")],
-        source: None,
+        ..Scene::default()
     };
     // The mesh has one label for all its faces.
     let new = again(&scene);

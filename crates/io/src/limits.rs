@@ -1,0 +1,213 @@
+//! Limits of each format: the parts of a scene that it cannot hold.
+
+use std::collections::BTreeSet;
+
+use meshlod_mesh::{Layer, LayerKind, Mesh};
+
+use crate::{Format, MeshInstance, Note, Scene};
+
+impl Scene {
+    /// Lists what a file of this format cannot hold of the scene, or holds in another form; empty if
+    /// all of it arrives.
+    ///
+    /// Coordinates are not looked at, nor is that STL shares no vertices, which its readers mend.
+    /// Cost: linear in the number of corners.
+    pub fn limits_of(&self, format: Format) -> Vec<Note> {
+        let mut notes = match format {
+            Format::Gltf | Format::Glb if self.source.is_some() => Vec::new(),
+            Format::Gltf | Format::Glb => self.new_document_limits(),
+            Format::Obj => {
+                [self.graph_limits(), self.mtl_limits(), self.layer_limits(format)].concat()
+            }
+            Format::Ply | Format::Stl | Format::Off | Format::Smf => {
+                [self.graph_limits(), self.single_mesh_limits(), self.layer_limits(format)].concat()
+            }
+        };
+        notes.retain(|note| note.count > 0);
+        notes
+    }
+
+    /// Lists what a new glTF document lacks.
+    fn new_document_limits(&self) -> Vec<Note> {
+        let used = self.materials.iter().filter_map(|material| material.base_color_image);
+        let used: BTreeSet<usize> = used.collect();
+        let other = used
+            .into_iter()
+            .filter_map(|image| self.images.get(image))
+            .filter(|image| !image.bytes.is_empty() && !crate::gltf::has_core_type(&image.bytes));
+        let names: Vec<&str> = other.map(|image| &*image.name).collect();
+        let objects = self.object_names();
+        vec![
+            Note::left_out(
+                names.len(),
+                "image that is neither PNG nor JPEG",
+                "images that are neither PNG nor JPEG",
+            )
+            .named(names),
+            Note::left_out(objects.len(), "name of an object", "names of objects").named(objects),
+        ]
+    }
+
+    /// Lists what formats without nodes lack.
+    fn graph_limits(&self) -> Vec<Note> {
+        let instances = self.instances();
+        let mut shown = vec![false; self.meshes.len()];
+        instances.iter().for_each(|instance| shown[instance.mesh] = true);
+        let hidden = shown.iter().filter(|&&shown| !shown).count();
+        let merged = if instances.len() > 1 { instances.len() } else { 0 };
+        let count = |array| self.source.as_ref().map_or(0, |source| source.count(array));
+        vec![
+            Note::changed(merged, "", "instances of meshes merged into one mesh"),
+            Note::left_out(hidden, "mesh that no node shows", "meshes that no node shows"),
+            Note::left_out(count("skins"), "skin", "skins"),
+            Note::left_out(count("animations"), "animation", "animations"),
+            Note::left_out(count("cameras"), "camera", "cameras"),
+        ]
+    }
+
+    fn mtl_limits(&self) -> Vec<Note> {
+        let Some(source) = &self.source else { return Vec::new() };
+        let richer = source.richer_materials();
+        vec![
+            Note::left_out(
+                richer.len(),
+                "material's properties other than colour and its texture",
+                "materials' properties other than colour and its texture",
+            )
+            .named(richer),
+        ]
+    }
+
+    /// Lists what formats lack that hold one mesh without parts.
+    fn single_mesh_limits(&self) -> Vec<Note> {
+        let shown: BTreeSet<usize> = self.instances().iter().map(|i| i.mesh).collect();
+        let used: BTreeSet<usize> = shown
+            .iter()
+            .flat_map(|&mesh| self.meshes[mesh].materials.iter().flatten().copied())
+            .collect();
+        let materials = used.iter().filter_map(|&material| self.materials.get(material));
+        let images: BTreeSet<usize> =
+            materials.clone().filter_map(|m| m.base_color_image).collect();
+        let images: Vec<&str> =
+            images.iter().filter_map(|&i| self.images.get(i)).map(|i| &*i.name).collect();
+        let objects = self.object_names();
+        let named = materials.filter(|m| !m.name.is_empty()).map(|m| &*m.name);
+        vec![
+            Note::left_out(used.len(), "material", "materials").named(named),
+            Note::left_out(images.len(), "texture", "textures").named(images),
+            Note::left_out(objects.len(), "name of an object", "names of objects").named(objects),
+        ]
+    }
+
+    fn layer_limits(&self, format: Format) -> Vec<Note> {
+        let shown = || self.instances().into_iter().map(|MeshInstance { mesh, .. }| mesh);
+        let shown: BTreeSet<usize> = shown().collect();
+        let meshes: Vec<&Mesh> = shown.iter().map(|&mesh| &self.meshes[mesh].mesh).collect();
+        let layers =
+            meshes.iter().filter_map(|mesh| mesh.attributes.as_ref()).flat_map(|a| &a.layers);
+        let lost: BTreeSet<String> =
+            layers.filter(|layer| !holds(format, layer)).map(title).collect();
+        let split =
+            if splits_seams(format) { meshes.iter().map(|mesh| seams(mesh)).sum() } else { 0 };
+        vec![
+            Note::left_out(lost.len(), "vertex attribute", "vertex attributes").named(lost),
+            Note::changed(
+                split,
+                "vertex split at seams of its attributes",
+                "vertices split at seams of their attributes",
+            ),
+        ]
+    }
+
+    fn object_names(&self) -> Vec<String> {
+        let labels = self.meshes.iter().filter_map(|mesh| mesh.mesh.objects.as_ref());
+        labels.flat_map(|labels| &labels.names).filter(|name| !name.is_empty()).cloned().collect()
+    }
+}
+
+/// Reports whether a format has a place for a layer.
+fn holds(format: Format, layer: &Layer) -> bool {
+    match format {
+        Format::Gltf | Format::Glb | Format::Ply => true,
+        Format::Stl => false,
+        Format::Obj | Format::Off | Format::Smf => {
+            matches!(layer.kind, LayerKind::Normal | LayerKind::Uv(0) | LayerKind::Color(0))
+        }
+    }
+}
+
+fn splits_seams(format: Format) -> bool {
+    matches!(format, Format::Ply | Format::Off | Format::Smf)
+}
+
+/// Returns the name of a layer for people.
+fn title(layer: &Layer) -> String {
+    match layer.kind {
+        LayerKind::Normal => "normals".to_owned(),
+        LayerKind::Tangent => "tangents".to_owned(),
+        LayerKind::Uv(0) => "texture coordinates".to_owned(),
+        LayerKind::Color(0) => "colours".to_owned(),
+        LayerKind::Uv(set) => format!("texture coordinates {set}"),
+        LayerKind::Color(set) => format!("colours {set}"),
+        LayerKind::Joints(_) => "joints".to_owned(),
+        LayerKind::Weights(_) => "joint weights".to_owned(),
+        LayerKind::Other => layer.name.clone(),
+    }
+}
+
+/// Counts the wedges in use beyond one for each vertex in use.
+fn seams(mesh: &Mesh) -> usize {
+    let Some(attributes) = &mesh.attributes else { return 0 };
+    if attributes.layers.is_empty() {
+        return 0;
+    }
+    let used = |count: usize, ids: &mut dyn Iterator<Item = usize>| {
+        let mut used = vec![false; count];
+        ids.for_each(|id| used[id] = true);
+        used.into_iter().filter(|&used| used).count()
+    };
+    let wedges = &mut attributes.corners.as_flattened().iter().map(|w| w.index());
+    let vertices = &mut mesh.faces.as_flattened().iter().map(|v| v.index());
+    used(attributes.wedge_count, wedges).saturating_sub(used(mesh.positions.len(), vertices))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{ReadOptions, read_bytes};
+
+    fn limits(scene: &Scene, format: Format) -> Vec<String> {
+        scene.limits_of(format).iter().map(Note::to_string).collect()
+    }
+
+    fn obj(text: &str) -> Scene {
+        let mut library = |name: &str| {
+            (name == "a.mtl").then(|| b"newmtl red\nKd 1 0 0\nmap_Kd red.tif\n".to_vec())
+        };
+        read_bytes(text.as_bytes(), Format::Obj, &mut library, &ReadOptions::default()).unwrap()
+    }
+
+    const QUAD: &str = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n\
+        vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 0.5 0.5\nvn 0 0 1\n\
+        o leaf\nusemtl red\nf 1/1/1 2/2/1 3/3/1\nf 1/5/1 3/3/1 4/4/1\n";
+
+    #[test]
+    fn what_each_format_lacks_is_named() {
+        let scene = obj(QUAD);
+        assert_eq!(limits(&scene, Format::Obj), [""; 0]);
+        let parts = ["1 material (red)", "1 texture (red.tif)", "1 name of an object (leaf)"];
+        let seam = "1 vertex split at seams of its attributes";
+        assert_eq!(limits(&scene, Format::Ply), [&parts[..], &[seam]].concat());
+        assert_eq!(limits(&scene, Format::Off), [&parts[..], &[seam]].concat());
+        let layers = "2 vertex attributes (normals, texture coordinates)";
+        assert_eq!(limits(&scene, Format::Stl), [&parts[..], &[layers]].concat());
+    }
+
+    #[test]
+    fn a_bare_mesh_fits_everywhere() {
+        let scene = obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+        for (_, format) in Format::ALL {
+            assert_eq!(limits(&scene, format), [""; 0]);
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! Notes on what a file and a scene do not share: what a reader left out, what a format cannot hold.
+
+use std::fmt;
+
+/// How something differs between a file and the scene read from it or written to it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoteKind {
+    /// It did not arrive.
+    LeftOut,
+    /// It arrived in another form.
+    Changed,
+}
+
+impl NoteKind {
+    /// Returns the word for it in messages: `left out` or `changed`.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::LeftOut => "left out",
+            Self::Changed => "changed",
+        }
+    }
+}
+
+/// Note that things of one kind were left out or changed on the way from or to a file.
+///
+/// It is displayed as in `2 images that were not found (a.png, b.png)`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Note {
+    /// NoteKind between the file and the scene.
+    pub kind: NoteKind,
+    /// Number of the things.
+    pub count: usize,
+    /// Name of the things, in the singular if there is one: `images that were not found`.
+    pub what: String,
+    /// Names of the first few of the things, if they have names that help to find them.
+    pub names: Vec<String>,
+}
+
+/// Largest number of names that a note keeps.
+const MOST_NAMES: usize = 8;
+
+impl Note {
+    /// Creates a note that `count` things did not arrive, called `one` or, if several, `many`.
+    pub fn left_out(count: usize, one: &str, many: &str) -> Self {
+        Self::new(NoteKind::LeftOut, count, one, many)
+    }
+
+    /// Creates a note that `count` things arrived in another form: `normal scaled to unit length`.
+    pub fn changed(count: usize, one: &str, many: &str) -> Self {
+        Self::new(NoteKind::Changed, count, one, many)
+    }
+
+    fn new(kind: NoteKind, count: usize, one: &str, many: &str) -> Self {
+        let what = if count == 1 { one } else { many };
+        Self { kind, count, what: what.to_owned(), names: Vec::new() }
+    }
+
+    /// Adds the names of the things, of which the first few are kept.
+    pub fn named<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
+        self.names = names.into_iter().take(MOST_NAMES).map(Into::into).collect();
+        self
+    }
+
+    /// Describes the notes of one difference as a list; `None` if there are none.
+    pub fn list(notes: &[Self], kind: NoteKind) -> Option<String> {
+        let of_it = notes.iter().filter(|note| note.kind == kind);
+        let texts: Vec<String> = of_it.map(Self::to_string).collect();
+        (!texts.is_empty()).then(|| texts.join(", "))
+    }
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", grouped(self.count), self.what)?;
+        if self.names.is_empty() {
+            return Ok(());
+        }
+        let more = if self.count > self.names.len() { ", …" } else { "" };
+        write!(f, " ({}{more})", self.names.join(", "))
+    }
+}
+
+/// Formats a number with commas between groups of three digits.
+fn grouped(number: usize) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_note_counts_and_names() {
+        let note = |count| Note::left_out(count, "image not found", "images not found");
+        assert_eq!(note(1).to_string(), "1 image not found");
+        assert_eq!(
+            note(2).named(["a.png", "b.png"]).to_string(),
+            "2 images not found (a.png, b.png)"
+        );
+        let many = note(1200).named((0..1200).map(|i| i.to_string()));
+        assert_eq!(many.to_string(), "1,200 images not found (0, 1, 2, 3, 4, 5, 6, 7, …)");
+    }
+
+    #[test]
+    fn lists_keep_differences_apart() {
+        let notes = [
+            Note::changed(3, "normal scaled", "normals scaled"),
+            Note::left_out(1, "line", "lines"),
+            Note::left_out(2, "point", "points"),
+        ];
+        assert_eq!(Note::list(&notes, NoteKind::LeftOut).unwrap(), "1 line, 2 points");
+        assert_eq!(Note::list(&notes[..1], NoteKind::LeftOut), None);
+    }
+}
