@@ -7,6 +7,33 @@ use serde_json::Value;
 
 use crate::failure::Failure;
 
+/// Outcome of a command that has an answer; it sets the exit code.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Outcome {
+    /// Done as asked: 0.
+    #[default]
+    Done,
+    /// A target was missed under `--strict`, or nothing could be shown: 1.
+    Missed,
+    /// A check found errors, or strips draw something else than their level: 3.
+    Found,
+}
+
+impl Outcome {
+    /// Returns `self` if a condition holds, else [`Outcome::Done`].
+    pub fn when(self, condition: bool) -> Self {
+        if condition { self } else { Self::Done }
+    }
+
+    fn exit_code(self) -> ExitCode {
+        ExitCode::from(match self {
+            Self::Done => 0,
+            Self::Missed => 1,
+            Self::Found => 3,
+        })
+    }
+}
+
 /// Result of a command, for programs and for people.
 pub struct Answer {
     /// JSON object that is printed with `--json`.
@@ -16,14 +43,13 @@ pub struct Answer {
     /// True if standard output carries a mesh or a picture, so that the text goes to standard
     /// error.
     pub file_on_stdout: bool,
-    /// True if the exit code must report failure although there is an answer: a target was missed
-    /// under `--strict`, or a check found errors.
-    pub missed: bool,
+    /// Outcome, which sets the exit code.
+    pub outcome: Outcome,
 }
 
 impl Answer {
     pub fn new(json: Value, text: String) -> Self {
-        Self { json, text, file_on_stdout: false, missed: false }
+        Self { json, text, file_on_stdout: false, outcome: Outcome::Done }
     }
 
     /// Prints the answer and returns the exit code.
@@ -41,8 +67,7 @@ impl Answer {
             Err(error) if error.kind() != ErrorKind::BrokenPipe => {
                 Err(Failure::new(format!("standard output: {error}")))
             }
-            _ if self.missed => Ok(ExitCode::FAILURE),
-            _ => Ok(ExitCode::SUCCESS),
+            _ => Ok(self.outcome.exit_code()),
         }
     }
 }

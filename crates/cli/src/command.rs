@@ -9,14 +9,14 @@ use crate::demo::Demo;
 use crate::failure::Failure;
 use crate::session::Session;
 use crate::verbs::{
-    build, check, compress, decompress, extract, flock, info, lods, measure, render, repair,
-    replay, sample, simplify, strip, view,
+    build, check, compress, convert, decompress, extract, flock, info, lods, measure, render,
+    repair, replay, sample, simplify, strip, view,
 };
 
 /// Level of detail for triangle meshes.
 ///
 /// The suffix selects the format: .ply .obj .stl .off .smf .gltf .glb. A path of - means standard
-/// input or output, with the format given by --format.
+/// input or output, with the format given by --format. Exit codes: 0 done, 1 could not, 2 wrong usage, 3 errors found.
 #[derive(Parser)]
 #[command(name = "meshlod", version, max_term_width = 100)]
 pub struct Cli {
@@ -33,6 +33,7 @@ pub enum Verb {
     Check(check::Check),
     Repair(repair::Repair),
     Simplify(simplify::Simplify),
+    Convert(convert::Convert),
     Replay(replay::Replay),
     Lods(lods::Lods),
     Build(build::Build),
@@ -56,6 +57,7 @@ impl Verb {
             Self::Check(verb) => verb.run(session),
             Self::Repair(verb) => verb.run(session),
             Self::Simplify(verb) => verb.run(session),
+            Self::Convert(verb) => verb.run(session),
             Self::Replay(verb) => verb.run(session),
             Self::Lods(verb) => verb.run(session),
             Self::Build(verb) => verb.run(session),

@@ -12,12 +12,12 @@ use crate::files;
 #[derive(Debug)]
 pub struct Failure {
     line: String,
-    wrong_usage: bool,
+    exit_code: u8,
 }
 
 impl Failure {
     pub fn new(line: impl fmt::Display) -> Self {
-        Self { line: line.to_string(), wrong_usage: false }
+        Self { line: line.to_string(), exit_code: 1 }
     }
 
     /// Creates a failure that begins with a file name.
@@ -27,11 +27,16 @@ impl Failure {
 
     /// Creates a usage error, for arguments that the command-line parser itself accepts.
     pub fn usage(line: impl fmt::Display) -> Self {
-        Self { wrong_usage: true, ..Self::new(line) }
+        Self { exit_code: 2, ..Self::new(line) }
+    }
+
+    /// Creates the failure of a check that found an error in a file.
+    pub fn found(path: &Path, error: impl fmt::Display) -> Self {
+        Self { exit_code: 3, ..Self::at(path, error) }
     }
 
     pub fn exit_code(&self) -> ExitCode {
-        if self.wrong_usage { ExitCode::from(2) } else { ExitCode::FAILURE }
+        self.exit_code.into()
     }
 }
 

@@ -1,7 +1,7 @@
 //! The command `meshlod`: level of detail for triangle meshes, one verb at a time.
 //!
 //! A verb takes its arguments and the [`Session`] and returns an [`Answer`] or a [`Failure`]; only
-//! this file prints answers and sets exit codes: 0 for success, 1 for failure, 2 for wrong usage.
+//! this file prints answers and sets exit codes: 0 for success, 1 for failure, 2 for wrong usage, 3 for findings.
 #![forbid(unsafe_code)]
 
 mod answer;

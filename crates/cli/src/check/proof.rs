@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::path::Path;
 
-use meshlod::multires::{Archive, HeightField, ModelFile, Rtin};
+use meshlod::multires::{Archive, FileError, HeightField, ModelFile, Rtin};
 use serde_json::json;
 
 use crate::answer::Answer;
@@ -28,7 +28,10 @@ fn prove_contractions(
 ) -> Result<Answer, Failure> {
     session.progress.stage("proving");
     let proved = archive.read_chunks(archive.chunk_count());
-    let (model, certificate) = proved.map_err(|error| Failure::at(path, error))?;
+    let (model, certificate) = proved.map_err(|error| match error {
+        FileError::NotCertified(error) => Failure::found(path, error),
+        error => Failure::at(path, error),
+    })?;
     let [there, chunks] = [archive.complete_chunks(), archive.chunk_count()];
     let kind = model_file::error_kind(archive);
     let json = json!({
@@ -60,7 +63,7 @@ fn prove_contractions(
 fn prove_field(path: &Path, field: &HeightField, session: &Session) -> Result<Answer, Failure> {
     session.progress.stage("proving");
     let model = Rtin::new(field);
-    let sound = model.certify().map_err(|error| Failure::at(path, error))?;
+    let sound = model.certify().map_err(|error| Failure::found(path, error))?;
     let [columns, rows] = field.size();
     let json = json!({
         "file": files::name(path),

@@ -10,7 +10,7 @@ use meshlod::io::write_file;
 use meshlod::mesh::Lock;
 use meshlod::{Scene, scene_locks};
 
-use crate::answer::Answer;
+use crate::answer::{Answer, Outcome};
 use crate::args::ReadArgs;
 use crate::check::inspection::{Inspection, InspectionOptions};
 use crate::check::lock_file::{self, FileRows};
@@ -22,7 +22,7 @@ use crate::model_file;
 use crate::parse;
 use crate::session::Session;
 
-/// Find defects of a mesh and contacts between its objects; exit with 1 on errors
+/// Find defects of a mesh and contacts between its objects; exit with 3 on errors
 #[derive(Args)]
 pub struct Check {
     /// Mesh to read, or -; or a .mlod file, to prove that none of its cuts has a crack
@@ -31,7 +31,7 @@ pub struct Check {
     /// Definition of an object; auto takes named objects if there are two or more, else components
     #[arg(long, value_name = "BY", default_value = "auto")]
     objects: By,
-    /// Also exit with 1 on findings of this severity
+    /// Also exit with 3 on findings of this severity
     #[arg(long, value_name = "WHAT")]
     deny: Option<Deny>,
     /// Maximum number of findings listed of each kind, and of pairs of objects
@@ -114,8 +114,8 @@ impl Check {
             text += &format!("{file}\n");
         }
         let denied = self.deny == Some(Deny::Warnings) && inspection.warnings() > 0;
-        let missed = inspection.errors() > 0 || denied;
-        Ok(Answer { missed, ..Answer::new(json, text) })
+        let outcome = Outcome::Found.when(inspection.errors() > 0 || denied);
+        Ok(Answer { outcome, ..Answer::new(json, text) })
     }
 
     /// Refuses outputs that cannot be written, before any work is done.

@@ -15,7 +15,7 @@ use meshlod::io::write_file;
 use meshlod::{Mesh, Scene, SceneCounts};
 use serde_json::{Value, json};
 
-use crate::answer::Answer;
+use crate::answer::{Answer, Outcome};
 use crate::args::{AttributeErrorArgs, ReadArgs};
 use crate::constraints::ConstraintArgs;
 use crate::failure::Failure;
@@ -138,7 +138,8 @@ impl Compress {
             json["scene"] = model_scene::counts_json(&counts);
             text += &model_scene::counts_text(&counts);
         }
-        Ok(Answer { missed: session.strict && !packed.reached, ..Answer::new(json, text) })
+        let outcome = Outcome::Missed.when(session.strict && !packed.reached);
+        Ok(Answer { outcome, ..Answer::new(json, text) })
     }
 
     fn pack(

@@ -11,7 +11,7 @@ use meshlod::simplify::Digits;
 use meshlod::{Format, Scene, Topology, digits_of};
 use serde_json::{Value, json};
 
-use crate::answer::Answer;
+use crate::answer::{Answer, Outcome};
 use crate::args::{ReadArgs, WriteArgs};
 use crate::distance;
 use crate::failure::Failure;
@@ -92,7 +92,8 @@ impl Lods {
             self.warn_of(level, options.topology, session);
         }
         let missed = chain.iter().any(|level| !level.simplified.report.reached);
-        Ok(Answer { missed: session.strict && missed, ..Answer::new(json, text) })
+        let outcome = Outcome::Missed.when(session.strict && missed);
+        Ok(Answer { outcome, ..Answer::new(json, text) })
     }
 
     /// Warns of a target that was missed, and of a level that is not written.

@@ -3,6 +3,7 @@
 pub mod build;
 pub mod check;
 pub mod compress;
+pub mod convert;
 pub mod decompress;
 pub mod extract;
 pub mod flock;

@@ -11,7 +11,7 @@ use meshlod::{
 };
 use serde_json::{Value, json};
 
-use crate::answer::Answer;
+use crate::answer::{Answer, Outcome};
 use crate::args::{ReadArgs, WriteArgs};
 use crate::constraints::ConstraintArgs;
 use crate::distance;
@@ -226,7 +226,7 @@ impl Simplify {
         }
         Ok(Answer {
             file_on_stdout: files::is_pipe(&self.output),
-            missed: session.strict && !done.report.reached,
+            outcome: Outcome::Missed.when(session.strict && !done.report.reached),
             ..Answer::new(json, text)
         })
     }

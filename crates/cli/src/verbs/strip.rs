@@ -15,7 +15,7 @@ use meshlod::strip::{
 };
 use serde_json::{Value, json};
 
-use crate::answer::Answer;
+use crate::answer::{Answer, Outcome};
 use crate::args::ReadArgs;
 use crate::constraints::{ConstraintArgs, FlatInput};
 use crate::failure::Failure;
@@ -50,7 +50,7 @@ pub struct Strip {
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Compare the triangles drawn and their attributes with those of an independently simplified
-    /// level; exit with 1 if they differ
+    /// level; exit with 3 if they differ
     #[arg(long)]
     verify: bool,
     #[command(flatten)]
@@ -139,12 +139,12 @@ impl Strip {
             output.write(&source.input, &source.tree, &levels, session)?;
         }
         let missed = session.strict && levels.iter().any(|level| !level.reached);
-        let wrong = levels.iter().any(|level| level.is_wrong());
-        if wrong {
+        let is_wrong = levels.iter().any(|level| level.is_wrong());
+        if is_wrong {
             session.warn(Failure::at(&self.input, "the strips do not draw the faces of the level"));
         }
         Ok(Answer {
-            missed: missed || wrong,
+            outcome: if is_wrong { Outcome::Found } else { Outcome::Missed.when(missed) },
             ..Answer::new(self.json(&source, &levels), self.text(&source, &levels))
         })
     }

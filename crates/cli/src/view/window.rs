@@ -4,7 +4,7 @@ use meshlod_view::ViewError;
 use meshlod_view::viewer::{self, ViewerOptions, ViewerReport};
 use serde_json::json;
 
-use crate::answer::Answer;
+use crate::answer::{Answer, Outcome};
 use crate::failure::Failure;
 use crate::files;
 use crate::numbers::{count, faces};
@@ -35,7 +35,8 @@ pub fn run(verb: View, session: &Session) -> Result<Answer, Failure> {
         session.warn(problem);
     }
     let has_failed = wanted > 0 && report.first_picture_ms.is_none();
-    Ok(Answer { missed: has_failed, ..Answer::new(json!(report), text(&report)) })
+    let outcome = Outcome::Missed.when(has_failed);
+    Ok(Answer { outcome, ..Answer::new(json!(report), text(&report)) })
 }
 
 fn text(report: &ViewerReport) -> String {

@@ -5,6 +5,7 @@ mod compare;
 mod compress;
 mod compressed_scenes;
 mod constraints;
+mod convert;
 mod damaged_models;
 mod demo;
 mod documents;

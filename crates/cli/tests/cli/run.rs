@@ -13,7 +13,6 @@ pub struct Run {
 }
 
 /// Exit code and streams of a finished run.
-#[derive(Debug)]
 pub struct Done {
     pub code: i32,
     pub out: Vec<u8>,
@@ -98,5 +97,13 @@ impl Done {
         let line = self.err.strip_suffix('\n').expect("a whole line");
         assert!(!line.contains('\n') && line.starts_with("meshlod: "), "{line}");
         line
+    }
+}
+
+/// Standard output is cut after its first characters.
+impl std::fmt::Debug for Done {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let out: String = String::from_utf8_lossy(&self.out).chars().take(2000).collect();
+        write!(f, "code {}, out {out:?}, err {:?}", self.code, self.err)
     }
 }

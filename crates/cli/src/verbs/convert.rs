@@ -1,0 +1,74 @@
+//! `convert`: writes a mesh in another format.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use meshlod::Scene;
+use serde_json::{Value, json};
+
+use crate::answer::Answer;
+use crate::args::{ReadArgs, WriteArgs};
+use crate::failure::Failure;
+use crate::files;
+use crate::model_scene::shown_faces;
+use crate::numbers::{count, faces};
+use crate::session::Session;
+
+/// Write a mesh in another format, or the same one; what the format cannot hold is named
+#[derive(Args)]
+pub struct Convert {
+    /// Mesh to read, or -
+    #[arg(value_name = "IN")]
+    input: PathBuf,
+    /// File to write, or -
+    #[arg(value_name = "OUT")]
+    output: PathBuf,
+    #[command(flatten)]
+    reading: ReadArgs,
+    #[command(flatten)]
+    writing: WriteArgs,
+}
+
+impl Convert {
+    pub fn run(self, session: &Session) -> Result<Answer, Failure> {
+        files::check_output(&self.output, session)?;
+        let scene = files::read(&self.input, &self.reading, session)?;
+        files::write(&self.output, &scene, &self.writing, session)?;
+        let (json, text) = (self.json(&scene), self.text(&scene));
+        Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
+    }
+
+    fn json(&self, scene: &Scene) -> Value {
+        json!({
+            "file": files::name(&self.output),
+            "meshes": scene.meshes.len(),
+            "vertices": vertices(scene),
+            "faces": of_meshes(scene),
+            "shown_faces": shown_faces(scene),
+        })
+    }
+
+    fn text(&self, scene: &Scene) -> String {
+        let meshes = scene.meshes.len();
+        let shown = match shown_faces(scene) {
+            shown if shown == of_meshes(scene) => String::new(),
+            shown => format!(", shown as {}", count(shown)),
+        };
+        format!(
+            "{}: {meshes} mesh{}, {} vertices, {}{shown}\n",
+            files::name(&self.output),
+            if meshes == 1 { "" } else { "es" },
+            count(vertices(scene)),
+            faces(of_meshes(scene)),
+        )
+    }
+}
+
+fn vertices(scene: &Scene) -> usize {
+    scene.meshes.iter().map(|mesh| mesh.mesh.positions.len()).sum()
+}
+
+/// Returns the number of faces of all meshes, each counted once.
+fn of_meshes(scene: &Scene) -> usize {
+    scene.meshes.iter().map(|mesh| mesh.mesh.faces.len()).sum()
+}
