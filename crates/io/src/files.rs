@@ -6,6 +6,7 @@ use std::path::{Component, Path, PathBuf};
 
 use meshlod_mesh::{Mesh, VertexId};
 
+use crate::gltf::LodLayout;
 use crate::replace::replace;
 use crate::{
     Format, Image, IoError, Note, ParseError, Precision, Scene, Unsupported, gltf, obj, off, ply,
@@ -123,7 +124,7 @@ fn note_missing_images(scene: &mut Scene) {
 pub fn write(path: &Path, scene: &Scene, options: &WriteOptions) -> Result<(), IoError> {
     let precision = options.precision;
     match Format::of_path(path)? {
-        Format::Gltf | Format::Glb => write_lods(path, scene, &[]),
+        Format::Gltf | Format::Glb => write_lods(path, scene, &[], LodLayout::default()),
         Format::Obj => write_obj(path, scene, precision),
         Format::Ply => write_one(path, |out| ply::write(&scene.shown_mesh(), precision, out)),
         Format::Stl => write_one(path, |out| stl::write(&scene.shown_mesh(), out)),
@@ -132,22 +133,28 @@ pub fn write(path: &Path, scene: &Scene, options: &WriteOptions) -> Result<(), I
     }
 }
 
-/// Writes a scene and its coarser levels of detail as glTF or GLB, linked by `MSFT_lod`.
+/// Writes a scene and its coarser levels of detail as glTF or GLB, laid out as asked.
 ///
 /// See [`gltf::write_glb`] for details.
 ///
 /// # Errors
 /// Errors of [`write()`]; also any other suffix, and levels whose number of meshes differs from the
 /// scene's.
-pub fn write_lods(path: &Path, scene: &Scene, levels: &[gltf::Level]) -> Result<(), IoError> {
+pub fn write_lods(
+    path: &Path,
+    scene: &Scene,
+    levels: &[gltf::Level],
+    layout: LodLayout,
+) -> Result<(), IoError> {
     let unsupported = |error| IoError::unsupported(path, error);
     match Format::of_path(path)? {
         Format::Glb => {
-            let bytes = gltf::write_glb(scene, levels).map_err(unsupported)?;
+            let bytes = gltf::write_lods_glb(scene, levels, layout).map_err(unsupported)?;
             write_one(path, |out| out.write_all(&bytes))
         }
         Format::Gltf => {
-            write_gltf(path, &gltf::write(scene, levels, &stem(path)).map_err(unsupported)?)
+            let files = gltf::write_lods(scene, levels, layout, &stem(path));
+            write_gltf(path, &files.map_err(unsupported)?)
         }
         _ => Err(unsupported(Unsupported::new(
             "levels",

@@ -92,7 +92,8 @@
 //! them:
 //!
 //! ```
-//! use meshlod::io::{gltf::Level, write_lods};
+//! use meshlod::io::gltf::{Level, LodLayout};
+//! use meshlod::io::write_lods;
 //! use meshlod::{Borders, ConditionedScene, Options, Scene, SceneSimplifier, Target, samples};
 //! # let folder = tempfile::tempdir()?;
 //! # let out = folder.path().join("torus.glb");
@@ -105,7 +106,7 @@
 //!     simplifier.run(Target::Ratio(ratio), &mut ())?;
 //!     levels.push(Level { meshes: simplifier.level(), screen_coverage });
 //! }
-//! write_lods(&out, &scene, &levels)?;
+//! write_lods(&out, &scene, &levels, LodLayout::default())?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!

@@ -15,7 +15,7 @@ use crate::page::subject::Subject;
 use crate::parse::LevelSize;
 use crate::session::Session;
 use crate::simplify_run::{self, ReadyScene};
-use crate::verbs::lods::screen_coverage;
+use crate::verbs::lods::switching::Camera;
 
 /// Levels of a chain, as ratios of the input's faces.
 const RATIOS: [f64; 4] = [0.5, 0.25, 0.1, 0.03];
@@ -126,12 +126,20 @@ impl SampleFiles<'_> {
     }
 
     fn write_lods(&self, scene: &Scene, levels: &[LevelMesh]) -> Result<(), Failure> {
-        let coverage = |level: &Level| level.measured.as_ref().map_or(1.0, screen_coverage);
+        let camera = Camera::default();
+        let coverage = |level: &Level| {
+            level.measured.as_ref().map_or(1.0, |measured| camera.screen_coverage(measured))
+        };
         let level = |made: &LevelMesh| gltf::Level {
             meshes: made.meshes.clone(),
             screen_coverage: coverage(&made.level),
         };
         let levels: Vec<_> = levels.iter().map(level).collect();
-        Ok(write_lods(&self.folder.join(self.sample.lods_file()), scene, &levels)?)
+        Ok(write_lods(
+            &self.folder.join(self.sample.lods_file()),
+            scene,
+            &levels,
+            gltf::LodLayout::Linked,
+        )?)
     }
 }

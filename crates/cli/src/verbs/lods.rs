@@ -1,15 +1,13 @@
 //! `lods`: writes a chain of coarser levels, each measured against the original.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::Args;
-use meshlod::io::gltf::Level;
-use meshlod::io::write_lods;
-use meshlod::measure::Distance;
+use clap::{Args, ValueEnum};
+use meshlod::io::gltf::{Level, LodLayout};
+use meshlod::io::{write_file, write_lods};
 use meshlod::simplify::Digits;
-use meshlod::{Format, Scene, Topology, digits_of};
-use serde_json::{Value, json};
+use meshlod::{Format, Scene, Topology, digits_of, world_bounds};
 
 use crate::answer::{Answer, Outcome};
 use crate::args::{ReadArgs, WriteArgs};
@@ -17,30 +15,40 @@ use crate::distance;
 use crate::failure::Failure;
 use crate::files;
 use crate::fuse;
-use crate::locks::{self, InputScene};
-use crate::numbers::{count, percent, value};
+use crate::locks::InputScene;
+use crate::model_scene;
 use crate::parse::{self, LevelSize};
 use crate::session::Session;
 use crate::simplify_report;
 use crate::simplify_run::{self, ReadyScene, Simplified, SimplifyRun};
-use crate::table::aligned;
 use crate::topology;
 use crate::verbs::simplify::MethodArgs;
 use crate::volume::ExactVolumeArgs;
 
-/// Write a chain of coarser levels, as glTF with MSFT_lod or one file per level
+use self::switching::Camera;
+
+mod report;
+pub mod switching;
+
+/// Write a chain of coarser levels in one glTF or one file a level, and when to show each
 #[derive(Args)]
 pub struct Lods {
     /// Mesh to read, or -
     #[arg(value_name = "IN")]
     input: PathBuf,
-    /// .glb or .gltf for one file with all levels; any other suffix for NAME_LOD1, NAME_LOD2, …
+    /// File to write; with one file a level, NAME_LOD0, NAME_LOD1, … beside it. NAME.lods.json has
+    /// the measured error of each level and the distance from which it is fine enough
     #[arg(value_name = "OUT")]
     output: PathBuf,
     /// Level sizes, finest first: 50% or 0.5 of the faces, or a number of faces
     #[arg(long, value_name = "SIZES", value_delimiter = ',', default_value = "50%,25%,10%",
         value_parser = parse::size, allow_hyphen_values = true)]
     levels: Vec<LevelSize>,
+    /// Place of the levels [default: msft for .glb and .gltf, else files]
+    #[arg(long, value_name = "LAYOUT")]
+    layout: Option<ChainLayout>,
+    #[command(flatten)]
+    camera: Camera,
     #[command(flatten)]
     method: MethodArgs,
     #[command(flatten)]
@@ -49,6 +57,16 @@ pub struct Lods {
     reading: ReadArgs,
     #[command(flatten)]
     writing: WriteArgs,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+enum ChainLayout {
+    /// One glTF; coarser levels are linked by MSFT_lod
+    Msft,
+    /// One glTF; all levels are nodes of the scene, NAME_LOD0, NAME_LOD1, …, as engines import them
+    Scene,
+    /// One file a level, the input being NAME_LOD0
+    Files,
 }
 
 /// Level of the chain with its file.
@@ -62,18 +80,18 @@ struct LodLevel {
     file: Option<PathBuf>,
 }
 
-/// Height of the screen, in lines, for which levels are chosen to be indistinguishable.
-const SCREEN_LINES: f64 = 1080.0;
-
 impl Lods {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         if files::is_pipe(&self.output) {
             return Err(Failure::usage("-: levels cannot go to standard output; name a file"));
         }
         let format = files::check_output(&self.output, session)?;
-        if !holds_levels(format) {
-            (1..=self.levels.len()).try_for_each(|i| files::check_place(&self.file_of(i)))?;
+        let layout = self.layout(format)?;
+        if layout == ChainLayout::Files {
+            (0..=self.levels.len())
+                .try_for_each(|i| files::check_place(&self.file_of(i, layout)))?;
         }
+        files::check_place(&self.guide_file())?;
         let mut scene = files::read(&self.input, &self.reading, session)?;
         let fused = self.method.constraints.fuse.apply(&mut scene, session);
         let input = InputScene { scene: &scene, path: &self.input, reading: &self.reading };
@@ -81,13 +99,18 @@ impl Lods {
         let borders = self.method.constraints.topology.borders();
         let ready = ReadyScene::new(&scene, &options, borders, &self.input, session)?;
         let digits = digits_of(format, self.writing.options().precision);
-        let (mut chain, time) = self.chain(&scene, &ready, fused.as_ref(), digits, session)?;
+        let (mut chain, time) =
+            self.chain(&scene, &ready, fused.as_ref(), (layout, digits), session)?;
         if let Some(level) = chain.last() {
             self.method.warn(&level.simplified.report, &ready, session);
         }
-        let (mut json, text) = (self.json(&chain, time), self.text(&chain, &ready, time));
+        let (mut json, text) = (self.json(&chain, time), self.text(&chain, &ready, (layout, time)));
         topology::add_json(&mut json, &ready.scene);
-        self.write(format, &mut scene, &mut chain, session)?;
+        json["layout"] = layout.name().into();
+        json["guide"] = files::name(&self.guide_file()).into();
+        let guide = self.guide(&chain, &world_bounds(&scene), layout);
+        self.write(layout, &mut scene, &mut chain, session)?;
+        write_file(&self.guide_file(), format!("{guide:#}\n").as_bytes())?;
         for level in &chain {
             self.warn_of(level, options.topology, session);
         }
@@ -116,7 +139,7 @@ impl Lods {
         scene: &Scene,
         ready: &ReadyScene<'_>,
         fused: Option<&fuse::FuseReport>,
-        digits: Digits,
+        (layout, digits): (ChainLayout, Digits),
         session: &Session,
     ) -> Result<(Vec<LodLevel>, Duration), Failure> {
         let original = distance::surface_of(scene, distance::meshes(scene));
@@ -144,16 +167,38 @@ impl Lods {
                 size,
                 simplified: Simplified { meshes, report, measured, sequence: None },
                 volume_residual: residual,
-                screen_coverage: measured.as_ref().map_or(finer, screen_coverage).min(finer),
-                file: (!is_same).then(|| self.file_of(i + 1)),
+                screen_coverage: measured
+                    .as_ref()
+                    .map_or(finer, |measured| self.camera.screen_coverage(measured))
+                    .min(finer),
+                file: (!is_same).then(|| self.file_of(i + 1, layout)),
             });
         }
         Ok((chain, run.time()))
     }
 
+    /// Returns the layout asked for, or the usual one of the format.
+    fn layout(&self, format: Format) -> Result<ChainLayout, Failure> {
+        let is_gltf = model_scene::is_gltf(format);
+        match self.layout {
+            None if is_gltf => Ok(ChainLayout::Msft),
+            None => Ok(ChainLayout::Files),
+            Some(layout) if layout == ChainLayout::Files || is_gltf => Ok(layout),
+            Some(layout) => Err(Failure::usage(format_args!(
+                "--layout {} needs .glb or .gltf, which hold several levels",
+                layout.name()
+            ))),
+        }
+    }
+
+    /// Returns the path of the file that says when to show each level.
+    fn guide_file(&self) -> PathBuf {
+        self.output.with_extension("lods.json")
+    }
+
     /// Returns the path of the file that holds a level.
-    fn file_of(&self, level: usize) -> PathBuf {
-        if Format::of_path(&self.output).is_ok_and(holds_levels) {
+    fn file_of(&self, level: usize, layout: ChainLayout) -> PathBuf {
+        if layout != ChainLayout::Files {
             return self.output.clone();
         }
         let stem = self.output.file_stem().unwrap_or_default().to_string_lossy();
@@ -164,14 +209,15 @@ impl Lods {
     /// Writes all levels to one file, or each to its own.
     fn write(
         &self,
-        format: Format,
+        layout: ChainLayout,
         scene: &mut Scene,
         chain: &mut [LodLevel],
         session: &Session,
     ) -> Result<(), Failure> {
         let meshes = |level: &mut LodLevel| std::mem::take(&mut level.simplified.meshes);
         let written = chain.iter_mut().filter(|level| level.file.is_some());
-        if !holds_levels(format) {
+        if layout == ChainLayout::Files {
+            files::write(&self.file_of(0, layout), scene, &self.writing, session)?;
             for level in written {
                 simplify_run::replace(scene, meshes(level));
                 if let Some(file) = &level.file {
@@ -186,80 +232,22 @@ impl Lods {
             screen_coverage: level.screen_coverage,
         };
         let levels: Vec<Level> = written.map(level).collect();
-        Ok(write_lods(&self.output, scene, &levels)?)
-    }
-
-    fn json(&self, chain: &[LodLevel], time: Duration) -> Value {
-        let level = |level: &LodLevel| {
-            let report = &level.simplified.report;
-            json!({
-                "size": level.size.to_string(),
-                "faces": report.output_faces,
-                "reached": report.reached,
-                "error_estimate": report.error_estimate,
-                "error_measured": level.simplified.measured.as_ref().map(distance::to_json),
-                "volume_residual": level.volume_residual,
-                "screen_coverage": level.screen_coverage,
-                "file": level.file.as_deref().map(files::name),
-            })
+        let layout = match layout {
+            ChainLayout::Scene => LodLayout::Siblings,
+            _ => LodLayout::Linked,
         };
-        let report = chain.last().map(|level| &level.simplified.report);
-        json!({
-            "method": report.map(|report| report.method.name()),
-            "input_faces": report.map(|report| report.input_faces),
-            "levels": chain.iter().map(level).collect::<Vec<_>>(),
-            "simplify_seconds": time.as_secs_f64(),
-            "degenerate_faces": report.map(|report| report.degenerate_faces),
-            "duplicate_faces": report.map(|report| report.duplicate_faces),
-            "non_manifold_vertices": report.map(|report| report.non_manifold_vertices),
-            "held": report.map(locks::to_json),
-            "vanished": report.map(|report| report.vanished),
-            "vanished_volume": report.map(|report| report.volume.vanished),
-            "refusals": report.map(simplify_report::refusals_json),
-        })
-    }
-
-    fn text(&self, chain: &[LodLevel], ready: &ReadyScene<'_>, time: Duration) -> String {
-        let input_faces = chain.first().map_or(0, |level| level.simplified.report.input_faces);
-        let mut rows = vec![
-            ["level", "target", "faces", "mean", "RMS", "max", "coverage"].map(String::from),
-            ["LOD0", "", &count(input_faces), "", "", "", ""].map(String::from),
-        ];
-        for (i, level) in chain.iter().enumerate() {
-            let cell = |length: fn(&Distance) -> f64| {
-                let distance = level.simplified.measured.as_ref();
-                distance.map_or("-".into(), |d| percent(d.percent(length(d))))
-            };
-            rows.push([
-                format!("LOD{}", i + 1),
-                level.size.to_string(),
-                count(level.simplified.report.output_faces),
-                cell(Distance::mean),
-                cell(Distance::rms),
-                cell(Distance::max),
-                value(level.screen_coverage),
-            ]);
-        }
-        let notes = chain.last().map(|level| simplify_report::mesh_notes(&level.simplified.report));
-        let mut text = aligned(&rows);
-        text += "mean, RMS, max: measured distance from the input, in % of the diagonal\n";
-        text += "coverage: the fraction of the screen below which the level is within one pixel of the\n";
-        text += &format!("input, on a screen of {SCREEN_LINES} lines\n");
-        text += &topology::to_text(&ready.scene);
-        text += &notes.unwrap_or_default();
-        for level in chain.iter().filter(|level| level.file.is_none()) {
-            text += &format!("{}: not written, the same as the level before\n", level.size);
-        }
-        for file in written(chain) {
-            text += &format!("{}\n", files::name(file));
-        }
-        text + &simplify_report::seconds_line(time)
+        Ok(write_lods(&self.output, scene, &levels, layout)?)
     }
 }
 
-/// Returns true if one file of this format holds all levels.
-fn holds_levels(format: Format) -> bool {
-    matches!(format, Format::Glb | Format::Gltf)
+impl ChainLayout {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Msft => "msft",
+            Self::Scene => "scene",
+            Self::Files => "files",
+        }
+    }
 }
 
 /// Refuses a level that is not coarser than the one before.
@@ -275,19 +263,4 @@ fn check_order(levels: &[LevelSize], input_faces: usize) -> Result<(), Failure> 
             pair[1], pair[0]
         ))),
     }
-}
-
-/// Returns the fraction of the screen's area that a model covers when its greatest distance from
-/// the original spans one pixel.
-pub fn screen_coverage(distance: &Distance) -> f64 {
-    let most_pixels = distance.diagonal / distance.max();
-    let coverage = (most_pixels / SCREEN_LINES).powi(2);
-    if coverage.is_finite() { coverage.min(1.0) } else { 1.0 }
-}
-
-/// Lists the files written, each once.
-fn written(chain: &[LodLevel]) -> Vec<&Path> {
-    let mut files: Vec<&Path> = chain.iter().filter_map(|level| level.file.as_deref()).collect();
-    files.dedup();
-    files
 }

@@ -38,12 +38,48 @@ fn other_formats_get_a_file_a_level() {
     let run = Run::new();
     run.sample("torus", 1_000, "in.ply");
     let report = run.json(&["lods", "in.ply", "t.off", "--levels", "30%,10%"]);
-    assert_eq!(run.files(), ["in.ply", "t_LOD1.off", "t_LOD2.off"]);
+    let files = ["in.ply", "t.lods.json", "t_LOD0.off", "t_LOD1.off", "t_LOD2.off"];
+    assert_eq!(run.files(), files);
+    assert_eq!(run.json(&["info", "t_LOD0.off"])["faces"], report["input_faces"]);
     for level in report["levels"].as_array().unwrap() {
         assert_eq!(run.json(&["info", level["file"].as_str().unwrap()])["faces"], level["faces"]);
     }
     let text = run.run(&["lods", "in.ply", "t.off", "--levels", "30%,10%"]);
     assert!(text.text().contains("LOD2") && text.err.is_empty(), "{text:?}");
+}
+
+#[test]
+fn every_layout_has_the_levels_and_a_guide() {
+    let run = Run::new();
+    run.sample("fish", 2_000, "in.obj");
+    for layout in ["msft", "scene", "files"] {
+        let out = format!("{layout}.glb");
+        let report = run.json(&["lods", "in.obj", &out, "--levels", "50%,10%", "--layout", layout]);
+        let guide = std::fs::read(run.path(&format!("{layout}.lods.json"))).unwrap();
+        let guide: Value = serde_json::from_slice(&guide).unwrap();
+        assert_eq!(guide["layout"], layout);
+        let levels = guide["levels"].as_array().unwrap();
+        let of = |key: &str| levels.iter().map(|l| l[key].as_f64().unwrap()).collect::<Vec<_>>();
+        assert!(
+            of("distance").is_sorted() && of("distance")[1] > guide["radius"].as_f64().unwrap()
+        );
+        assert!(of("screen_height").is_sorted_by(|a, b| a > b), "{guide}");
+        assert!(of("error_measured")[0] == 0.0 && of("faces").is_sorted_by(|a, b| a > b));
+        let total: f64 = of("faces").iter().sum();
+        let shown = |file: &str| run.json(&["info", file])["faces"].as_f64().unwrap();
+        match layout {
+            "msft" => assert_eq!(shown(&out), of("faces")[0]),
+            "scene" => assert_eq!(shown(&out), total),
+            _ => {
+                let names = levels.iter().map(|level| level["file"].as_str().unwrap());
+                assert_eq!(names.map(shown).collect::<Vec<_>>(), of("faces"));
+                assert!(!run.path(&out).exists());
+            }
+        }
+        assert_eq!(report["layout"], layout);
+    }
+    let done = run.run(&["lods", "in.obj", "out.ply", "--layout", "scene"]);
+    assert!(done.code == 2 && done.err.contains("needs .glb or .gltf"), "{done:?}");
 }
 
 #[test]

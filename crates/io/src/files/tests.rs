@@ -121,7 +121,9 @@ fn a_scene_that_cannot_be_written_leaves_no_file() {
 fn what_is_not_there_is_named() {
     let error = read_default(Path::new("no/such.ply")).unwrap_err().to_string();
     assert!(error.starts_with("no/such.ply: "), "{error}");
-    let error = write_lods(Path::new("a.ply"), &Scene::default(), &[]).unwrap_err().to_string();
+    let error = write_lods(Path::new("a.ply"), &Scene::default(), &[], LodLayout::Linked)
+        .unwrap_err()
+        .to_string();
     assert!(error.contains(".glb"), "{error}");
 }
 

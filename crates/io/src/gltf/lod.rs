@@ -1,4 +1,4 @@
-//! Levels of detail in glTF, linked by the extension `MSFT_lod`.
+//! Levels of detail in glTF: linked by the extension `MSFT_lod`, or side by side in the scene.
 
 use std::collections::BTreeSet;
 
@@ -21,6 +21,31 @@ pub struct Level {
     pub screen_coverage: f64,
 }
 
+/// Layout of the levels of a scene in a glTF document.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LodLayout {
+    /// Coarser levels are linked to the finest by `MSFT_lod`; programs that do not know the extension
+    /// show the finest alone.
+    #[default]
+    Linked,
+    /// All levels are shown nodes, `NAME_LOD0`, `NAME_LOD1` and so on, children of the node that had
+    /// the mesh: the names from which engines build groups of levels.
+    Siblings,
+}
+
+/// Levels of a scene and their layout; [`Levels::default`] has no levels.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Levels<'a> {
+    pub levels: &'a [Level],
+    pub layout: LodLayout,
+}
+
+impl<'a> From<&'a [Level]> for Levels<'a> {
+    fn from(levels: &'a [Level]) -> Self {
+        Self { levels, layout: LodLayout::default() }
+    }
+}
+
 /// Adds the levels of all meshes, and the nodes that show them.
 ///
 /// `templates` are the meshes of the document before their geometry was replaced, `grids` the
@@ -29,14 +54,17 @@ pub(super) fn add(
     json: &mut Value,
     templates: &[Value],
     grids: &[Option<QuantizationGrid>],
-    levels: &[Level],
+    Levels { levels, layout }: Levels<'_>,
     replacer: &mut Replacer<'_>,
 ) -> Result<(), Unsupported> {
     check(levels, templates.len())?;
     let first = add_meshes(json, templates, grids, levels, replacer)?;
     let coverage: Vec<f64> = levels.iter().map(|level| level.screen_coverage).collect();
     let ids = |mesh| (0..levels.len()).map(|k| first + k * templates.len() + mesh).collect();
-    link_nodes(json, ids, Some(&coverage));
+    match layout {
+        LodLayout::Linked => link_nodes(json, ids, Some(&coverage)),
+        LodLayout::Siblings => show_all(json, ids),
+    }
     Ok(())
 }
 
@@ -63,6 +91,26 @@ pub(super) fn link_nodes(
         link(json, shown, &name, &ids, coverage);
     }
     list_extension(json, "extensionsUsed", MSFT_LOD);
+}
+
+/// Gives every node with a mesh a child for each level of the mesh, of which `ids_of` gives the
+/// indices of the coarser ones.
+fn show_all(json: &mut Value, ids_of: impl Fn(usize) -> Vec<usize>) {
+    let count = json.get("nodes").and_then(Value::as_array).map_or(0, Vec::len);
+    let hidden = nodes::levels(json, count);
+    for node in (0..count).filter(|&node| !hidden[node]) {
+        let Some(mesh) = json["nodes"][node].get("mesh").and_then(Value::as_u64) else { continue };
+        let name = base_name(json, node, mesh as usize);
+        let extensions = json["nodes"][node].get_mut("extensions");
+        if let Some(extensions) = extensions.and_then(Value::as_object_mut) {
+            extensions.shift_remove(MSFT_LOD);
+        }
+        let finest = give_to_child(json, node);
+        json["nodes"][finest]["name"] = format!("{name}_LOD0").into();
+        let coarser = add_coarser(json, finest, &name, &ids_of(mesh as usize));
+        let coarser = coarser.into_iter().map(Value::from).collect();
+        extend(&mut json["nodes"][node], "children", coarser);
+    }
 }
 
 fn check(levels: &[Level], meshes: usize) -> Result<(), Unsupported> {
@@ -170,7 +218,20 @@ pub(super) fn give_to_child(json: &mut Value, node: usize) -> usize {
 
 /// Adds nodes for the coarser levels with the transform of `node`, and links them to it.
 fn link(json: &mut Value, node: usize, name: &str, meshes: &[usize], coverage: Option<&[f64]>) {
-    let mut shown = json["nodes"][node].take();
+    let ids = add_coarser(json, node, name, meshes);
+    let shown = &mut json["nodes"][node];
+    shown["name"] = format!("{name}_LOD0").into();
+    set(shown, "extensions", MSFT_LOD, json!({ "ids": ids }));
+    if let Some(coverage) = coverage {
+        // Minimum coverage of each level; the last level is shown down to zero.
+        let least: Vec<f64> = coverage.iter().copied().chain([0.0]).collect();
+        set(shown, "extras", "MSFT_screencoverage", json!(least));
+    }
+}
+
+/// Adds nodes for the coarser levels with the transform of `node`; returns their indices.
+fn add_coarser(json: &mut Value, node: usize, name: &str, meshes: &[usize]) -> Vec<usize> {
+    let shown = json["nodes"][node].clone();
     let coarser = meshes.iter().enumerate().map(|(k, &mesh)| {
         let mut coarse = shown.clone();
         if let Some(coarse) = coarse.as_object_mut() {
@@ -183,15 +244,7 @@ fn link(json: &mut Value, node: usize, name: &str, meshes: &[usize], coverage: O
         coarse
     });
     let first = extend(json, "nodes", coarser.collect());
-    let ids: Vec<usize> = (first..first + meshes.len()).collect();
-    shown["name"] = format!("{name}_LOD0").into();
-    set(&mut shown, "extensions", MSFT_LOD, json!({ "ids": ids }));
-    if let Some(coverage) = coverage {
-        // Minimum coverage of each level; the last level is shown down to zero.
-        let least: Vec<f64> = coverage.iter().copied().chain([0.0]).collect();
-        set(&mut shown, "extras", "MSFT_screencoverage", json!(least));
-    }
-    json["nodes"][node] = shown;
+    (first..first + meshes.len()).collect()
 }
 
 /// Sets an entry of an object of a node, replacing extras that are not an object.

@@ -30,7 +30,7 @@ mod vertex_cache;
 mod write;
 
 pub use compress::{Bytes, Compression, CompressionReport};
-pub use lod::Level;
+pub use lod::{Level, LodLayout};
 pub(crate) use new_document::has_core_type;
 pub use parts::{QuantizedPart, write_parts_glb};
 pub use primitive_rows::PrimitiveRows;
@@ -38,4 +38,6 @@ pub use read::{SourceDocument, read};
 pub use skeleton::Skeleton;
 pub use skeleton_images::SkeletonImage;
 pub use strips::{StripCorner, StripMesh, write_strips, write_strips_glb};
-pub use write::{GltfFiles, write, write_compressed, write_compressed_glb, write_glb};
+pub use write::{
+    GltfFiles, write, write_compressed, write_compressed_glb, write_glb, write_lods, write_lods_glb,
+};

@@ -7,7 +7,7 @@ use super::accessor_use::free_accessors;
 use super::buffer_builder::BufferBuilder;
 use super::compress::{self, Compression, CompressionReport};
 use super::document::Document;
-use super::lod::{self, Level};
+use super::lod::{self, Level, Levels, LodLayout};
 use super::primitives::Replacer;
 use super::read::Contents;
 use super::uri::{self, Uri};
@@ -44,7 +44,19 @@ pub struct GltfFiles {
 /// If a mesh is invalid or exceeds 32 bits, if the labels or the number of meshes do not match the
 /// source, or above 4 GB.
 pub fn write_glb(scene: &Scene, levels: &[Level]) -> Result<Vec<u8>, Unsupported> {
-    Output::of(scene, levels, None)?.into_glb(scene)
+    Output::of(scene, levels.into(), None)?.into_glb(scene)
+}
+
+/// Encodes a scene and its coarser levels of detail as a single GLB file, laid out as asked.
+///
+/// # Errors
+/// Errors of [`write_glb`].
+pub fn write_lods_glb(
+    scene: &Scene,
+    levels: &[Level],
+    layout: LodLayout,
+) -> Result<Vec<u8>, Unsupported> {
+    Output::of(scene, Levels { levels, layout }, None)?.into_glb(scene)
 }
 
 /// Encodes a scene as a compressed GLB file, and returns the compressed sizes and the quantization
@@ -71,7 +83,7 @@ pub fn write_compressed_glb(
     levels: &[Level],
     compression: &Compression,
 ) -> Result<(Vec<u8>, CompressionReport), Unsupported> {
-    let mut output = Output::of(scene, levels, Some(compression))?;
+    let mut output = Output::of(scene, levels.into(), Some(compression))?;
     let report = std::mem::take(&mut output.report);
     Ok((output.into_glb(scene)?, report))
 }
@@ -83,7 +95,20 @@ pub fn write_compressed_glb(
 /// # Errors
 /// Errors of [`write_glb`], except for the size.
 pub fn write(scene: &Scene, levels: &[Level], stem: &str) -> Result<GltfFiles, Unsupported> {
-    Output::of(scene, levels, None)?.into_files(scene, stem)
+    Output::of(scene, levels.into(), None)?.into_files(scene, stem)
+}
+
+/// Encodes a scene and its coarser levels of detail as [`write()`] does, laid out as asked.
+///
+/// # Errors
+/// Errors of [`write()`].
+pub fn write_lods(
+    scene: &Scene,
+    levels: &[Level],
+    layout: LodLayout,
+    stem: &str,
+) -> Result<GltfFiles, Unsupported> {
+    Output::of(scene, Levels { levels, layout }, None)?.into_files(scene, stem)
 }
 
 /// Encodes a scene as a compressed `.gltf` file and the files that belong to it.
@@ -98,7 +123,7 @@ pub fn write_compressed(
     stem: &str,
     compression: &Compression,
 ) -> Result<(GltfFiles, CompressionReport), Unsupported> {
-    let mut output = Output::of(scene, levels, Some(compression))?;
+    let mut output = Output::of(scene, levels.into(), Some(compression))?;
     let report = std::mem::take(&mut output.report);
     Ok((output.into_files(scene, stem)?, report))
 }
@@ -113,7 +138,7 @@ pub(super) struct Output {
 impl Output {
     fn of(
         scene: &Scene,
-        levels: &[Level],
+        levels: Levels<'_>,
         compression: Option<&Compression>,
     ) -> Result<Self, Unsupported> {
         compression.map_or(Ok(()), Compression::check)?;
@@ -133,7 +158,7 @@ impl Output {
     fn with_source(
         scene: &Scene,
         source: &Contents,
-        levels: &[Level],
+        levels: Levels<'_>,
         compression: Option<&Compression>,
     ) -> Result<Self, Unsupported> {
         let json = &source.json;
@@ -160,13 +185,14 @@ impl Output {
         scene: &Scene,
         changed: &[bool],
         mut replacer: Replacer<'_>,
-        levels: &[Level],
+        levels: Levels<'_>,
     ) -> Result<Self, Unsupported> {
         let templates = json.get("meshes").and_then(Value::as_array).cloned().unwrap_or_default();
         let mut kept = Vec::new();
         let mut grids = vec![None; scene.meshes.len()];
         if let Some(compression) = replacer.compression {
-            grids = compress::grids(&json, scene, levels, compression.position_bits, &mut kept);
+            grids =
+                compress::grids(&json, scene, levels.levels, compression.position_bits, &mut kept);
             dequantize_nodes::add_transforms(&mut json, &grids);
             if compression.meshopt {
                 replacer.builder.compress();
@@ -177,7 +203,7 @@ impl Output {
             replacer.replace(&mut new, &mesh.mesh, grids[index].as_ref())?;
             json["meshes"][index] = new;
         }
-        if !levels.is_empty() {
+        if !levels.levels.is_empty() {
             lod::add(&mut json, &templates, &grids, levels, &mut replacer)?;
         }
         let report = replacer.report(kept);

@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::{assert_valid, json_of, read_alone, read_parts, square};
-use crate::gltf::{Level, write, write_glb};
+use crate::gltf::{Level, LodLayout, write, write_glb, write_lods_glb};
 use crate::{Node, Scene};
 
 /// Levels that each keep the first faces of the one before.
@@ -68,6 +68,28 @@ fn a_node_that_moves_or_has_children_gives_its_mesh_to_a_child() {
     assert_eq!((&parent.name[..], parent.mesh), ("parent", None));
     let held = again.nodes.iter().find(|node| node.name == "parent_LOD0").unwrap();
     assert_eq!((held.mesh, held.transform), (Some(0), Node::default().transform));
+}
+
+#[test]
+fn levels_side_by_side_are_children_of_the_node_that_had_the_mesh() {
+    let (mut json, buffer) = square();
+    json["nodes"] = json!([
+        { "name": "parent", "children": [1], "translation": [1, 2, 3] },
+        { "name": "leaf", "mesh": 0, "scale": [2, 2, 2] },
+    ]);
+    let scene = read_parts(&json, &buffer).unwrap();
+    let glb = write_lods_glb(&scene, &levels(&scene), LodLayout::Siblings).unwrap();
+    assert_valid(&glb);
+    assert!(json_of(&glb).get("extensionsUsed").is_none());
+    let again = read_alone(&glb).unwrap();
+    let leaf = &again.nodes[1];
+    assert_eq!((&leaf.name[..], leaf.mesh), ("leaf", None));
+    let children = leaf.children.iter().map(|&child| &again.nodes[child]);
+    let children: Vec<_> = children.map(|node| (&node.name[..], node.mesh.unwrap())).collect();
+    assert_eq!(children, [("leaf_LOD0", 0), ("leaf_LOD1", 1), ("leaf_LOD2", 2)]);
+    let shown = again.instances();
+    assert!(shown.iter().all(|instance| instance.transform[3] == [1.0, 2.0, 3.0, 1.0]));
+    assert_eq!(shown.len(), 3);
 }
 
 #[test]
