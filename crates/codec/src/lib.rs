@@ -55,7 +55,7 @@ pub use lattice::{Lattice, LatticeBlocks, LatticeError, StoredLattice, StoredShe
 pub use parts::{Part, Partitioner, Parts, PartsError, Reconstruction, StoredPart, StoredParts};
 pub use resident::{
     CompressError, Compressed, CompressedSizes, Compression, CompressionTarget, Scheme, StoredMesh,
-    StoredPositions, compress, parts_for,
+    StoredPositions, StoredStrips, StripsError, compress, parts_for,
 };
 pub use transport::{
     Transport, TransportError, TransportFile, TransportOptions, TransportQuantization,

@@ -48,6 +48,10 @@ pub struct Compress {
     /// against truncated bits
     #[arg(long)]
     paper: bool,
+    /// Store the faces of --scheme parts as triangle strips, in local indices of mostly one byte that
+    /// are drawn as they are: a larger file, but far less memory while it is drawn
+    #[arg(long)]
+    strips: bool,
     /// Write .glb that a GPU reads directly: KHR_mesh_quantization without EXT_meshopt_compression
     #[arg(long)]
     resident: bool,
@@ -107,9 +111,20 @@ struct CompressedFile {
     /// Kind and number of pieces: blocks, parts or meshes.
     pieces: (&'static str, usize),
     layers: Vec<LayerReport>,
+    /// Triangle strips that faces are stored as.
+    strips: Option<StripCounts>,
     reached: bool,
     /// Messages on data of the input that is left out or not compressed.
     left_out: Vec<String>,
+}
+
+/// Numbers of the triangle strips in a file.
+struct StripCounts {
+    strips: usize,
+    /// Number of indices, restarts included.
+    indices: usize,
+    /// Number of parts whose indices take a byte.
+    parts_of_bytes: usize,
 }
 
 impl Compress {
@@ -185,6 +200,9 @@ impl Compress {
         if self.paper && self.scheme != Some(SchemeArg::Parts) {
             return Err(Failure::usage("--paper needs --scheme parts"));
         }
+        if self.strips && (kind, self.scheme) != (Kind::Resident, Some(SchemeArg::Parts)) {
+            return Err(Failure::usage("--strips needs --scheme parts and an .mlq file"));
+        }
         if self.resident && kind != Kind::Gltf {
             return Err(Failure::usage("--resident needs a .glb file"));
         }
@@ -247,6 +265,10 @@ impl Compress {
             "encode_seconds": time.as_secs_f64(),
         });
         json[packed.pieces.0] = packed.pieces.1.into();
+        if let Some(StripCounts { strips, indices, parts_of_bytes }) = packed.strips {
+            let strips = json!({ "strips": strips, "indices": indices, "parts_of_bytes": parts_of_bytes });
+            json["strips"] = strips;
+        }
         json
     }
 
@@ -268,6 +290,15 @@ impl Compress {
             count(pieces),
             percent(100.0 * packed.reduction()),
         );
+        if let Some(StripCounts { strips, indices, parts_of_bytes }) = packed.strips {
+            text += &format!(
+                "strips: {}, {:.3} indices per triangle with restarts, one byte each in {} of {} parts\n",
+                count(strips),
+                indices as f64 / packed.faces as f64,
+                count(parts_of_bytes),
+                count(packed.pieces.1),
+            );
+        }
         for layer in &packed.layers {
             let (bytes, error) = (count(layer.bytes), value(layer.max_error));
             text += &format!("{}: {bytes} bytes, largest error {error}\n", layer.name);
