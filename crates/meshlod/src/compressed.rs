@@ -60,7 +60,9 @@ pub enum CompressedFileError {
     #[error("{}: a compressed file must end in .mlq or .mlz", .0.display())]
     UnknownFormat(PathBuf),
     /// A `.mlz` file was requested with a scheme or a target that only `.mlq` supports.
-    #[error("a .mlz file takes a number of bits or an error, no scheme but the lattice, and no strips")]
+    #[error(
+        "a .mlz file takes a number of bits or an error, no scheme but the lattice, and no strips"
+    )]
     Unsupported,
     /// Strips were requested, but positions are not in parts.
     #[error(transparent)]

@@ -72,7 +72,8 @@ mod tests {
             let own = &materials[patch.start as usize..patch.end as usize];
             assert!(own.is_sorted(), "{own:?}");
         }
-        let count = |labels: &[u32]| [0, 1, 2].map(|of| labels.iter().filter(|&&x| x == of).count());
+        let count =
+            |labels: &[u32]| [0, 1, 2].map(|of| labels.iter().filter(|&&x| x == of).count());
         assert_eq!(count(&materials), count(&mesh.materials.unwrap().of_face));
     }
 

@@ -40,7 +40,8 @@ impl StripStatistics {
     /// Cost: linear, with 48 comparisons per vertex.
     pub fn new(strips: &Strips) -> Self {
         let triangles = strips.triangles().count();
-        let nothing = |strip: &[VertexId]| strip.len().saturating_sub(2) - strip_triangles(strip).count();
+        let nothing =
+            |strip: &[VertexId]| strip.len().saturating_sub(2) - strip_triangles(strip).count();
         let odd_starts = strips.iter().filter(|strip| starts_odd(strip)).count();
         Self {
             triangles,

@@ -62,10 +62,7 @@ impl FaceLabels {
     }
 
     /// Reads what [`FaceLabels::store`] wrote.
-    pub(super) fn restore(
-        faces: &Faces,
-        reader: &mut Reader,
-    ) -> Result<Option<Self>, Malformed> {
+    pub(super) fn restore(faces: &Faces, reader: &mut Reader) -> Result<Option<Self>, Malformed> {
         let Some(names) = restore_names(reader)? else { return Ok(None) };
         if u32::try_from(faces.face_count()).is_err() {
             return Err(reader.wrong("there are more faces than 32 bits can number"));

@@ -1,9 +1,9 @@
 //! Reading and writing `.mlq` files, which docs/formats/mlq.md describes.
 
 use super::face_labels::FaceLabels;
-use super::weld_parts::WeldExceptions;
 use super::faces::Faces;
 use super::strips::PartStrips;
+use super::weld_parts::WeldExceptions;
 use super::{BLOCKS_PER_PATCH, Compressed, MAX_VALUES, Positions, WedgeVertices};
 use crate::attributes::{PackedLayer, PackedRows};
 use crate::bytes::{Malformed, Reader};

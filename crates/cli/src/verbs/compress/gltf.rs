@@ -1,7 +1,7 @@
 //! Compressed `.glb` files for other programs.
 
 use meshlod::Scene;
-use meshlod::codec::{Reconstruction, parts_for};
+use meshlod::codec::parts_for;
 use meshlod::io::gltf::{
     Compression, CompressionReport, QuantizedPart, write_compressed_glb, write_parts_glb,
 };
@@ -61,8 +61,7 @@ impl Compress {
     /// Writes the surface in parts, each a node with its own matrix.
     fn gltf_of_parts(&self, scene: Scene) -> Result<CompressedFile, Failure> {
         let mesh = scene.into_mesh();
-        let cells = if self.paper { Reconstruction::Truncated } else { Reconstruction::Centred };
-        let done = parts_for(&mesh, cells, self.target(&mesh));
+        let done = parts_for(&mesh, self.reconstruction(), self.target(&mesh));
         let (parts, reached) = done.map_err(|error| self.refused(error))?;
         let quantized: Vec<_> = parts
             .parts()

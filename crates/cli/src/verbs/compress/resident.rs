@@ -51,12 +51,13 @@ impl Compress {
 fn strip_counts(compressed: &Compressed) -> Result<Option<StripCounts>, Malformed> {
     let stored = compressed.stored()?;
     Ok(stored.strips.map(|strips| {
-        let mut counts = StripCounts { strips: 0, indices: 0, parts_of_bytes: 0 };
+        let mut counts = StripCounts { strips: 0, indices: 0, parts_with_byte_indices: 0 };
         for part in 0..strips.parts() {
             let indices: Vec<_> = strips.indices(part).collect();
             counts.indices += indices.len();
-            counts.strips += indices.split(Option::is_none).filter(|strip| !strip.is_empty()).count();
-            counts.parts_of_bytes += usize::from(strips.index_bytes(part) == 1);
+            counts.strips +=
+                indices.split(Option::is_none).filter(|strip| !strip.is_empty()).count();
+            counts.parts_with_byte_indices += usize::from(strips.index_bytes(part) == 1);
         }
         counts
     }))
