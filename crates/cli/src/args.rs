@@ -46,6 +46,11 @@ impl ReadArgs {
         ReadOptions { weld }
     }
 
+    /// Returns true if one of the options was given.
+    pub fn is_given(&self) -> bool {
+        self.no_weld || self.weld.is_some()
+    }
+
     /// Takes the value of `--weld` for a command that welds by itself, so that reading the file
     /// does not.
     pub fn take_weld(&mut self) -> Option<f64> {

@@ -58,8 +58,7 @@ impl CompressedFile {
         });
         json[self.pieces.0] = self.pieces.1.into();
         if let Some(StripCounts { strips, indices, parts_with_byte_indices }) = self.strips {
-            let strips =
-                json!({ "strips": strips, "indices": indices, "parts_with_byte_indices": parts_with_byte_indices });
+            let strips = json!({ "strips": strips, "indices": indices, "parts_with_byte_indices": parts_with_byte_indices });
             json["strips"] = strips;
         }
         json
