@@ -62,7 +62,7 @@ impl ReadArgs {
 #[derive(Clone, Copy, Args)]
 pub struct WriteArgs {
     /// Coordinate type in PLY, OBJ, OFF and SMF: f32 or f64
-    /// [default: f32; f64 where repair, extract or simplify --error need it]
+    /// [default: f32; f64 where repair, extract, decompress or simplify --error need it]
     #[arg(long, value_name = "TYPE", value_parser = parse::precision)]
     precision: Option<Precision>,
 }

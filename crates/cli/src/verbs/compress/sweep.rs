@@ -6,7 +6,6 @@ use meshlod::measure::{Distance, surface_distance};
 use serde_json::{Value, json};
 
 use super::Compress;
-use crate::answer::Answer;
 use crate::distance;
 use crate::failure::Failure;
 use crate::files;
@@ -23,8 +22,8 @@ struct SweepRow {
 
 impl Compress {
     /// Partitions a mesh into each of the requested numbers of parts, and measures what comes back
-    /// [LCL10, figure 5].
-    pub(super) fn sweep(&self, mesh: &Mesh, session: &Session) -> Result<Answer, Failure> {
+    /// [LCL10, figure 5]. Returns JSON and text.
+    pub(super) fn sweep(&self, mesh: &Mesh, session: &Session) -> Result<(Value, String), Failure> {
         let surface = distance::ready(mesh, &self.input)?;
         let options = distance::for_chain(&surface);
         let partitioner = Partitioner::new(mesh).map_err(|error| self.failed(error))?;
@@ -45,14 +44,15 @@ impl Compress {
             "longest_side": longest,
             "sweep": rows.iter().map(|row| row.json(longest)).collect::<Vec<_>>(),
         });
-        Ok(Answer::new(json, text(&rows, longest)))
+        Ok((json, text(&rows, longest)))
     }
 }
 
 impl SweepRow {
-    /// Returns the mean distance in the unit of [LCL10], half the longest side of the mesh.
+    /// Returns the mean distance in the unit of [LCL10], half the longest side of the mesh; 0 for a
+    /// mesh of one point.
     fn mean(&self, longest: f64) -> f64 {
-        self.distance.mean() / (longest / 2.0)
+        if longest > 0.0 { self.distance.mean() / (longest / 2.0) } else { 0.0 }
     }
 
     fn json(&self, longest: f64) -> Value {
