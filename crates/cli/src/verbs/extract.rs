@@ -16,9 +16,9 @@ use crate::args::WriteArgs;
 use crate::failure::Failure;
 use crate::files;
 use crate::model_file;
+use crate::model_query::QueryArgs;
 use crate::model_scene;
 use crate::numbers::{faces, value};
-use crate::query_args::QueryArgs;
 use crate::session::Session;
 use crate::verbs::extract::report::{Extracted, volume_text};
 

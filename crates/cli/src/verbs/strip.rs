@@ -2,6 +2,7 @@
 
 mod follow;
 mod model;
+mod options;
 mod output;
 mod table;
 mod verify;
@@ -13,8 +14,7 @@ use clap::{Args, ValueEnum};
 use meshlod::Options;
 use meshlod::mesh::{Connectivity, VertexId};
 use meshlod::strip::{
-    self, Difference, Filter, MergeTree, SkipStrip, StripEffort, StripOptions, StripStatistics,
-    Strips,
+    self, Difference, Filter, MergeTree, SkipStrip, StripOptions, StripStatistics, Strips,
 };
 use serde_json::{Value, json};
 
@@ -25,9 +25,11 @@ use crate::failure::Failure;
 use crate::files;
 use crate::fuse;
 use crate::kept_error::KeptError;
+use crate::model_query::QueryArgs;
 use crate::parse::{self, LevelSize};
-use crate::query_args::{self, ErrorLimit, QueryArgs};
+use crate::query_args::{self, ErrorLimit};
 use crate::session::Session;
+use options::{EffortArg, FilterArg, QualityArg};
 use output::StripOutput;
 
 /// Convert a mesh and its levels, or a cut of a multiresolution file, to triangle strips, and count
@@ -74,34 +76,6 @@ pub struct Strip {
     constraints: ConstraintArgs,
     #[command(flatten)]
     reading: ReadArgs,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum FilterArg {
-    /// No shortening: each vertex is sent as the vertex it was contracted to
-    None,
-    /// Simple triangle strip scanner
-    Stss,
-    /// Degenerate-triangle-free filter
-    Dtff,
-    /// The strips of dtff, improved where the level changed
-    Repair,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum QualityArg {
-    /// One pass
-    Fast,
-    /// As few vertices as the search finds
-    Best,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum EffortArg {
-    /// Fast enough for levels that change often
-    Quick,
-    /// For levels that are made once and kept
-    Thorough,
 }
 
 /// Strips of a level with their statistics.
@@ -287,15 +261,6 @@ impl StrippedLevel {
             "missing": difference.map(|difference| difference.missing),
             "extra": difference.map(|difference| difference.extra),
         })
-    }
-}
-
-impl From<EffortArg> for StripEffort {
-    fn from(tried: EffortArg) -> Self {
-        match tried {
-            EffortArg::Quick => Self::Quick,
-            EffortArg::Thorough => Self::Thorough,
-        }
     }
 }
 
