@@ -7,6 +7,10 @@ libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("mlq"), |bytes: &[u8]| {
     let mut bytes = bytes.to_vec();
     Compressed::seal(&mut bytes);
     let Ok(compressed) = Compressed::from_bytes(&bytes) else { return };
+    if let Some(strips) = compressed.stored().ok().and_then(|stored| stored.strips) {
+        let count = |part| strips.bytes(part).len() / strips.index_bytes(part);
+        assert!((0..strips.parts()).all(|part| strips.indices(part).count() == count(part)));
+    }
     if let Ok(mesh) = compressed.decode() {
         meshlod_fuzz::accept(&mesh);
     }

@@ -173,11 +173,14 @@ fn compressed() -> Vec<Vec<u8>> {
     let bounds = AttributeBounds::default();
     let by = |mesh: &Mesh, scheme| compress(mesh, scheme, CompressionTarget::Bits(8), &bounds);
     let done = meshes.iter().flat_map(|mesh| schemes.map(|scheme| by(mesh, scheme)));
-    done.map(|done| {
-        let compressed = done.expect("a mesh").compressed;
-        compressed.with_resources(b"materials".to_vec()).to_bytes()
-    })
-    .collect()
+    let compressed = done.map(|done| done.expect("a mesh").compressed);
+    let each = compressed.flat_map(|compressed| {
+        // A strip for each face, where there are parts.
+        let faces = compressed.stored().expect("undamaged").faces;
+        let stripped = compressed.clone().with_strips(faces).ok();
+        stripped.into_iter().chain([compressed])
+    });
+    each.map(|compressed| compressed.with_resources(b"materials".to_vec()).to_bytes()).collect()
 }
 
 /// Small meshes in the input format of the target `check`, with its options for attributes and

@@ -50,6 +50,11 @@ impl ReadArgs {
         ReadOptions { weld }
     }
 
+    /// Returns true if one of the options was given.
+    pub fn is_given(&self) -> bool {
+        self.no_weld || self.weld.is_some()
+    }
+
     /// Takes the value of `--weld` for a command that welds by itself, so that reading the file
     /// does not.
     pub fn take_weld(&mut self) -> Option<f64> {
@@ -61,7 +66,7 @@ impl ReadArgs {
 #[derive(Clone, Copy, Args)]
 pub struct WriteArgs {
     /// Coordinate type in PLY, OBJ, OFF and SMF: f32 or f64
-    /// [default: f32; f64 where repair, extract or simplify --error need it]
+    /// [default: f32; f64 where repair, extract, decompress or simplify --error need it]
     #[arg(long, value_name = "TYPE", value_parser = parse::precision)]
     precision: Option<Precision>,
 }

@@ -20,6 +20,7 @@ mod fuse;
 mod kept_error;
 mod locks;
 mod model_file;
+mod model_query;
 mod model_scene;
 mod numbers;
 mod page;

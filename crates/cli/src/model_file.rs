@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::path::Path;
 
-use meshlod::multires::{Archive, Certificate, ErrorKind, Fit, ModelFile, Source};
+use meshlod::multires::{Archive, Certificate, ErrorKind, FileError, Fit, ModelFile, Source};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
@@ -39,11 +39,10 @@ pub fn open(path: &Path, session: &Session) -> Result<ModelFile<File>, Failure> 
     session.progress.stage(&format!("reading {}", files::name(path)));
     let file = File::open(path).map_err(|error| Failure::at(path, error))?;
     let model = ModelFile::open(file).map_err(|error| Failure::at(path, error))?;
-    let (pieces, there, all) = match &model {
-        ModelFile::Contractions(archive) => {
-            ("chunks", archive.complete_chunks(), archive.chunk_count())
-        }
-        ModelFile::HeightField(_, parts) => ("parts", parts.complete as usize, parts.all as usize),
+    let [there, all] = pieces(&model);
+    let pieces = match &model {
+        ModelFile::Contractions(_) => "chunks",
+        ModelFile::HeightField(..) => "parts",
     };
     if there < all {
         let reason =
@@ -79,6 +78,29 @@ pub fn fit_text(fit: &Fit) -> String {
         value(fit.turned),
         value(fit.moved),
     )
+}
+
+/// Returns the numbers of chunks, or of parts of a height field, that are there and that a whole
+/// file has.
+pub fn pieces(file: &ModelFile<File>) -> [usize; 2] {
+    match file {
+        ModelFile::Contractions(archive) => [archive.complete_chunks(), archive.chunk_count()],
+        ModelFile::HeightField(_, parts) => [parts.complete, parts.all].map(|parts| parts as usize),
+    }
+}
+
+/// Returns true unless the file is truncated.
+pub fn is_whole(file: &ModelFile<File>) -> bool {
+    let [there, all] = pieces(file);
+    there == all
+}
+
+/// Returns the failure of a query: of its own values, or of the file.
+pub fn failure(path: &Path, error: FileError) -> Failure {
+    match error {
+        FileError::Query(error) => Failure::usage(error),
+        error => Failure::at(path, error),
+    }
 }
 
 /// Returns the word for the errors stored in a file: estimates or bounds.

@@ -92,6 +92,15 @@ pub fn restored(
     model.into_scene(level.name, level.mesh).map_err(|error| Failure::at(path, error))
 }
 
+/// Warns that errors that differ by place are not those of each instance of a mesh.
+pub fn warn_of_instances(path: &Path, model: &ModelScene, session: &Session) {
+    if !model.is_flat() {
+        let reason =
+            "focus and camera count for the largest instance of each mesh; others are the same";
+        session.warn(Failure::at(path, reason));
+    }
+}
+
 pub fn is_gltf(format: Format) -> bool {
     matches!(format, Format::Gltf | Format::Glb)
 }

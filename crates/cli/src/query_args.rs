@@ -1,8 +1,11 @@
 //! Arguments of a multiresolution query: error limit, focus and camera.
 
+use std::fmt;
+
 use meshlod::multires::{Focus, Ground, GroundShape, Query, Tolerance, ViewCamera};
 
 use crate::failure::Failure;
+use crate::numbers::percent;
 use crate::parse::{self, Bound};
 
 /// Largest error allowed in the focus region of a multiresolution query.
@@ -11,6 +14,17 @@ pub enum ErrorLimit {
     Length(Bound),
     /// Error in pixels, projected by the camera.
     Pixels(f64),
+}
+
+impl fmt::Display for ErrorLimit {
+    /// Writes the limit as it is given on the command line.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Length(Bound::Length(length)) => write!(f, "{length}"),
+            Self::Length(Bound::OfDiagonal(part)) => f.write_str(&percent(100.0 * part)),
+            Self::Pixels(pixels) => write!(f, "{pixels}px"),
+        }
+    }
 }
 
 /// Focus region of a multiresolution query, in which the error is limited.

@@ -109,6 +109,33 @@ impl<'a> Cursor<'a> {
     }
 }
 
+/// Reader of consecutive numbers from bytes, of which it takes no more than it needs.
+#[derive(Debug)]
+pub(crate) struct BitReader<'r, 'a> {
+    reader: &'r mut Reader<'a>,
+    /// Bits that were taken from the reader but not asked for yet, and how many.
+    held: (u64, u32),
+}
+
+impl<'r, 'a> BitReader<'r, 'a> {
+    pub(crate) fn new(reader: &'r mut Reader<'a>) -> Self {
+        Self { reader, held: (0, 0) }
+    }
+
+    /// Reads a number of `width` bits, at most 32.
+    pub(crate) fn take(&mut self, width: u32) -> Result<u64, Malformed> {
+        let (word, held) = &mut self.held;
+        while *held < width {
+            *word |= u64::from(self.reader.u8()?) << *held;
+            *held += 8;
+        }
+        let number = *word & ((1 << width) - 1);
+        *word >>= width;
+        *held -= width;
+        Ok(number)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -135,5 +162,22 @@ mod tests {
         let mut reader = Reader::new(&bytes);
         assert_eq!(Bits::restore(at, &mut reader), Ok(bits));
         assert!(reader.finish().is_ok() && Bits::restore(1, &mut reader).is_err());
+    }
+
+    #[test]
+    fn bits_are_read_byte_by_byte() {
+        let mut bits = Bits::default();
+        let numbers = [(1, 1), (5, 3), (0xfeed, 16), (0, 0), (0xffff_fffe, 32), (1, 2)];
+        numbers.iter().for_each(|&(number, width)| bits.push(number, width));
+        let mut bytes = Vec::new();
+        bits.store(&mut bytes);
+        bytes.push(7);
+        let mut reader = Reader::new(&bytes);
+        let mut taken = BitReader::new(&mut reader);
+        for (number, width) in numbers {
+            assert_eq!(taken.take(width), Ok(number));
+        }
+        assert_eq!((reader.u8(), reader.left()), (Ok(7), 0), "no byte too many");
+        assert!(BitReader::new(&mut reader).take(1).is_err());
     }
 }

@@ -15,6 +15,7 @@
 //!
 //! [`compress`] builds a complete mesh with one of the first three: faces in patches and attributes
 //! in the same rows, so that any piece can be decoded on its own. That is the `.mlq` file.
+//! [`Compressed::with_strips`] stores the faces of parts as triangle strips instead.
 //! [`Transport`] writes the smaller `.mlz` file.
 //!
 //! ```
@@ -55,7 +56,7 @@ pub use lattice::{Lattice, LatticeBlocks, LatticeError, StoredLattice, StoredShe
 pub use parts::{Part, Partitioner, Parts, PartsError, Reconstruction, StoredPart, StoredParts};
 pub use resident::{
     CompressError, Compressed, CompressedSizes, Compression, CompressionTarget, Scheme, StoredMesh,
-    StoredPositions, compress, parts_for,
+    StoredPositions, StoredStrips, StripsError, compress, parts_for,
 };
 pub use transport::{
     Transport, TransportError, TransportFile, TransportOptions, TransportQuantization,

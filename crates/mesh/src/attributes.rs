@@ -1,5 +1,7 @@
 //! Vertex attributes, such as normals and texture coordinates, stored per wedge.
 
+use std::fmt;
+
 use crate::WedgeId;
 
 /// Type of an attribute layer, such as normals; it determines how values are interpolated and
@@ -67,6 +69,21 @@ impl LayerKind {
             Self::Other,
         ];
         kinds.into_iter().nth(code.into())
+    }
+}
+
+impl fmt::Display for LayerKind {
+    /// Writes the type as a word with the number of its set, such as `normal` or `uv0`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Normal => f.write_str("normal"),
+            Self::Uv(set) => write!(f, "uv{set}"),
+            Self::Color(set) => write!(f, "color{set}"),
+            Self::Tangent => f.write_str("tangent"),
+            Self::Joints(set) => write!(f, "joints{set}"),
+            Self::Weights(set) => write!(f, "weights{set}"),
+            Self::Other => f.write_str("other"),
+        }
     }
 }
 

@@ -26,6 +26,7 @@ mod labels;
 mod locks;
 mod mesh;
 pub mod octahedral;
+mod strip_triangles;
 mod union_find;
 mod weld;
 
@@ -44,5 +45,6 @@ pub use ids::{FaceId, VertexId, WedgeId};
 pub use labels::Labels;
 pub use locks::{Lock, Locks};
 pub use mesh::{Mesh, MeshError};
+pub use strip_triangles::strip_triangles;
 pub use union_find::UnionFind;
 pub use weld::{first_near, merge_equal_wedges, weld};

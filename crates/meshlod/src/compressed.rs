@@ -3,16 +3,17 @@
 use std::path::{Path, PathBuf};
 
 use meshlod_codec::{
-    CompressError, CompressionTarget, Lattice, LatticeError, Malformed, Scheme, Transport,
-    TransportError, TransportFile, TransportOptions, TransportQuantization,
+    CompressError, CompressionTarget, Lattice, LatticeError, Malformed, Scheme, StripsError,
+    Transport, TransportError, TransportFile, TransportOptions, TransportQuantization,
 };
 use meshlod_io::{IoError, Scene, write_file};
 use meshlod_mesh::{AttributeBounds, Mesh};
 use meshlod_multires::FileError;
 use meshlod_simplify::Options;
+use meshlod_strip::StripQuality;
 use thiserror::Error;
 
-use crate::{Constraints, PlaceError, place_scene};
+use crate::{Constraints, PlaceError, compressed_strips, place_scene};
 
 /// Options for writing a compressed mesh file with [`compress`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,12 +25,15 @@ pub struct CompressOptions {
     pub scheme: Option<Scheme>,
     /// Largest errors allowed for normals, texture coordinates, colours and all other attributes.
     pub attributes: AttributeBounds,
+    /// Quality of the triangle strips that faces of parts are stored as; `None` for fewer bits that
+    /// must be decoded to draw them.
+    pub strips: Option<StripQuality>,
 }
 
 impl Default for CompressOptions {
     fn default() -> Self {
         let attributes = AttributeBounds::default();
-        Self { target: CompressionTarget::Bits(11), scheme: None, attributes }
+        Self { target: CompressionTarget::Bits(11), scheme: None, attributes, strips: None }
     }
 }
 
@@ -56,8 +60,13 @@ pub enum CompressedFileError {
     #[error("{}: a compressed file must end in .mlq or .mlz", .0.display())]
     UnknownFormat(PathBuf),
     /// A `.mlz` file was requested with a scheme or a target that only `.mlq` supports.
-    #[error("a .mlz file takes a number of bits or an error, and no scheme but the lattice")]
+    #[error(
+        "a .mlz file takes a number of bits or an error, no scheme but the lattice, and no strips"
+    )]
     Unsupported,
+    /// Strips were requested, but positions are not in parts.
+    #[error(transparent)]
+    Strips(#[from] StripsError),
     /// The mesh to compress or the target is invalid.
     #[error(transparent)]
     Compress(#[from] CompressError),
@@ -152,8 +161,12 @@ fn for_drawing(
 ) -> Result<(Vec<u8>, CompressReport), CompressedFileError> {
     let scheme = options.scheme.unwrap_or(Scheme::Blocks);
     let done = meshlod_codec::compress(mesh, scheme, options.target, &options.attributes)?;
-    let (vertices, faces) = (done.compressed.vertices(), done.compressed.faces());
-    let bytes = done.compressed.with_resources(resources).to_bytes();
+    let compressed = match options.strips {
+        Some(quality) => compressed_strips(done.compressed, quality)?,
+        None => done.compressed,
+    };
+    let (vertices, faces) = (compressed.vertices(), compressed.faces());
+    let bytes = compressed.with_resources(resources).to_bytes();
     let report = CompressReport { vertices, faces, bytes: bytes.len(), reached: done.reached };
     Ok((bytes, report))
 }
@@ -163,6 +176,9 @@ fn for_transport(
     resources: &[u8],
     options: &CompressOptions,
 ) -> Result<(Vec<u8>, CompressReport), CompressedFileError> {
+    if options.strips.is_some() {
+        return Err(CompressedFileError::Unsupported);
+    }
     let quantization = transport_quantization(mesh, options)?;
     let attributes = options.attributes;
     let options = TransportOptions { quantization, attributes, ..TransportOptions::default() };

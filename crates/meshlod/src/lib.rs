@@ -221,6 +221,7 @@ mod appearance;
 mod bounded;
 mod check_report;
 mod compressed;
+mod compressed_strips;
 mod conditioned;
 mod constraints;
 mod contacts;
@@ -256,6 +257,7 @@ pub use check_report::{CheckReport, check_report};
 pub use compressed::{
     CompressOptions, CompressReport, CompressedFileError, compress, compress_scene,
 };
+pub use compressed_strips::compressed_strips;
 pub use conditioned::{ConditionedScene, simplify};
 pub use constraints::{Constraints, VertexLocking};
 pub use contacts::scene_locks;

@@ -2,9 +2,9 @@
 
 use std::collections::VecDeque;
 
-use meshlod_mesh::VertexId;
+use meshlod_mesh::{VertexId, strip_triangles};
 
-use crate::strips::{Strips, drawn};
+use crate::strips::Strips;
 
 /// Statistics of triangle strips: the vertices and indices they send, and how well a vertex cache
 /// serves them.
@@ -40,7 +40,8 @@ impl StripStatistics {
     /// Cost: linear, with 48 comparisons per vertex.
     pub fn new(strips: &Strips) -> Self {
         let triangles = strips.triangles().count();
-        let nothing = |strip: &[VertexId]| strip.len().saturating_sub(2) - drawn(strip).count();
+        let nothing =
+            |strip: &[VertexId]| strip.len().saturating_sub(2) - strip_triangles(strip).count();
         let odd_starts = strips.iter().filter(|strip| starts_odd(strip)).count();
         Self {
             triangles,

@@ -1,6 +1,6 @@
 //! Triangle strips: vertex sequences in which every three consecutive vertices form a triangle.
 
-use meshlod_mesh::VertexId;
+use meshlod_mesh::{VertexId, strip_triangles};
 
 /// A list of triangle strips.
 ///
@@ -51,17 +51,8 @@ impl Strips {
 
     /// Iterates over the triangles that the strips draw, in drawing order and with their winding.
     pub fn triangles(&self) -> impl Iterator<Item = [VertexId; 3]> {
-        self.iter().flat_map(drawn)
+        self.iter().flat_map(strip_triangles)
     }
-}
-
-/// Iterates over the triangles drawn by one strip.
-pub(crate) fn drawn(strip: &[VertexId]) -> impl Iterator<Item = [VertexId; 3]> {
-    let wound = |(place, window): (usize, &[VertexId])| {
-        let (a, b, c) = (window[0], window[1], window[2]);
-        if place % 2 == 0 { [a, b, c] } else { [b, a, c] }
-    };
-    strip.windows(3).enumerate().map(wound).filter(|[a, b, c]| a != b && b != c && c != a)
 }
 
 #[cfg(test)]

@@ -171,7 +171,7 @@ impl Renderer {
             primitive: PrimitiveState {
                 topology: build.topology,
                 strip_index_format: (build.topology == PrimitiveTopology::TriangleStrip)
-                    .then_some(wgpu::IndexFormat::Uint32),
+                    .then_some(build.strip_indices),
                 cull_mode: build.cull,
                 ..Default::default()
             },
@@ -204,6 +204,8 @@ pub(crate) struct PipelineBuild<'a> {
     pub layouts: &'a [&'a BindGroupLayout],
     pub buffers: &'a [VertexBufferLayout<'a>],
     pub topology: PrimitiveTopology,
+    /// Format of the indices of strips, whose greatest value is a restart.
+    pub strip_indices: wgpu::IndexFormat,
     /// Comparison of depths, and whether they are written.
     pub depth: (CompareFunction, bool),
     pub cull: Option<wgpu::Face>,
@@ -220,6 +222,7 @@ impl<'a> PipelineBuild<'a> {
             layouts: &[],
             buffers: &[],
             topology: PrimitiveTopology::TriangleList,
+            strip_indices: wgpu::IndexFormat::Uint32,
             depth: (CompareFunction::Greater, true),
             cull: None,
             blend: None,

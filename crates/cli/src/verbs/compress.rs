@@ -3,17 +3,18 @@
 mod constraints;
 mod gltf;
 mod place;
+mod report;
 mod resident;
+mod sweep;
 mod transport;
 
-use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use clap::{Args, ValueEnum};
-use meshlod::codec::{CompressionTarget, LayerReport, Reconstruction, Scheme};
+use meshlod::codec::{CompressionTarget, Reconstruction, Scheme};
 use meshlod::io::write_file;
 use meshlod::{Mesh, Scene, SceneCounts};
-use serde_json::{Value, json};
 
 use crate::answer::{Answer, Outcome};
 use crate::args::{AttributeErrorArgs, ReadArgs};
@@ -22,11 +23,12 @@ use crate::failure::Failure;
 use crate::files;
 use crate::fuse;
 use crate::model_scene;
-use crate::numbers::{count, faces, percent, value};
+use crate::numbers::{count, faces, percent};
 use crate::parse::{self, Bound};
 use crate::session::Session;
 
 use self::place::Placed;
+use self::report::{CompressedFile, StripCounts};
 
 /// Compress a scene for rendering or transmission: meshes with attributes and objects, and in .mlq
 /// and .mlz nodes, materials, skins and animations as they are. No face is removed, and every vertex
@@ -37,8 +39,8 @@ pub struct Compress {
     #[arg(value_name = "IN")]
     input: PathBuf,
     /// File to write: .mlq to render from directly, .mlz to send, .glb for other programs
-    #[arg(value_name = "OUT")]
-    output: PathBuf,
+    #[arg(value_name = "OUT", required_unless_present = "sweep")]
+    output: Option<PathBuf>,
     #[command(flatten)]
     target: CompressTarget,
     /// Encoding of positions: any scheme in .mlq [default: blocks], lattice in .mlz, parts in .glb
@@ -48,6 +50,16 @@ pub struct Compress {
     /// against truncated bits
     #[arg(long)]
     paper: bool,
+    /// Store the faces of --scheme parts as triangle strips, in local indices of mostly one byte that
+    /// are drawn as they are: a larger file, but far less memory while it is drawn
+    #[arg(long)]
+    strips: bool,
+    /// Write no file, but list sizes and errors of --scheme parts with these numbers of parts:
+    /// 1,16,64,256
+    #[arg(long, value_name = "PARTS", value_delimiter = ',', value_parser = parse::whole,
+        allow_negative_numbers = true, conflicts_with_all = ["output", "bits", "error", "reduction",
+        "strips", "resident", "strict", "normal_error", "uv_error", "color_error"])]
+    sweep: Vec<usize>,
     /// Write .glb that a GPU reads directly: KHR_mesh_quantization without EXT_meshopt_compression
     #[arg(long)]
     resident: bool,
@@ -92,28 +104,12 @@ enum Kind {
     Gltf,
 }
 
-/// Compressed file with the figures to report.
-struct CompressedFile {
-    bytes: Vec<u8>,
-    /// Bytes of positions, connectivity and attributes.
-    sizes: [usize; 3],
-    /// Bytes of nodes, materials, images and all else that is not compressed with the surface.
-    scene: usize,
-    vertices: usize,
-    faces: usize,
-    /// Kind and number of pieces: blocks, parts or meshes.
-    pieces: (&'static str, usize),
-    layers: Vec<LayerReport>,
-    reached: bool,
-    /// Messages on data of the input that is left out or not compressed.
-    left_out: Vec<String>,
-}
-
 impl Compress {
     pub fn run(mut self, session: &Session) -> Result<Answer, Failure> {
-        let kind = self.check_output()?;
+        let Some(output) = self.output.take() else { return self.run_sweep(session) };
+        let kind = self.check_output(&output)?;
         self.apply_locks(kind)?;
-        files::check_apart(&self.output, &[&self.input])?;
+        files::check_apart(&output, &[&self.input])?;
         let mut scene = files::read(&self.input, &self.reading, session)?;
         self.check_scene(kind, &scene)?;
         let fused = self.constraints.fuse.apply(&mut scene, session);
@@ -129,17 +125,34 @@ impl Compress {
             let reason = format_args!("the target is out of reach; the reduction is {best}");
             session.warn(Failure::at(&self.input, reason));
         }
-        session.progress.stage(&format!("writing {}", files::name(&self.output)));
-        write_file(&self.output, &packed.bytes)?;
-        let mut json = self.json(&packed, time);
+        session.progress.stage(&format!("writing {}", files::name(&output)));
+        write_file(&output, &packed.bytes)?;
+        let mut json = packed.json(&output, time);
         json["fused"] = fuse::to_json(fused.as_ref());
-        let mut text = fuse::to_text(fused.as_ref()) + &self.text(&packed, time);
+        let mut text = fuse::to_text(fused.as_ref()) + &packed.text(&output, time);
         if let Some(counts) = counts {
             json["scene"] = model_scene::counts_json(&counts);
             text += &model_scene::counts_text(&counts);
         }
         let outcome = Outcome::Missed.when(session.strict && !packed.reached);
         Ok(Answer { outcome, ..Answer::new(json, text) })
+    }
+
+    /// Lists what numbers of parts give, and writes nothing.
+    fn run_sweep(mut self, session: &Session) -> Result<Answer, Failure> {
+        if self.scheme != Some(SchemeArg::Parts) {
+            return Err(Failure::usage("--sweep needs --scheme parts"));
+        }
+        if self.sweep.contains(&0) {
+            return Err(Failure::usage("--sweep: a mesh has at least 1 part"));
+        }
+        self.apply_locks(Kind::Resident)?;
+        let mut scene = files::read(&self.input, &self.reading, session)?;
+        let fused = self.constraints.fuse.apply(&mut scene, session);
+        let Placed { mesh, .. } = self.place(scene, session)?;
+        let (mut json, text) = self.sweep(&mesh, session)?;
+        json["fused"] = fuse::to_json(fused.as_ref());
+        Ok(Answer::new(json, fuse::to_text(fused.as_ref()) + &text))
     }
 
     fn pack(
@@ -161,20 +174,20 @@ impl Compress {
 
     /// Refuses an output that cannot be written and options that do not apply to it, before any
     /// work is done.
-    fn check_output(&self) -> Result<Kind, Failure> {
-        let suffix = self.output.extension().map(|suffix| suffix.to_ascii_lowercase());
+    fn check_output(&self, output: &Path) -> Result<Kind, Failure> {
+        let suffix = output.extension().map(|suffix| suffix.to_ascii_lowercase());
         let (kind, schemes): (_, &[SchemeArg]) = match suffix.as_ref().and_then(|of| of.to_str()) {
             Some("mlq") => (Kind::Resident, SchemeArg::value_variants()),
             Some("mlz") => (Kind::Transport, &[SchemeArg::Lattice]),
             Some("glb") => (Kind::Gltf, &[SchemeArg::Parts]),
             _ => {
-                let name = files::name(&self.output);
+                let name = files::name(output);
                 let reason =
                     format_args!("{name}: a compressed file must end in .mlq, .mlz or .glb");
                 return Err(Failure::usage(reason));
             }
         };
-        let name = files::name(&self.output);
+        let name = files::name(output);
         if self.scheme.is_some_and(|scheme| !schemes.contains(&scheme)) {
             return Err(Failure::usage(format_args!(
                 "{name}: this format does not support that --scheme"
@@ -182,6 +195,9 @@ impl Compress {
         }
         if self.paper && self.scheme != Some(SchemeArg::Parts) {
             return Err(Failure::usage("--paper needs --scheme parts"));
+        }
+        if self.strips && (kind, self.scheme) != (Kind::Resident, Some(SchemeArg::Parts)) {
+            return Err(Failure::usage("--strips needs --scheme parts and an .mlq file"));
         }
         if self.resident && kind != Kind::Gltf {
             return Err(Failure::usage("--resident needs a .glb file"));
@@ -197,7 +213,7 @@ impl Compress {
                 "{name}: this format does not support that bound on attribute errors"
             )));
         }
-        files::check_place(&self.output).map(|()| kind)
+        files::check_place(output).map(|()| kind)
     }
 
     fn target(&self, mesh: &Mesh) -> CompressionTarget {
@@ -214,87 +230,21 @@ impl Compress {
 
     fn scheme(&self) -> Scheme {
         match self.scheme {
-            Some(SchemeArg::Parts) if self.paper => Scheme::Parts(Reconstruction::Truncated),
-            Some(SchemeArg::Parts) => Scheme::Parts(Reconstruction::Centred),
+            Some(SchemeArg::Parts) => Scheme::Parts(self.reconstruction()),
             Some(SchemeArg::Lattice) => Scheme::Lattice,
             Some(SchemeArg::Blocks) | None => Scheme::Blocks,
         }
+    }
+
+    /// Returns where in their cells vertices of parts are decoded to.
+    fn reconstruction(&self) -> Reconstruction {
+        if self.paper { Reconstruction::Truncated } else { Reconstruction::Centred }
     }
 
     /// Creates a failure that names the input.
     fn failed(&self, error: impl std::fmt::Display) -> Failure {
         Failure::at(&self.input, error)
     }
-
-    fn json(&self, packed: &CompressedFile, time: Duration) -> Value {
-        let [positions, connectivity, attributes] = packed.sizes;
-        let mut json = json!({
-            "file": files::name(&self.output),
-            "vertices": packed.vertices,
-            "faces": packed.faces,
-            "bytes_positions": positions,
-            "bytes_connectivity": connectivity,
-            "bytes_attributes": attributes,
-            "bytes_scene": packed.scene,
-            "bytes_headers": packed.surface() - positions - connectivity - attributes,
-            "bytes_total": packed.bytes.len(),
-            "bytes_per_triangle": packed.surface() as f64 / packed.faces as f64,
-            "reduction": packed.reduction(),
-            "reached": packed.reached,
-            "layers": packed.layers.iter().map(layer_json).collect::<Vec<_>>(),
-            "encode_seconds": time.as_secs_f64(),
-        });
-        json[packed.pieces.0] = packed.pieces.1.into();
-        json
-    }
-
-    fn text(&self, packed: &CompressedFile, time: Duration) -> String {
-        let (what, pieces) = packed.pieces;
-        let what = match (what, pieces) {
-            ("meshes", 1) => "mesh",
-            (many, 1) => many.trim_end_matches('s'),
-            (many, _) => many,
-        };
-        let [positions, connectivity, attributes] = packed.sizes.map(count);
-        let mut text = format!(
-            "{}: {} in {} bytes, {:.2} per triangle; {} {what}\n\
-             bytes: positions {positions} ({} less than f32), faces {connectivity}, attributes {attributes}\n",
-            files::name(&self.output),
-            faces(packed.faces),
-            count(packed.bytes.len()),
-            packed.surface() as f64 / packed.faces as f64,
-            count(pieces),
-            percent(100.0 * packed.reduction()),
-        );
-        for layer in &packed.layers {
-            let (bytes, error) = (count(layer.bytes), value(layer.max_error));
-            text += &format!("{}: {bytes} bytes, largest error {error}\n", layer.name);
-        }
-        if packed.scene > 0 {
-            text += &format!("nodes, materials and images: {} bytes\n", count(packed.scene));
-        }
-        text + &format!("encode_seconds: {}\n", value(time.as_secs_f64()))
-    }
-}
-
-impl CompressedFile {
-    /// Returns the bytes of the surface: of meshes with attributes and labels.
-    fn surface(&self) -> usize {
-        self.bytes.len() - self.scene
-    }
-
-    fn reduction(&self) -> f64 {
-        1.0 - self.sizes[0] as f64 / (12 * self.vertices) as f64
-    }
-}
-
-fn layer_json(layer: &LayerReport) -> Value {
-    json!({
-        "name": layer.name,
-        "kind": format!("{:?}", layer.kind),
-        "bytes": layer.bytes,
-        "max_error": layer.max_error,
-    })
 }
 
 /// Lists the vertices and faces that a file leaves out of a mesh.

@@ -149,13 +149,8 @@ impl<'m> Facts<'m> {
         let layers = self.mesh.attributes.iter().flat_map(|attributes| &attributes.layers);
         layers
             .map(|layer| match layer.kind {
-                LayerKind::Normal => "normal".into(),
-                LayerKind::Uv(set) => format!("uv{set}"),
-                LayerKind::Color(set) => format!("color{set}"),
-                LayerKind::Tangent => "tangent".into(),
-                LayerKind::Joints(set) => format!("joints{set}"),
-                LayerKind::Weights(set) => format!("weights{set}"),
                 LayerKind::Other => layer.name.clone(),
+                kind => kind.to_string(),
             })
             .collect()
     }

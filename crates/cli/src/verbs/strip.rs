@@ -1,5 +1,8 @@
 //! `strip`: converts levels of a mesh to triangle strips and counts what they send.
 
+mod follow;
+mod model;
+mod options;
 mod output;
 mod table;
 mod verify;
@@ -11,7 +14,7 @@ use clap::{Args, ValueEnum};
 use meshlod::Options;
 use meshlod::mesh::{Connectivity, VertexId};
 use meshlod::strip::{
-    self, Difference, Filter, MergeTree, SkipStrip, StripEffort, StripStatistics, Strips,
+    self, Difference, Filter, MergeTree, SkipStrip, StripOptions, StripStatistics, Strips,
 };
 use serde_json::{Value, json};
 
@@ -21,16 +24,29 @@ use crate::constraints::{ConstraintArgs, FlatInput};
 use crate::failure::Failure;
 use crate::files;
 use crate::fuse;
+use crate::kept_error::KeptError;
+use crate::model_query::QueryArgs;
 use crate::parse::{self, LevelSize};
+use crate::query_args::{self, ErrorLimit};
 use crate::session::Session;
+use options::{EffortArg, FilterArg, QualityArg};
 use output::StripOutput;
 
-/// Convert a mesh and its levels to triangle strips, and count the vertices they send
+/// Convert a mesh and its levels, or a cut of a multiresolution file, to triangle strips, and count
+/// the vertices they send
 #[derive(Args)]
 pub struct Strip {
-    /// Mesh to read, or -
+    /// Mesh to read, or -; or an .mlod file to take a cut from
     #[arg(value_name = "IN")]
     input: PathBuf,
+    #[command(flatten)]
+    query: QueryArgs,
+    /// Follow the cuts of an .mlod file at these errors in turn, repair strips and index buffers
+    /// where one differs from the last, and list each: 1%,0.1%,1%
+    #[arg(long, value_name = "BOUNDS", value_delimiter = ',', value_parser = query_args::error_limit,
+        allow_hyphen_values = true, conflicts_with_all = ["error", "faces", "levels", "filter", "out",
+        "strict"])]
+    follow: Vec<ErrorLimit>,
     /// Level sizes: 10% or 0.1 of the faces, or a number of faces
     #[arg(long, visible_alias = "level", value_name = "SIZES", value_delimiter = ',',
         default_value = "100%", value_parser = parse::size, allow_hyphen_values = true)]
@@ -57,34 +73,6 @@ pub struct Strip {
     constraints: ConstraintArgs,
     #[command(flatten)]
     reading: ReadArgs,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum FilterArg {
-    /// No shortening: each vertex is sent as the vertex it was contracted to
-    None,
-    /// Simple triangle strip scanner
-    Stss,
-    /// Degenerate-triangle-free filter
-    Dtff,
-    /// The strips of dtff, improved where the level changed
-    Repair,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum QualityArg {
-    /// One pass
-    Fast,
-    /// As few vertices as the search finds
-    Best,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum EffortArg {
-    /// Fast enough for levels that change often
-    Quick,
-    /// For levels that are made once and kept
-    Thorough,
 }
 
 /// Strips of a level with their statistics.
@@ -115,7 +103,17 @@ impl Strip {
         if let Some(out) = &self.out {
             output::check(out, &self.input)?;
         }
-        let read = self.constraints.read_fused(&self.input, &self.reading, session)?;
+        let (mut error, mut reached) = (None, true);
+        let read = if self.reads_model()? {
+            if !self.follow.is_empty() {
+                return self.run_follow(session);
+            }
+            let cut = self.read_cut(session)?;
+            (error, reached) = (Some(cut.error), cut.reached);
+            (cut.scene, None)
+        } else {
+            self.constraints.read_fused(&self.input, &self.reading, session)?
+        };
         let output = self.out.as_deref().map(|out| StripOutput::new(out, &read.0));
         let place = (&*self.input, &self.reading);
         let input = self.constraints.flatten(read, place, Options::default(), session)?;
@@ -138,15 +136,19 @@ impl Strip {
         if let Some(output) = &output {
             output.write(&source.input, &source.tree, &levels, session)?;
         }
-        let missed = session.strict && levels.iter().any(|level| !level.reached);
+        let missed = !(reached && levels.iter().all(|level| level.reached));
         let is_wrong = levels.iter().any(|level| level.is_wrong());
         if is_wrong {
             session.warn(Failure::at(&self.input, "the strips do not draw the faces of the level"));
         }
-        Ok(Answer {
-            outcome: if is_wrong { Outcome::Found } else { Outcome::Missed.when(missed) },
-            ..Answer::new(self.json(&source, &levels), self.text(&source, &levels))
-        })
+        let (mut json, mut text) = (self.json(&source, &levels), self.text(&source, &levels));
+        json["error"] = error.map(KeptError::to_json).into();
+        text += &error.map(KeptError::to_text).unwrap_or_default();
+        let outcome = match is_wrong {
+            true => Outcome::Found,
+            false => Outcome::Missed.when(session.strict && missed),
+        };
+        Ok(Answer { outcome, ..Answer::new(json, text) })
     }
 
     /// Records the contractions down to the coarsest level, and strips the whole mesh for a filter.
@@ -195,12 +197,20 @@ impl Strip {
     }
 
     fn stripify(&self, faces: &[[VertexId; 3]]) -> Strips {
+        strip::stripify(faces, &self.options())
+    }
+
+    fn options(&self) -> StripOptions<'static> {
         let quality = match (self.quality, self.effort) {
             (QualityArg::Fast, _) => strip::StripQuality::Fast,
             (QualityArg::Best, EffortArg::Quick) => strip::StripQuality::QUICK,
             (QualityArg::Best, EffortArg::Thorough) => strip::StripQuality::THOROUGH,
         };
-        strip::stripify(faces, &strip::StripOptions { quality, ..strip::StripOptions::default() })
+        StripOptions { quality, ..StripOptions::default() }
+    }
+
+    fn effort_name(&self) -> Option<String> {
+        self.effort.to_possible_value().map(|value| value.get_name().to_owned())
     }
 
     fn json(&self, source: &StripSource, levels: &[StrippedLevel]) -> Value {
@@ -221,7 +231,7 @@ impl Strip {
             "inconsistent_edges": connectivity.inconsistent_edges(),
             "filter": name(&|| self.filter.as_ref()?.to_possible_value()),
             "quality": name(&|| self.quality.to_possible_value()),
-            "effort": name(&|| self.effort.to_possible_value()),
+            "effort": self.effort_name(),
             "levels": levels.iter().map(StrippedLevel::json).collect::<Vec<_>>(),
             "simplify_seconds": source.simplify_time.as_secs_f64(),
             "strip_seconds": source.skip.as_ref().map(|_| source.strip_time.as_secs_f64()),
@@ -252,15 +262,6 @@ impl StrippedLevel {
             "missing": difference.map(|difference| difference.missing),
             "extra": difference.map(|difference| difference.extra),
         })
-    }
-}
-
-impl From<EffortArg> for StripEffort {
-    fn from(tried: EffortArg) -> Self {
-        match tried {
-            EffortArg::Quick => Self::Quick,
-            EffortArg::Thorough => Self::Thorough,
-        }
     }
 }
 

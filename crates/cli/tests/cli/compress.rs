@@ -6,7 +6,7 @@ use crate::run::Run;
 
 const SCHEMES: [&str; 3] = ["parts", "blocks", "lattice"];
 
-fn number(report: &Value, field: &str) -> f64 {
+pub fn number(report: &Value, field: &str) -> f64 {
     report[field].as_f64().unwrap_or_else(|| panic!("{field} of {report}"))
 }
 
@@ -42,7 +42,7 @@ fn every_scheme_gives_the_surface_back_as_close_as_asked() {
 #[test]
 fn attributes_and_seams_come_back() {
     let run = Run::new();
-    run.sample("terrain", 3_000, "in.glb");
+    run.sample("fish", 3_000, "in.glb");
     for scheme in SCHEMES {
         let way = ["compress", "in.glb", "in.mlq", "--scheme", scheme, "--uv-error", "0.001"];
         let packed = run.json(&way);
@@ -51,14 +51,16 @@ fn attributes_and_seams_come_back() {
         // Where there is a scene, two numbers tell that faces have neither materials nor objects.
         assert_eq!(number(&packed, "bytes_attributes"), of_layers + 8.0);
         assert!(layers.iter().all(|layer| number(layer, "max_error") < 0.01), "{packed}");
+        let kinds: Vec<_> = layers.iter().map(|layer| layer["kind"].as_str().unwrap()).collect();
+        assert_eq!(kinds, ["color0", "normal", "uv0"]);
         run.json(&["decompress", "in.mlq", "out.glb"]);
         let [was, is] = ["in.glb", "out.glb"].map(|file| run.json(&["info", file]));
-        assert_eq!(was["faces"], is["faces"]);
+        assert_eq!([&was["faces"], &was["attributes"]], [&is["faces"], &is["attributes"]]);
     }
 }
 
 /// A strip of a seamed quad and two more, in two materials, one of them with a texture.
-const TEXTURED: &str = "mtllib two.mtl\no strip\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 .5\n\
+pub const TEXTURED: &str = "mtllib two.mtl\no strip\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 .5\n\
     vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt .25 .5\nvn 0 0 1\nvn .6 0 .8\nusemtl sea\n\
     f 1/1/1 2/2/1 3/3/1\nf 1/1/1 3/3/1 4/4/1\nusemtl sky\nf 2/5/1 5/2/2 6/3/2\nf 2/5/1 6/3/2 3/4/1\n";
 
@@ -217,7 +219,15 @@ fn what_is_asked_wrongly_is_wrong_usage() {
     for out in ["out.ply", "out", "-"] {
         assert_eq!(run.run(&["compress", "in.ply", out]).code, 2);
     }
-    let cases: [&[&str]; 12] = [
+    let cases: [&[&str]; 20] = [
+        &["out.mlq", "--strips"],
+        &["out.mlq", "--strips", "--scheme", "blocks"],
+        &["out.glb", "--strips", "--scheme", "parts"],
+        &["--sweep", "1,2"],
+        &["--sweep", "1,0", "--scheme", "parts"],
+        &["--sweep", "1,-2", "--scheme", "parts"],
+        &["--sweep", "1", "--scheme", "parts", "--bits", "9"],
+        &["out.mlq", "--sweep", "1", "--scheme", "parts"],
         &["out.mlz", "--normal-error", "-1"],
         &["out.glb", "--color-error", "0.1"],
         &["out.glb", "--scheme", "parts", "--uv-error", "0.1"],
@@ -236,6 +246,19 @@ fn what_is_asked_wrongly_is_wrong_usage() {
         assert_eq!((done.code, &done.out[..]), (2, &b""[..]), "{case:?}: {done:?}");
     }
     assert_eq!(run.files(), ["in.ply"]);
+}
+
+#[test]
+fn coordinates_that_f32_cannot_hold_are_written_in_f64_or_named() {
+    let run = Run::new();
+    let far = "v 4500000 0 0\nv 4500001 0 0\nv 4500000.3 1 0\nf 1 2 3\n";
+    std::fs::write(run.path("in.obj"), far).unwrap();
+    run.json(&["compress", "in.obj", "in.mlq", "--scheme", "lattice", "--bits", "16"]);
+    let done = run.run(&["decompress", "in.mlq", "out.obj"]);
+    assert_eq!((done.code, &done.err[..]), (0, ""), "written as f64");
+    assert!(std::fs::read_to_string(run.path("out.obj")).unwrap().contains("4500000.3"));
+    let done = run.run(&["decompress", "in.mlq", "out.glb"]);
+    assert!(done.code == 0 && done.only_line().contains("moved coordinates by up to"), "{done:?}");
 }
 
 #[test]

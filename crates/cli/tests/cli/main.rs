@@ -3,6 +3,7 @@
 mod check;
 mod compare;
 mod compress;
+mod compressed_parts;
 mod compressed_scenes;
 mod constraints;
 mod convert;
@@ -22,6 +23,7 @@ mod repair;
 mod run;
 mod sides;
 mod strip;
+mod strip_models;
 mod topology;
 mod usage;
 mod verbs;

@@ -19,7 +19,7 @@ const FIELDS: [&str; 8] = [
     "seconds",
 ];
 
-fn number(level: &Value, field: &str) -> f64 {
+pub fn number(level: &Value, field: &str) -> f64 {
     level[field].as_f64().unwrap_or_else(|| panic!("{field} of {level}"))
 }
 

@@ -130,9 +130,7 @@ impl LayerCoding {
         let kind = LayerKind::from_tag(kind, set);
         let kind = kind.ok_or_else(|| reader.wrong("a layer has an unknown kind"))?;
         if width == 0 || kind.width().is_some_and(|only| only != width) {
-            return Err(
-                reader.wrong(format!("a layer of kind {kind:?} cannot have {width} values"))
-            );
+            return Err(reader.wrong(format!("a layer of kind {kind} cannot have {width} values")));
         }
         let max_error = reader.f64()?;
         let name = usize::from(reader.u16()?);

@@ -1,6 +1,6 @@
 //! Decoding a compressed mesh, as a whole or one patch at a time.
 
-use meshlod_mesh::{Attributes, Mesh, VertexId, WedgeId, merge_equal_wedges};
+use meshlod_mesh::{Attributes, Labels, Mesh, VertexId, WedgeId, merge_equal_wedges};
 
 use super::face_labels::FaceLabels;
 use super::{Compressed, WedgeVertices};
@@ -15,10 +15,10 @@ impl Compressed {
     /// # Errors
     /// Damaged data that the checksums did not catch.
     pub fn decode(&self) -> Result<Mesh, Malformed> {
-        let faces = (0..self.patches.len()).map(|patch| self.patches.faces(patch));
+        let faces = (0..self.faces.len()).map(|patch| self.faces.of_patch(patch));
         let faces = faces.collect::<Result<Vec<_>, _>>()?.concat();
         let (vertex_of, positions) =
-            self.wedge_vertices.all(&faces, &self.positions, self.patches.rows())?;
+            self.wedge_vertices.all(&faces, &self.positions, self.faces.rows())?;
         let vertex = |node: u32| VertexId(vertex_of[node as usize]);
         let mut mesh = Mesh::new(positions, faces.iter().map(|face| face.map(vertex)).collect());
         if !self.layers.is_empty() {
@@ -31,10 +31,14 @@ impl Compressed {
                 merge_equal_wedges(&mut mesh);
             }
         }
-        let [materials, objects] = &self.labels;
-        mesh.materials = materials.as_ref().map(FaceLabels::all);
-        mesh.objects = objects.as_ref().map(FaceLabels::all);
+        mesh.materials = self.materials();
+        mesh.objects = self.labels[1].as_ref().map(FaceLabels::all);
         Ok(mesh)
+    }
+
+    /// Decodes the materials of all faces, in the order of [`Compressed::decode`].
+    pub fn materials(&self) -> Option<Labels> {
+        self.labels[0].as_ref().map(FaceLabels::all)
     }
 
     /// Decodes one patch of faces with its vertices and their attributes, and nothing else.
@@ -46,11 +50,11 @@ impl Compressed {
     /// # Panics
     /// If `at` is not less than [`Compressed::patches`].
     pub fn patch(&self, at: usize) -> Result<Mesh, Malformed> {
-        let faces = self.patches.faces(at)?;
+        let faces = self.faces.of_patch(at)?;
         let mut nodes: Vec<u32> = faces.as_flattened().to_vec();
         nodes.sort_unstable();
         nodes.dedup();
-        let rows = self.patches.rows();
+        let rows = self.faces.rows();
         let places: Vec<_> = nodes.iter().map(|&node| rows.place(node)).collect();
         let vertex_of = |(&node, &at)| self.wedge_vertices.of(node, at, rows);
         let vertex_of: Vec<_> = nodes.iter().zip(&places).map(vertex_of).collect();

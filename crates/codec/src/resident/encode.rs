@@ -3,6 +3,7 @@
 use meshlod_mesh::{AttributeBounds, Mesh, VertexId, WedgeId};
 
 use super::face_labels::FaceLabels;
+use super::faces::Faces;
 use super::nodes::Nodes;
 use super::weld_parts::WeldExceptions;
 use super::{
@@ -79,8 +80,9 @@ impl Compressed {
         let mut is_first = |v: &VertexId| !std::mem::replace(&mut seen[v.index()], true);
         let vertices = vertices.into_iter().filter(&mut is_first).collect();
         let positions = Positions::Parts(positions);
+        let faces = Faces::Patches(patches);
         let resources = Vec::new();
-        let compressed = Self { positions, patches, wedge_vertices, layers, labels, resources };
+        let compressed = Self { positions, faces, wedge_vertices, layers, labels, resources };
         Ok(Compression { compressed, vertices, reached: true })
     }
 
@@ -108,8 +110,9 @@ impl Compressed {
         };
         let layers = pack_layers(mesh, &nodes, &order, patches.rows(), bounds);
         let positions = positions(&vertices)?;
+        let faces = Faces::Patches(patches);
         let resources = Vec::new();
-        let compressed = Self { positions, patches, wedge_vertices, layers, labels, resources };
+        let compressed = Self { positions, faces, wedge_vertices, layers, labels, resources };
         Ok(Compression { compressed, vertices, reached: true })
     }
 }

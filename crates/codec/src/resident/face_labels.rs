@@ -2,6 +2,7 @@
 
 use meshlod_mesh::{Labels, Mesh};
 
+use super::faces::Faces;
 use super::nodes::Nodes;
 use crate::attributes::PackedRows;
 use crate::bytes::{Malformed, Reader};
@@ -29,9 +30,13 @@ impl FaceLabels {
         [&mesh.materials, &mesh.objects].map(|labels| {
             let labels = labels.as_ref()?;
             let numbers: Vec<_> = order.iter().map(|at| labels.of(face_of(at))).collect();
-            let of_face = PackedRows::new(rows.clone(), 1, &numbers);
-            Some(Self { names: labels.names.clone(), of_face })
+            Some(Self::new(labels.names.clone(), rows.clone(), &numbers))
         })
+    }
+
+    /// Packs the labels of faces; a row is a patch.
+    pub(super) fn new(names: Vec<String>, rows: Rows, of_face: &[u32]) -> Self {
+        Self { names, of_face: PackedRows::new(rows, 1, of_face) }
     }
 
     /// Decodes the labels of all faces.
@@ -57,15 +62,12 @@ impl FaceLabels {
     }
 
     /// Reads what [`FaceLabels::store`] wrote.
-    pub(super) fn restore(
-        patches: &Patches,
-        reader: &mut Reader,
-    ) -> Result<Option<Self>, Malformed> {
+    pub(super) fn restore(faces: &Faces, reader: &mut Reader) -> Result<Option<Self>, Malformed> {
         let Some(names) = restore_names(reader)? else { return Ok(None) };
-        if u32::try_from(patches.face_count()).is_err() {
+        if u32::try_from(faces.face_count()).is_err() {
             return Err(reader.wrong("there are more faces than 32 bits can number"));
         }
-        let of_face = PackedRows::restore(Rows::new(patches.face_counts()), 1, reader)?;
+        let of_face = PackedRows::restore(faces.face_rows(), 1, reader)?;
         if of_face.all().iter().any(|&label| label as usize >= names.len()) {
             return Err(reader.wrong("a face has a material or an object that does not exist"));
         }

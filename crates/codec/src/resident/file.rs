@@ -1,6 +1,8 @@
 //! Reading and writing `.mlq` files, which docs/formats/mlq.md describes.
 
 use super::face_labels::FaceLabels;
+use super::faces::Faces;
+use super::strips::PartStrips;
 use super::weld_parts::WeldExceptions;
 use super::{BLOCKS_PER_PATCH, Compressed, MAX_VALUES, Positions, WedgeVertices};
 use crate::attributes::{PackedLayer, PackedRows};
@@ -16,9 +18,11 @@ const SUMS: usize = 8 + 4 + 1 + 1 + 2;
 const SUM: usize = 8 + 4;
 /// Size of what stands before labels and resources: their length and checksum.
 pub(super) const MORE: usize = SUM;
-/// Flags: some vertex has a second wedge; labels or resources follow the attributes.
+/// Flags: some vertex has a second wedge; labels or resources follow the attributes; faces are
+/// strips of parts.
 const HAS_EXTRA: u8 = 1;
 const HAS_MORE: u8 = 2;
+const HAS_STRIPS: u8 = 4;
 
 impl Compressed {
     /// The first eight bytes of every `.mlq` file.
@@ -33,7 +37,7 @@ impl Compressed {
             numbers.rows().store(connectivity);
             numbers.store(connectivity);
         }
-        self.patches.store(connectivity);
+        self.faces.store(connectivity);
         if let WedgeVertices::Parts(exceptions) = &self.wedge_vertices {
             exceptions.store(connectivity);
         }
@@ -43,8 +47,7 @@ impl Compressed {
         bytes.extend(Self::MAGIC);
         bytes.extend(VERSION.to_le_bytes());
         bytes.push(self.positions.tag());
-        let has_extra = u8::from(matches!(self.wedge_vertices, WedgeVertices::Extra(_)));
-        bytes.push(has_extra | if self.has_more() { HAS_MORE } else { 0 });
+        bytes.push(self.flags());
         bytes.extend((self.layers.len() as u16).to_le_bytes());
         for section in &sections {
             bytes.extend((section.len() as u64).to_le_bytes());
@@ -61,6 +64,13 @@ impl Compressed {
             bytes.extend(more);
         }
         bytes
+    }
+
+    fn flags(&self) -> u8 {
+        let flag = |flag: u8, is_set: bool| if is_set { flag } else { 0 };
+        flag(HAS_EXTRA, matches!(self.wedge_vertices, WedgeVertices::Extra(_)))
+            | flag(HAS_MORE, self.has_more())
+            | flag(HAS_STRIPS, self.faces.strips().is_some())
     }
 
     /// Recomputes the checksums of a modified `.mlq` file, for tests of [`Compressed::from_bytes`].
@@ -114,10 +124,9 @@ impl Compressed {
             return Err(reader.wrong("the header is damaged: its checksum does not match"));
         }
         let (scheme, flags, count) = (reader.u8()?, reader.u8()?, reader.u16()?);
-        if flags > HAS_EXTRA | HAS_MORE {
+        if flags & !(HAS_EXTRA | HAS_MORE | HAS_STRIPS) != 0 {
             return Err(reader.wrong(format!("unknown flags {flags:#x}")));
         }
-        let has_extra = flags & HAS_EXTRA != 0;
         let mut sums = [(0, 0); 3];
         for sum in &mut sums {
             *sum = (reader.u64()?, reader.u32()?);
@@ -135,17 +144,17 @@ impl Compressed {
         };
         reader.finish()?;
         let positions = whole(positions, |reader| Positions::restore(scheme, reader))?;
-        let (patches, wedge_vertices) =
-            whole(faces, |reader| restore_faces(reader, &positions, has_extra))?;
-        let layers = whole(attributes, |reader| restore_layers(reader, count, patches.rows()))?;
+        let (faces, wedge_vertices) =
+            whole(faces, |reader| restore_faces(reader, &positions, flags))?;
+        let layers = whole(attributes, |reader| restore_layers(reader, count, faces.rows()))?;
         let (mut labels, mut resources) = ([None, None], Vec::new());
         if let Some(mut more) = more {
             for labels in &mut labels {
-                *labels = FaceLabels::restore(&patches, &mut more)?;
+                *labels = FaceLabels::restore(&faces, &mut more)?;
             }
             resources = more.rest().to_vec();
         }
-        Ok(Self { positions, patches, wedge_vertices, layers, labels, resources })
+        Ok(Self { positions, faces, wedge_vertices, layers, labels, resources })
     }
 }
 
@@ -176,37 +185,52 @@ fn whole<T>(
 
 /// Reads the faces and the map from their nodes to vertices.
 fn restore_faces(
-    faces: &mut Reader,
+    reader: &mut Reader,
     positions: &Positions,
+    flags: u8,
+) -> Result<(Faces, WedgeVertices), Malformed> {
+    let (has_extra, has_strips) = (flags & HAS_EXTRA != 0, flags & HAS_STRIPS != 0);
+    let (faces, wedge_vertices) = match positions.parts() {
+        Some(_) if has_extra => return Err(reader.wrong("parts cannot have rows of extra wedges")),
+        None if has_strips => return Err(reader.wrong("strips need positions in parts")),
+        Some(parts) => {
+            let rows = parts.rows().clone();
+            let faces = match has_strips {
+                true => Faces::Strips(PartStrips::restore(rows, reader)?),
+                false => Faces::Patches(Patches::restore(rows, 1, reader)?),
+            };
+            (faces, WedgeVertices::Parts(WeldExceptions::restore(reader)?))
+        }
+        None => restore_patches(reader, positions.len(), has_extra)?,
+    };
+    // Every node is at some corner. Since a face takes bits, this bounds memory by the file size.
+    if faces.rows().nodes() > 3 * faces.face_count() {
+        return Err(reader.wrong("there are more nodes than face corners"));
+    }
+    Ok((faces, wedge_vertices))
+}
+
+/// Reads the faces over blocks of `count` vertices in all.
+fn restore_patches(
+    reader: &mut Reader,
+    count: usize,
     has_extra: bool,
-) -> Result<(Patches, WedgeVertices), Malformed> {
-    let count = positions.len();
+) -> Result<(Faces, WedgeVertices), Malformed> {
     let block = |at: usize| BLOCK.min(count - BLOCK * at);
     let blocks = count.div_ceil(BLOCK);
-    let (mut wedge_vertices, rows, rows_per_patch) = match positions.parts() {
-        Some(_) if has_extra => return Err(faces.wrong("parts cannot have rows of extra wedges")),
-        Some(parts) => (WedgeVertices::Identity, parts.rows().clone(), 1),
-        None if has_extra => {
-            let extra = Rows::restore(blocks, faces)?;
-            if count + extra.nodes() > u32::MAX as usize {
-                return Err(faces.wrong("the wedges are too many for 32-bit indices"));
-            }
-            let rows = (0..blocks).flat_map(|at| [block(at), extra.range(at).len()]);
-            let rows = Rows::new(rows);
-            let extra = WedgeVertices::Extra(PackedRows::restore(extra, 1, faces)?);
-            (extra, rows, 2 * BLOCKS_PER_PATCH)
+    let (wedge_vertices, rows, rows_per_patch) = if has_extra {
+        let extra = Rows::restore(blocks, reader)?;
+        if count + extra.nodes() > u32::MAX as usize {
+            return Err(reader.wrong("the wedges are too many for 32-bit indices"));
         }
-        None => (WedgeVertices::Identity, Rows::new((0..blocks).map(block)), BLOCKS_PER_PATCH),
+        let rows = (0..blocks).flat_map(|at| [block(at), extra.range(at).len()]);
+        let rows = Rows::new(rows);
+        let extra = WedgeVertices::Extra(PackedRows::restore(extra, 1, reader)?);
+        (extra, rows, 2 * BLOCKS_PER_PATCH)
+    } else {
+        (WedgeVertices::Identity, Rows::new((0..blocks).map(block)), BLOCKS_PER_PATCH)
     };
-    let patches = Patches::restore(rows, rows_per_patch, faces)?;
-    // Every node is at some corner. Since a face takes bits, this bounds memory by the file size.
-    if patches.rows().nodes() > 3 * patches.face_count() {
-        return Err(faces.wrong("there are more nodes than face corners"));
-    }
-    if positions.parts().is_some() {
-        wedge_vertices = WedgeVertices::Parts(WeldExceptions::restore(faces)?);
-    }
-    Ok((patches, wedge_vertices))
+    Ok((Faces::Patches(Patches::restore(rows, rows_per_patch, reader)?), wedge_vertices))
 }
 
 fn restore_layers(

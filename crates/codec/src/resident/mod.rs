@@ -1,14 +1,16 @@
-//! Meshes that stay compressed in memory: positions by one of three schemes, faces in patches,
-//! attributes in the same rows.
+//! Meshes that stay compressed in memory: positions by one of three schemes, faces in patches or
+//! strips, attributes in the same rows.
 
 mod decode;
 mod encode;
 mod error;
 mod face_labels;
+mod faces;
 mod file;
 mod nodes;
 mod positions;
 mod stored;
+mod strips;
 mod target;
 #[cfg(test)]
 mod tests;
@@ -17,13 +19,14 @@ mod weld_parts;
 
 pub use self::error::CompressError;
 use self::face_labels::FaceLabels;
+use self::faces::Faces;
 use self::positions::Positions;
 pub use self::stored::{StoredMesh, StoredPositions};
+pub use self::strips::{StoredStrips, StripsError};
 pub use self::target::{Compression, CompressionTarget, Scheme, compress, parts_for};
 use self::wedge_vertices::WedgeVertices;
 use crate::attributes::{LayerReport, PackedLayer};
 use crate::bytes::reduction;
-use crate::patch::Patches;
 
 /// Compressed mesh in memory, of which any block of vertices and any patch of faces can be decoded
 /// alone.
@@ -32,7 +35,7 @@ use crate::patch::Patches;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compressed {
     positions: Positions,
-    patches: Patches,
+    faces: Faces,
     wedge_vertices: WedgeVertices,
     layers: Vec<PackedLayer>,
     /// Materials and objects.
@@ -70,7 +73,7 @@ impl Compressed {
     /// Returns the sizes of positions, connectivity, attributes and the whole file, in bytes.
     pub fn sizes(&self) -> CompressedSizes {
         let positions = self.positions.bytes();
-        let connectivity = self.patches.bytes() + self.wedge_vertices.bytes();
+        let connectivity = self.faces.bytes() + self.wedge_vertices.bytes();
         let attributes = self.layers.iter().map(PackedLayer::bytes).sum();
         let (mut labels, mut headers) = (0, file::HEADER);
         if self.has_more() {
@@ -105,12 +108,12 @@ impl Compressed {
 
     /// Returns the number of faces of the mesh.
     pub fn faces(&self) -> usize {
-        self.patches.face_count()
+        self.faces.face_count()
     }
 
     /// Returns the number of face patches, each of which [`Compressed::patch`] can decode alone.
     pub fn patches(&self) -> usize {
-        self.patches.len()
+        self.faces.len()
     }
 
     /// Returns the number of vertex blocks, or the number of parts with [`Scheme::Parts`].

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use meshlod_mesh::{Layer, LayerKind};
 
-use super::{Compressed, Positions};
+use super::{Compressed, Positions, StoredStrips};
 use crate::attributes::PackedLayer;
 use crate::blocks::StoredBlocks;
 use crate::bytes::Malformed;
@@ -24,6 +24,8 @@ pub struct StoredMesh<'a> {
     pub faces: Vec<[u32; 3]>,
     /// Faces of each patch.
     pub patches: Vec<Range<u32>>,
+    /// Triangle strips that draw the faces, if the file has them in their place.
+    pub strips: Option<StoredStrips<'a>>,
 }
 
 /// Stored positions in one of the three schemes.
@@ -44,10 +46,10 @@ impl Compressed {
     /// # Errors
     /// Damaged data that the checksums did not catch.
     pub fn stored(&self) -> Result<StoredMesh<'_>, Malformed> {
-        let (mut faces, mut patches) = (Vec::new(), Vec::with_capacity(self.patches.len()));
-        for patch in 0..self.patches.len() {
+        let (mut faces, mut patches) = (Vec::new(), Vec::with_capacity(self.faces.len()));
+        for patch in 0..self.faces.len() {
             let start = faces.len() as u32;
-            faces.extend(self.patches.faces(patch)?);
+            faces.extend(self.faces.of_patch(patch)?);
             patches.push(start..faces.len() as u32);
         }
         let positions = match &self.positions {
@@ -55,8 +57,9 @@ impl Compressed {
             Positions::Lattice(blocks) => StoredPositions::Lattice(blocks.stored()),
             Positions::Blocks(blocks) => StoredPositions::Blocks(blocks.stored()),
         };
-        let position_of = self.wedge_vertices.position_of(self.patches.rows());
-        Ok(StoredMesh { positions, position_of, faces, patches })
+        let position_of = self.wedge_vertices.position_of(self.faces.rows());
+        let strips = self.faces.strips().map(StoredStrips::new);
+        Ok(StoredMesh { positions, position_of, faces, patches, strips })
     }
 
     /// Decodes the values that nodes have in the first layer of a kind; `None` if there is none.

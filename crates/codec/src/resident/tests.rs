@@ -7,6 +7,7 @@ use meshlod_mesh::{
     face_components,
 };
 use meshlod_samples as samples;
+use meshlod_strip::{StripOptions, StripQuality, stripify};
 
 use super::*;
 use crate::blocks::Accuracy;
@@ -60,9 +61,21 @@ fn compressions(mesh: &Mesh) -> Vec<Compression> {
     vec![
         in_parts(1, Reconstruction::Centred),
         in_parts(9, Reconstruction::Truncated),
+        stripped(in_parts(1, Reconstruction::Truncated)),
+        stripped(in_parts(9, Reconstruction::Centred)),
         Compressed::on_lattice(mesh, Lattice::new(-7).unwrap(), &bounds).unwrap(),
         Compressed::in_blocks(mesh, Accuracy::Bits(8), &bounds).unwrap(),
     ]
+}
+
+/// Stores the faces of parts as strips.
+fn stripped(done: Compression) -> Compression {
+    let faces = done.compressed.stored().unwrap().faces;
+    let faces: Vec<_> = faces.into_iter().map(|face| face.map(VertexId)).collect();
+    let options = StripOptions { quality: StripQuality::Fast, ..StripOptions::default() };
+    let strips = stripify(&faces, &options);
+    let strips = strips.iter().map(|strip| strip.iter().map(|node| node.0));
+    Compression { compressed: done.compressed.with_strips(strips).unwrap(), ..done }
 }
 
 /// Faces of a mesh as positions and values of their corners, from the least corner on, with their

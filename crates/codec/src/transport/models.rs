@@ -9,6 +9,7 @@ use super::border::Step;
 use super::gate::CONTEXTS;
 use super::predict::{FEATURES, GATES};
 use super::rans::Symbol;
+use crate::bits::{BitReader, Bits};
 use crate::bytes::{Malformed, Reader};
 
 /// Bits of the tables of residuals.
@@ -203,7 +204,7 @@ impl ModelCodes {
         out.extend(self.spreads.iter().flatten());
         out.push(self.start);
         out.extend(self.shapes);
-        let mut bits = crate::bits::Bits::default();
+        let mut bits = Bits::default();
         for codes in &self.steps {
             bits.push(u64::from(codes.is_some()), 1);
             for &code in codes.iter().flatten() {
@@ -231,21 +232,11 @@ impl ModelCodes {
         for shape in &mut this.shapes {
             *shape = reader.u8()?;
         }
-        let (mut word, mut held) = (0u64, 0);
-        let mut take = |bits: u32| -> Result<u64, Malformed> {
-            while held < bits {
-                word |= u64::from(reader.u8()?) << held;
-                held += 8;
-            }
-            let number = word & ((1 << bits) - 1);
-            word >>= bits;
-            held -= bits;
-            Ok(number)
-        };
+        let mut source = BitReader::new(reader);
         for _ in 0..=CONTEXTS {
             let mut codes = None;
-            if take(1)? == 1 {
-                let all = take(CODE_BITS * STEPS as u32)?;
+            if source.take(1)? == 1 {
+                let all = source.take(CODE_BITS * STEPS as u32)?;
                 codes = Some(std::array::from_fn(|k| (all >> (CODE_BITS * k as u32) & 31) as u8));
             }
             this.steps.push(codes);

@@ -1,6 +1,6 @@
 //! PLY faces and triangle strips, converted to triangles.
 
-use meshlod_mesh::VertexId;
+use meshlod_mesh::{VertexId, strip_triangles};
 
 use super::body::{BodyReader, Row};
 use super::header::{Element, Shape};
@@ -75,17 +75,10 @@ impl Faces {
         self.triangles.extend(self.corners.iter().map(|triangle| triangle.map(vertex)));
     }
 
-    /// Expands strips: every second triangle is flipped, and triangles that repeat a vertex, which
-    /// only join parts of a strip, are dropped.
+    /// Expands strips, without the triangles that repeat a vertex, which only join their parts.
     fn add_strips(&mut self) {
         for strip in self.list.split(|&v| v == RESTART) {
-            for (i, window) in strip.windows(3).enumerate() {
-                let (a, b, c) = (window[0], window[1], window[2]);
-                if a != b && b != c && c != a {
-                    let triangle = if i % 2 == 0 { [a, b, c] } else { [b, a, c] };
-                    self.triangles.push(triangle.map(VertexId));
-                }
-            }
+            self.triangles.extend(strip_triangles(strip).map(|triangle| triangle.map(VertexId)));
         }
     }
 }

@@ -195,7 +195,7 @@ fn follow(cover: &mut PathCover, faces: &[[VertexId; 3]], strips: &Strips) {
         places.get(at).filter(|(face, _)| *face == key).map(|&(_, place): &(_, usize)| place)
     };
     for strip in strips.iter() {
-        cover.link_sequence(crate::strips::drawn(strip).filter_map(place));
+        cover.link_sequence(meshlod_mesh::strip_triangles(strip).filter_map(place));
     }
 }
 

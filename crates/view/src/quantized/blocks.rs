@@ -35,6 +35,7 @@ pub(super) fn data<'a>(stored: &StoredBlocks<'a>, faces: usize) -> SchemeData<'a
             Cow::Owned(bytemuck::cast_slice(&blocks).to_vec()),
         ],
         runs: one_run(faces),
+        strips: None,
         parts: None,
     }
 }

@@ -45,6 +45,7 @@ pub(super) fn data<'a>(stored: &StoredLattice<'a>, faces: usize) -> SchemeData<'
             Cow::Owned(bytemuck::cast_slice(&shears).to_vec()),
         ],
         runs: one_run(faces),
+        strips: None,
         parts: None,
     }
 }

@@ -7,6 +7,7 @@ mod part_matrices;
 mod parts;
 mod pipelines;
 mod plain;
+mod strips;
 #[cfg(test)]
 mod tests;
 
@@ -22,7 +23,8 @@ use wgpu::{BindGroup, Buffer, BufferUsages, IndexFormat, RenderPass};
 
 pub use self::part_matrices::PartMatrices;
 pub(crate) use self::pipelines::SchemePipelines;
-use self::pipelines::{SchemeEntry, SchemeShader};
+use self::pipelines::{PipelineKey, SchemeEntry, SchemeShader};
+use self::strips::StripRun;
 use crate::placement::Placement;
 use crate::renderer::{Renderer, bind_group, buffer_of};
 use crate::{Gpu, ViewError};
@@ -43,13 +45,21 @@ pub struct GpuCompressed {
     vertices: Option<Buffer>,
     normals: Option<Buffer>,
     indices: Buffer,
-    /// Faces of each instance.
-    runs: Vec<Range<u32>>,
+    draws: Draws,
     faces: u32,
     vertex_bytes: u64,
     index_bytes: u64,
     /// Offset of each part from the origin in cells, and the sides of a cell.
     parts: Option<(Vec<[i32; 4]>, [f64; 3])>,
+}
+
+/// Draw calls, by ranges of the index buffer.
+#[derive(Debug)]
+enum Draws {
+    /// Faces of each instance, as 32-bit indices.
+    Lists(Vec<Range<u32>>),
+    /// Strips of 16-bit indices with restarts.
+    Strips(Vec<StripRun>),
 }
 
 /// Ways of drawing compressed geometry that few need.
@@ -83,6 +93,8 @@ struct SchemeData<'a> {
     storages: [Cow<'a, [u8]>; 2],
     /// Faces of each instance.
     runs: Vec<Range<u32>>,
+    /// Strips that draw all faces, and their indices.
+    strips: Option<(Vec<StripRun>, Vec<u16>)>,
     parts: Option<(Vec<[i32; 4]>, [f64; 3])>,
 }
 
@@ -109,7 +121,8 @@ impl GpuCompressed {
             None => stored.faces.iter().map(|face| face.map(position)).collect(),
         };
         let of_nodes = normals.is_some().then(|| bytemuck::cast_slice(&stored.position_of).into());
-        let data = SchemeData { fetched: data.fetched.or(of_nodes), ..data };
+        let strips = strips::strips(&stored);
+        let data = SchemeData { fetched: data.fetched.or(of_nodes), strips, ..data };
         Self::upload(renderer, data, normals.as_deref(), &faces)
     }
 
@@ -168,7 +181,10 @@ impl GpuCompressed {
             (None, None) => SchemeEntry::Bare,
         };
         let pipelines = renderer.schemes();
-        pass.set_pipeline(&pipelines.get(renderer, self.shader, entry, options.culls_back_faces));
+        let is_strips = matches!(self.draws, Draws::Strips(_));
+        let (shader, culls) = (self.shader, options.culls_back_faces);
+        let key = PipelineKey { shader, entry, is_strips, culls };
+        pass.set_pipeline(&pipelines.get(renderer, key));
         pass.set_bind_group(0, &placement.bind_group, &[]);
         pass.set_bind_group(1, &self.bind_group, &[]);
         if let Some(matrices) = matrices {
@@ -179,9 +195,20 @@ impl GpuCompressed {
         for (slot, buffer) in (0..).zip(fetched) {
             pass.set_vertex_buffer(slot, buffer.slice(..));
         }
-        pass.set_index_buffer(self.indices.slice(..), IndexFormat::Uint32);
-        for (run, faces) in (0..).zip(&self.runs) {
-            pass.draw_indexed(3 * faces.start..3 * faces.end, 0, run..run + 1);
+        match &self.draws {
+            Draws::Lists(runs) => {
+                pass.set_index_buffer(self.indices.slice(..), IndexFormat::Uint32);
+                for (run, faces) in (0..).zip(runs) {
+                    pass.draw_indexed(3 * faces.start..3 * faces.end, 0, run..run + 1);
+                }
+            }
+            Draws::Strips(runs) => {
+                pass.set_index_buffer(self.indices.slice(..), IndexFormat::Uint16);
+                for StripRun { indices, first_node, instance } in runs {
+                    let instances = *instance..instance + 1;
+                    pass.draw_indexed(indices.clone(), *first_node, instances);
+                }
+            }
         }
     }
 
@@ -200,7 +227,13 @@ impl GpuCompressed {
         let gpu = renderer.gpu();
         let normals: &[u8] = normals.map_or(&[], bytemuck::cast_slice);
         let fetched = data.fetched.as_deref();
-        let index_bytes = size_of_val(faces) as u64;
+        let (draws, indices) = match &data.strips {
+            Some((runs, indices)) => {
+                (Draws::Strips(runs.clone()), bytemuck::cast_slice::<_, u8>(indices))
+            }
+            None => (Draws::Lists(data.runs), bytemuck::cast_slice(faces)),
+        };
+        let index_bytes = indices.len() as u64;
         gpu.check_buffer("the compressed vertices", fetched.map_or(0, <[u8]>::len) as u64)?;
         gpu.check_buffer("the compressed mesh's normals", normals.len() as u64)?;
         gpu.check_buffer("the compressed mesh's faces", index_bytes)?;
@@ -225,8 +258,8 @@ impl GpuCompressed {
             bind_group: bind_group(&gpu.device, &renderer.schemes().layout, bindings),
             vertices: fetched.map(vertex),
             normals: (!normals.is_empty()).then(|| vertex(normals)),
-            indices: buffer_of(gpu, "faces", bytemuck::cast_slice(faces), BufferUsages::INDEX),
-            runs: data.runs,
+            indices: buffer_of(gpu, "faces", indices, BufferUsages::INDEX),
+            draws,
             faces: faces.len() as u32,
             vertex_bytes: (fetched_bytes + words.len() + headers.len()) as u64,
             index_bytes,

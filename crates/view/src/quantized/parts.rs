@@ -9,7 +9,7 @@ use super::SchemeData;
 use super::pipelines::SchemeShader;
 
 /// Parts of one instance: as many as a byte tells apart.
-const RUN: usize = 256;
+pub(super) const RUN: usize = 256;
 
 /// Returns bytes and offsets of parts.
 ///
@@ -40,6 +40,7 @@ pub(super) fn data<'a>(
         fetched: Some(Cow::Owned(bytes)),
         storages: [Cow::Owned(bytemuck::cast_slice(&offsets).to_vec()), Cow::default()],
         runs,
+        strips: None,
         parts: Some((offsets, cell)),
     })
 }

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use wgpu::{
-    BindGroupLayout, RenderPipeline, ShaderStages, VertexBufferLayout, VertexFormat,
-    VertexStepMode, vertex_attr_array,
+    BindGroupLayout, IndexFormat, PrimitiveTopology, RenderPipeline, ShaderStages,
+    VertexBufferLayout, VertexFormat, VertexStepMode, vertex_attr_array,
 };
 
 use crate::renderer::{PipelineBuild, Renderer, layout, storage, uniform};
@@ -33,7 +33,16 @@ pub(super) enum SchemeEntry {
     ByMatrix,
 }
 
-type PipelineKey = (SchemeShader, SchemeEntry, bool);
+/// Pipeline of a shader: what it draws, and which faces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct PipelineKey {
+    pub shader: SchemeShader,
+    pub entry: SchemeEntry,
+    /// Strips of 16-bit indices in place of separate triangles.
+    pub is_strips: bool,
+    /// Faces seen from behind are left out.
+    pub culls: bool,
+}
 
 /// Pipelines of compressed geometry, and the layouts of what they bind.
 #[derive(Debug)]
@@ -66,25 +75,14 @@ impl Renderer {
 
 impl SchemePipelines {
     /// Returns a pipeline, after compiling it if it is the first of its kind.
-    pub(super) fn get(
-        &self,
-        renderer: &Renderer,
-        shader: SchemeShader,
-        entry: SchemeEntry,
-        culls: bool,
-    ) -> Arc<RenderPipeline> {
+    pub(super) fn get(&self, renderer: &Renderer, key: PipelineKey) -> Arc<RenderPipeline> {
         let mut compiled = self.compiled.lock().unwrap_or_else(PoisonError::into_inner);
-        let made = || Arc::new(self.compile(renderer, shader, entry, culls));
-        compiled.entry((shader, entry, culls)).or_insert_with(made).clone()
+        let made = || Arc::new(self.compile(renderer, key));
+        compiled.entry(key).or_insert_with(made).clone()
     }
 
-    fn compile(
-        &self,
-        renderer: &Renderer,
-        shader: SchemeShader,
-        entry: SchemeEntry,
-        culls: bool,
-    ) -> RenderPipeline {
+    fn compile(&self, renderer: &Renderer, key: PipelineKey) -> RenderPipeline {
+        let PipelineKey { shader, entry, is_strips, culls } = key;
         let module = renderer.shader("compressed", shader.source());
         let layouts = [&renderer.draw_layout, &self.layout, &self.matrix_layout];
         let count = if entry == SchemeEntry::ByMatrix { 3 } else { 2 };
@@ -109,6 +107,11 @@ impl SchemePipelines {
             entries: [name, "shaded"],
             layouts: &layouts[..count],
             buffers: &buffers,
+            topology: match is_strips {
+                true => PrimitiveTopology::TriangleStrip,
+                false => PrimitiveTopology::TriangleList,
+            },
+            strip_indices: IndexFormat::Uint16,
             cull: culls.then_some(wgpu::Face::Back),
             ..PipelineBuild::new("compressed", &module)
         })

@@ -21,6 +21,7 @@ pub(super) fn data(mesh: &Mesh) -> SchemeData<'static> {
         fetched: Some(Cow::Owned(bytemuck::cast_slice(&positions).to_vec())),
         storages: Default::default(),
         runs: one_run(mesh.faces.len()),
+        strips: None,
         parts: None,
     }
 }

@@ -1,9 +1,10 @@
 //! Compressed meshes, and how tests draw them.
 
-use meshlod::Mesh;
 use meshlod::codec::{Compressed, CompressionTarget, Reconstruction, Scheme, compress};
 use meshlod::mesh::AttributeBounds;
 use meshlod::picture::{Camera, Normals, Paint, Picture};
+use meshlod::strip::StripQuality;
+use meshlod::{Mesh, compressed_strips};
 use meshlod_view::{
     Canvas, CompressedOptions, Gpu, GpuCompressed, GpuMesh, Renderer, Shade, TargetFormat,
 };
@@ -17,8 +18,11 @@ pub fn by_schemes(mesh: &Mesh, bits: u32) -> Vec<(&'static str, Compressed)> {
         let target = CompressionTarget::Bits(bits);
         compress(mesh, scheme, target, &AttributeBounds::default()).unwrap().compressed
     };
+    let parts = by(Scheme::Parts(Reconstruction::Centred));
+    let stripped = compressed_strips(parts.clone(), StripQuality::Fast).unwrap();
     vec![
-        ("parts", by(Scheme::Parts(Reconstruction::Centred))),
+        ("strips of parts", stripped),
+        ("parts", parts),
         ("truncated parts", by(Scheme::Parts(Reconstruction::Truncated))),
         ("blocks", by(Scheme::Blocks)),
         ("lattice", by(Scheme::Lattice)),

@@ -1,7 +1,7 @@
 //! Compressed `.glb` files for other programs.
 
 use meshlod::Scene;
-use meshlod::codec::{Reconstruction, parts_for};
+use meshlod::codec::parts_for;
 use meshlod::io::gltf::{
     Compression, CompressionReport, QuantizedPart, write_compressed_glb, write_parts_glb,
 };
@@ -35,6 +35,7 @@ impl Compress {
             faces: meshes.map(|mesh| mesh.faces.len()).sum(),
             pieces: ("meshes", scene.meshes.len()),
             layers: Vec::new(),
+            strips: None,
             reached: true,
             left_out: report.kept,
             bytes,
@@ -60,8 +61,7 @@ impl Compress {
     /// Writes the surface in parts, each a node with its own matrix.
     fn gltf_of_parts(&self, scene: Scene) -> Result<CompressedFile, Failure> {
         let mesh = scene.into_mesh();
-        let cells = if self.paper { Reconstruction::Truncated } else { Reconstruction::Centred };
-        let done = parts_for(&mesh, cells, self.target(&mesh));
+        let done = parts_for(&mesh, self.reconstruction(), self.target(&mesh));
         let (parts, reached) = done.map_err(|error| self.refused(error))?;
         let quantized: Vec<_> = parts
             .parts()
@@ -93,6 +93,7 @@ impl Compress {
             faces,
             pieces: ("parts", quantized.len()),
             layers: Vec::new(),
+            strips: None,
             reached,
             left_out,
             bytes,

@@ -1,9 +1,10 @@
 //! Compressed `.mlq` files, which stay compressed in GPU memory.
 
-use meshlod::Mesh;
-use meshlod::codec::{CompressError, compress};
+use meshlod::codec::{CompressError, Compressed, Malformed, compress};
+use meshlod::strip::StripQuality;
+use meshlod::{Mesh, compressed_strips};
 
-use super::{Compress, CompressedFile, SchemeArg, left_out};
+use super::{Compress, CompressedFile, SchemeArg, StripCounts, left_out};
 use crate::failure::Failure;
 
 impl Compress {
@@ -11,7 +12,13 @@ impl Compress {
         let bounds = self.attributes.bounds();
         let done = compress(mesh, self.scheme(), self.target(mesh), &bounds);
         let done = done.map_err(|error| self.refused(error))?;
-        let compressed = done.compressed.with_resources(scene);
+        let compressed = if self.strips {
+            let stripped = compressed_strips(done.compressed, StripQuality::QUICK);
+            stripped.map_err(|error| self.failed(error))?
+        } else {
+            done.compressed
+        };
+        let compressed = compressed.with_resources(scene);
         let sizes = compressed.sizes();
         let pieces = if self.scheme == Some(SchemeArg::Parts) { "parts" } else { "blocks" };
         Ok(CompressedFile {
@@ -21,6 +28,7 @@ impl Compress {
             faces: compressed.faces(),
             pieces: (pieces, compressed.blocks()),
             layers: compressed.layers(),
+            strips: strip_counts(&compressed).map_err(|error| self.failed(error))?,
             reached: done.reached,
             left_out: left_out(mesh, compressed.faces()),
             bytes: compressed.to_bytes(),
@@ -37,4 +45,20 @@ impl Compress {
             error => self.failed(error),
         }
     }
+}
+
+/// Counts the strips of a mesh whose faces are stored so.
+fn strip_counts(compressed: &Compressed) -> Result<Option<StripCounts>, Malformed> {
+    let stored = compressed.stored()?;
+    Ok(stored.strips.map(|strips| {
+        let mut counts = StripCounts { strips: 0, indices: 0, parts_with_byte_indices: 0 };
+        for part in 0..strips.parts() {
+            let indices: Vec<_> = strips.indices(part).collect();
+            counts.indices += indices.len();
+            counts.strips +=
+                indices.split(Option::is_none).filter(|strip| !strip.is_empty()).count();
+            counts.parts_with_byte_indices += usize::from(strips.index_bytes(part) == 1);
+        }
+        counts
+    }))
 }

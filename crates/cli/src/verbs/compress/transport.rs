@@ -35,6 +35,7 @@ impl Compress {
             faces: file.faces(),
             pieces: ("blocks", done.blocks),
             layers: done.layers,
+            strips: None,
             reached: true,
             left_out: left_out(mesh, file.faces()),
             bytes: done.bytes,

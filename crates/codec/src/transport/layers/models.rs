@@ -2,7 +2,7 @@
 
 use super::super::models::ResidualTable;
 use super::shape::{FREEDOM_BITS, ResidualShape, WIDTH_BITS};
-use crate::bits::Bits;
+use crate::bits::{BitReader, Bits};
 use crate::bytes::{Malformed, Reader};
 
 /// Bits of the table of a single bit.
@@ -144,25 +144,18 @@ impl TableCodes {
         residuals: usize,
         reader: &mut Reader,
     ) -> Result<Self, Malformed> {
-        let (mut word, mut held) = (0u64, 0);
-        let mut take = |bits: u32| -> Result<u64, Malformed> {
-            while held < bits {
-                word |= u64::from(reader.u8()?) << held;
-                held += 8;
-            }
-            let number = word & ((1 << bits) - 1);
-            word >>= bits;
-            held -= bits;
-            Ok(number)
-        };
+        let mut source = BitReader::new(reader);
         let mut this = Self { bits: Vec::new(), residuals: Vec::new() };
         for _ in 0..bits {
-            let is_there = take(1)? == 1;
-            this.bits.push(is_there.then(|| take(CHANCE_BITS)).transpose()?.map(|code| code as u8));
+            let is_there = source.take(1)? == 1;
+            this.bits.push(
+                is_there.then(|| source.take(CHANCE_BITS)).transpose()?.map(|code| code as u8),
+            );
         }
         for _ in 0..residuals {
-            let is_there = take(1)? == 1;
-            let shape = is_there.then(|| Ok([take(WIDTH_BITS)?, take(FREEDOM_BITS)?]));
+            let is_there = source.take(1)? == 1;
+            let shape =
+                is_there.then(|| Ok([source.take(WIDTH_BITS)?, source.take(FREEDOM_BITS)?]));
             let shape = shape.transpose()?;
             this.residuals
                 .push(shape.map(|[w, f]| ResidualShape { width: w as u8, freedom: f as u8 }));

@@ -1,0 +1,79 @@
+//! `strip` of multiresolution files: the scene of one cut.
+
+use meshlod::multires::FileError;
+use meshlod::{Format, Scene};
+
+use super::Strip;
+use crate::failure::Failure;
+use crate::files;
+use crate::kept_error::KeptError;
+use crate::model_file;
+use crate::model_scene;
+use crate::numbers::faces;
+use crate::session::Session;
+
+/// Scene of a cut.
+pub(super) struct CutScene {
+    pub scene: Scene,
+    pub error: KeptError,
+    /// True if it is as close or as coarse as asked.
+    pub reached: bool,
+}
+
+impl Strip {
+    /// Returns true if the input is a multiresolution file; refuses options of the other kind.
+    pub(super) fn reads_model(&self) -> Result<bool, Failure> {
+        if !model_file::is_model(&self.input) {
+            return match self.query.is_given() || !self.follow.is_empty() {
+                false => Ok(false),
+                true => Err(Failure::usage(format_args!(
+                    "{}: --error, --faces, --camera, --focus and --follow need an .mlod file, which \
+                     build writes; use --levels",
+                    files::name(&self.input)
+                ))),
+            };
+        }
+        if self.constraints.holds_or_fuses() {
+            return Err(Failure::usage(
+                "a cut is stripped as it is in the .mlod file: give locks and --fuse to build",
+            ));
+        }
+        if self.reading.is_given() {
+            return Err(Failure::usage("--weld and --no-weld are for meshes, not for .mlod files"));
+        }
+        Ok(true)
+    }
+
+    /// Extracts the cut that the options ask for.
+    pub(super) fn read_cut(&self, session: &Session) -> Result<CutScene, Failure> {
+        self.query.check_target()?;
+        let file = model_file::open(&self.input, session)?;
+        let failed = |error: FileError| model_file::failure(&self.input, error);
+        let query = self.query.query(&file)?;
+        let most = self.query.target.faces;
+        let (query, _) = file.at_surface(&query, most).map_err(failed)?;
+        // The distance of the best mesh of some number of faces is a question for `extract`.
+        let answer = self.query.answer(&file, &query, most.is_some(), session);
+        let (taken, known) = answer.map_err(failed)?;
+        let error = self.query.kept_error(&file, &query, known);
+        error.warning().into_iter().for_each(|text| session.warn(Failure::at(&self.input, text)));
+        let found = taken.level.faces.len();
+        if let Some(most) = most.filter(|&most| found > most) {
+            let reason = format_args!(
+                "--faces {most} is out of reach: the coarsest level has {}, and that is what was \
+                 stripped",
+                faces(found)
+            );
+            session.warn(Failure::at(&self.input, reason));
+        }
+        let model = model_scene::read(&self.input, &file, session)?;
+        if self.query.is_local() {
+            model_scene::warn_of_instances(&self.input, &model, session);
+        }
+        let name = self.input.file_stem().unwrap_or_default().to_string_lossy();
+        let flat = model.flat_scene(name, taken.level.mesh());
+        let scene = model_scene::restored(&self.input, model, flat, Format::Glb)?;
+        let reached = most.is_none_or(|most| found <= most) && error.is_kept() != Some(false);
+        Ok(CutScene { scene, error, reached })
+    }
+}
