@@ -62,7 +62,7 @@ fn write(target: &str, mesh: &Mesh) -> Vec<u8> {
     let mut out = Vec::new();
     match target {
         "ply" => ply::write(mesh, Precision::F64, &mut out),
-        "obj" => obj::write(&scene, Precision::F32, &mut out, Some("seed.mtl")),
+        "obj" => obj::write(&scene, Precision::F32, &mut out, &["seed.mtl".to_owned()]),
         "stl" => stl::write(mesh, &mut out),
         "off" => off::write(mesh, Precision::F32, &mut out),
         "smf" => smf::write(mesh, Precision::F32, &mut out),

@@ -83,7 +83,7 @@ pub fn write_compressed_glb(
 /// # Errors
 /// Errors of [`write_glb`], except for the size.
 pub fn write(scene: &Scene, levels: &[Level], stem: &str) -> Result<GltfFiles, Unsupported> {
-    Output::of(scene, levels, None)?.into_files(scene, stem)
+    Ok(files(scene, levels, None, &|_| buffer_name(stem))?.0)
 }
 
 /// Encodes a scene as a compressed `.gltf` file and the files that belong to it.
@@ -98,9 +98,23 @@ pub fn write_compressed(
     stem: &str,
     compression: &Compression,
 ) -> Result<(GltfFiles, CompressionReport), Unsupported> {
-    let mut output = Output::of(scene, levels, Some(compression))?;
+    files(scene, levels, Some(compression), &|_| buffer_name(stem))
+}
+
+/// Encodes a scene as [`write()`] or [`write_compressed`] does; `name` names the buffer by its bytes.
+pub(crate) fn files(
+    scene: &Scene,
+    levels: &[Level],
+    compression: Option<&Compression>,
+    name: &dyn Fn(&[u8]) -> String,
+) -> Result<(GltfFiles, CompressionReport), Unsupported> {
+    let mut output = Output::of(scene, levels, compression)?;
     let report = std::mem::take(&mut output.report);
-    Ok((output.into_files(scene, stem)?, report))
+    Ok((output.into_files(scene, name)?, report))
+}
+
+pub(super) fn buffer_name(stem: &str) -> String {
+    format!("{stem}.bin")
 }
 
 /// Document with its new geometry, before its buffer is attached.
@@ -194,12 +208,17 @@ impl Output {
         container::join(&to_bytes(self.json)?, &buffer)
     }
 
-    pub fn into_files(mut self, scene: &Scene, stem: &str) -> Result<GltfFiles, Unsupported> {
+    /// Makes files of the document; `name` names the buffer by its bytes.
+    pub fn into_files(
+        mut self,
+        scene: &Scene,
+        name: &dyn Fn(&[u8]) -> String,
+    ) -> Result<GltfFiles, Unsupported> {
         // An image outside the folder is embedded: that file is not ours to write.
         self.embed_images(scene, |name| crate::files::inner_path(name).is_none());
         let images = self.external_images(scene);
         let bytes = self.builder.finish(&mut self.json);
-        let name = format!("{stem}.bin");
+        let name = name(&bytes);
         if let Some(buffer) = self.json.get_mut("buffers") {
             buffer[0]["uri"] = uri::of_file(&name).into();
         }

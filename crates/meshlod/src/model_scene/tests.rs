@@ -74,6 +74,7 @@ fn scene() -> Scene {
         base_color: [0.5, 0.25, 1.0, alpha],
         base_color_image: image,
         is_double_sided: false,
+        ..Material::default()
     };
     Scene {
         meshes: vec![
