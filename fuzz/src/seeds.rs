@@ -33,6 +33,7 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
         "mlod" => return models::seeds(),
         "mlq" => return compressed(),
         "mlz" => return transports(),
+        "mtl" => return vec![std::fs::read(fixtures::own_file("full.mtl")).expect("our own file")],
         "skeleton" => return skeletons(),
         _ => {}
     }

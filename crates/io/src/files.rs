@@ -12,8 +12,8 @@ use write_obj::write_obj;
 
 use crate::replace::replace;
 use crate::{
-    Format, IoError, Note, ParseError, Precision, Scene, Unsupported, gltf, obj, off, ply, smf, stl,
-    weld,
+    Format, IoError, Note, ParseError, Precision, Scene, Unsupported, gltf, obj, off, ply, smf,
+    stl, weld,
 };
 
 mod beside;

@@ -2,8 +2,24 @@
 
 /// Beginnings of the image files that materials may name.
 const BEGINNINGS: [&[u8]; 18] = [
-    b"\x89PNG", b"\xff\xd8\xff", b"GIF8", b"BM", b"DDS ", b"II*\0", b"MM\0*", b"8BPS", b"\xabKTX",
-    b"#?", b"v/1\x01", b"\x01\xda", b"\0\0\x01\0", b"P4", b"P5", b"P6", b"PF", b"Pf",
+    b"\x89PNG",
+    b"\xff\xd8\xff",
+    b"GIF8",
+    b"BM",
+    b"DDS ",
+    b"II*\0",
+    b"MM\0*",
+    b"8BPS",
+    b"\xabKTX",
+    b"#?",
+    b"v/1\x01",
+    b"\x01\xda",
+    b"\0\0\x01\0",
+    b"P4",
+    b"P5",
+    b"P6",
+    b"PF",
+    b"Pf",
 ];
 
 /// Reports whether bytes are an image of a common type.
@@ -26,7 +42,9 @@ pub(crate) fn is_image(name: &str, bytes: &[u8]) -> bool {
 pub(crate) fn has_colors(bytes: &[u8]) -> bool {
     match bytes {
         // The colour type is in the header, behind width, height and depth.
-        [0x89, b'P', b'N', b'G', ..] => bytes.get(25).is_some_and(|&kind| matches!(kind, 2 | 3 | 6)),
+        [0x89, b'P', b'N', b'G', ..] => {
+            bytes.get(25).is_some_and(|&kind| matches!(kind, 2 | 3 | 6))
+        }
         [0xff, 0xd8, 0xff, ..] => jpeg_components(bytes) == Some(3),
         _ => false,
     }

@@ -41,7 +41,6 @@ impl Scene {
             .filter_map(|image| self.images.get(image))
             .filter(|image| !image.bytes.is_empty() && !crate::gltf::has_core_type(&image.bytes));
         let names: Vec<&str> = other.map(|image| &*image.name).collect();
-        let objects = self.object_names();
         let [left_out, changed] = self.mtl_statements();
         let [separate, opacity] = self.separate_images();
         vec![
@@ -55,7 +54,6 @@ impl Scene {
                 "images that are neither PNG nor JPEG",
             )
             .named(names),
-            Note::left_out(objects.len(), "name of an object", "names of objects").named(objects),
         ]
     }
 
@@ -87,7 +85,11 @@ impl Scene {
         let maps = own.clone().map(|material| {
             let Surface { metallic_image, roughness_image, .. } = material.surface;
             let has_combined = material.surface.metallic_roughness_image().is_some();
-            if has_combined { 0 } else { [metallic_image, roughness_image].iter().flatten().count() }
+            if has_combined {
+                0
+            } else {
+                [metallic_image, roughness_image].iter().flatten().count()
+            }
         });
         let maps = maps.sum();
         let is_lost = |material: &&Material| {

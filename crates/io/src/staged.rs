@@ -129,7 +129,8 @@ pub(crate) fn part_name(stem: &str, suffix: &str, is_taken: impl Fn(&str) -> boo
 
 /// Reports whether [`part_name`] gives parts of a document such names.
 pub(crate) fn is_part_name(name: &str, stem: &str, suffix: &str) -> bool {
-    let middle = name.strip_prefix(stem).and_then(|rest| rest.strip_suffix(suffix)?.strip_suffix('.'));
+    let middle =
+        name.strip_prefix(stem).and_then(|rest| rest.strip_suffix(suffix)?.strip_suffix('.'));
     middle.is_some_and(|middle| {
         let number = middle.strip_prefix('-').and_then(|number| number.parse::<u32>().ok());
         middle.is_empty() || number.is_some_and(|number| number >= 2)

@@ -114,7 +114,11 @@ mod tests {
         fs::write(folder.path().join("b.png"), "lower").unwrap();
         fs::write(folder.path().join("B.png"), "upper").unwrap();
         let mut beside = Beside::of(&folder.path().join("a.obj"), Format::Obj);
-        for name in ["Maps/Old/Wood grain.PNG", "maps\\old\\wood grain.png", "./maps/OLD/../Old/WOOD GRAIN.png"] {
+        for name in [
+            "Maps/Old/Wood grain.PNG",
+            "maps\\old\\wood grain.png",
+            "./maps/OLD/../Old/WOOD GRAIN.png",
+        ] {
             assert_eq!(beside.read(name).unwrap(), b"a", "{name}");
         }
         assert_eq!(beside.read("b.png").unwrap(), b"lower");

@@ -15,9 +15,7 @@ use crate::{IoError, Unsupported};
 /// Writes the files that `encode` makes, given how to name the buffer by its bytes.
 pub(super) fn write_gltf(
     path: &Path,
-    encode: impl FnOnce(
-        &dyn Fn(&[u8]) -> String,
-    ) -> Result<(GltfFiles, CompressionReport), Unsupported>,
+    encode: impl FnOnce(&dyn Fn(&[u8]) -> String) -> Result<(GltfFiles, CompressionReport), Unsupported>,
 ) -> Result<CompressionReport, IoError> {
     let stem = stem(path);
     let old = buffers_of(path);

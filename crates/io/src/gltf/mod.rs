@@ -15,6 +15,7 @@ mod mesh;
 mod new_document;
 mod new_material;
 mod nodes;
+mod object_nodes;
 mod parts;
 mod primitive_rows;
 mod primitives;

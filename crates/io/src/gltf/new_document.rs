@@ -8,11 +8,11 @@ use super::new_material;
 use crate::scene::IDENTITY;
 use crate::{Image, Node, Scene, SceneMesh};
 
-/// Builds the JSON of a scene without geometry; each mesh has an empty primitive per material
-/// label.
-pub(super) fn document(scene: &Scene, builder: &mut BufferBuilder) -> Value {
+/// Builds the JSON of a scene with these images, without geometry; each mesh has an empty primitive
+/// per material label.
+pub(super) fn document(scene: &Scene, all: &[Image], builder: &mut BufferBuilder) -> Value {
     let mut images = Images::default();
-    let mut texture = |image| images.texture(image, scene, builder);
+    let mut texture = |image| images.texture(image, all, builder);
     let materials: Vec<Value> =
         scene.materials.iter().map(|m| new_material::material(m, &mut texture)).collect();
     with_nodes(scene, materials, images.json)
@@ -96,14 +96,14 @@ impl Images {
     fn texture(
         &mut self,
         index: Option<usize>,
-        scene: &Scene,
+        all: &[Image],
         builder: &mut BufferBuilder,
     ) -> Option<usize> {
         let index = index?;
         if let Some(&texture) = self.of_scene.get(&index) {
             return Some(texture);
         }
-        let image = scene.images.get(index)?;
+        let image = all.get(index)?;
         let kind = mime_type(&image.bytes).filter(|_| has_core_type(&image.bytes))?;
         let view = builder.add_view(&image.bytes);
         self.json.push(json!({ "name": image.name, "bufferView": view, "mimeType": kind }));

@@ -8,11 +8,11 @@ use serde_json::{Value, json};
 use super::accessor_use::{animation_accessors, free_accessors};
 use super::buffer_builder::{copy_views, mark_views};
 use super::document::{self, Buffers, Document};
-use super::{new_document, new_material};
 use super::read::{Contents, SourceDocument};
 use super::skeleton_images::{SkeletonImage, attach_images, detach_images, preview_name};
 use super::write::{check_meshes, unreadable};
 use super::{materials, mesh, nodes};
+use super::{new_document, new_material};
 use crate::{ParseError, Scene, SceneMesh, Unsupported, Weld};
 
 /// Scene without the geometry of some of its meshes and without its images, as bytes.

@@ -68,7 +68,7 @@ impl Output {
     fn of_strips(scene: &Scene, strips: &[StripMesh]) -> Result<Self, Unsupported> {
         let Some(source) = &scene.source else {
             let mut builder = BufferBuilder::default();
-            let json = new_document::document(scene, &mut builder);
+            let json = new_document::document(scene, &scene.images, &mut builder);
             return finish(json, scene, Replacer::new(None, builder), strips);
         };
         let source = &source.0;

@@ -8,6 +8,7 @@ use super::buffer_builder::BufferBuilder;
 use super::compress::{self, Compression, CompressionReport};
 use super::document::Document;
 use super::lod::{self, Level};
+use super::object_nodes::split_objects;
 use super::primitives::Replacer;
 use super::read::Contents;
 use super::uri::{self, Uri};
@@ -32,7 +33,7 @@ pub struct GltfFiles {
 /// extensions and everything else pass through. An unchanged mesh keeps its arrays bit for bit; a
 /// changed one gets new arrays (f32, 16-bit indices where possible, colours in their old type). The
 /// buffer is rebuilt without what is no longer used. Any other scene gets a new document with its
-/// nodes, materials, PNGs and JPEGs. A mesh without faces keeps one degenerate triangle, as glTF
+/// nodes, materials, PNGs and JPEGs, in which each object of a mesh is a node and a mesh. A mesh without faces keeps one degenerate triangle, as glTF
 /// does not allow empty meshes.
 ///
 /// With levels, every node with a mesh is named `…_LOD0` and linked by the extension `MSFT_lod` to
@@ -60,7 +61,8 @@ pub fn write_glb(scene: &Scene, levels: &[Level]) -> Result<Vec<u8>, Unsupported
 /// integers; others stay floats. Colours in [0, 1] become bytes, unless the file had shorts.
 /// Everything else is kept. Faces and vertices are sorted for the vertex cache. With
 /// [`Compression::meshopt`], the geometry is stored in meshopt streams, and texture coordinates
-/// outside [0, 1] are rounded to the requested bits as well. Images and animations are kept.
+/// outside [0, 1] are rounded to the requested bits as well. Images and animations are kept. The
+/// objects of a mesh stay one mesh, and have no names.
 ///
 /// # Errors
 /// Errors of [`write_glb`]; also bit counts out of range.
@@ -135,7 +137,12 @@ impl Output {
             Some(source) => Self::with_source(scene, &source.0, levels, compression),
             None => {
                 let mut builder = BufferBuilder::default();
-                let json = new_document::document(scene, &mut builder);
+                // Objects on grids of their own would come apart where they meet.
+                let split = compression.is_none().then(|| split_objects(scene, levels)).flatten();
+                let (whole, images) = (scene, &scene.images);
+                let split = split.as_ref().map(|split| (&split.scene, &split.levels[..]));
+                let (scene, levels) = split.unwrap_or((whole, levels));
+                let json = new_document::document(scene, images, &mut builder);
                 let all = vec![true; scene.meshes.len()];
                 let mut replacer = Replacer::new(None, builder);
                 replacer.compression = compression;

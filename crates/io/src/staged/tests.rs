@@ -217,7 +217,8 @@ fn a_full_disk_leaves_what_was_there() {
                 assert_eq!(contents(folder.path()), before, "{name}: {room} bytes");
                 room += 7;
             }
-            let is_new = |(path, bytes): &(PathBuf, Option<Vec<u8>>)| before.get(path) != Some(bytes);
+            let is_new =
+                |(path, bytes): &(PathBuf, Option<Vec<u8>>)| before.get(path) != Some(bytes);
             let new = contents(folder.path()).into_iter().filter(is_new);
             let written: usize = new.filter_map(|(_, bytes)| Some(bytes?.len())).sum();
             assert!(written > 100 && room >= written, "{name}: {written} bytes were cut anywhere");
@@ -253,7 +254,8 @@ fn writes_in_place_litter_nothing() {
 
 #[test]
 fn a_part_that_another_document_uses_stays() {
-    for (name, other, suffix) in [("it.gltf", "other.gltf", "bin"), ("it.obj", "other.obj", "mtl")] {
+    for (name, other, suffix) in [("it.gltf", "other.gltf", "bin"), ("it.obj", "other.obj", "mtl")]
+    {
         let folder = tempdir().unwrap();
         let [path, other] = [name, other].map(|name| folder.path().join(name));
         let [old, new] = versions();

@@ -156,7 +156,10 @@ fn channel(line: &str) -> Option<&str> {
 fn multiplier(line: &str) -> f32 {
     let (options, _) = statement::options(line);
     let given = options.into_iter().find(|option| option.name == "-bm");
-    given.and_then(|option| option.values.parse().ok()).filter(|x: &f32| x.is_finite()).unwrap_or(1.0)
+    given
+        .and_then(|option| option.values.parse().ok())
+        .filter(|x: &f32| x.is_finite())
+        .unwrap_or(1.0)
 }
 
 /// Statements of a material that a glTF document has no place for, by their words, and those that it
@@ -178,7 +181,10 @@ pub(crate) fn untold(material: &Material, images: &[Image]) -> Untold {
         let word = statement::word_of(&line.text);
         let image = line.map.as_ref().map(|map| map.image);
         let is = |used: Option<usize>| image.is_some() && image == used;
+        let is_other_space = ["kd", "ks", "ke"].contains(&&*word)
+            && color(&line.text).is_ok_and(|color| color.is_none());
         let arrives = match &*word {
+            _ if is_other_space => false,
             "" | "kd" | "d" | "tr" | "pr" | "pm" | "ke" => true,
             "map_kd" => is(meaning.base_color_image),
             "map_ke" => is(surface.emission_image),
@@ -188,7 +194,10 @@ pub(crate) fn untold(material: &Material, images: &[Image]) -> Untold {
             "norm" | "bump" | "map_bump" => is(surface.normal_image),
             _ => false,
         };
-        let is_guess = !says_roughness && ["ks", "ns"].contains(&&*word) && surface.roughness < 1.0;
+        let is_guess = !says_roughness
+            && !is_other_space
+            && ["ks", "ns"].contains(&&*word)
+            && surface.roughness < 1.0;
         let written = statement::split_word(line.text.trim_start()).0.to_owned();
         match arrives {
             _ if is_guess || arrives && word.ends_with("bump") => untold.changed.push(written),

@@ -10,5 +10,5 @@ pub(crate) use meaning::untold;
 pub(crate) use read::Library;
 pub(super) use read::resolve_materials;
 pub use write::write;
-pub(super) use write::{names, one_line};
 pub(crate) use write::{is_superset, same_library, says_nothing};
+pub(super) use write::{names, one_line};

@@ -109,7 +109,8 @@ impl Library {
     }
 
     fn notes(&self, used: &[String]) -> Vec<Note> {
-        let undefined = used.iter().filter(|name| !name.is_empty() && self.lines_of(name).is_none());
+        let undefined =
+            used.iter().filter(|name| !name.is_empty() && self.lines_of(name).is_none());
         let undefined: Vec<&String> = undefined.collect();
         // Without a library, names are all that the file has.
         let is_told = !self.definitions.is_empty() && self.missing.is_empty();
@@ -174,8 +175,7 @@ fn material(
     images: &mut Images,
     resolve: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
 ) -> Material {
-    let mtl: Vec<MtlStatement> =
-        lines.iter().map(|line| images.statement(line, resolve)).collect();
+    let mtl: Vec<MtlStatement> = lines.iter().map(|line| images.statement(line, resolve)).collect();
     let meaning = meaning(&mtl, &images.list);
     Material {
         name: name.to_owned(),
@@ -291,8 +291,7 @@ mod tests {
     fn an_image_that_is_missing_or_none_keeps_its_name() {
         let library = library("newmtl a\nmap_Kd maps\\a.png\nbump .\\maps/a.png # old").unwrap();
         for bytes in [None, Some(b"root:x:0:0".to_vec())] {
-            let resolved =
-                resolve_materials(&["a".to_owned()], &library, &mut |_| bytes.clone());
+            let resolved = resolve_materials(&["a".to_owned()], &library, &mut |_| bytes.clone());
             let image = Image { name: "maps/a.png".to_owned(), bytes: Vec::new() };
             assert_eq!(resolved.images[0], image);
             let names: Vec<&MtlMap> =
