@@ -45,6 +45,11 @@ impl StagedFiles {
         Ok(())
     }
 
+    /// Reports whether a part was added for this place.
+    pub fn has(&self, path: &Path) -> bool {
+        self.parts.iter().any(|(other, _)| other == path)
+    }
+
     /// Writes the document, renames the parts and then the document, and removes the parts that are
     /// of no more use.
     ///

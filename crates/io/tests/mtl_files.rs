@@ -159,6 +159,26 @@ fn images_of_one_name_in_two_places_become_two() {
 }
 
 #[test]
+fn embedded_images_of_one_name_become_two() {
+    let mut scene = read_it(&own_file("full.obj"));
+    for name in ["maps/Normal.PNG", "wood grain.png"] {
+        scene.images.iter_mut().find(|image| image.name == name).unwrap().name =
+            "maps/a.png".into();
+    }
+    let there = tempdir().unwrap();
+    write_it(&there.path().join("a.obj"), &scene);
+    let again = read_it(&there.path().join("a.obj"));
+    let bytes = |scene: &Scene, image: Option<usize>| scene.images[image.unwrap()].bytes.clone();
+    for (new, old) in again.materials.iter().zip(&scene.materials).take(1) {
+        let [a, b] = [new, old].map(|material| material.base_color_image);
+        assert_eq!(bytes(&again, a), bytes(&scene, b));
+        let [a, b] = [new, old].map(|material| material.surface.normal_image);
+        assert_eq!(bytes(&again, a), bytes(&scene, b));
+    }
+    assert!(there.path().join("maps/a-2.png").exists());
+}
+
+#[test]
 fn what_is_missing_is_named_and_stays_named() {
     let object = format!("mtllib gone.mtl\n{SQUARE}usemtl m\nf 1 2 3\n");
     let here = folder(&[("a.obj", object.as_bytes())]);

@@ -27,6 +27,9 @@ pub(super) fn stage_image(
         ));
     };
     let target = path.parent().unwrap_or(Path::new("")).join(name);
+    if staged.has(&target) {
+        return Ok(());
+    }
     if target.exists() {
         let reason = "another image of that name already exists; move it, or write .glb";
         return Err(IoError::unsupported(&target, Unsupported::new("image", reason)));
@@ -35,31 +38,35 @@ pub(super) fn stage_image(
 }
 
 /// Gives images whose names point outside the folder of `path`, and do not lead to them from there,
-/// bare file names, of which no two are one.
-pub(super) fn use_plain_names(path: &Path, images: &mut [Image]) {
+/// bare file names, and sees to it that no two images have one name.
+pub(super) fn use_own_names(path: &Path, images: &mut [Image]) {
     let mut taken: HashMap<PathBuf, usize> = HashMap::new();
-    for (i, image) in images.iter().enumerate() {
-        if let Some(inner) = inner_path(&image.name) {
-            taken.entry(inner).or_insert(i);
-        }
-    }
     for i in 0..images.len() {
         let image = &images[i];
-        let is_inside = inner_path(&image.name).is_some();
-        if image.bytes.is_empty() || is_inside || is_beside(path, image) {
+        if image.bytes.is_empty() {
             continue;
         }
-        let Some(file) = Path::new(&image.name).file_name().map(PathBuf::from) else { continue };
+        let inner = inner_path(&image.name);
+        if inner.is_none() && is_beside(path, image) {
+            continue;
+        }
+        let bare = || Path::new(&image.name).file_name().map(PathBuf::from);
+        let Some(file) = inner.clone().or_else(bare) else { continue };
         let is_free = |name: &PathBuf| match taken.get(name) {
             Some(&other) => images[other].bytes == image.bytes,
+            // The name that an image has is not changed for a file that is there.
+            None if inner.as_ref() == Some(name) => true,
             None => {
                 let named = Image { name: name.to_string_lossy().into_owned(), ..image.clone() };
-                !path.with_file_name(name).exists() || is_beside(path, &named)
+                !path.with_file_name("").join(name).exists() || is_beside(path, &named)
             }
         };
         let numbered = (2..).map(|number| with_number(&file, number));
-        let free = std::iter::once(file.clone()).chain(numbered).find(is_free).unwrap_or(file);
-        images[i].name = free.to_string_lossy().into_owned();
+        let free = std::iter::once(file.clone()).chain(numbered).find(is_free);
+        let free = free.unwrap_or_else(|| file.clone());
+        if inner.as_ref() != Some(&free) {
+            images[i].name = free.to_string_lossy().into_owned();
+        }
         taken.entry(free).or_insert(i);
     }
 }
@@ -68,7 +75,7 @@ pub(super) fn use_plain_names(path: &Path, images: &mut [Image]) {
 fn with_number(file: &Path, number: u32) -> PathBuf {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy();
     let suffix = file.extension().map(|suffix| format!(".{}", suffix.to_string_lossy()));
-    PathBuf::from(format!("{stem}-{number}{}", suffix.unwrap_or_default()))
+    file.with_file_name(format!("{stem}-{number}{}", suffix.unwrap_or_default()))
 }
 
 /// Reports whether the image's name, relative to the folder of `path`, leads to a file of equal

@@ -6,7 +6,7 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 
 use super::beside::Beside;
-use super::images::{stage_image, use_plain_names};
+use super::images::{stage_image, use_own_names};
 use super::stem;
 use crate::obj::{self, mtl};
 use crate::staged::{StagedFiles, is_mentioned, is_part_name, obsolete_parts, part_name};
@@ -17,7 +17,7 @@ use crate::{Format, IoError, Precision, Scene};
 pub(super) fn write_obj(path: &Path, scene: &Scene, precision: Precision) -> Result<(), IoError> {
     let mut staged = StagedFiles::default();
     let mut images = scene.images.clone();
-    use_plain_names(path, &mut images);
+    use_own_names(path, &mut images);
     for image in images.iter().filter(|image| !image.bytes.is_empty()) {
         stage_image(path, image, &mut staged)?;
     }

@@ -114,7 +114,7 @@ impl Said {
     /// √(2 / (`Ns` + 2)), which is the square of glTF's roughness.
     ///
     /// # References
-    /// [WMLT07] section 5.2, solved for the width; [Kap20] for the square.
+    /// [WMLT07] section 5.2, solved for the width; [Khr21] appendix B for the square.
     fn guessed_roughness(&self) -> f32 {
         if self.has_no_highlight || self.specular.iter().all(|&x| x <= 0.0) {
             return 1.0;

@@ -1,7 +1,12 @@
 //! MTL material libraries, of which every statement is kept.
+//!
+//! A line that is not known is kept as it is. What the known ones mean, [Ram95] says, and for `Pr`,
+//! `Pm`, `Ke` and `norm`, the exporters that brought them in.
 
+mod images;
 mod lines;
 mod meaning;
+mod properties;
 mod read;
 mod statement;
 mod write;
