@@ -29,7 +29,7 @@ libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("mtl"), |bytes: &[u8]| {
     assert_eq!(again.materials.len(), scene.materials.len());
     for (new, old) in again.materials.iter().zip(&scene.materials) {
         assert_eq!(new.base_color, old.base_color);
-        assert_eq!(new.surface, old.surface);
+        assert_eq!(new.shading, old.shading);
     }
     assert_eq!(write(&again), written);
     let skeleton = Skeleton::of(&scene, vec![true]).expect("one mesh");

@@ -46,7 +46,7 @@ pub use files::{
 };
 pub use flatten::{MeshInstance, transform};
 pub use format::Format;
-pub use material::{Material, MtlMap, MtlStatement, Surface};
+pub use material::{Material, MtlMap, MtlStatement, Shading};
 pub use meshlod_mesh::{merge_equal_wedges, weld};
 pub use notes::{Note, NoteKind};
 pub use replace::{abandon_files, write_file};

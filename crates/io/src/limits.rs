@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use meshlod_mesh::{Layer, LayerKind, Mesh};
 
 use crate::obj::mtl::untold;
-use crate::{Format, Material, MeshInstance, Note, Scene, Surface};
+use crate::{Format, Material, MeshInstance, Note, Scene, Shading};
 
 impl Scene {
     /// Lists what a file of this format cannot hold of the scene, or holds in another form; empty if
@@ -31,8 +31,8 @@ impl Scene {
     /// Lists what a new glTF document lacks.
     fn new_document_limits(&self) -> Vec<Note> {
         let shown = self.materials.iter().flat_map(|material| {
-            let Surface { normal_image, emission_image, .. } = material.surface;
-            let combined = material.surface.metallic_roughness_image();
+            let Shading { normal_image, emission_image, .. } = material.shading;
+            let combined = material.shading.metallic_roughness_image();
             [material.base_color_image, combined, normal_image, emission_image]
         });
         let shown: BTreeSet<usize> = shown.flatten().collect();
@@ -83,8 +83,8 @@ impl Scene {
     fn separate_images(&self) -> [Note; 2] {
         let own = self.materials.iter().filter(|material| material.mtl.is_empty());
         let maps = own.clone().map(|material| {
-            let Surface { metallic_image, roughness_image, .. } = material.surface;
-            let has_combined = material.surface.metallic_roughness_image().is_some();
+            let Shading { metallic_image, roughness_image, .. } = material.shading;
+            let has_combined = material.shading.metallic_roughness_image().is_some();
             if has_combined {
                 0
             } else {
@@ -93,7 +93,7 @@ impl Scene {
         });
         let maps = maps.sum();
         let is_lost = |material: &&Material| {
-            let opacity = material.surface.opacity_image;
+            let opacity = material.shading.opacity_image;
             opacity.is_some() && opacity != material.base_color_image
         };
         [

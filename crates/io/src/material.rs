@@ -17,7 +17,7 @@ pub struct Material {
     /// counterclockwise. Only glTF has such materials.
     pub is_double_sided: bool,
     /// How the surface reflects and emits light.
-    pub surface: Surface,
+    pub shading: Shading,
     /// Lines that define the material in an MTL library, all but `newmtl`; empty for other formats.
     ///
     /// They are written to MTL as they are, except those that say something else than the fields
@@ -29,7 +29,7 @@ pub struct Material {
 /// [`Scene::images`](crate::Scene::images).
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default)]
-pub struct Surface {
+pub struct Shading {
     /// Metalness, from 0 to 1.
     pub metallic: f32,
     /// Texture whose blue channel multiplies the metalness.
@@ -77,13 +77,13 @@ impl Default for Material {
             base_color: [1.0; 4],
             base_color_image: None,
             is_double_sided: true,
-            surface: Surface::default(),
+            shading: Shading::default(),
             mtl: Vec::new(),
         }
     }
 }
 
-impl Default for Surface {
+impl Default for Shading {
     fn default() -> Self {
         Self {
             metallic: 0.0,
@@ -102,8 +102,8 @@ impl Default for Surface {
 impl Material {
     /// Returns the images that the material uses, some maybe more than once.
     pub fn images(&self) -> impl Iterator<Item = usize> {
-        let Surface { metallic_image, roughness_image, normal_image, .. } = self.surface;
-        let Surface { emission_image, opacity_image, .. } = self.surface;
+        let Shading { metallic_image, roughness_image, normal_image, .. } = self.shading;
+        let Shading { emission_image, opacity_image, .. } = self.shading;
         let own = [
             self.base_color_image,
             metallic_image,
@@ -117,7 +117,7 @@ impl Material {
     }
 }
 
-impl Surface {
+impl Shading {
     /// Returns the one image that holds the metalness and the roughness, if there is one: glTF has
     /// no place for two.
     pub(crate) fn metallic_roughness_image(&self) -> Option<usize> {

@@ -172,7 +172,7 @@ fn embedded_images_of_one_name_become_two() {
     for (new, old) in again.materials.iter().zip(&scene.materials).take(1) {
         let [a, b] = [new, old].map(|material| material.base_color_image);
         assert_eq!(bytes(&again, a), bytes(&scene, b));
-        let [a, b] = [new, old].map(|material| material.surface.normal_image);
+        let [a, b] = [new, old].map(|material| material.shading.normal_image);
         assert_eq!(bytes(&again, a), bytes(&scene, b));
     }
     assert!(there.path().join("maps/a-2.png").exists());
@@ -240,7 +240,7 @@ fn gltf_gets_what_it_has_a_place_for_and_gives_it_back() {
         let image = |scene: &Scene, image: Option<usize>| {
             image.map(|image| scene.images[image].bytes.clone())
         };
-        let [a, b] = [&new.surface, &old.surface];
+        let [a, b] = [&new.shading, &old.shading];
         assert_eq!(
             (new.base_color, a.metallic, a.roughness),
             (old.base_color, b.metallic, b.roughness)
@@ -256,9 +256,9 @@ fn gltf_gets_what_it_has_a_place_for_and_gives_it_back() {
             assert_eq!(image(&back, a), image(&scene, b), "{}", old.name);
         }
     }
-    let metal = &back.materials[1].surface;
+    let metal = &back.materials[1].shading;
     assert_eq!((metal.metallic, metal.roughness, metal.emission), (1.0, 0.4, [2.0, 1.0, 0.5]));
-    assert_eq!(back.materials[0].surface.roughness, 0.5, "(2 / 32)^(1/4), of Ns 30");
+    assert_eq!(back.materials[0].shading.roughness, 0.5, "(2 / 32)^(1/4), of Ns 30");
     let left_out: fn(&Note) -> bool = |note| note.kind == NoteKind::LeftOut;
     assert!(!back.limits_of(Format::Obj).iter().any(left_out));
     let names: Vec<&str> = back.nodes.iter().map(|node| &*node.name).collect();
@@ -267,7 +267,7 @@ fn gltf_gets_what_it_has_a_place_for_and_gives_it_back() {
     write_it(&there.path().join("a.obj"), &back);
     let again = read_it(&there.path().join("a.obj"));
     for (new, old) in again.materials.iter().zip(&back.materials) {
-        let [a, b] = [&new.surface, &old.surface];
+        let [a, b] = [&new.shading, &old.shading];
         assert_eq!(
             (new.base_color, a.metallic, a.roughness),
             (old.base_color, b.metallic, b.roughness)

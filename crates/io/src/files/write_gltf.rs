@@ -56,17 +56,17 @@ pub(super) fn write_gltf(
 fn buffers_of(path: &Path) -> BTreeSet<String> {
     #[derive(Default, Deserialize)]
     #[serde(default)]
-    struct Document {
-        buffers: Vec<Buffer>,
+    struct OldDocument {
+        buffers: Vec<OldBuffer>,
     }
     #[derive(Default, Deserialize)]
     #[serde(default)]
-    struct Buffer {
+    struct OldBuffer {
         uri: Option<String>,
     }
     let is_file = fs::metadata(path).is_ok_and(|found| found.is_file());
     let bytes = if is_file { fs::read(path).unwrap_or_default() } else { Vec::new() };
-    let document: Document = serde_json::from_slice(&bytes).unwrap_or_default();
+    let document: OldDocument = serde_json::from_slice(&bytes).unwrap_or_default();
     let uris = document.buffers.into_iter().filter_map(|buffer| buffer.uri);
     let name = |uri: String| match parse_uri(&uri) {
         Ok(Uri::File(name)) => Some(name.trim_start_matches("./").to_owned()),

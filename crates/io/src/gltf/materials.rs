@@ -6,7 +6,7 @@ use super::document::{Document, missing};
 use super::new_document::mime_type;
 use super::schema::{self, Texture, TextureUse};
 use super::uri::{self, Uri};
-use crate::{Image, Material, ParseError, Resolve, Surface};
+use crate::{Image, Material, ParseError, Resolve, Shading};
 
 /// Extension for emitted light brighter than 1.
 pub(super) const EMISSIVE_STRENGTH: &str = "KHR_materials_emissive_strength";
@@ -32,7 +32,7 @@ pub(super) fn materials(json: &Value, images: usize) -> Result<Vec<Material>, Pa
             base_color: pbr.base_color_factor.unwrap_or([1.0; 4]),
             base_color_image,
             is_double_sided: material.double_sided,
-            surface: surface(&material, base_color_image, image_of)?,
+            shading: shading(&material, base_color_image, image_of)?,
             name: material.name.unwrap_or_default(),
             mtl: Vec::new(),
         })
@@ -40,11 +40,11 @@ pub(super) fn materials(json: &Value, images: usize) -> Result<Vec<Material>, Pa
     materials.into_iter().map(read).collect()
 }
 
-fn surface(
+fn shading(
     material: &schema::GltfMaterial,
     base_color_image: Option<usize>,
     image_of: impl Fn(&Option<TextureUse>) -> Result<Option<usize>, ParseError>,
-) -> Result<Surface, ParseError> {
+) -> Result<Shading, ParseError> {
     let pbr = &material.pbr_metallic_roughness;
     let combined = image_of(&pbr.metallic_roughness_texture)?;
     let strength = material.extensions.get(EMISSIVE_STRENGTH);
@@ -53,7 +53,7 @@ fn surface(
     let scale = material.normal_texture.as_ref().and_then(|texture| texture.scale);
     // A number may be too large for 32 bits.
     let finite = |x: f32| if x.is_finite() { x } else { 1.0 };
-    Ok(Surface {
+    Ok(Shading {
         metallic: finite(pbr.metallic_factor.unwrap_or(1.0)),
         metallic_image: combined,
         roughness: finite(pbr.roughness_factor.unwrap_or(1.0)),

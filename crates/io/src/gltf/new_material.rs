@@ -6,14 +6,14 @@ use serde_json::{Value, json};
 use super::document::missing;
 use super::materials::EMISSIVE_STRENGTH;
 use super::new_document::named;
-use crate::{Material, MtlStatement, ParseError, Surface};
+use crate::{Material, MtlStatement, ParseError, Shading};
 
 /// Builds the JSON of a material; `texture` gives the texture of an image, if it may have one.
 pub(super) fn material(
     material: &Material,
     texture: &mut dyn FnMut(Option<usize>) -> Option<usize>,
 ) -> Value {
-    let own = &material.surface;
+    let own = &material.shading;
     let color = material.base_color.map(|x| if x.is_finite() { unit(x) } else { 1.0 });
     let mut pbr = json!({
         "baseColorFactor": color,
@@ -47,7 +47,7 @@ pub(super) fn material(
 }
 
 /// Adds the emitted light, of which what is brighter than 1 needs an extension.
-fn emit(own: &Surface, json: &mut Value) {
+fn emit(own: &Shading, json: &mut Value) {
     let emission = own.emission.map(|x| if x.is_finite() { x.max(0.0) } else { 0.0 });
     let strength = emission.into_iter().fold(1.0, f32::max);
     if emission != [0.0; 3] {
@@ -64,8 +64,8 @@ fn unit(x: f32) -> f32 {
 
 /// Puts what glTF has no place for into the extras of a material.
 pub(super) fn keep_all(material: &Material, json: &mut Value) {
-    if material.surface != Surface::default() {
-        json["extras"]["surface"] = json!(material.surface);
+    if material.shading != Shading::default() {
+        json["extras"]["shading"] = json!(material.shading);
     }
     if !material.mtl.is_empty() {
         json["extras"]["mtl"] = json!(material.mtl);
@@ -87,9 +87,9 @@ pub(super) fn take_all(
             ParseError::part(format!("material {index}"), error.to_string())
         };
         let extras = |key: &str| entry.get("extras").and_then(|extras| extras.get(key));
-        material.surface = match extras("surface") {
-            Some(surface) => Surface::deserialize(surface).map_err(wrong)?,
-            None => Surface::default(),
+        material.shading = match extras("shading") {
+            Some(shading) => Shading::deserialize(shading).map_err(wrong)?,
+            None => Shading::default(),
         };
         if let Some(lines) = extras("mtl") {
             material.mtl = Vec::<MtlStatement>::deserialize(lines).map_err(wrong)?;

@@ -107,7 +107,7 @@ fn used_objects(mesh: &Mesh) -> Vec<(u32, &str)> {
 /// Lists the material labels of each object, by first use.
 fn materials_of(mesh: &Mesh, objects: &[(u32, &str)]) -> Vec<Vec<u32>> {
     let Some(materials) = &mesh.materials else { return vec![Vec::new(); objects.len()] };
-    let mut numbers = Numbers::new(materials.names.len());
+    let mut numbers = FirstUses::new(materials.names.len());
     let faces = faces_by_object(mesh);
     let used = objects.iter().map(|&(object, _)| {
         for &face in faces.of(object as usize) {
@@ -130,7 +130,7 @@ fn parts(mesh: &Mesh, objects: &[(u32, &str)], materials: &[Vec<u32>]) -> Vec<Me
     let wedges = mesh.attributes.as_ref().map_or(0, |attributes| attributes.wedge_count);
     let names = mesh.materials.as_ref().map_or(0, |labels| labels.names.len());
     let [mut vertices, mut wedges, mut labels] =
-        [mesh.positions.len(), wedges, names].map(Numbers::new);
+        [mesh.positions.len(), wedges, names].map(FirstUses::new);
     let mut parts = Vec::with_capacity(objects.len());
     for (&(object, _), materials) in objects.iter().zip(materials) {
         let own = faces.of(object as usize);
@@ -154,7 +154,7 @@ fn parts(mesh: &Mesh, objects: &[(u32, &str)], materials: &[Vec<u32>]) -> Vec<Me
     parts
 }
 
-fn attributes(all: &Attributes, faces: &[u32], wedges: &mut Numbers) -> Attributes {
+fn attributes(all: &Attributes, faces: &[u32], wedges: &mut FirstUses) -> Attributes {
     let mut corners = Vec::with_capacity(faces.len());
     for &face in faces {
         corners.push(all.corners[face as usize].map(|w| WedgeId(wedges.of(w.0))));
@@ -167,8 +167,8 @@ fn attributes(all: &Attributes, faces: &[u32], wedges: &mut Numbers) -> Attribut
     Attributes { corners, wedge_count: used.len(), layers: all.layers.iter().map(layer).collect() }
 }
 
-/// Numbers for those of many things that are used, by first use.
-struct Numbers {
+/// FirstUses for those of many things that are used, by first use.
+struct FirstUses {
     numbers: Vec<u32>,
     used: Vec<u32>,
 }
@@ -176,7 +176,7 @@ struct Numbers {
 /// Marks what has no number yet.
 const NONE: u32 = u32::MAX;
 
-impl Numbers {
+impl FirstUses {
     fn new(count: usize) -> Self {
         Self { numbers: vec![NONE; count], used: Vec::new() }
     }

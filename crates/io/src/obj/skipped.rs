@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::Note;
 use crate::text_cursor::text_of;
 
-/// What a reader left of an OBJ file.
+/// Parts of an OBJ file that a reader left out.
 #[derive(Default)]
 pub(super) struct Skipped {
     /// Lines, by the words of the statements.
@@ -39,7 +39,7 @@ impl Skipped {
         }
     }
 
-    /// Counts a smoothing group; `off` and 0 are none.
+    /// Counts a smoothing group; `off` and 0 name no group.
     pub fn smoothing(&mut self, group: String) {
         if !["", "0", "off"].contains(&&*group.to_ascii_lowercase()) {
             self.smoothing.insert(group);

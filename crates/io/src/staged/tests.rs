@@ -104,7 +104,7 @@ fn versions() -> [Scene; 2] {
     versions
 }
 
-/// What tells one version of a scene from the other, each part on its own.
+/// Returns the parts that tell one version of a scene from the other.
 fn parts(scene: &Scene) -> (usize, [f32; 4], Vec<Image>) {
     (scene.flatten().faces.len(), scene.materials[0].base_color, scene.images.clone())
 }

@@ -1,4 +1,4 @@
-//! Images that the statements of MTL libraries name.
+//! MtlImages that the statements of MTL libraries name.
 
 use std::collections::HashMap;
 
@@ -6,15 +6,15 @@ use super::statement::{image_names, names_image, options, word_of};
 use crate::image_type::is_image;
 use crate::{Image, MtlMap, MtlStatement};
 
-/// Images loaded so far, each once.
+/// MtlImages loaded so far, each once.
 #[derive(Default)]
-pub(super) struct Images {
+pub(super) struct MtlImages {
     pub list: Vec<Image>,
     /// Image by its name with slashes.
     numbers: HashMap<String, usize>,
 }
 
-impl Images {
+impl MtlImages {
     /// Splits a line around the name of an image, which is loaded, if it names any.
     pub fn statement(
         &mut self,

@@ -3,17 +3,17 @@
 use super::statement::{self, MapOption};
 use crate::image_type::has_colors;
 use crate::text_cursor::TextCursor;
-use crate::{Image, Material, MtlStatement, ParseError, Surface};
+use crate::{Image, Material, MtlStatement, ParseError, Shading};
 
 /// Properties that the statements of a material say.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Meaning {
     pub base_color: [f32; 4],
     pub base_color_image: Option<usize>,
-    pub surface: Surface,
+    pub shading: Shading,
 }
 
-/// What statements say, one by one.
+/// Values that statements have given so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Said {
     color: Option<[f32; 3]>,
@@ -95,7 +95,7 @@ impl Said {
         Meaning {
             base_color: [r, g, b, self.opacity.unwrap_or(1.0 - self.transparency)],
             base_color_image: self.color_image,
-            surface: Surface {
+            shading: Shading {
                 metallic: self.metallic.unwrap_or(whole(self.metallic_image)),
                 metallic_image: self.metallic_image,
                 roughness: self.roughness.unwrap_or_else(guess),
@@ -173,7 +173,7 @@ pub(crate) struct Untold {
 /// Lists the statements of a material that a new glTF document does not hold.
 pub(crate) fn untold(material: &Material, images: &[Image]) -> Untold {
     let meaning = meaning(&material.mtl, images);
-    let surface = &meaning.surface;
+    let surface = &meaning.shading;
     let combined = surface.metallic_roughness_image();
     let says_roughness = material.mtl.iter().any(|line| statement::word_of(&line.text) == "pr");
     let mut untold = Untold::default();

@@ -3,8 +3,8 @@
 use super::meaning::Meaning;
 use crate::{Material, MtlMap, MtlStatement};
 
-/// Property of a material, and the statements that say it.
-pub(super) struct Property {
+/// MtlProperty of a material, and the statements that say it.
+pub(super) struct MtlProperty {
     /// Words of the statements, in lower case.
     pub words: &'static [&'static str],
     /// Reports whether statements say what a material has.
@@ -13,67 +13,67 @@ pub(super) struct Property {
     pub write: fn(&Material) -> Option<MtlStatement>,
 }
 
-pub(super) const PROPERTIES: [Property; 11] = [
-    Property {
+pub(super) const PROPERTIES: [MtlProperty; 11] = [
+    MtlProperty {
         words: &["kd"],
         is_said: |said, own| said.base_color[..3] == own.base_color[..3],
         write: |own| Some(values("Kd", &own.base_color[..3])),
     },
-    Property {
+    MtlProperty {
         words: &["d", "tr"],
         is_said: |said, own| said.base_color[3] == own.base_color[3],
         write: |own| Some(values("d", &own.base_color[3..])),
     },
-    Property {
+    MtlProperty {
         words: &["pr"],
-        is_said: |said, own| said.surface.roughness == own.surface.roughness,
-        write: |own| Some(values("Pr", &[own.surface.roughness])),
+        is_said: |said, own| said.shading.roughness == own.shading.roughness,
+        write: |own| Some(values("Pr", &[own.shading.roughness])),
     },
-    Property {
+    MtlProperty {
         words: &["pm"],
-        is_said: |said, own| said.surface.metallic == own.surface.metallic,
-        write: |own| Some(values("Pm", &[own.surface.metallic])),
+        is_said: |said, own| said.shading.metallic == own.shading.metallic,
+        write: |own| Some(values("Pm", &[own.shading.metallic])),
     },
-    Property {
+    MtlProperty {
         words: &["ke"],
-        is_said: |said, own| said.surface.emission == own.surface.emission,
-        write: |own| Some(values("Ke", &own.surface.emission)),
+        is_said: |said, own| said.shading.emission == own.shading.emission,
+        write: |own| Some(values("Ke", &own.shading.emission)),
     },
-    Property {
+    MtlProperty {
         words: &["map_kd"],
         is_said: |said, own| said.base_color_image == own.base_color_image,
         write: |own| map("map_Kd", own.base_color_image),
     },
-    Property {
+    MtlProperty {
         words: &["map_pr"],
-        is_said: |said, own| said.surface.roughness_image == own.surface.roughness_image,
-        write: |own| map("map_Pr -imfchan g", own.surface.roughness_image),
+        is_said: |said, own| said.shading.roughness_image == own.shading.roughness_image,
+        write: |own| map("map_Pr -imfchan g", own.shading.roughness_image),
     },
-    Property {
+    MtlProperty {
         words: &["map_pm"],
-        is_said: |said, own| said.surface.metallic_image == own.surface.metallic_image,
-        write: |own| map("map_Pm -imfchan b", own.surface.metallic_image),
+        is_said: |said, own| said.shading.metallic_image == own.shading.metallic_image,
+        write: |own| map("map_Pm -imfchan b", own.shading.metallic_image),
     },
-    Property {
+    MtlProperty {
         words: &["map_ke"],
-        is_said: |said, own| said.surface.emission_image == own.surface.emission_image,
-        write: |own| map("map_Ke", own.surface.emission_image),
+        is_said: |said, own| said.shading.emission_image == own.shading.emission_image,
+        write: |own| map("map_Ke", own.shading.emission_image),
     },
-    Property {
+    MtlProperty {
         words: &["map_d"],
-        is_said: |said, own| said.surface.opacity_image == own.surface.opacity_image,
-        write: |own| map("map_d -imfchan m", own.surface.opacity_image),
+        is_said: |said, own| said.shading.opacity_image == own.shading.opacity_image,
+        write: |own| map("map_d -imfchan m", own.shading.opacity_image),
     },
-    Property {
+    MtlProperty {
         words: &["norm", "bump", "map_bump"],
         is_said: |said, own| {
-            let [said, own] = [&said.surface, &own.surface];
+            let [said, own] = [&said.shading, &own.shading];
             (said.normal_image, said.normal_scale) == (own.normal_image, own.normal_scale)
                 || (said.normal_image, own.normal_image) == (None, None)
         },
-        write: |own| match own.surface.normal_scale {
-            1.0 => map("norm", own.surface.normal_image),
-            scale => map(&format!("norm -bm {}", finite(scale)), own.surface.normal_image),
+        write: |own| match own.shading.normal_scale {
+            1.0 => map("norm", own.shading.normal_image),
+            scale => map(&format!("norm -bm {}", finite(scale)), own.shading.normal_image),
         },
     },
 ];

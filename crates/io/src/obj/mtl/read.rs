@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::images::Images;
+use super::images::MtlImages;
 use super::lines::lines;
 use super::meaning::{Said, meaning};
 use super::statement::word_of;
@@ -150,7 +150,7 @@ pub(crate) fn resolve_materials(
     library: &Library,
     resolve: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
 ) -> Resolved {
-    let mut images = Images::default();
+    let mut images = MtlImages::default();
     let mut materials = Vec::new();
     let mut labels = Vec::new();
     for name in names {
@@ -172,7 +172,7 @@ pub(crate) fn resolve_materials(
 fn material(
     name: &str,
     lines: &[String],
-    images: &mut Images,
+    images: &mut MtlImages,
     resolve: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
 ) -> Material {
     let mtl: Vec<MtlStatement> = lines.iter().map(|line| images.statement(line, resolve)).collect();
@@ -181,7 +181,7 @@ fn material(
         name: name.to_owned(),
         base_color: meaning.base_color,
         base_color_image: meaning.base_color_image,
-        surface: meaning.surface,
+        shading: meaning.shading,
         mtl,
         ..Material::default()
     }

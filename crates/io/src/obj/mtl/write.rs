@@ -119,7 +119,7 @@ pub(crate) fn one_line(text: &str, trim: fn(&str) -> &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Surface;
+    use crate::Shading;
     use crate::obj::mtl::resolve_materials;
 
     const PNG: &[u8] = b"\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\0\0\x01\0\0\0\x01\x08\x02";
@@ -159,12 +159,12 @@ mod tests {
         let scene = read(LIBRARY);
         let a = &scene.materials[0];
         assert_eq!((a.base_color, a.base_color_image), ([1.0, 0.0, 0.0, 0.75], Some(0)));
-        assert_eq!((a.surface.normal_image, a.surface.normal_scale), (Some(1), 0.5));
-        let c = &scene.materials[2].surface;
+        assert_eq!((a.shading.normal_image, a.shading.normal_scale), (Some(1), 0.5));
+        let c = &scene.materials[2].shading;
         assert_eq!((c.roughness, c.roughness_image, c.emission), (1.0, Some(2), [1.0, 2.0, 3.0]));
-        let shiny = &read("newmtl s\nKs 1 1 1\nNs 30\n").materials[0].surface;
+        let shiny = &read("newmtl s\nKs 1 1 1\nNs 30\n").materials[0].shading;
         assert_eq!(shiny.roughness, 0.5, "(2 / 32)^(1/4)");
-        let matt = &read("newmtl s\nKs 1 1 1\nNs 30\nillum 1\n").materials[0].surface;
+        let matt = &read("newmtl s\nKs 1 1 1\nNs 30\nillum 1\n").materials[0].shading;
         assert_eq!(matt.roughness, 1.0);
     }
 
@@ -174,7 +174,7 @@ mod tests {
         let material = &mut scene.materials[0];
         material.base_color = [0.0, 1.0, 0.0, 0.75];
         material.base_color_image = None;
-        material.surface.normal_image = Some(0);
+        material.shading.normal_image = Some(0);
         scene.images[0].name = "b.png".into();
         let text = written(&scene);
         assert!(text.starts_with("newmtl a b\n# of old\n\nTr 0.25\nfoo bar\nrefl -type"), "{text}");
@@ -183,7 +183,7 @@ mod tests {
 
     #[test]
     fn materials_without_statements_get_what_they_need() {
-        let surface = Surface {
+        let shading = Shading {
             metallic: 0.5,
             metallic_image: Some(0),
             roughness: 1.0,
@@ -195,7 +195,7 @@ mod tests {
             opacity_image: Some(0),
         };
         let image = |name: &str| Image { name: name.into(), bytes: PNG.to_vec() };
-        let material = Material { name: "m".into(), surface, ..Material::default() };
+        let material = Material { name: "m".into(), shading, ..Material::default() };
         let scene = Scene {
             materials: vec![material],
             images: vec![image("a.png"), image("b.png")],
@@ -203,7 +203,7 @@ mod tests {
         };
         let text = written(&scene);
         let again = read(&text);
-        assert_eq!(again.materials[0].surface, scene.materials[0].surface, "{text}");
+        assert_eq!(again.materials[0].shading, scene.materials[0].shading, "{text}");
         assert_eq!(again.materials[0].base_color, [1.0; 4]);
     }
 
