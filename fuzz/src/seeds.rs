@@ -33,6 +33,7 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
         "mlod" => return models::seeds(),
         "mlq" => return compressed(),
         "mlz" => return transports(),
+        "mtl" => return vec![std::fs::read(fixtures::own_file("full.mtl")).expect("our own file")],
         "skeleton" => return skeletons(),
         _ => {}
     }
@@ -62,7 +63,7 @@ fn write(target: &str, mesh: &Mesh) -> Vec<u8> {
     let mut out = Vec::new();
     match target {
         "ply" => ply::write(mesh, Precision::F64, &mut out),
-        "obj" => obj::write(&scene, Precision::F32, &mut out, Some("seed.mtl")),
+        "obj" => obj::write(&scene, Precision::F32, &mut out, &["seed.mtl".to_owned()]),
         "stl" => stl::write(mesh, &mut out),
         "off" => off::write(mesh, Precision::F32, &mut out),
         "smf" => smf::write(mesh, Precision::F32, &mut out),

@@ -196,7 +196,7 @@ fn write_pipe(
         Format::Stl => stl::write(&flat(), out),
         Format::Off => off::write(&flat(), precision, out),
         Format::Smf => smf::write(&flat(), precision, out),
-        Format::Obj => obj::write(scene, precision, out, None),
+        Format::Obj => obj::write(scene, precision, out, &[]),
         Format::Glb | Format::Gltf => {
             let bytes = gltf::write_glb(scene, &[]);
             out.write_all(&bytes.map_err(|error| Failure::at(Path::new("-"), error))?)

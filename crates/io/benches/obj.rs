@@ -19,7 +19,7 @@ fn scan(c: &mut Criterion) {
     let mesh = meshlod_samples::torus(200_000);
     let scene = Scene::from_mesh("", mesh);
     let mut bytes = Vec::new();
-    obj::write(&scene, Precision::F32, &mut bytes, None).expect("a torus fits OBJ");
+    obj::write(&scene, Precision::F32, &mut bytes, &[]).expect("a torus fits OBJ");
     compare(c, "scan", &bytes, &scene);
 }
 
@@ -38,7 +38,7 @@ fn compare(c: &mut Criterion, name: &str, bytes: &[u8], scene: &Scene) {
         let mut out = Vec::with_capacity(2 * bytes.len());
         b.iter(|| {
             out.clear();
-            obj::write(scene, Precision::F32, &mut out, None)
+            obj::write(scene, Precision::F32, &mut out, &[])
         });
     });
     group.finish();

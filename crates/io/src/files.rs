@@ -6,12 +6,21 @@ use std::path::{Component, Path, PathBuf};
 
 use meshlod_mesh::{Mesh, VertexId};
 
-use crate::gltf::LodLayout;
+use beside::Beside;
+use write_gltf::write_gltf;
+use write_obj::write_obj;
+
+use crate::gltf::{Levels, LodLayout};
 use crate::replace::replace;
 use crate::{
-    Format, Image, IoError, Note, ParseError, Precision, Scene, Unsupported, gltf, obj, off, ply,
-    smf, stl, weld,
+    Format, IoError, Note, ParseError, Precision, Scene, Unsupported, gltf, obj, off, ply, smf,
+    stl, weld,
 };
+
+mod beside;
+mod images;
+mod write_gltf;
+mod write_obj;
 
 /// Policy for merging vertices at equal or close positions when a file is read.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -57,8 +66,8 @@ pub type Resolve<'a> = &'a mut dyn FnMut(&str) -> Option<Vec<u8>>;
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Scene, IoError> {
     let format = Format::of_path(path)?;
     let bytes = fs::read(path).map_err(|error| IoError::system(path, error))?;
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let mut resolve = |name: &str| read_beside(folder, name);
+    let mut beside = Beside::of(path, format);
+    let mut resolve = |name: &str| beside.read(name);
     let mut scene = read_bytes(&bytes, format, &mut resolve, options)
         .map_err(|error| IoError::parse(path, error))?;
     if let [only] = &mut scene.meshes[..]
@@ -106,7 +115,10 @@ fn note_missing_images(scene: &mut Scene) {
     let missing = scene.images.iter().filter(|image| image.bytes.is_empty());
     let names: Vec<String> = missing.map(|image| image.name.clone()).collect();
     if !names.is_empty() {
-        let (one, many) = ("image that was not found", "images that were not found");
+        let (one, many) = (
+            "image that was not found or cannot be used",
+            "images that were not found or cannot be used",
+        );
         scene.notes.push(Note::left_out(names.len(), one, many).named(names));
     }
 }
@@ -114,13 +126,17 @@ fn note_missing_images(scene: &mut Scene) {
 /// Writes a scene as a mesh file, with the `.bin`, `.mtl` and image files that belong to it next to
 /// it.
 ///
-/// Each file is written under a temporary name in the same folder and renamed when complete, the
-/// one at `path` last. PLY, STL, OFF and SMF store a single mesh: the result of [`Scene::flatten`].
-/// An existing image with different contents is not overwritten.
+/// Files are written under temporary names and renamed when all are complete, the one at `path`
+/// last, so that it never meets the files of another version: where the file there uses a buffer or
+/// library that differs, the new one is called `stem-2.bin` or `stem-2.mtl`, and the old one is
+/// removed at the end. PLY, STL, OFF and SMF store a single mesh: the result of [`Scene::flatten`].
+/// An existing image with different contents is not overwritten, nor are material libraries that
+/// already say what the scene does.
 ///
 /// # Errors
 /// One line that names the file: an unknown suffix, an error of the system, or the part of the
-/// scene that the format cannot store. A file that was at `path` before is then still there.
+/// scene that the format cannot store. A file that was at `path` before is then still there, with the
+/// files that it uses, and no new one.
 pub fn write(path: &Path, scene: &Scene, options: &WriteOptions) -> Result<(), IoError> {
     let precision = options.precision;
     match Format::of_path(path)? {
@@ -153,8 +169,8 @@ pub fn write_lods(
             write_one(path, |out| out.write_all(&bytes))
         }
         Format::Gltf => {
-            let files = gltf::write_lods(scene, levels, layout, &stem(path));
-            write_gltf(path, &files.map_err(unsupported)?)
+            let levels = Levels { levels, layout };
+            write_gltf(path, |name| gltf::files(scene, levels, None, name)).map(drop)
         }
         _ => Err(unsupported(Unsupported::new(
             "levels",
@@ -177,8 +193,11 @@ pub fn write_strips(path: &Path, scene: &Scene, strips: &[gltf::StripMesh]) -> R
             write_one(path, |out| out.write_all(&bytes))
         }
         Format::Gltf => {
-            let files = gltf::write_strips(scene, strips, &stem(path)).map_err(unsupported)?;
-            write_gltf(path, &files)
+            let written = write_gltf(path, |name| {
+                let files = gltf::strip_files(scene, strips, name)?;
+                Ok((files, gltf::CompressionReport::default()))
+            });
+            written.map(drop)
         }
         _ => Err(unsupported(Unsupported::new(
             "strips",
@@ -208,27 +227,13 @@ pub fn write_compressed(
             Ok(report)
         }
         Format::Gltf => {
-            let (written, report) = gltf::write_compressed(scene, &[], &stem(path), compression)
-                .map_err(unsupported)?;
-            write_gltf(path, &written)?;
-            Ok(report)
+            write_gltf(path, |name| gltf::files(scene, Levels::default(), Some(compression), name))
         }
         _ => Err(unsupported(Unsupported::new(
             "file",
             "only .glb and .gltf can be compressed; use one of those",
         ))),
     }
-}
-
-/// Writes a glTF document after the images and the buffer that it refers to.
-fn write_gltf(path: &Path, written: &gltf::GltfFiles) -> Result<(), IoError> {
-    for image in &written.images {
-        write_image(path, image)?;
-    }
-    if let Some((name, bytes)) = &written.buffer {
-        write_one(&path.with_file_name(name), |out| out.write_all(bytes))?;
-    }
-    write_one(path, |out| out.write_all(&written.document))
 }
 
 /// Gives every corner a vertex of its own, as STL files have them.
@@ -239,22 +244,6 @@ fn unweld(mesh: &mut Mesh) {
     }
 }
 
-fn write_obj(path: &Path, scene: &Scene, precision: Precision) -> Result<(), IoError> {
-    let library = (!scene.materials.is_empty()).then(|| format!("{}.mtl", stem(path)));
-    let mut images = scene.images.clone();
-    for image in images.iter_mut().filter(|image| !image.bytes.is_empty()) {
-        if let Some(name) = plain_name(path, image) {
-            image.name = name;
-        }
-        write_image(path, image)?;
-    }
-    if let Some(name) = &library {
-        let named = Scene { materials: scene.materials.clone(), images, ..Scene::default() };
-        write_one(&path.with_file_name(name), |out| obj::write_mtl(&named, out))?;
-    }
-    write_one(path, |out| obj::write(scene, precision, out, library.as_deref()))
-}
-
 fn write_one(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -262,70 +251,13 @@ fn write_one(
     replace(path, fill).map_err(|error| IoError::system(path, error))
 }
 
-/// Writes an image under its name in the folder of `path`, unless it is already there. An existing
-/// file with different contents is not overwritten.
-fn write_image(path: &Path, image: &Image) -> Result<(), IoError> {
-    let Some(name) = inner_path(&image.name) else {
-        if is_beside(path, image) {
-            return Ok(());
-        }
-        let reason = "its name points outside the folder; write .glb, which embeds images";
-        return Err(IoError::unsupported(
-            path,
-            Unsupported::new(format!("image {:?}", image.name), reason),
-        ));
-    };
-    let target = path.parent().unwrap_or(Path::new("")).join(name);
-    match fs::read(&target) {
-        Ok(found) if found == image.bytes => return Ok(()),
-        Ok(_) => {
-            let reason = "another image of that name already exists; move it, or write .glb";
-            return Err(IoError::unsupported(&target, Unsupported::new("image", reason)));
-        }
-        Err(_) => {}
-    }
-    if let Some(folder) = target.parent() {
-        fs::create_dir_all(folder).map_err(|error| IoError::system(folder, error))?;
-    }
-    write_one(&target, |out| out.write_all(&image.bytes))
-}
-
-/// Returns the bare file name of an image whose name points outside the folder, unless the name
-/// also leads to that image from `path`.
-fn plain_name(path: &Path, image: &Image) -> Option<String> {
-    if inner_path(&image.name).is_some() || is_beside(path, image) {
-        return None;
-    }
-    Path::new(&image.name).file_name().map(|name| name.to_string_lossy().into_owned())
-}
-
-/// Reports whether the image's name, relative to the folder of `path`, leads to a file of equal
-/// bytes.
-fn is_beside(path: &Path, image: &Image) -> bool {
-    let folder = path.parent().unwrap_or(Path::new(""));
-    read_beside(folder, &image.name).is_some_and(|found| found == image.bytes)
-}
-
 /// Returns a name as a path if joining it to a folder stays within that folder.
 pub(crate) fn inner_path(name: &str) -> Option<PathBuf> {
     let path = Path::new(name);
-    let inside = path.components().all(|part| matches!(part, Component::Normal(_)));
-    (inside && !name.is_empty()).then(|| path.to_owned())
-}
-
-/// Reads the file of that name relative to a folder. Absolute names are rejected: they say nothing
-/// on a machine that the file was copied to.
-fn read_beside(folder: &Path, name: &str) -> Option<Vec<u8>> {
-    // Exporters on Windows write backslashes.
-    let names = [name.to_owned(), name.replace('\\', "/")];
-    let relative = names.iter().filter(|name| is_relative(Path::new(name)));
-    // Only regular files: reading a device might never end.
-    let file = relative.map(|name| folder.join(name)).find(|path| path.is_file());
-    fs::read(file?).ok()
-}
-
-fn is_relative(path: &Path) -> bool {
-    !path.components().any(|part| matches!(part, Component::RootDir | Component::Prefix(_)))
+    let mut parts = path.components().filter(|part| *part != Component::CurDir).peekable();
+    let is_empty = parts.peek().is_none();
+    let inside = parts.all(|part| matches!(part, Component::Normal(_)));
+    (inside && !is_empty).then(|| path.to_owned())
 }
 
 fn stem(path: &Path) -> String {

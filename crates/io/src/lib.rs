@@ -21,8 +21,10 @@ mod files;
 mod flatten;
 mod format;
 pub mod gltf;
+mod image_type;
 mod limits;
 mod line_writer;
+mod material;
 pub mod meshopt;
 mod notes;
 pub mod obj;
@@ -32,6 +34,7 @@ mod polygon;
 mod replace;
 mod scene;
 pub mod smf;
+mod staged;
 pub mod stl;
 mod text_cursor;
 mod vertex_attributes;
@@ -43,10 +46,11 @@ pub use files::{
 };
 pub use flatten::{MeshInstance, transform};
 pub use format::Format;
+pub use material::{Material, MtlMap, MtlStatement, Shading};
 pub use meshlod_mesh::{merge_equal_wedges, weld};
 pub use notes::{Note, NoteKind};
 pub use replace::{abandon_files, write_file};
-pub use scene::{Image, Material, Node, Scene, SceneMesh};
+pub use scene::{Image, Node, Scene, SceneMesh};
 
 /// Precision of the floating-point coordinates in a written file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

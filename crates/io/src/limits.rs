@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 
 use meshlod_mesh::{Layer, LayerKind, Mesh};
 
-use crate::{Format, MeshInstance, Note, Scene};
+use crate::obj::mtl::untold;
+use crate::{Format, Material, MeshInstance, Note, Scene, Shading};
 
 impl Scene {
     /// Lists what a file of this format cannot hold of the scene, or holds in another form; empty if
@@ -29,22 +30,83 @@ impl Scene {
 
     /// Lists what a new glTF document lacks.
     fn new_document_limits(&self) -> Vec<Note> {
-        let used = self.materials.iter().filter_map(|material| material.base_color_image);
-        let used: BTreeSet<usize> = used.collect();
-        let other = used
+        let shown = self.materials.iter().flat_map(|material| {
+            let Shading { normal_image, emission_image, .. } = material.shading;
+            let combined = material.shading.metallic_roughness_image();
+            [material.base_color_image, combined, normal_image, emission_image]
+        });
+        let shown: BTreeSet<usize> = shown.flatten().collect();
+        let other = shown
             .into_iter()
             .filter_map(|image| self.images.get(image))
             .filter(|image| !image.bytes.is_empty() && !crate::gltf::has_core_type(&image.bytes));
         let names: Vec<&str> = other.map(|image| &*image.name).collect();
-        let objects = self.object_names();
+        let [left_out, changed] = self.mtl_statements();
+        let [separate, opacity] = self.separate_images();
         vec![
+            left_out,
+            changed,
+            separate,
+            opacity,
             Note::left_out(
                 names.len(),
                 "image that is neither PNG nor JPEG",
                 "images that are neither PNG nor JPEG",
             )
             .named(names),
-            Note::left_out(objects.len(), "name of an object", "names of objects").named(objects),
+        ]
+    }
+
+    /// Notes the statements of MTL libraries that glTF lacks, and those that become something else.
+    fn mtl_statements(&self) -> [Note; 2] {
+        let untold = self.materials.iter().map(|material| untold(material, &self.images));
+        let untold: Vec<_> = untold.collect();
+        let note = |note: fn(usize, &str, &str) -> Note, words: Vec<&String>, one, many| {
+            let names: BTreeSet<&String> = words.iter().copied().collect();
+            note(words.len(), one, many).named(names)
+        };
+        let left_out = untold.iter().flat_map(|untold| &untold.left_out).collect();
+        let changed = untold.iter().flat_map(|untold| &untold.changed).collect();
+        [
+            note(Note::left_out, left_out, "MTL statement", "MTL statements"),
+            note(
+                Note::changed,
+                changed,
+                "MTL statement taken for a roughness or for normals",
+                "MTL statements taken for a roughness or for normals",
+            ),
+        ]
+    }
+
+    /// Notes the maps that glTF would need in one image, of materials that are not from an MTL
+    /// library.
+    fn separate_images(&self) -> [Note; 2] {
+        let own = self.materials.iter().filter(|material| material.mtl.is_empty());
+        let maps = own.clone().map(|material| {
+            let Shading { metallic_image, roughness_image, .. } = material.shading;
+            let has_combined = material.shading.metallic_roughness_image().is_some();
+            if has_combined {
+                0
+            } else {
+                [metallic_image, roughness_image].iter().flatten().count()
+            }
+        });
+        let maps = maps.sum();
+        let is_lost = |material: &&Material| {
+            let opacity = material.shading.opacity_image;
+            opacity.is_some() && opacity != material.base_color_image
+        };
+        [
+            Note::left_out(
+                maps,
+                "map of metalness or roughness in an image of its own",
+                "maps of metalness or roughness in images of their own",
+            ),
+            Note::left_out(
+                own.filter(is_lost).count(),
+                "map of opacity in an image of its own",
+                "maps of opacity in images of their own",
+            ),
         ]
     }
 
@@ -71,8 +133,8 @@ impl Scene {
         vec![
             Note::left_out(
                 richer.len(),
-                "material's properties other than colour and its texture",
-                "materials' properties other than colour and its texture",
+                "material's properties that MTL lacks",
+                "materials' properties that MTL lacks",
             )
             .named(richer),
         ]
@@ -86,8 +148,7 @@ impl Scene {
             .flat_map(|&mesh| self.meshes[mesh].materials.iter().flatten().copied())
             .collect();
         let materials = used.iter().filter_map(|&material| self.materials.get(material));
-        let images: BTreeSet<usize> =
-            materials.clone().filter_map(|m| m.base_color_image).collect();
+        let images: BTreeSet<usize> = materials.clone().flat_map(Material::images).collect();
         let images: Vec<&str> =
             images.iter().filter_map(|&i| self.images.get(i)).map(|i| &*i.name).collect();
         let objects = self.object_names();

@@ -38,9 +38,37 @@ pub(crate) fn replace<E: From<io::Error>>(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> Result<(), E>,
 ) -> Result<(), E> {
+    Ok(stage(path, fill)?.rename()?)
+}
+
+/// File that is complete under a temporary name, which is deleted on drop.
+pub(crate) struct Staged {
+    /// Temporary file and its place; `None` if it was written in place.
+    place: Option<(Temporary, PathBuf)>,
+}
+
+impl Staged {
+    /// Puts the file in its place.
+    pub fn rename(self) -> io::Result<()> {
+        match self.place {
+            Some((temporary, target)) => temporary.rename(&target),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Writes a file with `fill` under a temporary name beside its place.
+///
+/// # Errors
+/// Errors of [`replace`].
+pub(crate) fn stage<E: From<io::Error>>(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> Result<(), E>,
+) -> Result<Staged, E> {
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     if fs::metadata(&target).is_ok_and(|found| !found.is_file()) {
-        return fill_file(OpenOptions::new().write(true).open(&target)?, fill);
+        fill_file(OpenOptions::new().write(true).open(&target)?, fill)?;
+        return Ok(Staged { place: None });
     }
     let (temporary, file) = Temporary::beside(&target)?;
     if let Ok(found) = fs::metadata(&target) {
@@ -49,8 +77,7 @@ pub(crate) fn replace<E: From<io::Error>>(
         let _ = file.set_permissions(found.permissions());
     }
     fill_file(file, fill)?;
-    temporary.rename(&target)?;
-    Ok(())
+    Ok(Staged { place: Some((temporary, target)) })
 }
 
 fn fill_file<E: From<io::Error>>(
@@ -71,7 +98,13 @@ fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn forget(path: &Path) {
+/// Marks a file to be deleted by [`abandon_files`].
+pub(crate) fn mark_unfinished(path: &Path) {
+    unfinished().push(path.to_owned());
+}
+
+/// Takes the mark off a file.
+pub(crate) fn forget(path: &Path) {
     unfinished().retain(|other| other != path);
 }
 

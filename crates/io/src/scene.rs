@@ -2,8 +2,8 @@
 
 use meshlod_mesh::Mesh;
 
-use crate::Note;
 use crate::gltf::SourceDocument;
+use crate::{Material, Note};
 
 /// Contents of a mesh file: meshes, the nodes that place them, materials and images.
 ///
@@ -57,21 +57,6 @@ pub struct Node {
     pub children: Vec<usize>,
 }
 
-/// Material of a scene, reduced to its base colour and sides; other properties are kept only in the glTF
-/// source.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Material {
-    /// Name of the material in the file; empty if it has none.
-    pub name: String,
-    /// Base colour of the material, linear RGBA.
-    pub base_color: [f32; 4],
-    /// Texture that multiplies the base colour, by index into [`Scene::images`].
-    pub base_color_image: Option<usize>,
-    /// False if faces of this material are seen from the front only, where their corners run
-    /// counterclockwise. Only glTF has such materials.
-    pub is_double_sided: bool,
-}
-
 /// Image of a scene, still encoded as PNG, JPEG and the like.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Image {
@@ -88,17 +73,6 @@ pub(crate) const IDENTITY: [[f64; 4]; 4] =
 impl Default for Node {
     fn default() -> Self {
         Self { name: String::new(), transform: IDENTITY, mesh: None, children: Vec::new() }
-    }
-}
-
-impl Default for Material {
-    fn default() -> Self {
-        Self {
-            name: String::new(),
-            base_color: [1.0; 4],
-            base_color_image: None,
-            is_double_sided: true,
-        }
     }
 }
 

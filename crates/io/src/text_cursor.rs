@@ -94,7 +94,25 @@ impl<'a> TextCursor<'a> {
         let rest = &self.bytes[self.at..];
         let end = rest.iter().position(|&b| is_line_end(b)).unwrap_or(rest.len());
         self.at += end;
-        String::from_utf8_lossy(rest[..end].trim_ascii()).into_owned()
+        text_of(rest[..end].trim_ascii())
+    }
+
+    /// Returns the rest of the line, without its end and without minding backslashes.
+    pub(crate) fn raw_line(&mut self) -> &'a [u8] {
+        let rest = &self.bytes[self.at..];
+        let end = rest.iter().position(|&b| is_line_end(b)).unwrap_or(rest.len());
+        self.at += end;
+        &rest[..end]
+    }
+
+    /// Moves from the end of a line that [`TextCursor::raw_line`] gave to the next one; returns
+    /// false at the end of the text.
+    pub(crate) fn after_raw_line(&mut self) -> bool {
+        if self.at == self.bytes.len() {
+            return false;
+        }
+        self.end_line();
+        self.at < self.bytes.len()
     }
 
     /// Moves to the start of the next line, skipping the rest of the statement; returns false at
@@ -275,6 +293,14 @@ impl<'a> TextCursor<'a> {
         self.at += 1 + usize::from(pair);
         // The last line end starts no further line.
         self.line += usize::from(self.at < self.bytes.len());
+    }
+}
+
+/// Decodes bytes as UTF-8 or else, so that nothing is lost, as Latin-1.
+pub(crate) fn text_of(bytes: &[u8]) -> String {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => text.to_owned(),
+        Err(_) => bytes.iter().map(|&byte| char::from(byte)).collect(),
     }
 }
 

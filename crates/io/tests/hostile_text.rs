@@ -66,7 +66,7 @@ fn check(scene: &Scene) {
         assert!(layer.values.iter().all(|x| x.is_finite()), "{layer:?}");
     }
     let mut out = Vec::new();
-    obj::write(scene, Precision::F64, &mut out, None).unwrap();
+    obj::write(scene, Precision::F64, &mut out, &[]).unwrap();
     let again = obj::read(&out, &mut |_| None).unwrap();
     assert_eq!(again.meshes[0].mesh.positions, mesh.positions);
     assert_eq!(again.meshes[0].mesh.faces, mesh.faces);

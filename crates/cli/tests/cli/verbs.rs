@@ -42,14 +42,16 @@ fn what_a_format_cannot_hold_is_named_and_strictly_refused() {
         let note = &notes[i];
         ["file", "kind", "what"].map(|key| note[key].as_str().unwrap())
     };
-    assert_eq!(note(0), ["in.obj", "left out", "image that was not found"]);
+    assert_eq!(note(0), ["in.obj", "left out", "image that was not found or cannot be used"]);
     assert_eq!(note(1), ["out.stl", "left out", "material"]);
     assert_eq!(note(2), ["out.stl", "left out", "texture"]);
     std::fs::remove_file(run.path("out.stl")).unwrap();
     let strict = run.run(&[&simplify[..], &["--strict"]].concat());
     assert_eq!(strict.code, 1);
     assert!(
-        strict.only_line().ends_with("in.obj: left out: 1 image that was not found (gone.png)")
+        strict
+            .only_line()
+            .ends_with("in.obj: left out: 1 image that was not found or cannot be used (gone.png)")
     );
     assert!(!run.path("out.stl").exists());
 }

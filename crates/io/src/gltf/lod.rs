@@ -35,7 +35,7 @@ pub enum LodLayout {
 
 /// Levels of a scene and their layout; [`Levels::default`] has no levels.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Levels<'a> {
+pub(crate) struct Levels<'a> {
     pub levels: &'a [Level],
     pub layout: LodLayout,
 }

@@ -1,37 +1,123 @@
-//! Reading the base colours, sides and images of a glTF document.
+//! Reading the materials and images of a glTF document.
 
 use serde_json::Value;
 
 use super::document::{Document, missing};
 use super::new_document::mime_type;
-use super::schema::{self, Texture};
+use super::schema::{self, Texture, TextureUse};
 use super::uri::{self, Uri};
-use crate::{Image, Material, ParseError, Resolve};
+use crate::{Image, Material, ParseError, Resolve, Shading};
+
+/// Extension for emitted light brighter than 1.
+pub(super) const EMISSIVE_STRENGTH: &str = "KHR_materials_emissive_strength";
 
 /// Reads the materials; every image they refer to must be below `images`.
 pub(super) fn materials(json: &Value, images: usize) -> Result<Vec<Material>, ParseError> {
     let textures: Vec<Texture> = schema::array(json, "textures", "texture")?;
     let materials: Vec<schema::GltfMaterial> = schema::array(json, "materials", "material")?;
-    let read = |material: schema::GltfMaterial| {
-        let surface = material.pbr_metallic_roughness;
-        let base_color_image = match surface.base_color_texture {
-            None => None,
-            Some(texture) => match textures.get(texture.index) {
-                None => return Err(missing("texture", texture.index, textures.len())),
-                Some(texture) => texture.source,
-            },
+    let image_of = |texture: &Option<TextureUse>| {
+        let Some(texture) = texture else { return Ok(None) };
+        let Some(found) = textures.get(texture.index) else {
+            return Err(missing("texture", texture.index, textures.len()));
         };
-        if let Some(image) = base_color_image.filter(|&image| image >= images) {
-            return Err(missing("image", image, images));
+        match found.source.filter(|&image| image >= images) {
+            Some(image) => Err(missing("image", image, images)),
+            None => Ok(found.source),
         }
+    };
+    let read = |material: schema::GltfMaterial| {
+        let pbr = &material.pbr_metallic_roughness;
+        let base_color_image = image_of(&pbr.base_color_texture)?;
         Ok(Material {
-            name: material.name.unwrap_or_default(),
-            base_color: surface.base_color_factor.unwrap_or([1.0; 4]),
+            base_color: pbr.base_color_factor.unwrap_or([1.0; 4]),
             base_color_image,
             is_double_sided: material.double_sided,
+            shading: shading(&material, base_color_image, image_of)?,
+            name: material.name.unwrap_or_default(),
+            mtl: Vec::new(),
         })
     };
     materials.into_iter().map(read).collect()
+}
+
+fn shading(
+    material: &schema::GltfMaterial,
+    base_color_image: Option<usize>,
+    image_of: impl Fn(&Option<TextureUse>) -> Result<Option<usize>, ParseError>,
+) -> Result<Shading, ParseError> {
+    let pbr = &material.pbr_metallic_roughness;
+    let combined = image_of(&pbr.metallic_roughness_texture)?;
+    let strength = material.extensions.get(EMISSIVE_STRENGTH);
+    let strength = strength.and_then(|own| own.get("emissiveStrength")?.as_f64()).unwrap_or(1.0);
+    let is_opaque = material.alpha_mode.as_deref().is_none_or(|mode| mode == "OPAQUE");
+    let scale = material.normal_texture.as_ref().and_then(|texture| texture.scale);
+    // A number may be too large for 32 bits.
+    let finite = |x: f32| if x.is_finite() { x } else { 1.0 };
+    Ok(Shading {
+        metallic: finite(pbr.metallic_factor.unwrap_or(1.0)),
+        metallic_image: combined,
+        roughness: finite(pbr.roughness_factor.unwrap_or(1.0)),
+        roughness_image: combined,
+        normal_image: image_of(&material.normal_texture)?,
+        normal_scale: finite(scale.unwrap_or(1.0)),
+        emission: material.emissive_factor.unwrap_or_default().map(|x| finite(x * strength as f32)),
+        emission_image: image_of(&material.emissive_texture)?,
+        opacity_image: base_color_image.filter(|_| !is_opaque),
+    })
+}
+
+/// Lists the materials of a document that have more than [`materials`] reads, by name or as
+/// `material 3`.
+pub(super) fn richer_materials(json: &Value) -> Vec<String> {
+    let materials = json.get("materials").and_then(Value::as_array);
+    let richer = materials.into_iter().flatten().enumerate().filter(|(_, own)| is_richer(own));
+    let name = |(i, material): (usize, &Value)| match material["name"].as_str() {
+        Some(name) if !name.is_empty() => name.to_owned(),
+        _ => format!("material {i}"),
+    };
+    richer.map(name).collect()
+}
+
+fn is_richer(material: &Value) -> bool {
+    const OF_MATERIAL: [&str; 10] = [
+        "name",
+        "extras",
+        "doubleSided",
+        "alphaMode",
+        "alphaCutoff",
+        "pbrMetallicRoughness",
+        "normalTexture",
+        "emissiveFactor",
+        "emissiveTexture",
+        "extensions",
+    ];
+    const OF_SURFACE: [&str; 5] = [
+        "baseColorFactor",
+        "baseColorTexture",
+        "metallicFactor",
+        "roughnessFactor",
+        "metallicRoughnessTexture",
+    ];
+    let has_more = |json: Option<&Value>, known: &[&str]| {
+        let json = json.and_then(Value::as_object);
+        json.is_some_and(|json| json.keys().any(|key| !known.contains(&&**key)))
+    };
+    let pbr = material.get("pbrMetallicRoughness");
+    let textures = [
+        material.get("normalTexture"),
+        material.get("emissiveTexture"),
+        pbr.and_then(|pbr| pbr.get("baseColorTexture")),
+        pbr.and_then(|pbr| pbr.get("metallicRoughnessTexture")),
+    ];
+    // Transforms and further sets of texture coordinates.
+    let is_moved = |texture: &Value| {
+        let is_other = |set: &Value| set.as_u64() != Some(0);
+        texture.get("extensions").is_some() || texture.get("texCoord").is_some_and(is_other)
+    };
+    has_more(Some(material), &OF_MATERIAL)
+        || has_more(pbr, &OF_SURFACE)
+        || has_more(material.get("extensions"), &[EMISSIVE_STRENGTH])
+        || textures.into_iter().flatten().any(is_moved)
 }
 
 /// Reads the images, still encoded. An image whose file is missing gets no bytes, which costs the

@@ -13,7 +13,9 @@ mod lod;
 mod materials;
 mod mesh;
 mod new_document;
+mod new_material;
 mod nodes;
+mod object_nodes;
 mod parts;
 mod primitive_rows;
 mod primitives;
@@ -30,6 +32,7 @@ mod vertex_cache;
 mod write;
 
 pub use compress::{Bytes, Compression, CompressionReport};
+pub(crate) use lod::Levels;
 pub use lod::{Level, LodLayout};
 pub(crate) use new_document::has_core_type;
 pub use parts::{QuantizedPart, write_parts_glb};
@@ -37,7 +40,10 @@ pub use primitive_rows::PrimitiveRows;
 pub use read::{SourceDocument, read};
 pub use skeleton::Skeleton;
 pub use skeleton_images::SkeletonImage;
+pub(crate) use strips::strip_files;
 pub use strips::{StripCorner, StripMesh, write_strips, write_strips_glb};
+pub(crate) use uri::{Uri, of_file as encode_name, parse as parse_uri};
+pub(crate) use write::files;
 pub use write::{
-    GltfFiles, write, write_compressed, write_compressed_glb, write_glb, write_lods, write_lods_glb,
+    GltfFiles, write, write_compressed, write_compressed_glb, write_glb, write_lods_glb,
 };

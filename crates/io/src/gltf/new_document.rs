@@ -3,25 +3,29 @@
 use serde_json::{Map, Value, json};
 
 use super::buffer_builder::BufferBuilder;
+use super::materials::EMISSIVE_STRENGTH;
+use super::new_material;
 use crate::scene::IDENTITY;
-use crate::{Image, Material, Node, Scene, SceneMesh};
+use crate::{Image, Node, Scene, SceneMesh};
 
-/// Builds the JSON of a scene without geometry; each mesh has an empty primitive per material
-/// label.
-pub(super) fn document(scene: &Scene, builder: &mut BufferBuilder) -> Value {
+/// Builds the JSON of a scene with these images, without geometry; each mesh has an empty primitive
+/// per material label.
+pub(super) fn document(scene: &Scene, all: &[Image], builder: &mut BufferBuilder) -> Value {
     let mut images = Images::default();
+    let mut texture = |image| images.texture(image, all, builder);
     let materials: Vec<Value> =
-        scene.materials.iter().map(|m| material(m, images.texture(m, scene, builder))).collect();
+        scene.materials.iter().map(|m| new_material::material(m, &mut texture)).collect();
     with_nodes(scene, materials, images.json)
 }
 
 /// Builds the JSON of a scene as one that only [`Skeleton`](super::Skeleton) reads: with all images,
-/// by name, and base colours of any size.
+/// by name, and all that materials have.
 pub(super) fn skeleton(scene: &Scene) -> Value {
     let materials = scene.materials.iter().map(|own| {
-        let mut json = material(own, own.base_color_image);
+        let mut json = new_material::material(own, &mut |image| image);
         let color = own.base_color.map(|x| if x.is_finite() { x } else { 1.0 });
         json["pbrMetallicRoughness"]["baseColorFactor"] = json!(color);
+        new_material::keep_all(own, &mut json);
         json
     });
     let images = scene.images.iter().map(|image| json!({ "name": image.name }));
@@ -45,6 +49,9 @@ fn with_nodes(scene: &Scene, materials: Vec<Value>, images: Vec<Value>) -> Value
         "scene": 0,
         "scenes": [if scene.roots.is_empty() { json!({}) } else { json!({ "nodes": scene.roots }) }],
     });
+    if materials.iter().any(|material| material.get("extensions").is_some()) {
+        json["extensionsUsed"] = json!([EMISSIVE_STRENGTH]);
+    }
     for (key, values) in [
         ("nodes", scene.nodes.iter().map(node).collect()),
         ("meshes", scene.meshes.iter().map(mesh).collect()),
@@ -85,44 +92,24 @@ struct Images {
 }
 
 impl Images {
-    /// Returns the texture of a material; `None` if its image is neither PNG nor JPEG.
+    /// Returns the texture of an image; `None` if that is neither PNG nor JPEG.
     fn texture(
         &mut self,
-        material: &Material,
-        scene: &Scene,
+        index: Option<usize>,
+        all: &[Image],
         builder: &mut BufferBuilder,
     ) -> Option<usize> {
-        let index = material.base_color_image?;
+        let index = index?;
         if let Some(&texture) = self.of_scene.get(&index) {
             return Some(texture);
         }
-        let image = scene.images.get(index)?;
+        let image = all.get(index)?;
         let kind = mime_type(&image.bytes).filter(|_| has_core_type(&image.bytes))?;
         let view = builder.add_view(&image.bytes);
         self.json.push(json!({ "name": image.name, "bufferView": view, "mimeType": kind }));
         self.of_scene.insert(index, self.json.len() - 1);
         Some(self.json.len() - 1)
     }
-}
-
-fn material(material: &Material, texture: Option<usize>) -> Value {
-    let mut surface = json!({
-        "baseColorFactor": material.base_color.map(|x| if x.is_finite() { x.clamp(0.0, 1.0) } else { 1.0 }),
-        "metallicFactor": 0,
-        "roughnessFactor": 1,
-    });
-    if let Some(texture) = texture {
-        surface["baseColorTexture"] = json!({ "index": texture });
-    }
-    let mut json = named(&material.name);
-    json.insert("pbrMetallicRoughness".into(), surface);
-    if material.base_color[3] < 1.0 {
-        json.insert("alphaMode".into(), "BLEND".into());
-    }
-    if material.is_double_sided {
-        json.insert("doubleSided".into(), true.into());
-    }
-    json.into()
 }
 
 fn node(node: &Node) -> Value {
@@ -150,7 +137,7 @@ fn mesh(mesh: &SceneMesh) -> Value {
     json.into()
 }
 
-fn named(name: &str) -> Map<String, Value> {
+pub(super) fn named(name: &str) -> Map<String, Value> {
     let mut json = Map::new();
     if !name.is_empty() {
         json.insert("name".into(), name.into());

@@ -21,25 +21,10 @@ impl SourceDocument {
         self.0.json.get(array).and_then(Value::as_array).map_or(0, Vec::len)
     }
 
-    /// Lists the materials that have more than a base colour, its texture and sides, by name or as
-    /// `material 3`.
+    /// Lists the materials that have properties which [`Material`](crate::Material) lacks, by name or
+    /// as `material 3`.
     pub(crate) fn richer_materials(&self) -> Vec<String> {
-        const OF_MATERIAL: [&str; 6] =
-            ["name", "extras", "doubleSided", "alphaMode", "alphaCutoff", "pbrMetallicRoughness"];
-        const OF_SURFACE: [&str; 2] = ["baseColorFactor", "baseColorTexture"];
-        let has_more = |json: &Value, known: &[&str]| {
-            json.as_object().is_some_and(|json| json.keys().any(|key| !known.contains(&&**key)))
-        };
-        let materials = self.0.json.get("materials").and_then(Value::as_array);
-        let richer = materials.into_iter().flatten().enumerate().filter(|(_, material)| {
-            has_more(material, &OF_MATERIAL)
-                || material.get("pbrMetallicRoughness").is_some_and(|s| has_more(s, &OF_SURFACE))
-        });
-        let name = |(i, material): (usize, &Value)| match material["name"].as_str() {
-            Some(name) if !name.is_empty() => name.to_owned(),
-            _ => format!("material {i}"),
-        };
-        richer.map(name).collect()
+        materials::richer_materials(&self.0.json)
     }
 }
 

@@ -156,6 +156,12 @@ pub(super) struct GltfMaterial {
     pub pbr_metallic_roughness: MetallicRoughness,
     #[serde(default)]
     pub double_sided: bool,
+    pub normal_texture: Option<TextureUse>,
+    pub emissive_texture: Option<TextureUse>,
+    pub emissive_factor: Option<[f32; 3]>,
+    pub alpha_mode: Option<String>,
+    #[serde(default)]
+    pub extensions: Map<String, Value>,
 }
 
 /// `materials[i].pbrMetallicRoughness`.
@@ -164,12 +170,17 @@ pub(super) struct GltfMaterial {
 pub(super) struct MetallicRoughness {
     pub base_color_factor: Option<[f32; 4]>,
     pub base_color_texture: Option<TextureUse>,
+    pub metallic_factor: Option<f32>,
+    pub roughness_factor: Option<f32>,
+    pub metallic_roughness_texture: Option<TextureUse>,
 }
 
 /// Reference of a material to a texture.
 #[derive(Debug, Deserialize)]
 pub(super) struct TextureUse {
     pub index: usize,
+    /// Factor of the x and y coordinates of normals.
+    pub scale: Option<f32>,
 }
 
 /// `textures[i]`.

@@ -8,11 +8,11 @@ use serde_json::{Value, json};
 use super::accessor_use::{animation_accessors, free_accessors};
 use super::buffer_builder::{copy_views, mark_views};
 use super::document::{self, Buffers, Document};
-use super::new_document;
 use super::read::{Contents, SourceDocument};
 use super::skeleton_images::{SkeletonImage, attach_images, detach_images, preview_name};
 use super::write::{check_meshes, unreadable};
 use super::{materials, mesh, nodes};
+use super::{new_document, new_material};
 use crate::{ParseError, Scene, SceneMesh, Unsupported, Weld};
 
 /// Scene without the geometry of some of its meshes and without its images, as bytes.
@@ -108,6 +108,9 @@ impl Skeleton {
             }
         }
         scene.materials = materials::materials(&json, scene.images.len())?;
+        if !self.is_gltf {
+            new_material::take_all(&json, scene.images.len(), &mut scene.materials)?;
+        }
         for (index, &is_empty) in self.emptied.iter().enumerate() {
             scene.meshes.push(scene_mesh(&document, index, is_empty, scene.materials.len())?);
         }

@@ -8,7 +8,7 @@ use super::buffer_builder::BufferBuilder;
 use super::compress::CompressionReport;
 use super::document::Document;
 use super::primitives::{Replacer, by_attribute, is_surface, known_attributes};
-use super::write::{GltfFiles, Output, check_meshes, unreadable};
+use super::write::{GltfFiles, Output, buffer_name, check_meshes, unreadable};
 use super::{encode, lod, new_document};
 use crate::{Scene, Unsupported};
 
@@ -52,14 +52,23 @@ pub fn write_strips(
     strips: &[StripMesh],
     stem: &str,
 ) -> Result<GltfFiles, Unsupported> {
-    Output::of_strips(scene, strips)?.into_files(scene, stem)
+    strip_files(scene, strips, &|_| buffer_name(stem))
+}
+
+/// Encodes a scene as [`write_strips`] does; `name` names the buffer by its bytes.
+pub(crate) fn strip_files(
+    scene: &Scene,
+    strips: &[StripMesh],
+    name: &dyn Fn(&[u8]) -> String,
+) -> Result<GltfFiles, Unsupported> {
+    Output::of_strips(scene, strips)?.into_files(scene, name)
 }
 
 impl Output {
     fn of_strips(scene: &Scene, strips: &[StripMesh]) -> Result<Self, Unsupported> {
         let Some(source) = &scene.source else {
             let mut builder = BufferBuilder::default();
-            let json = new_document::document(scene, &mut builder);
+            let json = new_document::document(scene, &scene.images, &mut builder);
             return finish(json, scene, Replacer::new(None, builder), strips);
         };
         let source = &source.0;

@@ -7,7 +7,7 @@ use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, utf8_perc
 
 /// Parsed URI.
 #[derive(Debug, PartialEq)]
-pub(super) enum Uri {
+pub(crate) enum Uri {
     /// Bytes of a `data:` URI.
     Data(Vec<u8>),
     /// File name relative to the document, percent-decoded.
@@ -15,7 +15,7 @@ pub(super) enum Uri {
 }
 
 /// Parses a `data:` URI or a relative file name; absolute URLs such as `https:` are errors.
-pub(super) fn parse(uri: &str) -> Result<Uri, String> {
+pub(crate) fn parse(uri: &str) -> Result<Uri, String> {
     if let Some(data) = strip_scheme(uri, "data:") {
         return data_bytes(data).map(Uri::Data);
     }
@@ -29,7 +29,7 @@ pub(super) fn parse(uri: &str) -> Result<Uri, String> {
 }
 
 /// Encodes a file name as a URI.
-pub(super) fn of_file(name: &str) -> String {
+pub(crate) fn of_file(name: &str) -> String {
     const KEPT: &AsciiSet =
         &NON_ALPHANUMERIC.remove(b'-').remove(b'_').remove(b'.').remove(b'~').remove(b'/');
     utf8_percent_encode(name, KEPT).to_string()

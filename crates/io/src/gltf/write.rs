@@ -8,6 +8,7 @@ use super::buffer_builder::BufferBuilder;
 use super::compress::{self, Compression, CompressionReport};
 use super::document::Document;
 use super::lod::{self, Level, Levels, LodLayout};
+use super::object_nodes::split_objects;
 use super::primitives::Replacer;
 use super::read::Contents;
 use super::uri::{self, Uri};
@@ -32,7 +33,7 @@ pub struct GltfFiles {
 /// extensions and everything else pass through. An unchanged mesh keeps its arrays bit for bit; a
 /// changed one gets new arrays (f32, 16-bit indices where possible, colours in their old type). The
 /// buffer is rebuilt without what is no longer used. Any other scene gets a new document with its
-/// nodes, materials, PNGs and JPEGs. A mesh without faces keeps one degenerate triangle, as glTF
+/// nodes, materials, PNGs and JPEGs, in which each object of a mesh is a node and a mesh. A mesh without faces keeps one degenerate triangle, as glTF
 /// does not allow empty meshes.
 ///
 /// With levels, every node with a mesh is named `…_LOD0` and linked by the extension `MSFT_lod` to
@@ -72,7 +73,8 @@ pub fn write_lods_glb(
 /// integers; others stay floats. Colours in [0, 1] become bytes, unless the file had shorts.
 /// Everything else is kept. Faces and vertices are sorted for the vertex cache. With
 /// [`Compression::meshopt`], the geometry is stored in meshopt streams, and texture coordinates
-/// outside [0, 1] are rounded to the requested bits as well. Images and animations are kept.
+/// outside [0, 1] are rounded to the requested bits as well. Images and animations are kept. The
+/// objects of a mesh stay one mesh, and have no names.
 ///
 /// # Errors
 /// Errors of [`write_glb`]; also bit counts out of range.
@@ -95,20 +97,7 @@ pub fn write_compressed_glb(
 /// # Errors
 /// Errors of [`write_glb`], except for the size.
 pub fn write(scene: &Scene, levels: &[Level], stem: &str) -> Result<GltfFiles, Unsupported> {
-    Output::of(scene, levels.into(), None)?.into_files(scene, stem)
-}
-
-/// Encodes a scene and its coarser levels of detail as [`write()`] does, laid out as asked.
-///
-/// # Errors
-/// Errors of [`write()`].
-pub fn write_lods(
-    scene: &Scene,
-    levels: &[Level],
-    layout: LodLayout,
-    stem: &str,
-) -> Result<GltfFiles, Unsupported> {
-    Output::of(scene, Levels { levels, layout }, None)?.into_files(scene, stem)
+    Ok(files(scene, levels.into(), None, &|_| buffer_name(stem))?.0)
 }
 
 /// Encodes a scene as a compressed `.gltf` file and the files that belong to it.
@@ -123,9 +112,23 @@ pub fn write_compressed(
     stem: &str,
     compression: &Compression,
 ) -> Result<(GltfFiles, CompressionReport), Unsupported> {
-    let mut output = Output::of(scene, levels.into(), Some(compression))?;
+    files(scene, levels.into(), Some(compression), &|_| buffer_name(stem))
+}
+
+/// Encodes a scene as [`write()`] or [`write_compressed`] does; `name` names the buffer by its bytes.
+pub(crate) fn files(
+    scene: &Scene,
+    levels: Levels<'_>,
+    compression: Option<&Compression>,
+    name: &dyn Fn(&[u8]) -> String,
+) -> Result<(GltfFiles, CompressionReport), Unsupported> {
+    let mut output = Output::of(scene, levels, compression)?;
     let report = std::mem::take(&mut output.report);
-    Ok((output.into_files(scene, stem)?, report))
+    Ok((output.into_files(scene, name)?, report))
+}
+
+pub(super) fn buffer_name(stem: &str) -> String {
+    format!("{stem}.bin")
 }
 
 /// Document with its new geometry, before its buffer is attached.
@@ -146,7 +149,15 @@ impl Output {
             Some(source) => Self::with_source(scene, &source.0, levels, compression),
             None => {
                 let mut builder = BufferBuilder::default();
-                let json = new_document::document(scene, &mut builder);
+                // Objects on grids of their own would come apart where they meet.
+                let split =
+                    compression.is_none().then(|| split_objects(scene, levels.levels)).flatten();
+                let (whole, images) = (scene, &scene.images);
+                let split = split
+                    .as_ref()
+                    .map(|split| (&split.scene, Levels { levels: &split.levels, ..levels }));
+                let (scene, levels) = split.unwrap_or((whole, levels));
+                let json = new_document::document(scene, images, &mut builder);
                 let all = vec![true; scene.meshes.len()];
                 let mut replacer = Replacer::new(None, builder);
                 replacer.compression = compression;
@@ -220,12 +231,17 @@ impl Output {
         container::join(&to_bytes(self.json)?, &buffer)
     }
 
-    pub fn into_files(mut self, scene: &Scene, stem: &str) -> Result<GltfFiles, Unsupported> {
+    /// Makes files of the document; `name` names the buffer by its bytes.
+    pub fn into_files(
+        mut self,
+        scene: &Scene,
+        name: &dyn Fn(&[u8]) -> String,
+    ) -> Result<GltfFiles, Unsupported> {
         // An image outside the folder is embedded: that file is not ours to write.
         self.embed_images(scene, |name| crate::files::inner_path(name).is_none());
         let images = self.external_images(scene);
         let bytes = self.builder.finish(&mut self.json);
-        let name = format!("{stem}.bin");
+        let name = name(&bytes);
         if let Some(buffer) = self.json.get_mut("buffers") {
             buffer[0]["uri"] = uri::of_file(&name).into();
         }

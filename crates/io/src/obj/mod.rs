@@ -4,8 +4,9 @@
 //! the `vt` and `vn` values there become wedges. `o` and `g` become objects, `usemtl` materials.
 
 mod labels;
-mod mtl;
+pub(crate) mod mtl;
 mod read;
+mod skipped;
 #[cfg(test)]
 mod tests;
 mod wedges;

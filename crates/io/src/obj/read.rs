@@ -5,10 +5,11 @@ use std::num::NonZeroU32;
 use meshlod_mesh::{Mesh, VertexId};
 
 use super::labels::LabelRuns;
-use super::mtl::{self, Library};
+use super::mtl::{Library, resolve_materials};
+use super::skipped::Skipped;
 use super::wedges::{self, CornerIds, Pools};
 use crate::polygon::triangulate;
-use crate::text_cursor::{TextCursor, quoted};
+use crate::text_cursor::{TextCursor, quoted, text_of};
 use crate::{Node, ParseError, Scene, SceneMesh};
 
 /// Parses an OBJ file as one mesh under one node; `resolve` loads the material library and the
@@ -17,13 +18,14 @@ use crate::{Node, ParseError, Scene, SceneMesh};
 /// Polygons are triangulated. A `v` gives three coordinates and, if present, a colour; a `vt` gives
 /// two coordinates. Values of `vt`, `vn` and colours that are not finite become 0, as do those of
 /// corners that lack what others have. Colours above 1 are taken to be out of 255. `o` wins over
-/// `g`. A material whose library or image is missing keeps its name. Lines, points, curves and
-/// everything else that is not a face are ignored.
+/// `g`. A material whose library or image is missing keeps its name. Materials that no face uses come
+/// last. Lines, points, curves, smoothing groups, faces with fewer than three corners and everything
+/// else that is not a face are counted in [`Scene::notes`].
 ///
 /// Cost: O(n), n = bytes, plus that of triangulating concave polygons.
 /// # Errors
 /// The line and the reason: an invalid number, a coordinate that is not finite, an index out of
-/// range, a face with fewer than three corners. Also a file without faces, or one that is not text.
+/// range. Also a file without faces of three corners, or one that is not text.
 pub fn read(
     bytes: &[u8],
     resolve: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
@@ -65,6 +67,9 @@ struct ObjReader<'a> {
     materials: LabelRuns,
     has_object: bool,
     libraries: Vec<String>,
+    skipped: Skipped,
+    /// Error of the first face with too few corners, for a file without others.
+    first_thin: Option<ParseError>,
     /// Current polygon, its vertices and its triangles.
     polygon: Vec<Corner>,
     outline: Vec<u32>,
@@ -84,6 +89,8 @@ impl<'a> ObjReader<'a> {
             materials: LabelRuns::default(),
             has_object: false,
             libraries: Vec::new(),
+            skipped: Skipped::default(),
+            first_thin: None,
             polygon: Vec::new(),
             outline: Vec::new(),
             triangles: Vec::new(),
@@ -108,7 +115,10 @@ impl<'a> ObjReader<'a> {
             b"g" => {
                 let name = self.text.name();
                 if !self.has_object {
-                    self.objects.set(self.faces.len(), name);
+                    self.objects.set(self.faces.len(), name.clone());
+                }
+                if !name.is_empty() {
+                    self.skipped.groups.insert(name);
                 }
                 Ok(())
             }
@@ -122,8 +132,16 @@ impl<'a> ObjReader<'a> {
                 self.libraries.push(name);
                 Ok(())
             }
-            // Lines, curves, smoothing groups, and vendor extensions of the format.
-            other if is_keyword(other) => Ok(()),
+            b"s" => {
+                let group = text_of(self.text.word());
+                self.skipped.smoothing(group);
+                Ok(())
+            }
+            // Lines, curves, and vendor extensions of the format.
+            other if is_keyword(other) => {
+                self.skipped.statement(other);
+                Ok(())
+            }
             other => Err(self.text.error(format!("{} is not an OBJ statement", quoted(other)))),
         }
     }
@@ -147,8 +165,11 @@ impl<'a> ObjReader<'a> {
             extras[count] = self.text.attribute("")?;
             count += 1;
         }
-        if count >= 3 {
-            let [r, g, b, _] = extras;
+        if count < 3 {
+            self.skipped.weights += usize::from(count > 0 && extras[0] != 1.0);
+        } else {
+            let [r, g, b, a] = extras;
+            self.skipped.opacities += usize::from(count == 4 && a != 1.0 && a != 255.0);
             self.pools.add_color(self.positions.len(), [r, g, b]);
         }
         Ok(())
@@ -158,6 +179,9 @@ impl<'a> ObjReader<'a> {
         let u = self.text.attribute("a texture coordinate needs a number")?;
         let v = if self.text.more() { self.text.attribute("")? } else { 0.0 };
         self.pools.uvs.push([u, v]);
+        if self.text.more() {
+            self.skipped.depths += usize::from(!self.text.attribute("").is_ok_and(|w| w == 0.0));
+        }
         Ok(())
     }
 
@@ -178,10 +202,7 @@ impl<'a> ObjReader<'a> {
             self.polygon.push(corner);
         }
         if self.polygon.len() < 3 {
-            let found = self.polygon.len();
-            return Err(self
-                .text
-                .error(format!("a face needs at least three corners, but this one has {found}")));
+            return self.thin_face();
         }
         let first_face = self.faces.len();
         if first_face + self.polygon.len() > u32::MAX as usize / 3 {
@@ -205,6 +226,17 @@ impl<'a> ObjReader<'a> {
             let corners = self.polygon.clone();
             self.forward.push(Forward { line: self.text.line(), first_face, corners });
         }
+        Ok(())
+    }
+
+    /// Skips a face with too few corners.
+    #[cold]
+    fn thin_face(&mut self) -> Result<(), ParseError> {
+        let found = self.polygon.len();
+        let reason = format!("a face needs at least three corners, but this one has {found}");
+        let error = self.text.error(reason);
+        self.first_thin.get_or_insert(error);
+        self.skipped.thin_faces += 1;
         Ok(())
     }
 
@@ -266,9 +298,8 @@ impl<'a> ObjReader<'a> {
         self.settle_forward()?;
         if self.faces.is_empty() {
             let points = self.positions.len();
-            return Err(self
-                .text
-                .error(format!("the file ends without faces ({points} vertices)")));
+            let reason = format!("the file ends without faces ({points} vertices)");
+            return Err(self.first_thin.unwrap_or_else(|| self.text.error(reason)));
         }
         let objects = self.objects.finish(self.faces.len());
         let materials = self.materials.finish(self.faces.len());
@@ -279,15 +310,18 @@ impl<'a> ObjReader<'a> {
             library.add(name, resolve)?;
         }
         let used = materials.as_ref().map_or(&[][..], |labels| &labels.names);
-        let resolved = mtl::materials(used, &library, resolve);
+        let resolved = resolve_materials(used, &library, resolve);
         let mesh =
             Mesh { positions: self.positions, faces: self.faces, attributes, materials, objects };
+        let mut notes = self.skipped.notes(self.has_object);
+        notes.extend(resolved.notes);
         Ok(Scene {
             meshes: vec![SceneMesh { name: String::new(), mesh, materials: resolved.labels }],
             nodes: vec![Node { mesh: Some(0), ..Node::default() }],
             roots: vec![0],
             materials: resolved.materials,
             images: resolved.images,
+            notes,
             ..Scene::default()
         })
     }

@@ -9,8 +9,8 @@ use super::mtl::{names, one_line};
 use crate::line_writer::LineWriter;
 use crate::{Precision, Scene};
 
-/// Writes all meshes that a scene shows, in world space, as one OBJ file; `mtl_name` is the file
-/// name of the material library that [`write_mtl`](super::write_mtl) writes.
+/// Writes all meshes that a scene shows, in world space, as one OBJ file; `libraries` are the file
+/// names of the material libraries, such as the one that [`write_mtl`](super::write_mtl) writes.
 ///
 /// Equal uvs and equal normals are written once. Colours follow the positions; a vertex gets the
 /// colour of its first wedge. Objects become `o`, materials `usemtl`, with names made unique.
@@ -22,11 +22,11 @@ pub fn write(
     scene: &Scene,
     precision: Precision,
     out: &mut dyn Write,
-    mtl_name: Option<&str>,
+    libraries: &[String],
 ) -> io::Result<()> {
     let mesh = scene.flatten();
     let mut lines = LineWriter::new(out, precision);
-    if let Some(name) = mtl_name {
+    for name in libraries {
         lines.word("mtllib");
         lines.word(name);
         lines.end()?;
@@ -110,7 +110,7 @@ impl<'a> Changes<'a> {
     /// `names` replace the first names of the labels.
     fn new(word: &'static str, labels: Option<&'a Labels>, names: &[String]) -> Self {
         let own = labels.map_or(&[][..], |labels| &labels.names);
-        let rest = own.iter().skip(names.len()).map(|name| one_line(name));
+        let rest = own.iter().skip(names.len()).map(|name| one_line(name, str::trim));
         Self { word, labels, names: names.iter().cloned().chain(rest).collect(), current: None }
     }
 
@@ -170,9 +170,10 @@ mod tests {
     use super::*;
     use crate::obj::{read, write_mtl};
 
-    fn written(scene: &Scene, precision: Precision, mtl_name: Option<&str>) -> String {
+    fn written(scene: &Scene, precision: Precision, library: Option<&str>) -> String {
         let mut out = Vec::new();
-        write(scene, precision, &mut out, mtl_name).unwrap();
+        let libraries: Vec<String> = library.into_iter().map(str::to_owned).collect();
+        write(scene, precision, &mut out, &libraries).unwrap();
         String::from_utf8(out).unwrap()
     }
 
@@ -191,7 +192,7 @@ mod tests {
                 b"newmtl red\nKd 1 0 0\nd 1\nnewmtl wood grain\nKd 1 1 1\nd 0.5\nmap_Kd w.png\n"
                     .to_vec(),
             ),
-            "w.png" => Some(vec![7]),
+            "w.png" => Some(b"\x89PNG".to_vec()),
             _ => None,
         }
     }

@@ -74,6 +74,7 @@ fn scene() -> Scene {
         base_color: [0.5, 0.25, 1.0, alpha],
         base_color_image: image,
         is_double_sided: false,
+        ..Material::default()
     };
     Scene {
         meshes: vec![
@@ -91,7 +92,7 @@ fn scene() -> Scene {
         roots: vec![0, 3, 4],
         materials: vec![material("red", Some(1), 1.0), material("glass", Some(0), 0.5)],
         images: vec![noise(64), noise(200)],
-        source: None,
+        ..Scene::default()
     }
 }
 

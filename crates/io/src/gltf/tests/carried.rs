@@ -152,6 +152,7 @@ fn a_plain_scene_comes_back_with_seams_materials_and_images() {
         name,
         base_color: [0.5, 0.25, 1.0, 1.0],
         base_color_image: Some(0),
+        ..Material::default()
     });
     scene.materials = vec![front, back];
     scene.images = vec![Image { name: "a.png".into(), bytes: b"\x89PNG1234".to_vec() }];

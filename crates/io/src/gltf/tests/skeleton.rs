@@ -155,6 +155,7 @@ fn scenes_of_other_formats_come_back() {
         base_color: [1.5, 0.1, 0.0, 0.3],
         base_color_image: image,
         is_double_sided: image.is_none(),
+        ..Material::default()
     };
     let image = |name: &str| crate::Image { name: name.into(), bytes: b"any".to_vec() };
     let materials = vec![Some(1), None];

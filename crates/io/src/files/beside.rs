@@ -1,0 +1,145 @@
+//! Files beside a mesh file, which it refers to by name.
+
+use std::collections::HashMap;
+use std::ffi::OsString;
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+
+use crate::Format;
+
+/// Largest image or material library that is read, in bytes.
+const MOST_OF_ONE: u64 = 1 << 30;
+
+/// Most bytes of images and material libraries that are read for a scene.
+const MOST_OF_ALL: u64 = 1 << 32;
+
+/// Suffixes of images, which are bounded in size where buffers are not.
+const IMAGES: [&str; 6] = ["png", "jpg", "jpeg", "webp", "ktx2", "dds"];
+
+/// Reader of the files beside a mesh file.
+pub(super) struct Beside {
+    folder: PathBuf,
+    /// True if the mesh file refers to nothing but images and libraries.
+    has_no_buffers: bool,
+    /// Bytes that may still be read.
+    left: u64,
+    /// Entries of folders by their names in lower case.
+    listed: HashMap<PathBuf, HashMap<String, OsString>>,
+}
+
+impl Beside {
+    pub fn of(path: &Path, format: Format) -> Self {
+        Self {
+            folder: path.parent().unwrap_or(Path::new("")).to_owned(),
+            has_no_buffers: format == Format::Obj,
+            left: MOST_OF_ALL,
+            listed: HashMap::new(),
+        }
+    }
+
+    /// Reads the file of that name relative to the folder; `None` if there is none, or an image or
+    /// library exceeds what is read of these.
+    pub fn read(&mut self, name: &str) -> Option<Vec<u8>> {
+        let file = self.find(name)?;
+        let suffix = file.extension().unwrap_or_default().to_ascii_lowercase();
+        if self.has_no_buffers || IMAGES.iter().any(|&image| suffix == image) {
+            let size = fs::metadata(&file).ok()?.len();
+            if size > MOST_OF_ONE.min(self.left) {
+                return None;
+            }
+            self.left -= size;
+        }
+        fs::read(file).ok()
+    }
+
+    /// Finds the file of that name relative to the folder, whatever its case if there is none of
+    /// the same. Absolute names are rejected: they say nothing on a machine that the file was copied
+    /// to.
+    pub fn find(&mut self, name: &str) -> Option<PathBuf> {
+        // Exporters on Windows write backslashes.
+        let names = [name.to_owned(), name.replace('\\', "/")];
+        let names = names.into_iter().filter(|name| is_relative(Path::new(name)));
+        let names: Vec<String> = names.collect();
+        // Only regular files: reading a device might never end.
+        let exact = names.iter().map(|name| self.folder.join(name)).find(|path| path.is_file());
+        exact.or_else(|| names.iter().find_map(|name| self.find_any_case(Path::new(name))))
+    }
+
+    fn find_any_case(&mut self, name: &Path) -> Option<PathBuf> {
+        let mut path = self.folder.clone();
+        for part in name.components() {
+            let Component::Normal(part) = part else {
+                path.push(part);
+                continue;
+            };
+            if path.join(part).exists() {
+                path.push(part);
+                continue;
+            }
+            let listed = self.listed.entry(path.clone()).or_insert_with(|| list(&path));
+            path.push(listed.get(&part.to_string_lossy().to_lowercase())?);
+        }
+        path.is_file().then_some(path)
+    }
+}
+
+/// Lists a folder by names in lower case; of several that become one, the first in order.
+fn list(folder: &Path) -> HashMap<String, OsString> {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut names: Vec<OsString> = entries.map(|entry| entry.file_name()).collect();
+    names.sort();
+    let mut listed = HashMap::new();
+    for name in names {
+        listed.entry(name.to_string_lossy().to_lowercase()).or_insert(name);
+    }
+    listed
+}
+
+fn is_relative(path: &Path) -> bool {
+    !path.components().any(|part| matches!(part, Component::RootDir | Component::Prefix(_)))
+}
+
+#[cfg(test)]
+mod tests {
+    use tempfile::tempdir;
+
+    use super::*;
+
+    #[test]
+    fn files_are_found_in_other_spellings() {
+        let folder = tempdir().unwrap();
+        fs::create_dir_all(folder.path().join("Maps/Old")).unwrap();
+        fs::write(folder.path().join("Maps/Old/Wood grain.PNG"), "a").unwrap();
+        fs::write(folder.path().join("b.png"), "lower").unwrap();
+        fs::write(folder.path().join("B.png"), "upper").unwrap();
+        let mut beside = Beside::of(&folder.path().join("a.obj"), Format::Obj);
+        for name in [
+            "Maps/Old/Wood grain.PNG",
+            "maps\\old\\wood grain.png",
+            "./maps/OLD/../Old/WOOD GRAIN.png",
+        ] {
+            assert_eq!(beside.read(name).unwrap(), b"a", "{name}");
+        }
+        assert_eq!(beside.read("b.png").unwrap(), b"lower");
+        assert_eq!(beside.read("b.PNG").unwrap(), b"upper", "the first in order");
+        for name in ["gone.png", "maps", "", "/etc/hostname"] {
+            assert_eq!(beside.read(name), None, "{name}");
+        }
+    }
+
+    #[test]
+    fn what_is_too_large_is_not_read() {
+        let folder = tempdir().unwrap();
+        let path = folder.path().join("big.png");
+        // Sparse: it takes no room.
+        fs::File::create(&path).unwrap().set_len(MOST_OF_ONE + 1).unwrap();
+        for format in [Format::Obj, Format::Gltf] {
+            assert_eq!(Beside::of(&path, format).read("big.png"), None);
+        }
+        let mut beside = Beside::of(&path, Format::Obj);
+        beside.left = 3;
+        fs::write(folder.path().join("a.png"), "ab").unwrap();
+        assert!(beside.read("a.png").is_some() && beside.read("a.png").is_none());
+    }
+}

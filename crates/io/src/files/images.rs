@@ -1,0 +1,86 @@
+//! Image files beside the file that is written.
+
+use std::collections::HashMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::beside::Beside;
+use super::inner_path;
+use crate::staged::StagedFiles;
+use crate::{Format, Image, IoError, Unsupported};
+
+/// Stages an image under its name in the folder of `path`, unless it is already there. An existing
+/// file with different contents is not overwritten.
+pub(super) fn stage_image(
+    path: &Path,
+    image: &Image,
+    staged: &mut StagedFiles,
+) -> Result<(), IoError> {
+    if is_beside(path, image) {
+        return Ok(());
+    }
+    let Some(name) = inner_path(&image.name) else {
+        let reason = "its name points outside the folder; write .glb, which embeds images";
+        return Err(IoError::unsupported(
+            path,
+            Unsupported::new(format!("image {:?}", image.name), reason),
+        ));
+    };
+    let target = path.parent().unwrap_or(Path::new("")).join(name);
+    if staged.has(&target) {
+        return Ok(());
+    }
+    if target.exists() {
+        let reason = "another image of that name already exists; move it, or write .glb";
+        return Err(IoError::unsupported(&target, Unsupported::new("image", reason)));
+    }
+    staged.add(&target, |out| out.write_all(&image.bytes))
+}
+
+/// Gives images whose names point outside the folder of `path`, and do not lead to them from there,
+/// bare file names, and sees to it that no two images have one name.
+pub(super) fn use_own_names(path: &Path, images: &mut [Image]) {
+    let mut taken: HashMap<PathBuf, usize> = HashMap::new();
+    for i in 0..images.len() {
+        let image = &images[i];
+        if image.bytes.is_empty() {
+            continue;
+        }
+        let inner = inner_path(&image.name);
+        if inner.is_none() && is_beside(path, image) {
+            continue;
+        }
+        let bare = || Path::new(&image.name).file_name().map(PathBuf::from);
+        let Some(file) = inner.clone().or_else(bare) else { continue };
+        let is_free = |name: &PathBuf| match taken.get(name) {
+            Some(&other) => images[other].bytes == image.bytes,
+            // The name that an image has is not changed for a file that is there.
+            None if inner.as_ref() == Some(name) => true,
+            None => {
+                let named = Image { name: name.to_string_lossy().into_owned(), ..image.clone() };
+                !path.with_file_name("").join(name).exists() || is_beside(path, &named)
+            }
+        };
+        let numbered = (2..).map(|number| with_number(&file, number));
+        let free = std::iter::once(file.clone()).chain(numbered).find(is_free);
+        let free = free.unwrap_or_else(|| file.clone());
+        if inner.as_ref() != Some(&free) {
+            images[i].name = free.to_string_lossy().into_owned();
+        }
+        taken.entry(free).or_insert(i);
+    }
+}
+
+/// Adds a number to the stem of a file name, as in `wood-2.png`.
+fn with_number(file: &Path, number: u32) -> PathBuf {
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+    let suffix = file.extension().map(|suffix| format!(".{}", suffix.to_string_lossy()));
+    file.with_file_name(format!("{stem}-{number}{}", suffix.unwrap_or_default()))
+}
+
+/// Reports whether the image's name, relative to the folder of `path`, leads to a file of equal
+/// bytes.
+fn is_beside(path: &Path, image: &Image) -> bool {
+    let found = Beside::of(path, Format::Obj).find(&image.name);
+    found.is_some_and(|file| fs::read(file).is_ok_and(|found| found == image.bytes))
+}

@@ -1,0 +1,108 @@
+//! Writing an OBJ file with its material library and images.
+
+use std::collections::BTreeSet;
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+use super::beside::Beside;
+use super::images::{stage_image, use_own_names};
+use super::stem;
+use crate::obj::{self, mtl};
+use crate::staged::{StagedFiles, is_mentioned, is_part_name, obsolete_parts, part_name};
+use crate::text_cursor::text_of;
+use crate::{Format, IoError, Precision, Scene};
+
+/// Writes a scene; a library of the file that was at `path` stays if it says the same.
+pub(super) fn write_obj(path: &Path, scene: &Scene, precision: Precision) -> Result<(), IoError> {
+    let mut staged = StagedFiles::default();
+    let mut images = scene.images.clone();
+    use_own_names(path, &mut images);
+    for image in images.iter().filter(|image| !image.bytes.is_empty()) {
+        stage_image(path, image, &mut staged)?;
+    }
+    let named = Scene { materials: scene.materials.clone(), images, ..Scene::default() };
+    let old = libraries_of(path);
+    let libraries = match named.materials.is_empty() {
+        true => Vec::new(),
+        false if says_same(path, &old, &named) => old.clone(),
+        // Without their libraries, the materials are but names.
+        false if !old.is_empty() && mtl::says_nothing(&named) => old.clone(),
+        false => vec![stage_library(path, &named, &old, &mut staged)?],
+    };
+    let replaced = old.into_iter().filter(|name| !libraries.contains(name));
+    let is_own = |name: &str| is_part_name(name, &stem(path), "mtl");
+    // A scene without materials says nothing of those of the file before.
+    let replaced: BTreeSet<String> = replaced.filter(|_| !libraries.is_empty()).collect();
+    let obsolete = obsolete_parts(path, &replaced, is_own);
+    staged.finish(path, |out| obj::write(scene, precision, out, &libraries), &obsolete)
+}
+
+/// Reports whether libraries that are there say what the materials of a scene are.
+fn says_same(path: &Path, libraries: &[String], scene: &Scene) -> bool {
+    let mut beside = Beside::of(path, Format::Obj);
+    let mut library = mtl::Library::default();
+    let mut read = libraries.iter().map(|names| library.add(names, &mut |name| beside.read(name)));
+    !libraries.is_empty() && read.all(|read| read.is_ok()) && mtl::same_library(&library, scene)
+}
+
+/// Stages the library of a scene, unless it is already there, and returns its name.
+fn stage_library(
+    path: &Path,
+    scene: &Scene,
+    old: &[String],
+    staged: &mut StagedFiles,
+) -> Result<String, IoError> {
+    let mut bytes = Vec::new();
+    obj::write_mtl(scene, &mut bytes).map_err(|error| IoError::system(path, error))?;
+    let found = |name: &str| fs::read(path.with_file_name(name)).ok();
+    let is_taken = |name: &str| {
+        // A library that says more can take the place of one in use.
+        found(name).is_some_and(|found| !mtl::is_superset(&bytes, &found))
+            && (old.iter().any(|old| old == name) || is_mentioned(path, name))
+    };
+    let name = part_name(&stem(path), "mtl", is_taken);
+    if found(&name).as_deref() != Some(&bytes) {
+        staged.add(&path.with_file_name(&name), |out| out.write_all(&bytes))?;
+    }
+    Ok(name)
+}
+
+/// Returns what the `mtllib` lines of a file name, each once; nothing if there is no such file.
+fn libraries_of(path: &Path) -> Vec<String> {
+    let mut libraries = Vec::new();
+    if !fs::metadata(path).is_ok_and(|found| found.is_file()) {
+        return libraries;
+    }
+    let Ok(file) = File::open(path) else { return libraries };
+    // A file without line ends is no OBJ file, and not read as one line.
+    let mut file = BufReader::with_capacity(1 << 16, file);
+    let mut line = Vec::new();
+    while let Ok(piece) = file.fill_buf()
+        && !piece.is_empty()
+    {
+        let end = piece.iter().position(|&byte| byte == b'\n' || byte == b'\r');
+        let used = end.map_or(piece.len(), |end| end + 1);
+        if line.len() < LONGEST_LINE {
+            line.extend_from_slice(&piece[..end.unwrap_or(piece.len())]);
+        }
+        file.consume(used);
+        if end.is_some() {
+            add_library(&line, &mut libraries);
+            line.clear();
+        }
+    }
+    add_library(&line, &mut libraries);
+    libraries
+}
+
+/// Length in bytes from which on a line is not looked at.
+const LONGEST_LINE: usize = 1 << 16;
+
+fn add_library(line: &[u8], libraries: &mut Vec<String>) {
+    let Some(rest) = line.trim_ascii_start().strip_prefix(b"mtllib") else { return };
+    let name = text_of(rest.trim_ascii());
+    if rest.first().is_some_and(u8::is_ascii_whitespace) && !libraries.contains(&name) {
+        libraries.push(name);
+    }
+}

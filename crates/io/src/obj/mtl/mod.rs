@@ -1,0 +1,19 @@
+//! MTL material libraries, of which every statement is kept.
+//!
+//! A line that is not known is kept as it is. What the known ones mean, [Ram95] says, and for `Pr`,
+//! `Pm`, `Ke` and `norm`, the exporters that brought them in.
+
+mod images;
+mod lines;
+mod meaning;
+mod properties;
+mod read;
+mod statement;
+mod write;
+
+pub(crate) use meaning::untold;
+pub(crate) use read::Library;
+pub(super) use read::resolve_materials;
+pub use write::write;
+pub(crate) use write::{is_superset, same_library, says_nothing};
+pub(super) use write::{names, one_line};

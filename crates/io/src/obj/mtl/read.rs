@@ -1,0 +1,276 @@
+//! Reading MTL libraries, and the images that they name.
+
+use std::collections::{HashMap, HashSet};
+
+use super::images::MtlImages;
+use super::lines::lines;
+use super::meaning::{Said, meaning};
+use super::statement::word_of;
+use crate::{FileLocation, Image, Material, MtlStatement, Note, ParseError};
+
+/// Materials of all libraries of a file.
+#[derive(Default)]
+pub(crate) struct Library {
+    /// Materials with the lines that define each, in the order of the libraries.
+    definitions: Vec<(String, Vec<String>)>,
+    /// Material by name.
+    numbers: HashMap<String, usize>,
+    /// Libraries that were asked for.
+    asked: HashSet<String>,
+    missing: Vec<String>,
+    /// Materials defined again.
+    repeated: Vec<String>,
+}
+
+/// Materials and images of a scene, the material of each label, and what did not arrive.
+pub(crate) struct Resolved {
+    pub materials: Vec<Material>,
+    pub images: Vec<Image>,
+    pub labels: Vec<Option<usize>>,
+    pub notes: Vec<Note>,
+}
+
+impl Library {
+    /// Loads the libraries of an `mtllib` line, which is one name with blanks or several names.
+    /// Missing files are noted; the first definition of a name wins.
+    pub fn add(
+        &mut self,
+        names: &str,
+        resolve: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
+    ) -> Result<(), ParseError> {
+        if names.is_empty() || !self.asked.insert(names.to_owned()) {
+            return Ok(());
+        }
+        if let Some(bytes) = resolve(names) {
+            return self.parse(names, &bytes);
+        }
+        let mut missing = Vec::new();
+        for name in names.split_ascii_whitespace() {
+            if name != names && !self.asked.insert(name.to_owned()) {
+                continue;
+            }
+            match resolve(name).filter(|_| name != names) {
+                Some(bytes) => self.parse(name, &bytes)?,
+                None => missing.push(name.to_owned()),
+            }
+        }
+        // A name with blanks of which no part is a file is more likely to be one.
+        if missing.len() == names.split_ascii_whitespace().count() {
+            missing = vec![names.to_owned()];
+        }
+        self.missing.extend(missing);
+        Ok(())
+    }
+
+    /// Parses the library `name`, adding the name to errors.
+    pub fn parse(&mut self, name: &str, bytes: &[u8]) -> Result<(), ParseError> {
+        let located = |location: FileLocation, error: ParseError| ParseError {
+            location: FileLocation::Part(format!("{name}, {location}")),
+            ..error
+        };
+        let found = lines(bytes).map_err(|error| located(error.location.clone(), error))?;
+        let mut current: Option<(String, Vec<String>)> = None;
+        let mut said = Said::default();
+        for line in found {
+            if word_of(&line.text) == "newmtl" {
+                self.define(current.take());
+                let name = line.text.trim_start().get("newmtl".len()..).unwrap_or_default();
+                current = Some((name.trim().to_owned(), Vec::new()));
+            } else if let Some((_, definition)) = &mut current {
+                let read = said.add(&line.text, None);
+                read.map_err(|error| located(FileLocation::Line(line.number), error))?;
+                definition.push(line.text);
+            }
+        }
+        self.define(current);
+        Ok(())
+    }
+
+    fn define(&mut self, material: Option<(String, Vec<String>)>) {
+        let Some((name, lines)) = material else { return };
+        match self.numbers.get(&name) {
+            Some(&known) if self.definitions[known].1 == lines => {}
+            Some(_) => self.repeated.push(name),
+            None => {
+                self.numbers.insert(name.clone(), self.definitions.len());
+                self.definitions.push((name, lines));
+            }
+        }
+    }
+
+    /// Returns the lines that define a material, if any library has it.
+    pub fn lines_of(&self, name: &str) -> Option<&[String]> {
+        self.numbers.get(name).map(|&number| &self.definitions[number].1[..])
+    }
+
+    /// Lists the materials with the lines that define them.
+    pub fn definitions(&self) -> impl Iterator<Item = (&str, &[String])> {
+        self.definitions.iter().map(|(name, lines)| (&**name, &lines[..]))
+    }
+
+    fn notes(&self, used: &[String]) -> Vec<Note> {
+        let undefined =
+            used.iter().filter(|name| !name.is_empty() && self.lines_of(name).is_none());
+        let undefined: Vec<&String> = undefined.collect();
+        // Without a library, names are all that the file has.
+        let is_told = !self.definitions.is_empty() && self.missing.is_empty();
+        let count = if is_told { undefined.len() } else { 0 };
+        let mut notes = vec![
+            Note::left_out(
+                self.missing.len(),
+                "material library that was not found",
+                "material libraries that were not found",
+            )
+            .named(self.missing.clone()),
+            Note::left_out(
+                count,
+                "material that no library defines",
+                "materials that no library defines",
+            )
+            .named(undefined),
+            Note::left_out(
+                self.repeated.len(),
+                "further definition of a material",
+                "further definitions of materials",
+            )
+            .named(self.repeated.clone()),
+        ];
+        notes.retain(|note| note.count > 0);
+        notes
+    }
+}
+
+/// Looks up the materials with these names, except "", then adds those that no face uses; loads all
+/// images that they name.
+///
+/// A name without a definition gives a grey material. An image that is missing, or is no image,
+/// keeps its name and has no bytes.
+pub(crate) fn resolve_materials(
+    names: &[String],
+    library: &Library,
+    resolve: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
+) -> Resolved {
+    let mut images = MtlImages::default();
+    let mut materials = Vec::new();
+    let mut labels = Vec::new();
+    for name in names {
+        if name.is_empty() {
+            labels.push(None);
+            continue;
+        }
+        labels.push(Some(materials.len()));
+        let lines = library.lines_of(name).unwrap_or_default();
+        materials.push(material(name, lines, &mut images, resolve));
+    }
+    let used: HashSet<&str> = names.iter().map(String::as_str).collect();
+    for (name, lines) in library.definitions().filter(|(name, _)| !used.contains(name)) {
+        materials.push(material(name, lines, &mut images, resolve));
+    }
+    Resolved { materials, images: images.list, labels, notes: library.notes(names) }
+}
+
+fn material(
+    name: &str,
+    lines: &[String],
+    images: &mut MtlImages,
+    resolve: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
+) -> Material {
+    let mtl: Vec<MtlStatement> = lines.iter().map(|line| images.statement(line, resolve)).collect();
+    let meaning = meaning(&mtl, &images.list);
+    Material {
+        name: name.to_owned(),
+        base_color: meaning.base_color,
+        base_color_image: meaning.base_color_image,
+        shading: meaning.shading,
+        mtl,
+        ..Material::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::MtlMap;
+
+    fn library(text: &str) -> Result<Library, ParseError> {
+        let mut library = Library::default();
+        library.add("a.mtl", &mut |name| (name == "a.mtl").then(|| text.as_bytes().to_vec()))?;
+        Ok(library)
+    }
+
+    const PNG: &[u8] = b"\x89PNG";
+
+    #[test]
+    fn colour_opacity_and_image_are_read() {
+        let text = "Kd 9 9 9\nnewmtl red hot\n\tKd 1 0 0 # red\n d -halo 0.25\nTr 0\nillum 2\r\n\
+                    map_Kd -s 2 2 -o 0 0 0 -clamp on wood grain.png\nnewmtl b\nTr 0.25\nKd 0.5";
+        let names = ["red hot", "", "b", "nowhere"].map(str::to_owned);
+        let mut asked = Vec::new();
+        let resolved = resolve_materials(&names, &library(text).unwrap(), &mut |name| {
+            asked.push(name.to_owned());
+            Some(PNG.to_vec())
+        });
+        assert_eq!(asked, ["wood grain.png"]);
+        assert_eq!(resolved.labels, [Some(0), None, Some(1), Some(2)]);
+        let colors: Vec<[f32; 4]> = resolved.materials.iter().map(|m| m.base_color).collect();
+        assert_eq!(colors, [[1.0, 0.0, 0.0, 0.25], [0.5, 0.5, 0.5, 0.75], [0.8, 0.8, 0.8, 1.0]]);
+        assert_eq!(resolved.materials[0].base_color_image, Some(0));
+        let image = Image { name: "wood grain.png".to_owned(), bytes: PNG.to_vec() };
+        assert_eq!(resolved.images, [image]);
+        let notes: Vec<String> = resolved.notes.iter().map(Note::to_string).collect();
+        assert_eq!(notes, ["1 material that no library defines (nowhere)"]);
+    }
+
+    #[test]
+    fn a_material_that_no_face_uses_is_read_too() {
+        let library = library("newmtl a\nKd 1\nnewmtl b\nKs 1\nnewmtl a\nKd 0\n").unwrap();
+        let resolved = resolve_materials(&["b".to_owned()], &library, &mut |_| None);
+        let names: Vec<&str> = resolved.materials.iter().map(|m| &*m.name).collect();
+        assert_eq!(names, ["b", "a"]);
+        assert_eq!(resolved.materials[1].base_color, [1.0; 4]);
+        assert_eq!(resolved.notes[0].to_string(), "1 further definition of a material (a)");
+    }
+
+    #[test]
+    fn an_image_that_is_missing_or_none_keeps_its_name() {
+        let library = library("newmtl a\nmap_Kd maps\\a.png\nbump .\\maps/a.png # old").unwrap();
+        for bytes in [None, Some(b"root:x:0:0".to_vec())] {
+            let resolved = resolve_materials(&["a".to_owned()], &library, &mut |_| bytes.clone());
+            let image = Image { name: "maps/a.png".to_owned(), bytes: Vec::new() };
+            assert_eq!(resolved.images[0], image);
+            let names: Vec<&MtlMap> =
+                resolved.materials[0].mtl.iter().filter_map(|line| line.map.as_ref()).collect();
+            assert_eq!(names[0].name, "maps\\a.png");
+        }
+        let mut file = |name: &str| (!name.contains('#')).then(|| PNG.to_vec());
+        let resolved = resolve_materials(&["a".to_owned()], &library, &mut file);
+        assert_eq!(resolved.images.len(), 1, "one image of two spellings");
+        let last = resolved.materials[0].mtl[1].map.clone().unwrap();
+        assert_eq!((&*last.name, &*last.rest), (".\\maps/a.png", " # old"));
+    }
+
+    #[test]
+    fn errors_name_the_library_and_its_line() {
+        let error = library("newmtl a\n\nKd 0,8 0,8 0,8\n").err().unwrap();
+        assert_eq!(error.to_string(), "a.mtl, line 3: \"0,8\" is not a number");
+    }
+
+    #[test]
+    fn a_line_may_name_several_libraries() {
+        let mut library = Library::default();
+        let file = |name: &str| {
+            name.strip_suffix(".mtl")
+                .filter(|name| !name.contains(' ') && *name != "gone")
+                .map(|name| format!("newmtl {name}").into_bytes())
+        };
+        for _ in 0..2 {
+            library.add("a.mtl gone.mtl b.mtl", &mut |name| file(name)).unwrap();
+        }
+        let names: Vec<&str> = library.definitions().map(|(name, _)| name).collect();
+        assert_eq!(names, ["a", "b"]);
+        assert_eq!(library.missing, ["gone.mtl"]);
+        library.add("not there.mtl", &mut |_| None).unwrap();
+        assert_eq!(library.missing, ["gone.mtl", "not there.mtl"]);
+        assert_eq!(library.repeated, [""; 0]);
+    }
+}
