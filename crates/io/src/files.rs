@@ -1,5 +1,6 @@
 //! Reading and writing mesh files by path; the suffix determines the format.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Component, Path, PathBuf};
@@ -9,7 +10,7 @@ use meshlod_mesh::{Mesh, VertexId};
 use crate::replace::replace;
 use crate::{
     Format, Image, IoError, Note, ParseError, Precision, Scene, Unsupported, gltf, obj, off, ply,
-    smf, stl, weld,
+    normals, smf, stl, weld,
 };
 
 /// Policy for merging vertices at equal or close positions when a file is read.
@@ -37,7 +38,8 @@ pub struct ReadOptions {
 /// Options for writing a mesh file with [`write()`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WriteOptions {
-    /// Precision of coordinates in PLY, OBJ, OFF and SMF; STL and glTF always use 32 bits.
+    /// Precision of coordinates in PLY, OBJ, OFF and SMF. STL and glTF always use 32 bits; glTF
+    /// counts them from a centre of the mesh where that is needed, see [`gltf::write_glb`].
     pub precision: Precision,
 }
 
@@ -83,7 +85,7 @@ pub fn read_bytes(
     let mut scene = match format {
         Format::Gltf | Format::Glb => gltf::read(bytes, resolve, options.weld)?,
         Format::Obj => obj::read(bytes, resolve)?,
-        Format::Ply => Scene::from_mesh("", ply::read(bytes)?),
+        Format::Ply => ply::read_scene(bytes, resolve)?,
         Format::Stl => Scene::from_mesh("", stl::read(bytes)?),
         Format::Off => Scene::from_mesh("", off::read(bytes)?),
         Format::Smf => Scene::from_mesh("", smf::read(bytes)?),
@@ -97,6 +99,7 @@ pub fn read_bytes(
             Weld::Exact | Weld::Off => {}
         }
     }
+    normals::make_unit(&mut scene);
     note_missing_images(&mut scene);
     Ok(scene)
 }
@@ -125,7 +128,7 @@ pub fn write(path: &Path, scene: &Scene, options: &WriteOptions) -> Result<(), I
     match Format::of_path(path)? {
         Format::Gltf | Format::Glb => write_lods(path, scene, &[]),
         Format::Obj => write_obj(path, scene, precision),
-        Format::Ply => write_one(path, |out| ply::write(&scene.shown_mesh(), precision, out)),
+        Format::Ply => write_ply(path, scene, precision),
         Format::Stl => write_one(path, |out| stl::write(&scene.shown_mesh(), out)),
         Format::Off => write_one(path, |out| off::write(&scene.shown_mesh(), precision, out)),
         Format::Smf => write_one(path, |out| smf::write(&scene.shown_mesh(), precision, out)),
@@ -232,14 +235,33 @@ fn unweld(mesh: &mut Mesh) {
     }
 }
 
+/// Writes the images that materials use beside a PLY file, and then the file.
+fn write_ply(path: &Path, scene: &Scene, precision: Precision) -> Result<(), IoError> {
+    let used = scene.materials.iter().filter_map(|material| material.base_color_image);
+    let used: BTreeSet<usize> = used.collect();
+    let mut images = scene.images.clone();
+    for &image in used.range(..images.len()) {
+        write_beside(path, &mut images[image])?;
+    }
+    write_one(path, |out| ply::write_named(scene, &images, precision, out))
+}
+
+/// Writes an image that was found to the folder of `path`; its name becomes that of the file.
+fn write_beside(path: &Path, image: &mut Image) -> Result<(), IoError> {
+    if image.bytes.is_empty() {
+        return Ok(());
+    }
+    if let Some(name) = plain_name(path, image) {
+        image.name = name;
+    }
+    write_image(path, image)
+}
+
 fn write_obj(path: &Path, scene: &Scene, precision: Precision) -> Result<(), IoError> {
     let library = (!scene.materials.is_empty()).then(|| format!("{}.mtl", stem(path)));
     let mut images = scene.images.clone();
-    for image in images.iter_mut().filter(|image| !image.bytes.is_empty()) {
-        if let Some(name) = plain_name(path, image) {
-            image.name = name;
-        }
-        write_image(path, image)?;
+    for image in &mut images {
+        write_beside(path, image)?;
     }
     if let Some(name) = &library {
         let named = Scene { materials: scene.materials.clone(), images, ..Scene::default() };

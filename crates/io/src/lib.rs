@@ -24,11 +24,13 @@ pub mod gltf;
 mod limits;
 mod line_writer;
 pub mod meshopt;
+mod normals;
 mod notes;
 pub mod obj;
 pub mod off;
 pub mod ply;
 mod polygon;
+mod precision;
 mod replace;
 mod scene;
 pub mod smf;
@@ -45,15 +47,6 @@ pub use flatten::{MeshInstance, transform};
 pub use format::Format;
 pub use meshlod_mesh::{merge_equal_wedges, weld};
 pub use notes::{Note, NoteKind};
+pub use precision::Precision;
 pub use replace::{abandon_files, write_file};
 pub use scene::{Image, Material, Node, Scene, SceneMesh};
-
-/// Precision of the floating-point coordinates in a written file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Precision {
-    /// 32-bit floats, which most programs read.
-    #[default]
-    F32,
-    /// 64-bit floats, which keep every coordinate exactly.
-    F64,
-}

@@ -9,6 +9,7 @@ mod decompress;
 mod dequantize_nodes;
 mod document;
 mod encode;
+mod local_space;
 mod lod;
 mod materials;
 mod mesh;
@@ -30,6 +31,7 @@ mod vertex_cache;
 mod write;
 
 pub use compress::{Bytes, Compression, CompressionReport};
+pub(crate) use local_space::to_local;
 pub use lod::Level;
 pub(crate) use new_document::has_core_type;
 pub use parts::{QuantizedPart, write_parts_glb};

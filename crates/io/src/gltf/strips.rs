@@ -3,6 +3,7 @@
 use meshlod_mesh::{Mesh, VertexId, WedgeId};
 use serde_json::Value;
 
+use super::local_space::localized;
 use super::accessor_use::free_accessors;
 use super::buffer_builder::BufferBuilder;
 use super::compress::CompressionReport;
@@ -58,9 +59,10 @@ pub fn write_strips(
 impl Output {
     fn of_strips(scene: &Scene, strips: &[StripMesh]) -> Result<Self, Unsupported> {
         let Some(source) = &scene.source else {
+            let (scene, _) = localized(scene, &[]);
             let mut builder = BufferBuilder::default();
-            let json = new_document::document(scene, &mut builder);
-            return finish(json, scene, Replacer::new(None, builder), strips);
+            let json = new_document::document(&scene, &mut builder);
+            return finish(json, &scene, Replacer::new(None, builder), strips);
         };
         let source = &source.0;
         let document = Document::new(&source.json, &source.buffers).map_err(unreadable)?;

@@ -7,6 +7,7 @@ use super::accessor_use::free_accessors;
 use super::buffer_builder::BufferBuilder;
 use super::compress::{self, Compression, CompressionReport};
 use super::document::Document;
+use super::local_space::localized;
 use super::lod::{self, Level};
 use super::primitives::Replacer;
 use super::read::Contents;
@@ -32,7 +33,8 @@ pub struct GltfFiles {
 /// extensions and everything else pass through. An unchanged mesh keeps its arrays bit for bit; a
 /// changed one gets new arrays (f32, 16-bit indices where possible, colours in their old type). The
 /// buffer is rebuilt without what is no longer used. Any other scene gets a new document with its
-/// nodes, materials, PNGs and JPEGs. A mesh without faces keeps one degenerate triangle, as glTF
+/// nodes, materials, PNGs and JPEGs; meshes whose coordinates 32 bits would round are stored
+/// relative to a centre, from which their nodes move them back. A mesh without faces keeps one degenerate triangle, as glTF
 /// does not allow empty meshes.
 ///
 /// With levels, every node with a mesh is named `…_LOD0` and linked by the extension `MSFT_lod` to
@@ -120,12 +122,13 @@ impl Output {
         match &scene.source {
             Some(source) => Self::with_source(scene, &source.0, levels, compression),
             None => {
+                let (scene, levels) = localized(scene, levels);
                 let mut builder = BufferBuilder::default();
-                let json = new_document::document(scene, &mut builder);
+                let json = new_document::document(&scene, &mut builder);
                 let all = vec![true; scene.meshes.len()];
                 let mut replacer = Replacer::new(None, builder);
                 replacer.compression = compression;
-                Self::finish(json, scene, &all, replacer, levels)
+                Self::finish(json, &scene, &all, replacer, &levels)
             }
         }
     }

@@ -11,6 +11,7 @@ mod tests;
 mod wedges;
 mod write;
 
+pub(crate) use mtl::one_line;
 pub use mtl::write as write_mtl;
 pub use read::read;
 pub use write::write;

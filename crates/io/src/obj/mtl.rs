@@ -224,7 +224,7 @@ pub(super) fn names(materials: &[Material]) -> Vec<String> {
 }
 
 /// Trims a name and replaces its control characters.
-pub(super) fn one_line(name: &str) -> String {
+pub(crate) fn one_line(name: &str) -> String {
     name.trim().chars().map(|c| if c.is_control() { '_' } else { c }).collect()
 }
 

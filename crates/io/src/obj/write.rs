@@ -25,7 +25,7 @@ pub fn write(
     mtl_name: Option<&str>,
 ) -> io::Result<()> {
     let mesh = scene.flatten();
-    let mut lines = LineWriter::new(out, precision);
+    let mut lines = LineWriter::new(out, precision.width(&mesh));
     if let Some(name) = mtl_name {
         lines.word("mtllib");
         lines.word(name);
