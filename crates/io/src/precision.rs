@@ -118,7 +118,7 @@ fn rounding(mesh: &Mesh) -> f64 {
 /// Cost: one pass over the coordinates if all are exact in 32 bits, else linear in the mesh.
 pub(crate) fn fits_f32(mesh: &Mesh) -> bool {
     let moves = rounding(mesh);
-    moves == 0.0 || (moves <= UNSEEN * mean_edge(mesh) && !merges(mesh))
+    moves == 0.0 || (moves.is_finite() && moves <= UNSEEN * mean_edge(mesh) && !merges(mesh))
 }
 
 /// Returns the mean length of the edges of all faces; infinite without faces.

@@ -42,6 +42,8 @@ mod header;
 mod layers;
 mod plan;
 #[cfg(test)]
+mod face_tests;
+#[cfg(test)]
 mod tests;
 mod text_body;
 mod vertices;
