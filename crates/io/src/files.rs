@@ -9,8 +9,8 @@ use meshlod_mesh::{Mesh, VertexId};
 
 use crate::replace::replace;
 use crate::{
-    Format, Image, IoError, Note, ParseError, Precision, Scene, Unsupported, gltf, obj, off, ply,
-    normals, smf, stl, weld,
+    Format, Image, IoError, Note, ParseError, Precision, Scene, Unsupported, gltf, normals, obj,
+    off, ply, smf, stl, weld,
 };
 
 /// Policy for merging vertices at equal or close positions when a file is read.

@@ -74,11 +74,7 @@ fn make_mesh_unit(mesh: &mut Mesh, rounding: f64) -> Counts {
 
 /// Returns the mean normal of the faces at each of these wedges that is in use, weighted by area:
 /// if they have none, of all faces at its vertex, else any.
-fn face_normals(
-    mesh: &Mesh,
-    corners: &[[WedgeId; 3]],
-    missing: &[usize],
-) -> Vec<(WedgeId, DVec3)> {
+fn face_normals(mesh: &Mesh, corners: &[[WedgeId; 3]], missing: &[usize]) -> Vec<(WedgeId, DVec3)> {
     let wedges = corners.as_flattened().iter().map(|w| w.index() + 1).max().unwrap_or(0);
     let mut at_vertex = vec![DVec3::ZERO; mesh.positions.len()];
     let mut at_wedge = vec![(DVec3::ZERO, None); wedges];

@@ -174,8 +174,7 @@ mod tests {
     #[test]
     fn vertices_that_would_become_one_need_64_bits() {
         let near = 0.3 + 1e-12;
-        let positions =
-            [[0.3, 0.0, 0.0], [near, 0.0, 0.0], [100.0, 0.0, 0.0], [0.0, 100.0, 0.0]];
+        let positions = [[0.3, 0.0, 0.0], [near, 0.0, 0.0], [100.0, 0.0, 0.0], [0.0, 100.0, 0.0]];
         let two = mesh(&positions, &[[0, 2, 3], [1, 3, 2]]);
         assert_eq!(Precision::Auto.of([&two]), Precision::F64);
         let mut one = two;

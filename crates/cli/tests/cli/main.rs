@@ -19,6 +19,7 @@ mod pipes;
 mod queries;
 mod repair;
 mod run;
+mod scans;
 mod sides;
 mod strip;
 mod topology;

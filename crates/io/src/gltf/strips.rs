@@ -3,11 +3,11 @@
 use meshlod_mesh::{Mesh, VertexId, WedgeId};
 use serde_json::Value;
 
-use super::local_space::localized;
 use super::accessor_use::free_accessors;
 use super::buffer_builder::BufferBuilder;
 use super::compress::CompressionReport;
 use super::document::Document;
+use super::local_space::localized;
 use super::primitives::{Replacer, by_attribute, is_surface, known_attributes};
 use super::write::{GltfFiles, Output, check_meshes, unreadable};
 use super::{encode, lod, new_document};

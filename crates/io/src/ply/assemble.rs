@@ -61,14 +61,22 @@ fn notes(header: &Header, vertices: &Vertices, values: &FaceValues) -> Vec<Note>
             .named(&header.unknown),
         Note::left_out(rows, "row of an unknown element", "rows of unknown elements")
             .named(skipped().map(|element| super::header::shown(&element.name))),
-        Note::left_out(properties.len(), "property of vertices or faces",
-            "properties of vertices and faces")
-            .named(properties.iter().map(|name| super::header::shown(name))),
-        Note::left_out(values.bad_lists,
+        Note::left_out(
+            properties.len(),
+            "property of vertices or faces",
+            "properties of vertices and faces",
+        )
+        .named(properties.iter().map(|name| super::header::shown(name))),
+        Note::left_out(
+            values.bad_lists,
             "list of texture coordinates that does not match its face",
-            "lists of texture coordinates that do not match their faces"),
-        Note::changed(values.not_finite, "value of a face that is not finite read as 0",
-            "values of faces that are not finite read as 0"),
+            "lists of texture coordinates that do not match their faces",
+        ),
+        Note::changed(
+            values.not_finite,
+            "value of a face that is not finite read as 0",
+            "values of faces that are not finite read as 0",
+        ),
         Note::changed(vertices.rounded, "value rounded to 32 bits", "values rounded to 32 bits"),
     ];
     notes.retain(|note| note.count > 0);
@@ -152,14 +160,16 @@ fn attributes(
     let mut face_colors = None;
     if !colors.is_empty() {
         if layers.iter().any(|layer| layer.kind == LayerKind::Color(0)) {
-            let (one, many) = ("colour of a face, as vertices have colours",
-                "colours of faces, as vertices have colours");
+            let (one, many) = (
+                "colour of a face, as vertices have colours",
+                "colours of faces, as vertices have colours",
+            );
             notes.push(Note::left_out(colors.len(), one, many));
         } else if has_few(&colors) {
             face_colors = Some(colors);
         } else {
-            let (one, many) = ("colour of a face averaged at vertices",
-                "colours of faces averaged at vertices");
+            let (one, many) =
+                ("colour of a face averaged at vertices", "colours of faces averaged at vertices");
             notes.push(Note::changed(colors.len(), one, many));
             layers.push(averaged(vertices, faces, &colors, width));
         }

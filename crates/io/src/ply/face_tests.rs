@@ -142,7 +142,8 @@ fn many_face_colours_are_averaged_and_that_is_noted() {
 #[test]
 fn what_is_skipped_is_noted() {
     let text = square("vendor 1\n", "property float quality\n", ["0.5", "nan"]);
-    let text = text.replace("element face", "element edge 0\nelement camera 1\nproperty int id\nelement face");
+    let text = text
+        .replace("element face", "element edge 0\nelement camera 1\nproperty int id\nelement face");
     let text = text.replace("0 1 0\n3", "0 1 0\n5\n3");
     assert_eq!(
         notes(&read(&text)),
@@ -208,8 +209,7 @@ fn textured() -> impl Strategy<Value = Scene> {
         let uv = |&(u, v, _, _): &(u8, u8, u32, i64)| [u, v].map(|x| f32::from(x) / 3.0);
         let values = draws.iter().cycle().take(3 * faces).flat_map(uv).collect();
         let layer = Layer { kind: LayerKind::Uv(0), name: "uv".into(), width: 2, values };
-        mesh.attributes =
-            Some(Attributes { corners, wedge_count: 3 * faces, layers: vec![layer] });
+        mesh.attributes = Some(Attributes { corners, wedge_count: 3 * faces, layers: vec![layer] });
         let face = || draws.iter().cycle().take(faces);
         let names = ["a", "b", "c"].map(str::to_owned).to_vec();
         mesh.materials = Some(Labels { names, of_face: face().map(|draw| draw.2).collect() });

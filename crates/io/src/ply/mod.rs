@@ -36,13 +36,13 @@ mod binary_body;
 mod body;
 mod bulk;
 mod extras;
+#[cfg(test)]
+mod face_tests;
 mod face_values;
 mod faces;
 mod header;
 mod layers;
 mod plan;
-#[cfg(test)]
-mod face_tests;
 #[cfg(test)]
 mod tests;
 mod text_body;

@@ -139,9 +139,10 @@ pub(super) fn is_color(layer: &Layer) -> bool {
 
 /// Reports whether a layer has one value in each face.
 fn is_flat(attributes: &Attributes, layer: &Layer) -> bool {
-    attributes.corners.iter().all(|&[a, b, c]| {
-        layer.of(a) == layer.of(b) && layer.of(b) == layer.of(c)
-    })
+    attributes
+        .corners
+        .iter()
+        .all(|&[a, b, c]| layer.of(a) == layer.of(b) && layer.of(b) == layer.of(c))
 }
 
 /// Lists what a PLY file lacks of the parts and layers of a scene.
@@ -160,11 +161,17 @@ pub(crate) fn limits(scene: &Scene) -> Vec<Note> {
     vec![
         Note::left_out(without.len(), "material", "materials")
             .named(without.iter().map(|m| &*m.name).filter(|name| !name.is_empty())),
-        Note::left_out(colored.len(), "colour of a textured material",
-            "colours of textured materials")
-            .named(colored.iter().map(|m| &*m.name).filter(|name| !name.is_empty())),
+        Note::left_out(
+            colored.len(),
+            "colour of a textured material",
+            "colours of textured materials",
+        )
+        .named(colored.iter().map(|m| &*m.name).filter(|name| !name.is_empty())),
         Note::left_out(objects.len(), "name of an object", "names of objects").named(objects),
-        Note::changed(split, "vertex split at seams of its attributes",
-            "vertices split at seams of their attributes"),
+        Note::changed(
+            split,
+            "vertex split at seams of its attributes",
+            "vertices split at seams of their attributes",
+        ),
     ]
 }
