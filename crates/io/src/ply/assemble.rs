@@ -6,7 +6,8 @@ use meshlod_mesh::{Attributes, Buckets, Labels, Layer, LayerKind, Mesh, VertexId
 
 use super::extras::PlyExtras;
 use super::face_values::FaceValues;
-use super::header::{Element, Header, Scalar};
+use super::header::{Element, Header};
+use super::scalar::Scalar;
 use super::vertices::Vertices;
 use crate::vertex_attributes::{named_layer, per_vertex};
 use crate::{Image, Material, Node, Note, Resolve, Scene, SceneMesh};

@@ -1,6 +1,6 @@
 //! Contents of a PLY file beyond its mesh, for a file written from the scene.
 
-use super::header::Scalar;
+use super::scalar::Scalar;
 
 /// Contents of a PLY file that no other format has, kept for writing the scene as PLY again.
 #[derive(Clone, Debug, Default, PartialEq)]

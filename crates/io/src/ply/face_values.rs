@@ -1,8 +1,9 @@
 //! Values of PLY faces beyond their vertices: texture coordinates, textures, colours and labels.
 
 use super::body::{BodyReader, Row};
-use super::header::{Element, Property, Scalar, Shape};
+use super::header::{Element, Property, Shape};
 use super::layers::greatest;
+use super::scalar::Scalar;
 use crate::ParseError;
 
 /// Names of the integer properties that say to which part of the model a face belongs.

@@ -201,7 +201,7 @@ fn one_word(name: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::header::Scalar;
+    use super::super::scalar::Scalar;
     use super::*;
 
     /// Kind, name and width of what float properties of these names become.

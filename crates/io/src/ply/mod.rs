@@ -43,6 +43,7 @@ mod faces;
 mod header;
 mod layers;
 mod plan;
+mod scalar;
 #[cfg(test)]
 mod tests;
 mod text_body;

@@ -7,7 +7,7 @@ use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh};
 
 use super::extras::PlyExtras;
 use super::face_values::is_label;
-use super::header::Scalar;
+use super::scalar::Scalar;
 use crate::vertex_attributes::{distinct_wedges, has_seams};
 use crate::{Image, Note, Scene};
 

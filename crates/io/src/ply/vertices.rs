@@ -3,8 +3,9 @@
 use meshlod_mesh::{Layer, LayerKind};
 
 use super::body::{BodyReader, Row};
-use super::header::{Element, Property, Scalar, Shape};
+use super::header::{Element, Property, Shape};
 use super::layers::{self, LayerColumns};
+use super::scalar::Scalar;
 use crate::ParseError;
 
 /// Vertices of a file.

@@ -5,9 +5,9 @@ use std::io::{Error, ErrorKind, Result, Write};
 use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, WedgeId};
 
 use super::extras::PlyExtras;
-use super::header::Scalar;
 use super::layers;
 use super::plan::{Plan, is_color};
+use super::scalar::Scalar;
 use crate::obj::one_line;
 use crate::precision::Width;
 use crate::vertex_attributes::{SplitMesh, SplitVertex, split_at_seams_of};
