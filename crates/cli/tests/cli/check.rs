@@ -320,7 +320,10 @@ fn every_file_is_checked_or_named() {
         }
         let json = done.json();
         let failed = json["errors"].as_u64() > Some(0);
-        assert_eq!((done.code, &done.err[..]), (failed.into(), ""), "{}", file.display());
+        assert_eq!(done.code, i32::from(failed), "{}", file.display());
+        // Of what reading changed.
+        let is_note = |line: &str| line.starts_with("meshlod: warning: ");
+        assert!(done.err.lines().all(is_note), "{done:?}");
     }
 }
 
