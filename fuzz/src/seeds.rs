@@ -205,7 +205,14 @@ fn few_faces() -> Vec<Vec<u8>> {
     meshes.iter().flat_map(|mesh| extras.map(|extras| bytes(mesh, extras))).collect()
 }
 
-const PLY: [&str; 3] = [
+const PLY: [&str; 4] = [
+    "ply\nformat ascii 1.0\ncomment TextureFile a.png\nobj_info i\ncomment TextureFile b.png\nx\n\
+     element vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+     property ushort intensity\nelement edge 1\nproperty int a\nelement face 2\n\
+     property list uchar int vertex_indices\nproperty list uchar float texcoord\n\
+     property int texnumber\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n\
+     property short label\nend_header\n0 0 0 1\n1 0 0 2\n1 1 0 3\n0 1 0 4\n7\n\
+     3 0 1 2 6 0 0 1 0 1 1 0 255 0 0 -1\n3 0 2 3 6 .5 .5 1 0 0 1 1 0 0 255 2\n",
     "ply\nformat ascii 1.0\ncomment c\nelement vertex 4\nproperty float x\nproperty float y\n\
      property double z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n\
      property float nx\nproperty float ny\nproperty float nz\nelement face 2\n\

@@ -65,39 +65,34 @@ impl ReadArgs {
 /// Options of every verb that writes meshes.
 #[derive(Clone, Copy, Args)]
 pub struct WriteArgs {
-    /// Coordinate type in PLY, OBJ, OFF and SMF: f32 or f64
-    /// [default: f32; f64 where repair, extract, decompress or simplify --error need it]
-    #[arg(long, value_name = "TYPE", value_parser = parse::precision)]
-    precision: Option<Precision>,
+    /// Coordinate type in PLY, OBJ, OFF and SMF: f32, f64, or auto, which is f32 where that keeps
+    /// vertices apart and moves none by more than a thousandth of the mean edge
+    #[arg(long, value_name = "TYPE", default_value = "auto", value_parser = parse::precision)]
+    precision: Precision,
 }
 
 impl WriteArgs {
     pub fn options(&self) -> WriteOptions {
-        WriteOptions { precision: self.precision.unwrap_or(Precision::F32) }
+        WriteOptions { precision: self.precision }
     }
 
-    /// Switches to 64-bit coordinates, unless `--precision` is given, if the default would move a
-    /// coordinate by more than `most`, in model units.
-    pub fn within(mut self, most: f64, scene: &Scene, format: Format) -> Self {
-        if self.moves(scene, format) > most {
-            self.precision.get_or_insert(Precision::F64);
+    /// Chooses 64-bit coordinates, unless `--precision` chooses, if 32 bits would move one by more
+    /// than `most`, in model units.
+    pub fn within(self, most: f64, scene: &Scene, format: Format) -> Self {
+        if scene.rounding(format, self.precision) > most { self.precise() } else { self }
+    }
+
+    /// Chooses 64-bit coordinates unless `--precision` chooses.
+    pub fn precise(self) -> Self {
+        match self.precision {
+            Precision::Auto => Self { precision: Precision::F64 },
+            _ => self,
         }
-        self
     }
 
-    /// Switches to 64-bit coordinates unless `--precision` is given.
-    pub fn precise(mut self) -> Self {
-        self.precision.get_or_insert(Precision::F64);
-        self
-    }
-
-    /// Returns the largest change of a coordinate when the scene is written and read back, in model
-    /// units.
-    pub fn moves(&self, scene: &Scene, format: Format) -> f64 {
-        let precision = self.options().precision;
-        let positions = scene.meshes.iter().flat_map(|mesh| mesh.mesh.positions.as_flattened());
-        let moves = positions.map(|&x| (read_again(x, precision, format) - x).abs());
-        moves.fold(0.0, f64::max)
+    /// Chooses the bits that the scene needs, unless `--precision` chooses.
+    pub fn of(self, scene: &Scene) -> Self {
+        Self { precision: self.precision.of(scene.meshes.iter().map(|mesh| &mesh.mesh)) }
     }
 }
 
@@ -125,21 +120,6 @@ impl AttributeErrorArgs {
             color: self.color_error.unwrap_or(default.color),
             ..default
         }
-    }
-}
-
-/// Returns the value that is read back for a written coordinate.
-fn read_again(x: f64, precision: Precision, format: Format) -> f64 {
-    let short = x as f32;
-    match (format, precision) {
-        (Format::Stl | Format::Gltf | Format::Glb, _) | (Format::Ply, Precision::F32) => {
-            short.into()
-        }
-        // The shortest decimal of an `f32` usually parses to a different `f64`.
-        (Format::Obj | Format::Off | Format::Smf, Precision::F32) => {
-            short.to_string().parse().unwrap_or(f64::NAN)
-        }
-        (_, Precision::F64) => x,
     }
 }
 

@@ -192,7 +192,7 @@ fn write_pipe(
     let precision = options.precision;
     let flat = || scene.flatten();
     let written = match format {
-        Format::Ply => ply::write(&flat(), precision, out),
+        Format::Ply => ply::write_scene(scene, precision, out),
         Format::Stl => stl::write(&flat(), out),
         Format::Off => off::write(&flat(), precision, out),
         Format::Smf => smf::write(&flat(), precision, out),

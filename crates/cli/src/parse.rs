@@ -195,9 +195,10 @@ pub fn format(text: &str) -> Result<Format, String> {
 /// Parses the type of written coordinates: `f32` or `f64`.
 pub fn precision(text: &str) -> Result<Precision, String> {
     match text {
+        "auto" => Ok(Precision::Auto),
         "f32" => Ok(Precision::F32),
         "f64" => Ok(Precision::F64),
-        _ => Err("it must be f32 or f64".into()),
+        _ => Err("it must be auto, f32 or f64".into()),
     }
 }
 

@@ -9,18 +9,20 @@ use meshlod_mesh::{Mesh, VertexId};
 use beside::Beside;
 use write_gltf::write_gltf;
 use write_obj::write_obj;
+use write_ply::write_ply;
 
 use crate::gltf::{Levels, LodLayout};
 use crate::replace::replace;
 use crate::{
-    Format, IoError, Note, ParseError, Precision, Scene, Unsupported, gltf, obj, off, ply, smf,
-    stl, weld,
+    Format, IoError, Note, ParseError, Precision, Scene, Unsupported, gltf, normals, obj, off, ply,
+    smf, stl, weld,
 };
 
 mod beside;
 mod images;
 mod write_gltf;
 mod write_obj;
+mod write_ply;
 
 /// Policy for merging vertices at equal or close positions when a file is read.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -47,7 +49,8 @@ pub struct ReadOptions {
 /// Options for writing a mesh file with [`write()`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WriteOptions {
-    /// Precision of coordinates in PLY, OBJ, OFF and SMF; STL and glTF always use 32 bits.
+    /// Precision of coordinates in PLY, OBJ, OFF and SMF. STL and glTF always use 32 bits; glTF
+    /// counts them from a centre of the mesh where that is needed, see [`gltf::write_glb`].
     pub precision: Precision,
 }
 
@@ -93,7 +96,7 @@ pub fn read_bytes(
     let mut scene = match format {
         Format::Gltf | Format::Glb => gltf::read(bytes, resolve, options.weld)?,
         Format::Obj => obj::read(bytes, resolve)?,
-        Format::Ply => Scene::from_mesh("", ply::read(bytes)?),
+        Format::Ply => ply::read_scene(bytes, resolve)?,
         Format::Stl => Scene::from_mesh("", stl::read(bytes)?),
         Format::Off => Scene::from_mesh("", off::read(bytes)?),
         Format::Smf => Scene::from_mesh("", smf::read(bytes)?),
@@ -107,6 +110,7 @@ pub fn read_bytes(
             Weld::Exact | Weld::Off => {}
         }
     }
+    normals::make_unit(&mut scene);
     note_missing_images(&mut scene);
     Ok(scene)
 }
@@ -142,7 +146,7 @@ pub fn write(path: &Path, scene: &Scene, options: &WriteOptions) -> Result<(), I
     match Format::of_path(path)? {
         Format::Gltf | Format::Glb => write_lods(path, scene, &[], LodLayout::default()),
         Format::Obj => write_obj(path, scene, precision),
-        Format::Ply => write_one(path, |out| ply::write(&scene.shown_mesh(), precision, out)),
+        Format::Ply => write_ply(path, scene, precision),
         Format::Stl => write_one(path, |out| stl::write(&scene.shown_mesh(), out)),
         Format::Off => write_one(path, |out| off::write(&scene.shown_mesh(), precision, out)),
         Format::Smf => write_one(path, |out| smf::write(&scene.shown_mesh(), precision, out)),

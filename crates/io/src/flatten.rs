@@ -104,6 +104,11 @@ impl Scene {
         }
     }
 
+    /// Returns the material labels that [`Scene::flatten`] gives the faces of [`Scene::shown_mesh`].
+    pub(crate) fn shown_materials(&self) -> Option<Labels> {
+        self.flat_materials(&self.instances())
+    }
+
     /// Returns the index of the only mesh shown, if its instance has the identity transform.
     fn only_mesh(&self) -> Option<usize> {
         match self.instances()[..] {

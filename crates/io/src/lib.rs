@@ -26,11 +26,13 @@ mod limits;
 mod line_writer;
 mod material;
 pub mod meshopt;
+mod normals;
 mod notes;
 pub mod obj;
 pub mod off;
 pub mod ply;
 mod polygon;
+mod precision;
 mod replace;
 mod scene;
 pub mod smf;
@@ -49,15 +51,6 @@ pub use format::Format;
 pub use material::{Material, MtlMap, MtlStatement, Shading};
 pub use meshlod_mesh::{merge_equal_wedges, weld};
 pub use notes::{Note, NoteKind};
+pub use precision::Precision;
 pub use replace::{abandon_files, write_file};
 pub use scene::{Image, Node, Scene, SceneMesh};
-
-/// Precision of the floating-point coordinates in a written file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Precision {
-    /// 32-bit floats, which most programs read.
-    #[default]
-    F32,
-    /// 64-bit floats, which keep every coordinate exactly.
-    F64,
-}

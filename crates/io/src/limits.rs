@@ -11,7 +11,8 @@ impl Scene {
     /// Lists what a file of this format cannot hold of the scene, or holds in another form; empty if
     /// all of it arrives.
     ///
-    /// Coordinates are not looked at, nor is that STL shares no vertices, which its readers mend.
+    /// Rounded coordinates are listed where the format has 32 bits alone, which do not keep the
+    /// shape; not listed is that STL shares no vertices, which its readers mend.
     /// Cost: linear in the number of corners.
     pub fn limits_of(&self, format: Format) -> Vec<Note> {
         let mut notes = match format {
@@ -20,10 +21,15 @@ impl Scene {
             Format::Obj => {
                 [self.graph_limits(), self.mtl_limits(), self.layer_limits(format)].concat()
             }
-            Format::Ply | Format::Stl | Format::Off | Format::Smf => {
+            Format::Ply => [self.graph_limits(), crate::ply::limits(self)].concat(),
+            Format::Stl | Format::Off | Format::Smf => {
                 [self.graph_limits(), self.single_mesh_limits(), self.layer_limits(format)].concat()
             }
         };
+        if let Some((most, count)) = self.unavoidable_rounding(format) {
+            let why = format!("rounded by up to {most:.1e}: the format has 32-bit coordinates");
+            notes.push(Note::changed(count, &format!("vertex {why}"), &format!("vertices {why}")));
+        }
         notes.retain(|note| note.count > 0);
         notes
     }
@@ -180,7 +186,7 @@ impl Scene {
         ]
     }
 
-    fn object_names(&self) -> Vec<String> {
+    pub(crate) fn object_names(&self) -> Vec<String> {
         let labels = self.meshes.iter().filter_map(|mesh| mesh.mesh.objects.as_ref());
         labels.flat_map(|labels| &labels.names).filter(|name| !name.is_empty()).cloned().collect()
     }
@@ -198,7 +204,7 @@ fn holds(format: Format, layer: &Layer) -> bool {
 }
 
 fn splits_seams(format: Format) -> bool {
-    matches!(format, Format::Ply | Format::Off | Format::Smf)
+    matches!(format, Format::Off | Format::Smf)
 }
 
 /// Returns the name of a layer for people.
@@ -258,7 +264,8 @@ mod tests {
         assert_eq!(limits(&scene, Format::Obj), [""; 0]);
         let parts = ["1 material (red)", "1 texture (red.tif)", "1 name of an object (leaf)"];
         let seam = "1 vertex split at seams of its attributes";
-        assert_eq!(limits(&scene, Format::Ply), [&parts[..], &[seam]].concat());
+        let color = "1 colour of a textured material (red)";
+        assert_eq!(limits(&scene, Format::Ply), [color, parts[2]]);
         assert_eq!(limits(&scene, Format::Off), [&parts[..], &[seam]].concat());
         let layers = "2 vertex attributes (normals, texture coordinates)";
         assert_eq!(limits(&scene, Format::Stl), [&parts[..], &[layers]].concat());

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use crate::Precision;
+use crate::precision::Width;
 
 /// The buffer is passed on to `out` when it exceeds this many bytes.
 const PIECE: usize = 1 << 16;
@@ -14,14 +14,14 @@ const PIECE: usize = 1 << 16;
 /// [`LineWriter::finish`] at the end to write what is still buffered.
 pub(crate) struct LineWriter<'a> {
     out: &'a mut dyn Write,
-    precision: Precision,
+    width: Width,
     buffer: String,
     at_start: bool,
 }
 
 impl<'a> LineWriter<'a> {
-    pub(crate) fn new(out: &'a mut dyn Write, precision: Precision) -> Self {
-        Self { out, precision, buffer: String::with_capacity(PIECE + 1024), at_start: true }
+    pub(crate) fn new(out: &'a mut dyn Write, width: Width) -> Self {
+        Self { out, width, buffer: String::with_capacity(PIECE + 1024), at_start: true }
     }
 
     /// Appends a word verbatim.
@@ -36,19 +36,19 @@ impl<'a> LineWriter<'a> {
         push_integer(&mut self.buffer, number);
     }
 
-    /// Appends a position in this writer's precision; `vertex` is named in the error.
+    /// Appends a position in this writer's width; `vertex` is named in the error.
     ///
     /// # Errors
     /// If a coordinate is not finite, or too large for 32 bits.
     pub(crate) fn position(&mut self, vertex: usize, position: [f64; 3]) -> io::Result<()> {
         for x in position {
             self.blank();
-            let done = match self.precision {
-                Precision::F32 => push_f32(&mut self.buffer, x as f32),
-                Precision::F64 => push_f64(&mut self.buffer, x),
+            let done = match self.width {
+                Width::F32 => push_f32(&mut self.buffer, x as f32),
+                Width::F64 => push_f64(&mut self.buffer, x),
             };
             if !done {
-                let reason = format!("v{vertex} {}", self.precision.reason_not_written());
+                let reason = format!("v{vertex} {}", self.width.reason_not_written());
                 return Err(io::Error::new(io::ErrorKind::InvalidData, reason));
             }
         }
@@ -104,8 +104,8 @@ impl<'a> LineWriter<'a> {
     }
 }
 
-impl Precision {
-    /// Reason given for a coordinate that cannot be written in this precision.
+impl Width {
+    /// Reason given for a coordinate that cannot be written in this width.
     fn reason_not_written(self) -> &'static str {
         match self {
             Self::F32 => {
@@ -147,9 +147,9 @@ fn push_f64(buffer: &mut String, x: f64) -> bool {
 mod tests {
     use super::*;
 
-    fn written(precision: Precision, position: [f64; 3]) -> Result<String, String> {
+    fn written(width: Width, position: [f64; 3]) -> Result<String, String> {
         let mut out = Vec::new();
-        let mut lines = LineWriter::new(&mut out, precision);
+        let mut lines = LineWriter::new(&mut out, width);
         lines.word("v");
         lines.position(7, position).map_err(|error| error.to_string())?;
         lines.end().unwrap();
@@ -160,16 +160,16 @@ mod tests {
     #[test]
     fn numbers_are_as_short_as_their_precision_allows() {
         let position = [0.1, -1e-20, 16777217.0];
-        assert_eq!(written(Precision::F32, position).unwrap(), "v 0.1 -1e-20 16777216\n");
-        assert_eq!(written(Precision::F64, position).unwrap(), "v 0.1 -1e-20 16777217\n");
+        assert_eq!(written(Width::F32, position).unwrap(), "v 0.1 -1e-20 16777216\n");
+        assert_eq!(written(Width::F64, position).unwrap(), "v 0.1 -1e-20 16777217\n");
         let third = [1.0 / 3.0, -0.0, 1e300];
-        assert_eq!(written(Precision::F64, third).unwrap(), "v 0.3333333333333333 -0 1e300\n");
+        assert_eq!(written(Width::F64, third).unwrap(), "v 0.3333333333333333 -0 1e300\n");
     }
 
     #[test]
     fn what_does_not_fit_is_refused_by_name() {
-        let message = written(Precision::F32, [0.0, 1e300, 0.0]).unwrap_err();
+        let message = written(Width::F32, [0.0, 1e300, 0.0]).unwrap_err();
         assert!(message.starts_with("v7 does not fit in 32-bit floats"), "{message}");
-        assert!(written(Precision::F64, [f64::NAN, 0.0, 0.0]).is_err());
+        assert!(written(Width::F64, [f64::NAN, 0.0, 0.0]).is_err());
     }
 }

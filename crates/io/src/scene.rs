@@ -3,6 +3,7 @@
 use meshlod_mesh::Mesh;
 
 use crate::gltf::SourceDocument;
+use crate::ply::PlyExtras;
 use crate::{Material, Note};
 
 /// Contents of a mesh file: meshes, the nodes that place them, materials and images.
@@ -26,6 +27,8 @@ pub struct Scene {
     /// [`Scene::meshes`]; changes to the other fields are ignored. Set this to `None` to write the
     /// fields instead.
     pub source: Option<SourceDocument>,
+    /// Comments and types of a PLY file that the scene was read from, for writing it as PLY again.
+    pub ply: PlyExtras,
     /// Notes on what the reader left out or changed; writers ignore them.
     pub notes: Vec<Note>,
 }

@@ -48,6 +48,21 @@ pub(crate) struct SplitMesh {
 /// Splits the vertices of a mesh at its seams: all vertices in order, each with its first wedge,
 /// then one more for every further wedge. A mesh without seams keeps its vertices and faces.
 pub(crate) fn split_at_seams(mesh: &Mesh) -> SplitMesh {
+    split(mesh, |wedge| wedge)
+}
+
+/// Splits the vertices of a mesh as [`split_at_seams`] does, but only where these layers differ.
+pub(crate) fn split_at_seams_of(mesh: &Mesh, layers: &[&Layer]) -> SplitMesh {
+    match &mesh.attributes {
+        Some(attributes) => {
+            let first = distinct_wedges(mesh, attributes, layers);
+            split(mesh, |wedge| WedgeId(first[wedge.index()]))
+        }
+        None => split_at_seams(mesh),
+    }
+}
+
+fn split(mesh: &Mesh, of: impl Fn(WedgeId) -> WedgeId) -> SplitMesh {
     let mut vertices: Vec<SplitVertex> = (0..mesh.positions.len())
         .map(|v| SplitVertex { vertex: VertexId::new(v), wedge: None })
         .collect();
@@ -58,6 +73,7 @@ pub(crate) fn split_at_seams(mesh: &Mesh) -> SplitMesh {
         faces.as_flattened_mut().iter_mut().zip(attributes.corners.as_flattened())
     {
         let vertex = VertexId(*corner);
+        let wedge = of(wedge);
         *corner = *row_of[wedge.index()].get_or_insert_with(|| {
             if vertices[vertex.index()].wedge.is_none() {
                 vertices[vertex.index()].wedge = Some(wedge);
@@ -68,6 +84,44 @@ pub(crate) fn split_at_seams(mesh: &Mesh) -> SplitMesh {
         });
     }
     SplitMesh { vertices, faces }
+}
+
+/// Returns, for each wedge in use, the first wedge of its vertex that equals it in these layers.
+///
+/// Values are compared bit for bit. Cost: O(n log n), n = wedges of a vertex.
+pub(crate) fn distinct_wedges(mesh: &Mesh, attributes: &Attributes, layers: &[&Layer]) -> Vec<u32> {
+    let mut owner = vec![None; attributes.wedge_count];
+    for (&v, w) in mesh.faces.as_flattened().iter().zip(attributes.corners.as_flattened()) {
+        owner[w.index()] = Some(v.0);
+    }
+    let owned = owner.iter().zip(0..).filter_map(|(owner, wedge)| Some((owner.as_ref()?, wedge)));
+    let mut owned: Vec<(u32, u32)> = owned.map(|(&vertex, wedge)| (vertex, wedge)).collect();
+    owned.sort_unstable();
+    let values = |wedge: u32| {
+        layers.iter().flat_map(move |layer| layer.of(WedgeId(wedge))).map(|x| x.to_bits())
+    };
+    let mut first: Vec<u32> = (0..attributes.wedge_count as u32).collect();
+    for around in owned.chunk_by_mut(|a, b| a.0 == b.0) {
+        if around.len() < 2 {
+            continue;
+        }
+        around.sort_unstable_by(|a, b| values(a.1).cmp(values(b.1)).then(a.1.cmp(&b.1)));
+        for equal in around.chunk_by(|a, b| values(a.1).eq(values(b.1))) {
+            equal.iter().for_each(|&(_, wedge)| first[wedge as usize] = equal[0].1);
+        }
+    }
+    first
+}
+
+/// Reports whether a layer has two values at a vertex, compared bit for bit.
+pub(crate) fn has_seams(mesh: &Mesh, attributes: &Attributes, layer: &Layer) -> bool {
+    let mut first = vec![None; mesh.positions.len()];
+    let bits = |wedge: WedgeId| layer.of(wedge).iter().map(|x| x.to_bits());
+    let mut corners = mesh.faces.as_flattened().iter().zip(attributes.corners.as_flattened());
+    corners.any(|(v, &wedge)| {
+        let known = *first[v.index()].get_or_insert(wedge);
+        known != wedge && !bits(known).eq(bits(wedge))
+    })
 }
 
 #[cfg(test)]

@@ -69,7 +69,8 @@ fn every_statement_and_map_comes_to_another_folder() {
     let mut new = contents(there.path());
     let mut old = contents(&own_file(""));
     for files in [&mut new, &mut old] {
-        files.remove(Path::new("full.obj"));
+        // The mesh is written anew; the others belong to another fixture.
+        ["full.obj", "knot.ply", "knot.png"].map(|name| files.remove(Path::new(name)));
     }
     assert_eq!(new, old);
     let again = read_it(&there.path().join("full.obj"));

@@ -11,14 +11,14 @@ use thiserror::Error;
 use crate::ConditionedScene;
 use crate::conditioned::ConditionedMesh;
 
-/// Returns the number format in which a mesh file stores positions, given its format and precision.
+/// Returns the number format in which a mesh file stores positions, given its format and precision;
+/// [`Precision::Auto`] counts as 32 bits.
 pub fn digits_of(format: Format, precision: Precision) -> Digits {
     match (format, precision) {
-        (Format::Stl | Format::Gltf | Format::Glb, _) | (Format::Ply, Precision::F32) => {
-            Digits::F32
-        }
-        (Format::Obj | Format::Off | Format::Smf, Precision::F32) => Digits::Decimal,
+        (Format::Stl | Format::Gltf | Format::Glb, _) => Digits::F32,
         (_, Precision::F64) => Digits::F64,
+        (Format::Ply, _) => Digits::F32,
+        (Format::Obj | Format::Off | Format::Smf, _) => Digits::Decimal,
     }
 }
 

@@ -77,8 +77,8 @@ impl Extract {
         self.warn_of_instances(&model, format, session);
         let mut scene = model.flat_scene(name(&self.input), mesh);
         let spare = taken.error.spare(taken.rounding);
-        let writing = self.writing.within(spare, &scene, format);
-        let moves = writing.moves(&scene, format);
+        let writing = self.writing.within(spare, &scene, format).of(&scene);
+        let moves = scene.rounding(format, writing.options().precision);
         if moves > spare {
             let moved = format_args!("rounding to f32 moved coordinates by up to {}", value(moves));
             session.warn(Failure::at(&self.output, moved));

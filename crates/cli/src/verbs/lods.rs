@@ -98,7 +98,7 @@ impl Lods {
         let options = self.method.options(&input, session)?;
         let borders = self.method.constraints.topology.borders();
         let ready = ReadyScene::new(&scene, &options, borders, &self.input, session)?;
-        let digits = digits_of(format, self.writing.options().precision);
+        let digits = digits_of(format, self.writing.of(&scene).options().precision);
         let (mut chain, time) =
             self.chain(&scene, &ready, fused.as_ref(), (layout, digits), session)?;
         if let Some(level) = chain.last() {

@@ -196,6 +196,10 @@ impl Simplify {
         let (mut done, mut time) = self.plain_run(&task, session)?;
         let before = self.volume.exact_volume.then(|| done.meshes.clone());
         let start = Instant::now();
+        if self.volume.exact_volume {
+            // The digits to which the volume is exact are those that are written.
+            self.writing = self.writing.of(&scene);
+        }
         let digits = digits_of(format, self.writing.options().precision);
         let residual = self.volume.restore(&task.ready.scene, &mut done.meshes, digits, session);
         time += start.elapsed();
@@ -262,9 +266,10 @@ impl Simplify {
             let digits = digits_of(format, writing.options().precision);
             AskedError::new(error, scene, digits, self.volume.exact_volume)
         };
-        if with(&self.writing).needs_precision() {
+        if with(&self.writing.of(scene)).needs_precision() {
             self.writing = self.writing.precise();
         }
+        self.writing = self.writing.of(scene);
         Some(with(&self.writing))
     }
 

@@ -21,6 +21,7 @@ mod pipes;
 mod queries;
 mod repair;
 mod run;
+mod scans;
 mod sides;
 mod strip;
 mod strip_models;

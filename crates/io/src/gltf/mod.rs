@@ -9,6 +9,7 @@ mod decompress;
 mod dequantize_nodes;
 mod document;
 mod encode;
+mod local_space;
 mod lod;
 mod materials;
 mod mesh;
@@ -32,6 +33,7 @@ mod vertex_cache;
 mod write;
 
 pub use compress::{Bytes, Compression, CompressionReport};
+pub(crate) use local_space::to_local;
 pub(crate) use lod::Levels;
 pub use lod::{Level, LodLayout};
 pub(crate) use new_document::has_core_type;

@@ -114,7 +114,10 @@ impl Images {
 
 fn node(node: &Node) -> Value {
     let mut json = named(&node.name);
-    if node.transform != IDENTITY {
+    let [x, y, z, [tx, ty, tz, _]] = node.transform;
+    if [x, y, z] == IDENTITY[..3] && node.transform[3][3] == 1.0 && [tx, ty, tz] != [0.0; 3] {
+        json.insert("translation".into(), json!([tx, ty, tz]));
+    } else if node.transform != IDENTITY {
         json.insert("matrix".into(), json!(node.transform.as_flattened()));
     }
     if let Some(mesh) = node.mesh {

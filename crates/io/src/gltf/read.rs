@@ -21,6 +21,12 @@ impl SourceDocument {
         self.0.json.get(array).and_then(Value::as_array).map_or(0, Vec::len)
     }
 
+    /// Reports whether the document may hold normals in bytes.
+    pub(crate) fn is_quantized(&self) -> bool {
+        let used = self.0.json.get("extensionsUsed").and_then(Value::as_array);
+        used.into_iter().flatten().any(|name| name == "KHR_mesh_quantization")
+    }
+
     /// Lists the materials that have properties which [`Material`](crate::Material) lacks, by name or
     /// as `material 3`.
     pub(crate) fn richer_materials(&self) -> Vec<String> {

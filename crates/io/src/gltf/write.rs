@@ -7,6 +7,7 @@ use super::accessor_use::free_accessors;
 use super::buffer_builder::BufferBuilder;
 use super::compress::{self, Compression, CompressionReport};
 use super::document::Document;
+use super::local_space::localized;
 use super::lod::{self, Level, Levels, LodLayout};
 use super::object_nodes::split_objects;
 use super::primitives::Replacer;
@@ -33,7 +34,9 @@ pub struct GltfFiles {
 /// extensions and everything else pass through. An unchanged mesh keeps its arrays bit for bit; a
 /// changed one gets new arrays (f32, 16-bit indices where possible, colours in their old type). The
 /// buffer is rebuilt without what is no longer used. Any other scene gets a new document with its
-/// nodes, materials, PNGs and JPEGs, in which each object of a mesh is a node and a mesh. A mesh without faces keeps one degenerate triangle, as glTF
+/// nodes, materials, PNGs and JPEGs, in which each object of a mesh is a node and a mesh; meshes whose
+/// coordinates 32 bits would round are stored relative to a centre, from which their nodes move them
+/// back. A mesh without faces keeps one degenerate triangle, as glTF
 /// does not allow empty meshes.
 ///
 /// With levels, every node with a mesh is named `…_LOD0` and linked by the extension `MSFT_lod` to
@@ -148,15 +151,14 @@ impl Output {
         match &scene.source {
             Some(source) => Self::with_source(scene, &source.0, levels, compression),
             None => {
+                let (scene, moved) = localized(scene, levels.levels);
                 let mut builder = BufferBuilder::default();
                 // Objects on grids of their own would come apart where they meet.
-                let split =
-                    compression.is_none().then(|| split_objects(scene, levels.levels)).flatten();
-                let (whole, images) = (scene, &scene.images);
-                let split = split
-                    .as_ref()
-                    .map(|split| (&split.scene, Levels { levels: &split.levels, ..levels }));
-                let (scene, levels) = split.unwrap_or((whole, levels));
+                let split = compression.is_none().then(|| split_objects(&scene, &moved)).flatten();
+                let split = split.as_ref().map(|split| (&split.scene, &split.levels[..]));
+                let images = &scene.images;
+                let (scene, moved) = split.unwrap_or((&scene, &moved));
+                let levels = Levels { levels: moved, ..levels };
                 let json = new_document::document(scene, images, &mut builder);
                 let all = vec![true; scene.meshes.len()];
                 let mut replacer = Replacer::new(None, builder);

@@ -12,6 +12,7 @@ mod tests;
 mod wedges;
 mod write;
 
+pub(crate) use mtl::one_line;
 pub use mtl::write as write_mtl;
 pub use read::read;
 pub use write::write;

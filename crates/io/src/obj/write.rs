@@ -25,7 +25,7 @@ pub fn write(
     libraries: &[String],
 ) -> io::Result<()> {
     let mesh = scene.flatten();
-    let mut lines = LineWriter::new(out, precision);
+    let mut lines = LineWriter::new(out, precision.width(&mesh));
     for name in libraries {
         lines.word("mtllib");
         lines.word(name);

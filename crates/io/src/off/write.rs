@@ -22,7 +22,7 @@ pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> io::Resu
     let find = |kind| mesh.attributes.as_ref().and_then(|a: &Attributes| a.layer(kind));
     let [normals, colors, uvs] = LAYERS.map(find);
     let split = split_at_seams(mesh);
-    let mut lines = LineWriter::new(out, precision);
+    let mut lines = LineWriter::new(out, precision.width(mesh));
     let letters = [(uvs, "ST"), (colors, "C"), (normals, "N")];
     let present = letters.iter().filter(|(layer, _)| layer.is_some());
     lines.word(&(present.map(|&(_, letter)| letter).collect::<String>() + "OFF"));

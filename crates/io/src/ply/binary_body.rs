@@ -4,7 +4,8 @@ use meshlod_mesh::VertexId;
 
 use super::body::{BodyReader, Row};
 use super::bulk;
-use super::header::{Element, Header, Scalar};
+use super::header::{Element, Header};
+use super::scalar::Scalar;
 use crate::ParseError;
 
 /// Reader of a binary body; big-endian if `BIG`.

@@ -4,7 +4,8 @@ use std::fmt;
 
 use meshlod_mesh::VertexId;
 
-use super::header::{Element, Scalar, Shape, shown};
+use super::header::{Element, Shape, shown};
+use super::scalar::Scalar;
 use crate::ParseError;
 
 /// Row being read; displayed in errors as `vertex 12 of 2903`, counted from 0.

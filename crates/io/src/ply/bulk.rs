@@ -6,7 +6,8 @@
 use meshlod_mesh::VertexId;
 
 use super::binary_body::little;
-use super::header::{Element, Scalar, Shape};
+use super::header::{Element, Shape};
+use super::scalar::Scalar;
 
 /// Bytes of a face with three 32-bit indices and an 8-bit length.
 pub(super) const TRIANGLE_ROW: usize = 13;

@@ -1,8 +1,9 @@
 //! PLY faces and triangle strips, converted to triangles.
 
-use meshlod_mesh::{VertexId, strip_triangles};
+use meshlod_mesh::VertexId;
 
 use super::body::{BodyReader, Row};
+use super::face_values::{FaceRow, FaceValues};
 use super::header::{Element, Shape};
 use crate::ParseError;
 use crate::polygon::triangulate;
@@ -14,6 +15,8 @@ const RESTART: u32 = u32::MAX;
 #[derive(Default)]
 pub(super) struct Faces {
     pub triangles: Vec<[VertexId; 3]>,
+    pub values: FaceValues,
+    row: FaceRow,
     list: Vec<u32>,
     corners: Vec<[u32; 3]>,
 }
@@ -31,6 +34,7 @@ impl Faces {
             return Err(ParseError::part("header", reason));
         };
         let is_strip = element.name == "tristrips";
+        self.values.begin(element, list);
         let mut first = 0;
         if !is_strip {
             first = body.bulk_triangles(element, positions.len(), &mut self.triangles);
@@ -55,30 +59,49 @@ impl Faces {
                             self.list.push(vertex);
                         }
                     }
-                    shape => body.skip_property(shape, row)?,
+                    _ => self.values.read(at, &mut self.row, body, row)?,
                 }
             }
             body.end_row(row)?;
+            self.values.check_row(&mut self.row, self.list.len());
             if is_strip { self.add_strips() } else { self.add_polygon(positions) }
         }
+        self.values.finish(self.triangles.len());
         Ok(())
     }
 
     fn add_polygon(&mut self, positions: &[[f64; 3]]) {
-        if let [a, b, c] = self.list[..] {
-            self.triangles.push([a, b, c].map(VertexId));
-            return;
+        if self.list.len() == 3 {
+            return self.add_triangle([0, 1, 2]);
         }
-        self.corners.clear();
-        triangulate(positions, &self.list, &mut self.corners);
-        let vertex = |corner: u32| VertexId(self.list[corner as usize]);
-        self.triangles.extend(self.corners.iter().map(|triangle| triangle.map(vertex)));
+        let mut corners = std::mem::take(&mut self.corners);
+        corners.clear();
+        triangulate(positions, &self.list, &mut corners);
+        corners.iter().for_each(|&triangle| self.add_triangle(triangle));
+        self.corners = corners;
+    }
+
+    /// Adds the triangle between these corners of the list.
+    #[inline]
+    fn add_triangle(&mut self, corners: [u32; 3]) {
+        self.values.push(self.triangles.len(), &self.row, corners);
+        self.triangles.push(corners.map(|corner| VertexId(self.list[corner as usize])));
     }
 
     /// Expands strips, without the triangles that repeat a vertex, which only join their parts.
     fn add_strips(&mut self) {
-        for strip in self.list.split(|&v| v == RESTART) {
-            self.triangles.extend(strip_triangles(strip).map(|triangle| triangle.map(VertexId)));
+        let mut start = 0;
+        for i in 0..self.list.len() {
+            if self.list[i] == RESTART {
+                start = i + 1;
+            } else if i >= start + 2 {
+                let (a, b, c) = (i - 2, i - 1, i);
+                let [va, vb, vc] = [a, b, c].map(|at| self.list[at]);
+                if va != vb && vb != vc && vc != va {
+                    let corners = if (i - start) % 2 == 0 { [a, b, c] } else { [b, a, c] };
+                    self.add_triangle(corners.map(|at| at as u32));
+                }
+            }
         }
     }
 }

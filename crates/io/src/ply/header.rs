@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use super::scalar::Scalar;
 use crate::ParseError;
 
 /// Encoding of the body.
@@ -10,19 +11,6 @@ pub(super) enum Encoding {
     Text,
     LittleEndian,
     BigEndian,
-}
-
-/// Scalar type.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Scalar {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    F32,
-    F64,
 }
 
 /// Shape of a property: a single number or a list.
@@ -54,6 +42,12 @@ pub(super) struct Element {
 pub(super) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
+    /// Lines `comment` and `obj_info`, without those that name textures.
+    pub remarks: Vec<String>,
+    /// Names after `comment TextureFile`, in order: texture number 0, 1 and so on.
+    pub textures: Vec<String>,
+    /// First words of lines that are not part of the format, shortened.
+    pub unknown: Vec<String>,
     /// Byte offset of the body.
     pub body: usize,
     /// Line of the body, counted from 1.
@@ -82,8 +76,18 @@ impl Header {
                         .ok_or_else(|| wrong("the header has no line \"format\"".into()))?;
                     let body = bytes.len() - lines.rest.len();
                     let body_line = lines.number + 1;
-                    return Ok(Self { encoding, elements: draft.elements, body, body_line });
+                    let Draft { elements, remarks, textures, unknown, .. } = draft;
+                    return Ok(Self {
+                        encoding,
+                        elements,
+                        remarks,
+                        textures,
+                        unknown,
+                        body,
+                        body_line,
+                    });
                 }
+                Some("comment" | "obj_info") => draft.add_remark(&line),
                 Some(keyword) => draft.add(keyword, &mut words).map_err(wrong)?,
                 None => {}
             }
@@ -123,6 +127,9 @@ impl<'a> Iterator for HeaderLines<'a> {
 struct Draft {
     encoding: Option<Encoding>,
     elements: Vec<Element>,
+    remarks: Vec<String>,
+    textures: Vec<String>,
+    unknown: Vec<String>,
     /// Names of the elements so far.
     element_names: HashSet<String>,
     /// Names of the properties of the last element.
@@ -137,15 +144,24 @@ impl Draft {
         words: &mut impl Iterator<Item = &'a str>,
     ) -> Result<(), String> {
         match keyword {
-            "comment" | "obj_info" => Ok(()),
             "format" => self.add_format(words.next()),
             "element" => self.add_element(words.next(), words.next()),
             "property" => self.add_property(words),
-            _ => Err(format!(
-                "unknown keyword \"{}\"; expected format, element, property, comment, obj_info or \
-                 end_header",
-                shown(keyword)
-            )),
+            _ => {
+                self.unknown.push(shown(keyword));
+                Ok(())
+            }
+        }
+    }
+
+    /// Keeps a comment, or the name of the texture that it announces.
+    fn add_remark(&mut self, line: &str) {
+        let line = line.trim();
+        let name = line.strip_prefix("comment").map(str::trim_start);
+        let name = name.and_then(|text| text.strip_prefix("TextureFile"));
+        match name.filter(|name| name.starts_with(|c: char| c.is_ascii_whitespace())) {
+            Some(name) => self.textures.push(name.trim().to_owned()),
+            None => self.remarks.push(line.to_owned()),
         }
     }
 
@@ -232,31 +248,6 @@ pub(super) fn shown(word: &str) -> String {
         text.push('…');
     }
     text
-}
-
-impl Scalar {
-    /// Returns the size of a value of this type in binary PLY, in bytes.
-    pub fn size(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::F64 => 8,
-        }
-    }
-
-    /// Returns the minimum and maximum of an integer type; `None` for the floating-point types.
-    pub fn whole_range(self) -> Option<(i64, i64)> {
-        Some(match self {
-            Self::I8 => (i8::MIN.into(), i8::MAX.into()),
-            Self::U8 => (0, u8::MAX.into()),
-            Self::I16 => (i16::MIN.into(), i16::MAX.into()),
-            Self::U16 => (0, u16::MAX.into()),
-            Self::I32 => (i32::MIN.into(), i32::MAX.into()),
-            Self::U32 => (0, u32::MAX.into()),
-            Self::F32 | Self::F64 => return None,
-        })
-    }
 }
 
 impl Shape {
@@ -351,8 +342,22 @@ mod tests {
     }
 
     #[test]
+    fn textures_comments_and_unknown_lines_are_told_apart() {
+        let text = "ply\nformat ascii 1.0\ncomment made  by hand\ncomment TextureFile a b.png\n\
+                    obj_info num_cols 512\nvendor 7\ncomment TextureFiles are below\n\
+                    comment\tTextureFile c.jpg\r\nend_header\n";
+        let header = parse(text).unwrap();
+        let remarks =
+            ["comment made  by hand", "obj_info num_cols 512", "comment TextureFiles are below"];
+        assert_eq!(header.remarks, remarks);
+        assert_eq!(header.textures, ["a b.png", "c.jpg"]);
+        assert_eq!(header.unknown, ["vendor"]);
+    }
+
+    #[test]
     fn long_and_odd_words_are_shown_short_and_on_one_line() {
-        let message = parse(&format!("ply\n\u{1b}[2J{}\n", "x".repeat(1000))).unwrap_err();
+        let word = format!("\u{1b}[2J{}", "x".repeat(1000));
+        let message = parse(&format!("ply\nformat {word}\n")).unwrap_err();
         assert!(message.len() < 200 && !message.contains('\u{1b}'), "{message}");
     }
 }

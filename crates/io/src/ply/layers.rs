@@ -148,17 +148,17 @@ fn run_from(first: &str, free: &HashMap<&str, usize>) -> Vec<String> {
 }
 
 /// Returns the divisor of a colour: the maximum of an integer type, 1 for other types.
-fn greatest(property: &Property) -> f64 {
+pub(super) fn greatest(property: &Property) -> f64 {
     let (Shape::One(kind) | Shape::List { item: kind, .. }) = property.shape;
     kind.whole_range().map_or(1.0, |(_, most)| most as f64)
 }
 
 /// Chooses the property names to write each layer under, one per component. All names are distinct,
 /// and none is a coordinate's.
-pub(super) fn names(layers: &[Layer]) -> Vec<Vec<String>> {
+pub(super) fn names<'a>(layers: impl IntoIterator<Item = &'a Layer>) -> Vec<Vec<String>> {
     let mut used: HashSet<String> = ["x", "y", "z"].map(str::to_owned).into();
     layers
-        .iter()
+        .into_iter()
         .map(|layer| {
             let names = layer_names(layer, &used);
             used.extend(names.iter().cloned());
@@ -201,7 +201,7 @@ fn one_word(name: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::header::Scalar;
+    use super::super::scalar::Scalar;
     use super::*;
 
     /// Kind, name and width of what float properties of these names become.

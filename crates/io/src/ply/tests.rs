@@ -88,7 +88,7 @@ fn every_kind_of_layer_comes_back() {
 
 #[test]
 fn seams_are_torn_and_every_corner_keeps_its_place_and_values() {
-    let mesh = with_layer(LayerKind::Uv(0), 2, true);
+    let mesh = with_layer(LayerKind::Normal, 3, true);
     let back = read(&written(&mesh, Precision::F64)).unwrap();
     assert_eq!(back.positions.len(), 12);
     let (then, now) = (mesh.attributes.as_ref().unwrap(), back.attributes.as_ref().unwrap());

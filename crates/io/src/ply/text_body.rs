@@ -1,7 +1,8 @@
 //! PLY data in text form.
 
 use super::body::{BodyReader, Row};
-use super::header::{Element, Header, Scalar, shown};
+use super::header::{Element, Header, shown};
+use super::scalar::Scalar;
 use crate::ParseError;
 
 /// Reader of a text body: numbers separated by white space, one row per line. A row may continue on

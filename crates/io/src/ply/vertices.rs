@@ -1,10 +1,11 @@
 //! PLY vertices: their positions, and attribute layers of the other properties.
 
-use meshlod_mesh::Layer;
+use meshlod_mesh::{Layer, LayerKind};
 
 use super::body::{BodyReader, Row};
-use super::header::{Element, Shape};
+use super::header::{Element, Property, Shape};
 use super::layers::{self, LayerColumns};
+use super::scalar::Scalar;
 use crate::ParseError;
 
 /// Vertices of a file.
@@ -13,6 +14,12 @@ pub(super) struct Vertices {
     pub positions: Vec<[f64; 3]>,
     /// Attribute layers, one wedge per vertex.
     pub layers: Vec<Layer>,
+    /// Types of the properties of layers that are not written as the usual ones, by name.
+    pub types: Vec<(String, Scalar)>,
+    /// Names of the lists, which are skipped.
+    pub lists: Vec<String>,
+    /// Values of other layers that are not exact in 32 bits.
+    pub rounded: usize,
 }
 
 /// Reads all rows of the element.
@@ -36,6 +43,9 @@ pub(super) fn read<B: BodyReader>(body: &mut B, element: &Element) -> Result<Ver
         first = body.bulk_positions(element, xyz, &mut vertices.positions);
     }
     vertices.positions.reserve_exact(rows - first as usize);
+    let list = |p: &&Property| matches!(p.shape, Shape::List { .. });
+    vertices.lists = element.properties.iter().filter(list).map(|p| p.name.clone()).collect();
+    vertices.types = types(element, &columns);
     vertices.layers = columns.iter().map(|columns| columns.layer(rows)).collect();
 
     let mut numbers = vec![0.0; element.properties.len()];
@@ -47,6 +57,27 @@ pub(super) fn read<B: BodyReader>(body: &mut B, element: &Element) -> Result<Ver
         body.end_row(row)?;
     }
     Ok(vertices)
+}
+
+/// Lists the types of colours and other layers, except the usual ones.
+fn types(element: &Element, columns: &[LayerColumns]) -> Vec<(String, Scalar)> {
+    let mut types = Vec::new();
+    for layer in columns {
+        let usual = match layer.kind {
+            LayerKind::Color(_) => Scalar::U8,
+            LayerKind::Other => Scalar::F32,
+            _ => continue,
+        };
+        for column in &layer.columns {
+            let Property { name, shape } = &element.properties[column.property];
+            if let Shape::One(kind) = *shape
+                && kind != usual
+            {
+                types.push((name.clone(), kind));
+            }
+        }
+    }
+    types
 }
 
 /// Returns the indices of the properties x, y and z.
@@ -105,6 +136,9 @@ impl Vertices {
                          {:?}",
                         layer.name, numbers[column.property]
                     )));
+                }
+                if layer.kind == LayerKind::Other && f64::from(value) != numbers[column.property] {
+                    self.rounded += 1;
                 }
                 layer.values.push(value);
             }

@@ -1,38 +1,80 @@
-//! Writing binary little-endian PLY files: vertices with their attributes, then triangles.
+//! Writing binary little-endian PLY files: vertices and faces with their attributes.
 
 use std::io::{Error, ErrorKind, Result, Write};
 
-use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh};
+use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, WedgeId};
 
+use super::extras::PlyExtras;
 use super::layers;
-use crate::Precision;
+use super::plan::{Plan, is_color};
+use super::scalar::Scalar;
+use crate::obj::one_line;
+use crate::precision::Width;
+use crate::vertex_attributes::{SplitMesh, SplitVertex, split_at_seams_of};
+use crate::{Image, Precision, Scene};
 
 /// Bytes buffered before they are written.
 const BLOCK: usize = 1 << 16;
 
-/// Writes a mesh as a binary little-endian PLY file, without its material and object labels.
+/// Writes a mesh as a binary little-endian PLY file, without its materials.
 ///
 /// Coordinates are `float` or `double` as `precision` says, colours `uchar`, other layers `float`,
-/// under the names in the [module's table](super). PLY has values at vertices only: unless wedges
-/// and vertices correspond one to one, every wedge in use becomes a vertex of its own, which splits
-/// seams and drops unused vertices.
+/// under the names in the [module's tables](super). Texture coordinates with seams are written as
+/// lists at faces, and so are colours that have seams and are even over each face. Seams of other
+/// layers split vertices: each vertex comes first with its first wedge, the others follow.
 /// # Errors
 /// Errors of `out`. Before anything is written: a mesh that breaks [`Mesh::validate`], and a
 /// coordinate that is not finite as a `float`.
 pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> Result<()> {
     mesh.validate().map_err(invalid)?;
-    if precision == Precision::F32 {
+    write_plan(&Plan::of_mesh(mesh), &PlyExtras::default(), precision, out)
+}
+
+/// Writes what a scene shows, in world space, as [`write()`] does a mesh, with the names of its
+/// textures, the texture of each face, its labels, and what was kept of a PLY file.
+///
+/// # Errors
+/// Errors of [`write()`].
+pub fn write_scene(scene: &Scene, precision: Precision, out: &mut dyn Write) -> Result<()> {
+    write_named(scene, &scene.images, precision, out)
+}
+
+/// Writes a scene as [`write_scene`] does, with the names of these images in place of its own.
+pub(crate) fn write_named(
+    scene: &Scene,
+    images: &[Image],
+    precision: Precision,
+    out: &mut dyn Write,
+) -> Result<()> {
+    scene.meshes.iter().try_for_each(|mesh| mesh.mesh.validate()).map_err(invalid)?;
+    write_plan(&Plan::of_scene(scene, images), &scene.ply, precision, out)
+}
+
+fn write_plan(
+    plan: &Plan<'_>,
+    extras: &PlyExtras,
+    precision: Precision,
+    out: &mut dyn Write,
+) -> Result<()> {
+    let mesh = &*plan.mesh;
+    let width = precision.width(mesh);
+    if width == Width::F32 {
         check_fits_f32(mesh)?;
     }
-    let rows = Rows::of(mesh)?;
-    let layers = mesh.attributes.as_ref().map_or(&[][..], |attributes| &attributes.layers);
-    let columns: Vec<_> = layers.iter().map(LayerEncoder::of).collect();
-    out.write_all(header(mesh.faces.len(), precision, rows.len(mesh), layers).as_bytes())?;
+    let layers = plan.vertex_layers();
+    let rows = Rows::of(mesh, &layers);
+    let columns: Vec<LayerEncoder<'_>> = layers
+        .iter()
+        .zip(layers::names(layers.iter().copied()))
+        .map(|(layer, names)| LayerEncoder::new(layer, names, extras, ""))
+        .collect();
+    let faces = FaceEncoder::new(plan, extras);
+    out.write_all(header(plan, extras, width, &rows, &columns, &faces).as_bytes())?;
 
     let mut block = Vec::with_capacity(BLOCK + BLOCK / 4);
     for row in 0..rows.len(mesh) {
         let (vertex, wedge) = rows.at(row);
-        append_position(mesh.positions[vertex], precision, &mut block);
+        append_position(mesh.positions[vertex], width, &mut block);
         columns.iter().for_each(|column| column.append(wedge, &mut block));
         flush_if_full(&mut block, out)?;
     }
@@ -41,6 +83,7 @@ pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> Result<(
         for index in rows.face(mesh, face) {
             block.extend_from_slice(&index.to_le_bytes());
         }
+        faces.append(face, &mut block);
         flush_if_full(&mut block, out)?;
     }
     out.write_all(&block)
@@ -50,61 +93,42 @@ pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> Result<(
 enum Rows {
     /// Vertices of the mesh, each with the wedge of equal index.
     Vertices,
-    /// Wedges in use, each with its vertex, and the faces over them.
-    Wedges { rows: Vec<(u32, u32)>, faces: Vec<[u32; 3]> },
+    /// Vertices, then one for every further set of attributes, and the faces over them.
+    Split(SplitMesh),
 }
 
 impl Rows {
-    fn of(mesh: &Mesh) -> Result<Self> {
+    fn of(mesh: &Mesh, layers: &[&Layer]) -> Self {
         match &mesh.attributes {
-            Some(attributes)
-                if !attributes.layers.is_empty() && !is_one_to_one(mesh, attributes) =>
-            {
-                Ok(Self::of_wedges(mesh, attributes))
+            Some(attributes) if !layers.is_empty() && !is_one_to_one(mesh, attributes) => {
+                Self::Split(split_at_seams_of(mesh, layers))
             }
-            _ => Ok(Self::Vertices),
+            _ => Self::Vertices,
         }
-    }
-
-    /// Numbers the wedges in use, in order.
-    fn of_wedges(mesh: &Mesh, attributes: &Attributes) -> Self {
-        let mut owner = vec![None; attributes.wedge_count];
-        for (face, corners) in mesh.faces.iter().zip(&attributes.corners) {
-            for (&v, &w) in face.iter().zip(corners) {
-                owner[w.index()] = Some(v);
-            }
-        }
-        let mut rows = Vec::new();
-        let mut row_of = vec![0; owner.len()];
-        for (wedge, owner) in owner.iter().enumerate() {
-            if let Some(vertex) = owner {
-                row_of[wedge] = rows.len() as u32;
-                rows.push((vertex.0, wedge as u32));
-            }
-        }
-        let faces = attributes.corners.iter().map(|face| face.map(|w| row_of[w.index()]));
-        Self::Wedges { rows, faces: faces.collect() }
     }
 
     fn len(&self, mesh: &Mesh) -> usize {
         match self {
             Self::Vertices => mesh.positions.len(),
-            Self::Wedges { rows, .. } => rows.len(),
+            Self::Split(split) => split.vertices.len(),
         }
     }
 
-    /// Returns the vertex and the wedge of a row.
-    fn at(&self, row: usize) -> (usize, usize) {
+    /// Returns the vertex of a row, and its wedge unless no face uses it.
+    fn at(&self, row: usize) -> (usize, Option<WedgeId>) {
         match self {
-            Self::Vertices => (row, row),
-            Self::Wedges { rows, .. } => (rows[row].0 as usize, rows[row].1 as usize),
+            Self::Vertices => (row, Some(WedgeId::new(row))),
+            Self::Split(split) => {
+                let SplitVertex { vertex, wedge } = split.vertices[row];
+                (vertex.index(), wedge)
+            }
         }
     }
 
     fn face(&self, mesh: &Mesh, face: usize) -> [u32; 3] {
         match self {
             Self::Vertices => mesh.faces[face].map(|v| v.0),
-            Self::Wedges { faces, .. } => faces[face],
+            Self::Split(split) => split.faces[face],
         }
     }
 }
@@ -119,58 +143,132 @@ fn is_one_to_one(mesh: &Mesh, attributes: &Attributes) -> bool {
             .all(|(v, w)| v.0 == w.0)
 }
 
-fn header(faces: usize, precision: Precision, vertices: usize, layers: &[Layer]) -> String {
+fn header(
+    plan: &Plan<'_>,
+    extras: &PlyExtras,
+    width: Width,
+    rows: &Rows,
+    columns: &[LayerEncoder<'_>],
+    faces: &FaceEncoder<'_>,
+) -> String {
+    let vertices = rows.len(&plan.mesh);
     let mut lines = vec!["ply".to_owned(), "format binary_little_endian 1.0".to_owned()];
+    lines.extend(extras.remarks.iter().map(|line| one_line(line, str::trim)));
+    lines.extend(plan.textures.iter().map(|name| format!("comment TextureFile {name}")));
     lines.push(format!("element vertex {vertices}"));
-    let coordinate = match precision {
-        Precision::F32 => "float",
-        Precision::F64 => "double",
+    let coordinate = match width {
+        Width::F32 => "float",
+        Width::F64 => "double",
     };
     lines.extend(["x", "y", "z"].map(|name| format!("property {coordinate} {name}")));
-    for (layer, names) in layers.iter().zip(layers::names(layers)) {
-        let kind = if is_bytes(layer) { "uchar" } else { "float" };
-        lines.extend(names.iter().map(|name| format!("property {kind} {name}")));
-    }
-    lines.push(format!("element face {faces}"));
+    columns.iter().for_each(|column| lines.extend(column.properties()));
+    lines.push(format!("element face {}", plan.mesh.faces.len()));
     let index = if i32::try_from(vertices).is_ok() { "int" } else { "uint" };
     lines.push(format!("property list uchar {index} vertex_indices"));
+    lines.extend(faces.properties());
     lines.push("end_header\n".to_owned());
     lines.join("\n")
-}
-
-/// Reports whether a layer is written as bytes, as is customary for colours.
-fn is_bytes(layer: &Layer) -> bool {
-    matches!((layer.kind, layer.width), (LayerKind::Color(_), 3 | 4))
 }
 
 /// Encoder for the values of a layer.
 struct LayerEncoder<'a> {
     layer: &'a Layer,
-    bytes: bool,
+    /// Name, type and factor of each component.
+    components: Vec<(String, Scalar, f64)>,
 }
 
 impl<'a> LayerEncoder<'a> {
-    fn of(layer: &'a Layer) -> Self {
-        Self { layer, bytes: is_bytes(layer) }
+    /// Chooses the types, by the names that properties had in the file, with `prefix` before them.
+    fn new(layer: &'a Layer, names: Vec<String>, extras: &PlyExtras, prefix: &str) -> Self {
+        let component = |name: String| {
+            let known = |usual| extras.kind(&format!("{prefix}{name}"), usual);
+            let (kind, unit) = match layer.kind {
+                LayerKind::Color(_) if is_color(layer) => {
+                    let kind = known(Scalar::U8);
+                    (kind, kind.whole_range().map_or(1.0, |(_, most)| most as f64))
+                }
+                LayerKind::Other => (known(Scalar::F32), 1.0),
+                _ => (Scalar::F32, 1.0),
+            };
+            (name, kind, unit)
+        };
+        Self { layer, components: names.into_iter().map(component).collect() }
     }
 
-    fn append(&self, wedge: usize, block: &mut Vec<u8>) {
-        let values = &self.layer.values[wedge * self.layer.width..][..self.layer.width];
-        for &value in values {
-            if self.bytes {
-                block.push((value.clamp(0.0, 1.0) * 255.0).round() as u8);
-            } else {
-                block.extend_from_slice(&value.to_le_bytes());
-            }
+    fn properties(&self) -> impl Iterator<Item = String> {
+        self.components.iter().map(|(name, kind, _)| format!("property {} {name}", kind.name()))
+    }
+
+    /// Appends the values of a wedge, or zeros.
+    fn append(&self, wedge: Option<WedgeId>, block: &mut Vec<u8>) {
+        for (i, &(_, kind, unit)) in self.components.iter().enumerate() {
+            let value = wedge.map_or(0.0, |wedge| f64::from(self.layer.of(wedge)[i]));
+            let is_fraction = unit != 1.0;
+            kind.append(if is_fraction { value.clamp(0.0, 1.0) * unit } else { value }, block);
         }
     }
 }
 
-fn append_position(position: [f64; 3], precision: Precision, block: &mut Vec<u8>) {
+/// Encoder for what follows the vertices of a face.
+struct FaceEncoder<'a> {
+    plan: &'a Plan<'a>,
+    corners: &'a [[WedgeId; 3]],
+    uvs: Option<&'a Layer>,
+    colors: Option<LayerEncoder<'a>>,
+}
+
+impl<'a> FaceEncoder<'a> {
+    fn new(plan: &'a Plan<'a>, extras: &PlyExtras) -> Self {
+        let Some(attributes) = &plan.mesh.attributes else {
+            return Self { plan, corners: &[], uvs: None, colors: None };
+        };
+        let colors = plan.colors.map(|i| {
+            let layer = &attributes.layers[i];
+            let names = ["red", "green", "blue", "alpha"].map(str::to_owned);
+            let names = names.into_iter().take(layer.width).collect();
+            LayerEncoder::new(layer, names, extras, "face ")
+        });
+        let uvs = plan.uvs.map(|i| &attributes.layers[i]);
+        Self { plan, corners: &attributes.corners, uvs, colors }
+    }
+
+    fn properties(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        if self.uvs.is_some() {
+            lines.push("property list uchar float texcoord".to_owned());
+        }
+        if self.plan.texture_of_face.is_some() {
+            lines.push("property int texnumber".to_owned());
+        }
+        lines.extend(self.colors.iter().flat_map(LayerEncoder::properties));
+        let labels = self.plan.labels.iter();
+        lines.extend(labels.map(|l| format!("property {} {}", l.kind.name(), l.property)));
+        lines
+    }
+
+    fn append(&self, face: usize, block: &mut Vec<u8>) {
+        if let Some(uvs) = self.uvs {
+            block.push(6);
+            let values = self.corners[face].iter().flat_map(|&wedge| uvs.of(wedge));
+            values.for_each(|x| block.extend_from_slice(&x.to_le_bytes()));
+        }
+        if let Some(textures) = &self.plan.texture_of_face {
+            block.extend_from_slice(&textures[face].to_le_bytes());
+        }
+        if let Some(colors) = &self.colors {
+            colors.append(Some(self.corners[face][0]), block);
+        }
+        if let (Some(labels), Some(objects)) = (&self.plan.labels, &self.plan.mesh.objects) {
+            labels.kind.append(labels.numbers[objects.of(face) as usize] as f64, block);
+        }
+    }
+}
+
+fn append_position(position: [f64; 3], width: Width, block: &mut Vec<u8>) {
     for x in position {
-        match precision {
-            Precision::F32 => block.extend_from_slice(&(x as f32).to_le_bytes()),
-            Precision::F64 => block.extend_from_slice(&x.to_le_bytes()),
+        match width {
+            Width::F32 => block.extend_from_slice(&(x as f32).to_le_bytes()),
+            Width::F64 => block.extend_from_slice(&x.to_le_bytes()),
         }
     }
 }

@@ -19,7 +19,7 @@ use crate::vertex_attributes::split_at_seams;
 /// Errors of `out`, and a position that `precision` cannot hold.
 pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> io::Result<()> {
     let split = split_at_seams(mesh);
-    let mut lines = LineWriter::new(out, precision);
+    let mut lines = LineWriter::new(out, precision.width(mesh));
     for header in [
         "#$SMF 1.0".to_owned(),
         format!("#$vertices {}", split.vertices.len()),

@@ -14,6 +14,7 @@ mod write;
 pub(crate) use meaning::untold;
 pub(crate) use read::Library;
 pub(super) use read::resolve_materials;
+pub(super) use write::names;
+pub(crate) use write::one_line;
 pub use write::write;
 pub(crate) use write::{is_superset, same_library, says_nothing};
-pub(super) use write::{names, one_line};

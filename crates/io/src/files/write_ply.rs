@@ -1,0 +1,23 @@
+//! Writing a PLY file with the images that its materials use.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use super::images::{stage_image, use_own_names};
+use crate::staged::StagedFiles;
+use crate::{IoError, Precision, Scene, ply};
+
+/// Writes the images that materials use beside a PLY file, and then the file.
+pub(super) fn write_ply(path: &Path, scene: &Scene, precision: Precision) -> Result<(), IoError> {
+    let used = scene.materials.iter().filter_map(|material| material.base_color_image);
+    let used: BTreeSet<usize> = used.collect();
+    let mut images = scene.images.clone();
+    use_own_names(path, &mut images);
+    let mut staged = StagedFiles::default();
+    for &image in used.range(..images.len()) {
+        if !images[image].bytes.is_empty() {
+            stage_image(path, &images[image], &mut staged)?;
+        }
+    }
+    staged.finish(path, |out| ply::write_named(scene, &images, precision, out), &[])
+}

@@ -1,0 +1,190 @@
+//! Precision of written coordinates: how many bits a mesh needs, and what fewer of them change.
+
+use glam::DVec3;
+use meshlod_mesh::Mesh;
+use rustc_hash::FxHashMap;
+
+use crate::{Format, Scene, gltf};
+
+/// Precision of the floating-point coordinates in a written file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Precision {
+    /// 32-bit floats where they keep the shape, else 64-bit floats.
+    ///
+    /// They keep it if no two vertices at different places become one, and no coordinate moves by
+    /// more than a thousandth of the mean length of an edge.
+    #[default]
+    Auto,
+    /// 32-bit floats, which most programs read.
+    F32,
+    /// 64-bit floats, which keep every coordinate exactly.
+    F64,
+}
+
+/// Bits of a coordinate in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Width {
+    F32,
+    F64,
+}
+
+/// Part of the mean length of an edge by which a coordinate may move.
+const UNSEEN: f64 = 1e-3;
+
+impl Precision {
+    /// Returns [`Precision::F32`] or [`Precision::F64`]: for [`Precision::Auto`], the one that these
+    /// meshes need in formats that have both.
+    pub fn of<'a>(self, meshes: impl IntoIterator<Item = &'a Mesh>) -> Self {
+        match self {
+            Self::Auto if meshes.into_iter().all(fits_f32) => Self::F32,
+            Self::Auto => Self::F64,
+            chosen => chosen,
+        }
+    }
+
+    /// Returns the bits of the coordinates of a mesh.
+    pub(crate) fn width(self, mesh: &Mesh) -> Width {
+        match self.of([mesh]) {
+            Self::F64 => Width::F64,
+            Self::F32 | Self::Auto => Width::F32,
+        }
+    }
+}
+
+impl Scene {
+    /// Returns the largest change of a coordinate when the scene is written in a format and read
+    /// back, in the units of its meshes; infinite for a coordinate that cannot be written.
+    pub fn rounding(&self, format: Format, precision: Precision) -> f64 {
+        let precision = precision.of(self.meshes.iter().map(|mesh| &mesh.mesh));
+        let of_mesh = |mesh: &Mesh| match (format, precision) {
+            (Format::Gltf | Format::Glb, _) => self.gltf_rounding(mesh),
+            (Format::Stl, _) | (Format::Ply, Precision::F32) => rounding(mesh),
+            (_, Precision::F64) => 0.0,
+            // The shortest decimal of an `f32` usually parses to a different `f64`.
+            (_, Precision::F32 | Precision::Auto) => {
+                let read = |x: f64| (x as f32).to_string().parse().unwrap_or(f64::INFINITY);
+                let coordinates = mesh.positions.as_flattened().iter();
+                coordinates.map(|&x: &f64| (read(x) - x).abs()).fold(0.0, f64::max)
+            }
+        };
+        self.meshes.iter().map(|mesh| of_mesh(&mesh.mesh)).fold(0.0, f64::max)
+    }
+
+    fn gltf_rounding(&self, mesh: &Mesh) -> f64 {
+        if self.source.is_some() || fits_f32(mesh) {
+            return rounding(mesh);
+        }
+        let mut local = Mesh::new(mesh.positions.clone(), mesh.faces.clone());
+        gltf::to_local(&mut local);
+        rounding(&local)
+    }
+
+    /// Returns the largest change of a coordinate in a format that has 32 bits alone, if those
+    /// change the shape, and the number of vertices it moves.
+    pub(crate) fn unavoidable_rounding(&self, format: Format) -> Option<(f64, usize)> {
+        let changes = |mesh: &Mesh| {
+            let is_inexact = |p: &&[f64; 3]| p.iter().any(|&x| f64::from(x as f32) != x);
+            let count = mesh.positions.iter().filter(is_inexact).count();
+            (!fits_f32(mesh)).then(|| (rounding(mesh), count))
+        };
+        let all: Vec<(f64, usize)> = match format {
+            Format::Stl => changes(&self.shown_mesh()).into_iter().collect(),
+            Format::Gltf | Format::Glb => {
+                let of_mesh = |mesh: &Mesh| {
+                    if self.source.is_some() || fits_f32(mesh) {
+                        return changes(mesh);
+                    }
+                    let mut local = Mesh::new(mesh.positions.clone(), mesh.faces.clone());
+                    gltf::to_local(&mut local);
+                    changes(&local)
+                };
+                self.meshes.iter().filter_map(|mesh| of_mesh(&mesh.mesh)).collect()
+            }
+            Format::Ply | Format::Obj | Format::Off | Format::Smf => Vec::new(),
+        };
+        all.into_iter().reduce(|(a, n), (b, m)| (a.max(b), n + m))
+    }
+}
+
+/// Returns the largest change of a coordinate of a mesh in 32 bits, in model units; infinite for a
+/// coordinate beyond their range.
+fn rounding(mesh: &Mesh) -> f64 {
+    let moves = mesh.positions.as_flattened().iter().map(|&x| (f64::from(x as f32) - x).abs());
+    moves.fold(0.0, f64::max)
+}
+
+/// Reports whether 32 bits keep the shape of a mesh, as [`Precision::Auto`] says.
+///
+/// Cost: one pass over the coordinates if all are exact in 32 bits, else linear in the mesh.
+pub(crate) fn fits_f32(mesh: &Mesh) -> bool {
+    let moves = rounding(mesh);
+    moves == 0.0 || (moves.is_finite() && moves <= UNSEEN * mean_edge(mesh) && !merges(mesh))
+}
+
+/// Returns the mean length of the edges of all faces; infinite without faces.
+fn mean_edge(mesh: &Mesh) -> f64 {
+    if mesh.faces.is_empty() {
+        return f64::INFINITY;
+    }
+    let count = 3.0 * mesh.faces.len() as f64;
+    let length = |[a, b, c]: [DVec3; 3]| (a.distance(b) + b.distance(c) + c.distance(a)) / count;
+    mesh.faces.iter().map(|&face| length(mesh.triangle(face))).sum()
+}
+
+/// Reports whether two vertices at different places have one place in 32 bits.
+fn merges(mesh: &Mesh) -> bool {
+    let mut first: FxHashMap<[u32; 3], usize> = FxHashMap::default();
+    first.reserve(mesh.positions.len());
+    mesh.positions.iter().enumerate().any(|(v, position)| {
+        // Adding 0 makes the two zeros one.
+        let place = position.map(|x| (x as f32 + 0.0).to_bits());
+        mesh.positions[*first.entry(place).or_insert(v)] != *position
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_fixtures::{grid, mesh, tetrahedron};
+
+    use super::*;
+
+    fn at(mut mesh: Mesh, scale: f64, offset: [f64; 3]) -> Mesh {
+        for position in &mut mesh.positions {
+            *position = [0, 1, 2].map(|i| position[i] * scale + offset[i]);
+        }
+        mesh
+    }
+
+    #[test]
+    fn near_the_origin_32_bits_are_enough() {
+        assert_eq!(Precision::Auto.of([&at(tetrahedron(), 0.1, [0.3; 3])]), Precision::F32);
+        assert_eq!(Precision::default(), Precision::Auto);
+    }
+
+    #[test]
+    fn far_coordinates_need_64_bits_unless_they_are_coarse() {
+        let utm = [500_000.0, 5_400_000.0, 100.0];
+        assert_eq!(Precision::Auto.of([&at(grid(3), 0.01, utm)]), Precision::F64);
+        assert_eq!(Precision::Auto.of([&at(grid(3), 1000.1, utm)]), Precision::F32);
+        // Exact in 32 bits.
+        assert_eq!(Precision::Auto.of([&at(grid(3), 0.5, utm)]), Precision::F32);
+        assert_eq!(Precision::F32.of([&at(grid(3), 0.01, utm)]), Precision::F32);
+    }
+
+    #[test]
+    fn vertices_that_would_become_one_need_64_bits() {
+        let near = 0.3 + 1e-12;
+        let positions = [[0.3, 0.0, 0.0], [near, 0.0, 0.0], [100.0, 0.0, 0.0], [0.0, 100.0, 0.0]];
+        let two = mesh(&positions, &[[0, 2, 3], [1, 3, 2]]);
+        assert_eq!(Precision::Auto.of([&two]), Precision::F64);
+        let mut one = two;
+        one.positions[1][0] = 0.3;
+        assert_eq!(Precision::Auto.of([&one]), Precision::F32);
+    }
+
+    #[test]
+    fn what_is_beyond_32_bits_needs_64() {
+        assert_eq!(Precision::Auto.of([&at(tetrahedron(), 1e300, [0.0; 3])]), Precision::F64);
+        assert_eq!(Precision::Auto.of([&at(tetrahedron(), 1e-300, [0.0; 3])]), Precision::F64);
+    }
+}
