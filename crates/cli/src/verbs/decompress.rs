@@ -28,10 +28,6 @@ pub struct Decompress {
     writing: WriteArgs,
 }
 
-/// Largest change of a coordinate by writing it, relative to the diagonal, of which nothing is said:
-/// `f32` moves coordinates of at most eight diagonals by less.
-const SPARE: f64 = 1.0 / (1 << 22) as f64;
-
 impl Decompress {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         let format = files::check_output(&self.output, session)?;
@@ -43,19 +39,12 @@ impl Decompress {
         let decoded = decompress_model(&bytes);
         let (mesh, model) = decoded.map_err(|error| Failure::at(&self.input, error))?;
         let counts = [mesh.positions.len(), mesh.faces.len()];
-        let spare = SPARE * mesh.bounds().diagonal();
         let flat = model.flat_scene(name, mesh);
         let scene = model_scene::restored(&self.input, model, flat, format)?;
         let time = start.elapsed();
         let shown = model_scene::shown_faces(&scene);
         let (json, text) = (self.json(counts, shown, time), self.text(counts, shown, time));
-        let writing = self.writing.within(spare, &scene, format);
-        let moves = writing.moves(&scene, format);
-        if moves > spare {
-            let moved = format_args!("rounding to f32 moved coordinates by up to {}", value(moves));
-            session.warn(Failure::at(&self.output, moved));
-        }
-        files::write(&self.output, &scene, &writing, session)?;
+        files::write(&self.output, &scene, &self.writing, session)?;
         Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
     }
 
