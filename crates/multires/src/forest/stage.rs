@@ -19,7 +19,7 @@ impl Stage {
 
     /// Returns the stage of the contraction that `after` others follow.
     pub(crate) fn before(after: usize) -> Self {
-        let place = (after as u64 + 1).min(u64::from(u32::MAX));
+        let place = (after as u64).saturating_add(1).min(u64::from(u32::MAX));
         let octave = place.ilog2();
         let step = ((place << STEP_BITS) >> octave) & ((1 << STEP_BITS) - 1);
         Self((octave << STEP_BITS) as u16 + step as u16)
