@@ -208,12 +208,15 @@ impl<S: Source> Archive<S> {
     /// Extracts the finest mesh of at most `faces` faces for a query, like
     /// [`Extractor::at_most`](crate::Extractor::at_most).
     ///
-    /// For a uniform query, only chunks that may contribute to the answer are read.
+    /// For a uniform query of a model without attributes, only chunks that may contribute to the
+    /// answer are read.
     /// # Errors
     /// An invalid query, or a file that is damaged or was crafted to mislead.
     pub fn extract_at_most(&self, faces: usize, query: &Query<'_>) -> Result<Extract, FileError> {
         let is_uniform = Criterion::new(query, &self.header.about.frame)?.is_uniform();
-        let mut chunks = if is_uniform { self.chunks_for_faces(faces) } else { self.complete };
+        // Chunks are in the order of errors, which the stages are not.
+        let by_error = is_uniform && !self.header.about.has_stages;
+        let mut chunks = if by_error { self.chunks_for_faces(faces) } else { self.complete };
         loop {
             let model = Model::from_certified(&self.read_chunks(chunks)?.0);
             let level = model.extractor().at_most(faces, query)?.clone();
@@ -221,7 +224,7 @@ impl<S: Source> Archive<S> {
             let least = model.implicit().least_error_above(&level.nodes).get();
             let rest = &self.header.chunks[chunks..self.complete];
             let urgent = rest.iter().rposition(|chunk| chunk.area.error >= least);
-            let Some(more) = urgent.filter(|_| is_uniform) else {
+            let Some(more) = urgent.filter(|_| by_error) else {
                 let bytes = self.bytes_of(0..chunks);
                 let updates = model.implicit().update_count();
                 return Ok(Extract { level, chunks, updates, bytes });

@@ -82,6 +82,7 @@ pub(super) fn read(header: &Header, bytes: &[u8]) -> Result<DecoderState, BaseEr
     }
     let exact = if lossless { ExactPositions::lossless() } else { ExactPositions::default() };
     let mut state = DecoderState::new(about.frame, lattice, BaseMesh { positions, faces }, exact);
+    state.has_stages = about.has_stages;
     if lossless {
         read_exact(&mut state, &mut input)?;
     }

@@ -16,7 +16,7 @@ use super::exact_coding::{self, Deltas};
 use super::header::UNKNOWN_FLAGS;
 use super::streams::{Packer, Unpacker};
 use super::wedge_state::WedgeError;
-use crate::forest::{NONE, NonFanSplit};
+use crate::forest::{NONE, NonFanSplit, Stage};
 use crate::implicit::{DetachedUpdate, has_three_corners};
 use crate::length16::Length16;
 use crate::pack::{error9, error16, radius8, radius16};
@@ -81,6 +81,9 @@ pub(super) fn write(state: &DecoderState, run: Range<usize>) -> io::Result<Vec<u
         let pairs = run.clone().flat_map(|at| state.children(at)).filter_map(pair);
         exact_coding::write(&pairs.collect::<Vec<_>>(), &mut packer)?;
     }
+    if state.has_stages {
+        write_stages(updates, &mut packer)?;
+    }
     if let Some(wedges) = &state.wedges {
         wedges.write_run(&state.updates, run, state.root_count(), &mut packer)?;
     }
@@ -106,6 +109,14 @@ fn write_errors(updates: &[DetachedUpdate], packer: &mut Packer) -> io::Result<(
     packer.numbers(&levels)?;
     packer.numbers(&steps)?;
     packer.numbers(&above)
+}
+
+/// Encodes stages relative to the least one.
+fn write_stages(updates: &[DetachedUpdate], packer: &mut Packer) -> io::Result<()> {
+    let stages = || updates.iter().map(|u| u32::from(u.stage.number()));
+    let least = stages().min().unwrap_or(0);
+    packer.numbers(&[least])?;
+    packer.numbers(&stages().map(|stage| stage - least).collect::<Vec<_>>())
 }
 
 fn write_offsets(
@@ -176,6 +187,7 @@ pub(super) fn read(
             level: u16::try_from(levels[at]).map_err(|_| bad("its level is out of range"))?,
             wings: [wings[0][at], wings[1][at]],
             radius: Length16::default(),
+            stage: Stage::default(),
             error: error16(errors[at]).ok_or(bad("its error is out of range"))?,
             is_open: flags[at] & OPEN != 0,
             fused_with_child: flags[at] & FUSED != 0,
@@ -205,6 +217,12 @@ pub(super) fn read(
     }
     if state.is_lossless() {
         read_exact(state, &mut input, start, &flags)?;
+    }
+    if state.has_stages {
+        for (at, number) in read_stages(&mut input, count)?.into_iter().enumerate() {
+            let bad = ChunkError::Update { update: at, why: "its stage is out of range" };
+            state.updates[start + at].stage = Stage::new(number).ok_or(bad)?;
+        }
     }
     if let Some(mut wedges) = state.wedges.take() {
         let is_recorded = |at: usize| flags[at - start] & RECORDED != 0;
@@ -271,6 +289,13 @@ fn read_errors(input: &mut Unpacker<'_>, count: usize) -> io::Result<(Vec<u32>, 
         *error = error.saturating_add(least);
     }
     Ok((errors, levels))
+}
+
+/// Decodes stages; the caller checks their range.
+fn read_stages(input: &mut Unpacker<'_>, count: usize) -> io::Result<Vec<u32>> {
+    let least = input.numbers::<u32>(1)?[0];
+    let above = input.numbers::<u32>(count)?;
+    Ok(above.into_iter().map(|above| above.saturating_add(least)).collect())
 }
 
 /// Decodes a split whose faces are not separated by wings. Its nodes, in the file's numbering, must

@@ -23,6 +23,8 @@ pub(super) struct DecoderState {
     exact: ExactPositions,
     /// Wedges, if the file has any.
     pub(super) wedges: Option<WedgeState>,
+    /// True if updates have stages.
+    pub(super) has_stages: bool,
     /// First update of each run, by its number in the file and by its local number.
     runs: Vec<[u32; 2]>,
 }
@@ -34,7 +36,16 @@ impl DecoderState {
         base: BaseMesh,
         exact: ExactPositions,
     ) -> Self {
-        Self { frame, lattice, base, updates: Vec::new(), exact, wedges: None, runs: Vec::new() }
+        Self {
+            frame,
+            lattice,
+            base,
+            updates: Vec::new(),
+            exact,
+            wedges: None,
+            has_stages: false,
+            runs: Vec::new(),
+        }
     }
 
     /// Starts a run: the updates pushed next have consecutive numbers in the file from `update` on.

@@ -114,6 +114,7 @@ impl Header {
             (LOSSLESS, self.lossless),
             (WEDGES, self.has_wedges),
             (RESOURCES, !self.resources.is_empty()),
+            (STAGES, self.about.has_stages),
         ];
         let flags = flags.iter().filter(|(_, is_so)| *is_so).map(|(flag, _)| flag).sum();
         out.extend([kind_code(kind), flags]);
@@ -186,6 +187,7 @@ impl Header {
                     2 => ErrorKind::Measured,
                     _ => return Err(bad("it has an unknown kind of errors")),
                 },
+                has_stages: bytes[BODY_AT + 3] & STAGES != 0,
             },
             lattice: lattice.ok_or(bad("the cell size of its lattice is out of range"))?,
             lossless: bytes[BODY_AT + 3] & LOSSLESS != 0,
@@ -199,7 +201,7 @@ impl Header {
             resources,
             has_old_resources: index == ResourceIndex::Old,
         };
-        if bytes[BODY_AT + 3] & !(LOSSLESS | WEDGES | OLD_RESOURCES | RESOURCES) != 0 {
+        if bytes[BODY_AT + 3] & !(LOSSLESS | WEDGES | OLD_RESOURCES | RESOURCES | STAGES) != 0 {
             return Err(bad(UNKNOWN_FLAGS));
         }
         if this.updates() > MAX_UPDATES || this.roots as usize > MAX_UPDATES {
@@ -227,6 +229,8 @@ const WEDGES: u8 = 2;
 const OLD_RESOURCES: u8 = 4;
 /// Flag of a file with resources.
 const RESOURCES: u8 = 8;
+/// Flag of a file whose updates have stages.
+const STAGES: u8 = 16;
 /// Message for any other flag.
 pub(super) const UNKNOWN_FLAGS: &str = "it has flags unknown to this program";
 /// Upper limit on updates and on roots, so that roots and two nodes per update stay below 2³¹.

@@ -91,7 +91,11 @@ pub(super) fn write(
     );
     let (certificate, sections) = (certificate?, sections?);
     let header = Header {
-        about: ModelInfo { frame: forest.frame, error_kind: forest.error_kind },
+        about: ModelInfo {
+            frame: forest.frame,
+            error_kind: forest.error_kind,
+            has_stages: forest.wedges.is_some(),
+        },
         lattice,
         lossless: forest.exact.is_lossless(),
         has_wedges: forest.wedges.is_some(),
@@ -126,6 +130,7 @@ fn encode_sections(
     let nodes: Vec<u32> = nodes.collect();
     let exact = mt.exact().select(nodes.iter().copied());
     let mut state = DecoderState::new(*mt.frame(), lattice, mt.base_mesh(), exact);
+    state.has_stages = !mt.stages().is_empty();
     state.begin_run(0);
     state.updates.extend(plan.order.iter().map(|&update| {
         let update = mt.detached(update);

@@ -3,6 +3,7 @@
 mod by_level;
 mod recorder;
 mod smooth_errors;
+mod stage;
 mod stars;
 
 use std::collections::BTreeMap;
@@ -22,6 +23,7 @@ use crate::wedges::ForestWedges;
 pub(crate) use by_level::by_level;
 pub(crate) use recorder::MAX_RANKED;
 pub use recorder::Recorder;
+pub(crate) use stage::Stage;
 pub(crate) use stars::Stars;
 
 /// Upper bound of levels, exclusive.
@@ -88,6 +90,8 @@ pub(crate) struct Update {
     pub(crate) error: Length16,
     /// Radius of a ball about its node that holds both sides and its children's balls.
     pub(crate) radius: Length16,
+    /// When the run made it, if the mesh has wedges; equal otherwise.
+    pub(crate) stage: Stage,
     /// True if its fan is open, so that no face follows the last node of its ring.
     pub(crate) is_open: bool,
     /// True if the first child's faces form one run as well, so that the children could be swapped.

@@ -10,7 +10,7 @@ use meshlod_mesh::{Bounds, FaceId, Frame, VertexId};
 use meshlod_simplify::{Neighbourhood, Observe, Placed, Simplifier, Spoke, Surface};
 
 use crate::bounds::ErrorKind;
-use crate::forest::{BuildError, Forest, MAX_LEVELS, NONE, NonFanSplit, Update};
+use crate::forest::{BuildError, Forest, MAX_LEVELS, NONE, NonFanSplit, Stage, Update};
 use crate::length16::Length16;
 use crate::pack::ExactPositions;
 use crate::query::SLACK;
@@ -108,7 +108,8 @@ impl Recorder {
     /// What made the record unusable on the way.
     pub fn into_forest(self) -> Result<Forest, BuildError> {
         let wedges = self.wedges.map(WedgeRecorder::finish);
-        self.failure.map_or(Ok(Forest { wedges, ..self.forest }), Err)
+        let forest = Forest { wedges, ..self.forest };
+        self.failure.map_or(Ok(forest.with_stages()), Err)
     }
 
     fn is_complete(&mut self, surface: &Surface) -> bool {
@@ -161,6 +162,7 @@ impl Recorder {
             level,
             error,
             radius,
+            stage: Stage::default(),
             is_open: open_end.is_some(),
             children_swappable: run.is_some_and(|run| run.other_end().holds_its_faces(hood)),
             fused_with_child: self.face_edges_left == 1

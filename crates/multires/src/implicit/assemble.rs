@@ -11,7 +11,7 @@ use super::splits::{Local, Split, Splits};
 use super::{FLAG, Implicit, LAST_WING, NO_WING, OPEN, Order};
 use crate::bounds::ErrorKind;
 use crate::forest::MAX_RANKED;
-use crate::forest::{MAX_LEVELS, NONE, NonFanSplit};
+use crate::forest::{MAX_LEVELS, NONE, NonFanSplit, Stage};
 use crate::length16::Length16;
 use crate::pack::ExactPositions;
 use crate::wedges::DetachedWedges;
@@ -27,6 +27,7 @@ pub(crate) struct DetachedUpdate {
     pub(crate) wings: [u8; 2],
     pub(crate) radius: Length16,
     pub(crate) error: Length16,
+    pub(crate) stage: Stage,
     pub(crate) is_open: bool,
     /// True if the first child's split forms one face split with this one.
     pub(crate) fused_with_child: bool,
@@ -40,6 +41,8 @@ pub(crate) struct DetachedUpdate {
 pub(crate) struct ModelInfo {
     pub(crate) frame: Frame,
     pub(crate) error_kind: ErrorKind,
+    /// True if the stages of updates are known.
+    pub(crate) has_stages: bool,
 }
 
 /// The coarsest mesh of a model.
@@ -60,6 +63,7 @@ impl Implicit {
             wings,
             radius,
             error,
+            stage: self.stages.get(update as usize).copied().unwrap_or_default(),
             is_open: level & OPEN != 0,
             fused_with_child: parent & FLAG != 0,
             non_fan: self.non_fan_split(update).cloned().map(Box::new),
@@ -131,7 +135,9 @@ impl Implicit {
                 non_fans.insert(at as u32, non_fan);
             }
         }
+        let staged = if about.has_stages { &order.updates[..] } else { &[] };
         Self {
+            stages: staged.iter().map(|&u| updates[u as usize].stage).collect(),
             frame: about.frame,
             error_kind: about.error_kind,
             roots: roots as u32,

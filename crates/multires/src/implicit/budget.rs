@@ -7,6 +7,8 @@
 use std::cmp::Reverse;
 
 use super::{Extractor, Faces, Implicit};
+use crate::forest::Stage;
+use crate::length16::Length16;
 use crate::level::Level;
 use crate::model::Model;
 use crate::query::Criterion;
@@ -22,6 +24,8 @@ const BUCKETS: usize = 1 << (u32::BITS - 1 - LOW_BITS);
 struct Priorities<'m> {
     model: &'m Model,
     of: Vec<u32>,
+    /// True if they are stages, and errors among updates of one stage.
+    go_by_stages: bool,
 }
 
 /// Where to stop along the falling priorities.
@@ -51,7 +55,7 @@ impl Extractor<'_> {
         let criterion = Criterion::new(query, self.model.implicit().frame())?;
         let room = faces.saturating_sub(self.model.faces().base_faces());
         let mut priorities = Priorities::new(self.model, &criterion);
-        if !criterion.is_uniform() {
+        if !criterion.is_uniform() || priorities.go_by_stages {
             self.model.dependencies().raise(&mut priorities.of);
         }
         priorities.choose(room, &mut self.chosen);
@@ -83,7 +87,14 @@ impl<'m> Priorities<'m> {
     fn new(model: &'m Model, criterion: &Criterion<'_>) -> Self {
         let mt = model.implicit();
         let balls = (0..mt.update_count() as u32).map(|update| mt.ball(update));
-        Self { model, of: criterion.priorities(balls).into_iter().map(f32::to_bits).collect() }
+        let stages = mt.stages();
+        if criterion.is_uniform() && !stages.is_empty() {
+            let pairs = stages.iter().zip(0..);
+            let of = pairs.map(|(&stage, update)| by_stage(stage, mt.error(update))).collect();
+            return Self { model, of, go_by_stages: true };
+        }
+        let of = criterion.priorities(balls).into_iter().map(f32::to_bits).collect();
+        Self { model, of, go_by_stages: false }
     }
 
     /// Returns the point where the budget is used up.
@@ -138,6 +149,12 @@ impl<'m> Priorities<'m> {
             }
         }
     }
+}
+
+/// Returns the priority of an update by its stage: latest contractions first. Exact updates have 0.
+fn by_stage(stage: Stage, error: Length16) -> u32 {
+    let later = u32::from(Stage::COUNT - stage.number());
+    if error == Length16::default() { 0 } else { later << LOW_BITS | u32::from(error.0) }
 }
 
 fn bucket(priority: u32) -> usize {

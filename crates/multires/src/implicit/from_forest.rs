@@ -48,6 +48,8 @@ impl Implicit {
         }
         let wedges = forest.wedges.as_ref();
         let wedges = wedges.map(|wedges| Wedges::in_order(forest, wedges, order)).transpose()?;
+        let ordered = if wedges.is_some() { &order.updates[..] } else { &[] };
+        let stages = ordered.iter().map(|&update| forest.updates[update as usize].stage);
         let positions = order.nodes.iter().map(|&n| forest.positions[n as usize]);
         Ok(Self {
             frame: forest.frame,
@@ -58,6 +60,7 @@ impl Implicit {
             positions: StoredPositions::Float(positions.collect()),
             splits: Splits::Full(splits),
             base: base(forest, order),
+            stages: stages.collect(),
             wedges: wedges.map(Arc::new),
             non_fan_splits: non_fans,
             full_faces: forest.faces.len(),

@@ -35,7 +35,7 @@ use glam::{DVec3, Vec3};
 use meshlod_mesh::{Frame, Layer};
 
 use crate::bounds::ErrorKind;
-use crate::forest::{MAX_LEVELS, NonFanSplit};
+use crate::forest::{MAX_LEVELS, NonFanSplit, Stage};
 use crate::length16::Length16;
 use crate::level::Level;
 use crate::pack::ExactPositions;
@@ -73,6 +73,8 @@ pub struct Implicit {
     base: Vec<[u32; 3]>,
     /// Splits that wings cannot describe, by update, in nodes of this model.
     non_fan_splits: BTreeMap<u32, NonFanSplit>,
+    /// Stages of the updates; none if the model has no wedges.
+    stages: Vec<Stage>,
     /// Wedges, if the mesh has attributes, materials or objects.
     wedges: Option<Arc<Wedges>>,
     full_faces: usize,
@@ -170,8 +172,19 @@ impl Implicit {
         let (positions, splits) = (self.positions.compacted()?, self.splits.compacted(self.roots)?);
         let (trees, base, non_fan_splits) =
             (self.trees.clone(), self.base.clone(), self.non_fan_splits.clone());
-        let (exact, wedges) = (self.exact.clone(), self.wedges.clone());
-        Some(Self { positions, splits, trees, base, non_fan_splits, exact, wedges, ..*self })
+        let (exact, wedges, stages) =
+            (self.exact.clone(), self.wedges.clone(), self.stages.clone());
+        Some(Self {
+            positions,
+            splits,
+            trees,
+            base,
+            non_fan_splits,
+            exact,
+            wedges,
+            stages,
+            ..*self
+        })
     }
 
     /// Returns the memory used by the model, in bytes.
@@ -187,6 +200,7 @@ impl Implicit {
             + self.splits.bytes()
             + size_of_val(&self.base[..])
             + self.non_fan_splits.values().map(non_fan).sum::<usize>()
+            + size_of_val(&self.stages[..])
             + self.wedges.as_ref().map_or(0, |wedges| wedges.bytes())
     }
 
@@ -302,6 +316,11 @@ impl Implicit {
     pub(crate) fn least_error_above(&self, nodes: &[u32]) -> Length16 {
         let made = nodes.iter().filter_map(|&node| self.creator(node));
         made.map(|update| self.error(update)).min().unwrap_or(Length16::INFINITE)
+    }
+
+    /// Returns the stages of all updates; none if they are unknown.
+    pub(crate) fn stages(&self) -> &[Stage] {
+        &self.stages
     }
 
     /// Returns the ball and error by which queries judge an update.

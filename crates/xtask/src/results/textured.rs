@@ -6,7 +6,10 @@ use meshlod::mesh::Mesh;
 use meshlod::multires::{Archive, Forest, Query, Storage, StoredErrors};
 use meshlod::picture::{ImageError, Paint, ReferenceImages, Style};
 use meshlod::simplify::{Method, Options, Target};
-use meshlod::{Scene, materials_of, simplify_scene, single_sided_materials};
+use meshlod::{
+    Constraints, ModelScene, Scene, Topology, materials_of, place_scene, simplify_scene,
+    single_sided_materials,
+};
 use meshlod_bench::peer::{Settings, SimplifyOptions, Update, simplify_with_attributes};
 
 use crate::project::Project;
@@ -91,17 +94,29 @@ fn levels(scene: &Scene, mesh: &Mesh, ratio: f64) -> Result<Vec<(&'static str, M
         simplify_scene(&mut scene, Target::Faces(peer.faces.len()), &options)?;
         levels.push((method.name(), scene.flatten()));
     }
-    levels.push(("cut of a multiresolution file", cut(mesh, peer.faces.len())?));
+    levels.push(("cut of a multiresolution file", cut(scene, peer.faces.len())?));
     levels.push(("meshoptimizer with attributes", peer));
     levels.push(("meshoptimizer with update", simplify_with_attributes(mesh, faces, &updated)));
     Ok(levels)
 }
 
-/// Returns the cut of at most `faces` faces of a multiresolution file of a mesh.
-fn cut(mesh: &Mesh, faces: usize) -> Result<Mesh> {
-    let mut forest = Forest::new(mesh, &Options::default())?;
+/// Returns the cut of at most `faces` faces of a multiresolution file of a scene, as `build` and
+/// `extract` make it.
+fn cut(scene: &Scene, faces: usize) -> Result<Mesh> {
+    let constraints = Constraints { topology: Topology::Keep, ..Constraints::default() };
+    let placed = place_scene(scene.clone(), &constraints, Options::default())?;
+    let mut forest = Forest::new(&placed.mesh, &placed.options)?;
     forest.smooth_errors();
     let storage = Storage { errors: StoredErrors::Measured, ..Storage::default() };
-    let archive = Archive::open(Archive::write(&forest, &storage)?.0)?;
-    Ok(archive.extract_at_most(faces, &Query::uniform(mesh.bounds().diagonal()))?.level.mesh())
+    let mut archive = Archive::open(Archive::write(&forest, &storage)?.0)?;
+    if let Some(rest) = &placed.rest {
+        let resources = rest.resources(&archive.chunk_lengths());
+        archive = archive.with_resources(&resources)?;
+    }
+    let everywhere = Query::uniform(placed.mesh.bounds().diagonal());
+    let level = archive.extract_at_most(faces, &everywhere)?.level.mesh();
+    match placed.rest {
+        Some(_) => Ok(ModelScene::read(&archive)?.into_scene("", level)?.flatten()),
+        None => Ok(level),
+    }
 }
