@@ -22,6 +22,7 @@ mod locks;
 mod model_file;
 mod model_scene;
 mod numbers;
+mod own_files;
 mod page;
 mod parse;
 mod progress;

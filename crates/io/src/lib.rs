@@ -21,6 +21,7 @@ mod files;
 mod flatten;
 mod format;
 pub mod gltf;
+mod image_header;
 mod limits;
 mod line_writer;
 pub mod meshopt;
@@ -43,6 +44,7 @@ pub use files::{
 };
 pub use flatten::{MeshInstance, transform};
 pub use format::Format;
+pub use image_header::ImageHeader;
 pub use meshlod_mesh::{merge_equal_wedges, weld};
 pub use notes::{Note, NoteKind};
 pub use replace::{abandon_files, write_file};

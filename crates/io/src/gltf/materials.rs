@@ -18,7 +18,7 @@ pub(super) fn materials(json: &Value, images: usize) -> Result<Vec<Material>, Pa
             None => None,
             Some(texture) => match textures.get(texture.index) {
                 None => return Err(missing("texture", texture.index, textures.len())),
-                Some(texture) => texture.source,
+                Some(texture) => texture.webp_source().or(texture.source),
             },
         };
         if let Some(image) = base_color_image.filter(|&image| image >= images) {
@@ -32,6 +32,15 @@ pub(super) fn materials(json: &Value, images: usize) -> Result<Vec<Material>, Pa
         })
     };
     materials.into_iter().map(read).collect()
+}
+
+impl Texture {
+    /// Returns the image that `EXT_texture_webp` gives the texture; its source, if it has one, is
+    /// the same picture for programs that do not know WebP.
+    fn webp_source(&self) -> Option<usize> {
+        let extension = self.extensions.get("EXT_texture_webp")?;
+        extension.get("source")?.as_u64().map(|source| source as usize)
+    }
 }
 
 /// Reads the images, still encoded. An image whose file is missing gets no bytes, which costs the
@@ -66,6 +75,7 @@ fn file_name(name: Option<String>, index: usize, bytes: &[u8]) -> String {
     let suffix = match mime_type(bytes) {
         Some("image/png") => ".png",
         Some("image/jpeg") => ".jpg",
+        Some("image/webp") => ".webp",
         _ => "",
     };
     if name.to_ascii_lowercase().ends_with(suffix) { name } else { format!("{name}{suffix}") }

@@ -9,6 +9,8 @@ mod decompress;
 mod dequantize_nodes;
 mod document;
 mod encode;
+mod facts;
+mod instancing;
 mod lod;
 mod materials;
 mod mesh;
@@ -30,6 +32,7 @@ mod vertex_cache;
 mod write;
 
 pub use compress::{Bytes, Compression, CompressionReport};
+pub use facts::{AnimationFacts, FileFacts};
 pub use lod::Level;
 pub(crate) use new_document::has_core_type;
 pub use parts::{QuantizedPart, write_parts_glb};

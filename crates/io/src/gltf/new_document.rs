@@ -46,7 +46,7 @@ fn with_nodes(scene: &Scene, materials: Vec<Value>, images: Vec<Value>) -> Value
         "scenes": [if scene.roots.is_empty() { json!({}) } else { json!({ "nodes": scene.roots }) }],
     });
     for (key, values) in [
-        ("nodes", scene.nodes.iter().map(node).collect()),
+        ("nodes", nodes(&scene.nodes)),
         ("meshes", scene.meshes.iter().map(mesh).collect()),
         ("materials", materials),
         ("textures", (0..images.len()).map(|i| json!({ "source": i })).collect()),
@@ -123,6 +123,22 @@ fn material(material: &Material, texture: Option<usize>) -> Value {
         json.insert("doubleSided".into(), true.into());
     }
     json.into()
+}
+
+/// Builds the nodes; copies of a mesh become children of their node, behind all others.
+fn nodes(nodes: &[Node]) -> Vec<Value> {
+    let mut all: Vec<Value> = nodes.iter().map(node).collect();
+    for (i, parent) in nodes.iter().enumerate().filter(|(_, node)| !node.instances.is_empty()) {
+        let copies = parent.instances.iter().map(|&transform| {
+            node(&Node { name: String::new(), transform, mesh: parent.mesh, ..Node::default() })
+        });
+        let mut children = parent.children.clone();
+        children.extend(all.len()..all.len() + parent.instances.len());
+        all.extend(copies);
+        all[i]["children"] = json!(children);
+        all[i].as_object_mut().map(|node| node.shift_remove("mesh"));
+    }
+    all
 }
 
 fn node(node: &Node) -> Value {
