@@ -86,8 +86,8 @@ pub(super) struct Contents {
 ///
 /// Supported: triangles, strips and fans; any index and component type; strides; sparse accessors;
 /// `KHR_mesh_quantization`; `EXT_meshopt_compression` and `KHR_meshopt_compression`, which are
-/// decompressed and removed; `EXT_mesh_gpu_instancing`; `MSFT_lod`, of which the finest level is shown. Carried through but
-/// not applied to texture coordinates: `KHR_texture_transform`.
+/// decompressed and removed; `EXT_mesh_gpu_instancing`; `MSFT_lod`, of which the finest level is
+/// shown. Carried through but not applied to texture coordinates: `KHR_texture_transform`.
 ///
 /// # Errors
 /// The location (`accessor 7`, `bufferView 3`) and the reason. Geometry compressed with Draco and
