@@ -173,6 +173,32 @@ mod tests {
         assert!(message.contains("cannot hold"), "{message}");
     }
 
+    fn webp_of(rgba: &[u8]) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let encoder = image_webp::WebPEncoder::new(&mut bytes);
+        encoder.encode(rgba, 2, 1, image_webp::ColorType::Rgba8).unwrap();
+        bytes
+    }
+
+    #[test]
+    fn a_webp_is_read() {
+        for rgba in [[1, 2, 3, 255, 9, 8, 7, 255], [1, 2, 3, 4, 5, 6, 7, 8]] {
+            let texture = Texture::decode(&webp_of(&rgba)).unwrap();
+            assert_eq!(texture, Texture::new(2, 1, &rgba).unwrap());
+        }
+    }
+
+    #[test]
+    fn a_webp_of_more_pixels_than_fit_is_refused_before_memory_is_taken() {
+        let mut bytes = webp_of(&[0; 8]);
+        let size = bytes.windows(5).position(|b| b.starts_with(b"VP8L")).unwrap() + 9;
+        // Width and height of 2^14 - 1, each less one in 14 bits.
+        bytes[size..size + 3].copy_from_slice(&[0xfe, 0xbf, 0xff]);
+        bytes[size + 3] |= 0x0f;
+        let message = Texture::decode(&bytes).unwrap_err().to_string();
+        assert!(message.contains("2^26"), "{message}");
+    }
+
     #[test]
     fn every_cut_of_a_file_is_an_error() {
         let whole = png_of(&[1, 2, 3, 255, 9, 8, 7, 255]);
