@@ -9,6 +9,7 @@ use meshlod::{Format, ReadOptions, Scene, WriteOptions};
 
 use crate::args::{ReadArgs, WriteArgs};
 use crate::failure::Failure;
+use crate::own_files::{self, OwnFormat};
 use crate::session::Session;
 
 /// Returns true if a path is `-`, which stands for standard input or output.
@@ -21,12 +22,11 @@ pub fn name(path: &Path) -> String {
     if is_pipe(path) { "-".into() } else { path.display().to_string() }
 }
 
-/// Reads a scene from a file or standard input.
+/// Reads a scene from a file or standard input; of our own formats, the finest level.
 pub fn read(path: &Path, reading: &ReadArgs, session: &Session) -> Result<Scene, Failure> {
     session.progress.stage(&format!("reading {}", name(path)));
-    if let Some(verb) = opened_by(path) {
-        let reason = format_args!("not a mesh file; use meshlod {verb} to get the mesh it holds");
-        return Err(Failure::at(path, reason));
+    if let Some(format) = OwnFormat::of_path(path) {
+        return own_files::read(path, format, &reading.options(), session);
     }
     let scene = match is_pipe(path) {
         false => meshlod::read(path, &reading.options())?,
@@ -39,13 +39,6 @@ pub fn read(path: &Path, reading: &ReadArgs, session: &Session) -> Result<Scene,
     };
     session.note(path, &scene.notes)?;
     Ok(scene)
-}
-
-/// Returns the verb that opens one of our own file formats, which are not meshes themselves.
-fn opened_by(path: &Path) -> Option<&'static str> {
-    let suffix = path.extension()?.to_str()?;
-    let verbs = [("mlq", "decompress"), ("mlz", "decompress"), ("mlod", "extract")];
-    verbs.into_iter().find(|(of, _)| suffix.eq_ignore_ascii_case(of)).map(|(_, verb)| verb)
 }
 
 /// Reads all bytes of a file or standard input.

@@ -23,6 +23,7 @@ mod model_file;
 mod model_query;
 mod model_scene;
 mod numbers;
+mod own_files;
 mod page;
 mod parse;
 mod progress;

@@ -34,7 +34,7 @@ impl MeshInstance {
 
 impl Scene {
     /// Lists the mesh instances of the scene, depth first from the roots; a mesh shown by several
-    /// nodes is listed once for each.
+    /// nodes, or several times by one, is listed once for each.
     pub fn instances(&self) -> Vec<MeshInstance> {
         let mut instances = Vec::new();
         let mut seen = vec![false; self.nodes.len()];
@@ -48,7 +48,11 @@ impl Scene {
             let at = &self.nodes[node];
             let world = parent * DMat4::from_cols_array_2d(&at.transform);
             if let Some(mesh) = at.mesh {
-                instances.push(MeshInstance { node, mesh, transform: world.to_cols_array_2d() });
+                let copies = if at.instances.is_empty() { &[IDENTITY] } else { &at.instances[..] };
+                instances.extend(copies.iter().map(|copy| {
+                    let transform = world * DMat4::from_cols_array_2d(copy);
+                    MeshInstance { node, mesh, transform: transform.to_cols_array_2d() }
+                }));
             }
             stack.extend(at.children.iter().rev().map(|&child| (child, world)));
         }

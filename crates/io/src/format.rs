@@ -19,7 +19,7 @@ pub enum Format {
     Smf,
     /// glTF 2.0 as a JSON file, with buffers embedded or in separate files.
     Gltf,
-    /// glTF 2.0 as a single binary file.
+    /// glTF 2.0 as a single binary file, `.glb` or `.vrm`.
     Glb,
 }
 
@@ -38,7 +38,9 @@ impl Format {
     /// Returns the format with a file name suffix such as `ply` or `GLB`, ignoring case.
     pub fn of_suffix(suffix: &str) -> Option<Self> {
         let found = Self::ALL.iter().find(|(known, _)| known.eq_ignore_ascii_case(suffix));
-        found.map(|&(_, format)| format)
+        // VRM files, avatars of people, are GLB files with extensions of their own.
+        let vrm = suffix.eq_ignore_ascii_case("vrm").then_some(Self::Glb);
+        found.map(|&(_, format)| format).or(vrm)
     }
 
     /// Returns the format of a file, determined by the suffix of its path.
@@ -49,7 +51,7 @@ impl Format {
         let suffix = path.extension().and_then(|suffix| suffix.to_str());
         suffix.and_then(Self::of_suffix).ok_or_else(|| IoError::UnknownFormat {
             path: path.to_owned(),
-            known: ".ply .obj .stl .off .smf .gltf .glb",
+            known: ".ply .obj .stl .off .smf .gltf .glb .vrm",
         })
     }
 }
@@ -61,6 +63,7 @@ mod tests {
     #[test]
     fn the_suffix_decides_in_any_case() {
         assert_eq!(Format::of_path(Path::new("a.ply/b.GLB")).unwrap(), Format::Glb);
+        assert_eq!(Format::of_path(Path::new("avatar.Vrm")).unwrap(), Format::Glb);
     }
 
     #[test]

@@ -56,6 +56,9 @@ pub struct Node {
     pub transform: [[f64; 4]; 4],
     /// Mesh that the node shows, by index into [`Scene::meshes`]; `None` if it has no mesh.
     pub mesh: Option<usize>,
+    /// Transforms of the copies of the mesh that the node shows, column-major 4×4 matrices from the
+    /// mesh's space to this node's; empty if it shows the mesh once, where it is.
+    pub instances: Vec<[[f64; 4]; 4]>,
     /// Child nodes, by index into [`Scene::nodes`].
     pub children: Vec<usize>,
 }
@@ -75,7 +78,13 @@ pub(crate) const IDENTITY: [[f64; 4]; 4] =
 
 impl Default for Node {
     fn default() -> Self {
-        Self { name: String::new(), transform: IDENTITY, mesh: None, children: Vec::new() }
+        Self {
+            name: String::new(),
+            transform: IDENTITY,
+            mesh: None,
+            instances: Vec::new(),
+            children: Vec::new(),
+        }
     }
 }
 

@@ -70,7 +70,9 @@ fn every_statement_and_map_comes_to_another_folder() {
     let mut old = contents(&own_file(""));
     for files in [&mut new, &mut old] {
         // The mesh is written anew; the others belong to another fixture.
-        ["full.obj", "knot.ply", "knot.png"].map(|name| files.remove(Path::new(name)));
+        for name in ["full.obj", "knot.ply", "knot.png"] {
+            files.remove(Path::new(name));
+        }
     }
     assert_eq!(new, old);
     let again = read_it(&there.path().join("full.obj"));

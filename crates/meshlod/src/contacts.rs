@@ -33,7 +33,8 @@ pub fn scene_locks(scene: &Scene, options: &LockOptions) -> Vec<VertexLocks> {
         let members: Vec<Home> = tie.iter().map(|v| world.homes[v.index()]).collect();
         let own = |home: &Home| scene.meshes[home.mesh].mesh.positions[home.vertex.index()];
         // Rounding in world space may move vertices together that are apart in their mesh.
-        let is_one = |home: &Home| home.node == members[0].node && own(home) == own(&members[0]);
+        let is_one =
+            |home: &Home| home.instance == members[0].instance && own(home) == own(&members[0]);
         if members.iter().all(is_one) {
             let tie = members.iter().map(|home| home.vertex).collect();
             of_meshes[members[0].mesh].locks.ties.push(tie);
@@ -66,7 +67,8 @@ struct World {
 /// A vertex of a mesh, in the instance of a node.
 #[derive(Clone, Copy)]
 struct Home {
-    node: usize,
+    /// Index of the instance, as a node may show several.
+    instance: usize,
     mesh: usize,
     vertex: VertexId,
 }
@@ -79,7 +81,8 @@ impl World {
     fn of(scene: &Scene) -> Self {
         let mut this = Self { mesh: Mesh::default(), homes: Vec::new() };
         let mut objects = Labels::default();
-        for MeshInstance { node, mesh, transform } in scene.instances() {
+        for (instance, placed) in scene.instances().into_iter().enumerate() {
+            let MeshInstance { mesh, transform, .. } = placed;
             let transform = DMat4::from_cols_array_2d(&transform);
             if flattens(&DMat3::from_mat4(transform)) {
                 continue;
@@ -106,16 +109,17 @@ impl World {
                 }
             }
             let vertices = (0..own.positions.len()).map(VertexId::new);
-            this.homes.extend(vertices.map(|vertex| Home { node, mesh, vertex }));
+            this.homes.extend(vertices.map(|vertex| Home { instance, mesh, vertex }));
         }
         this.mesh.objects = Some(objects);
         this
     }
 
-    /// Returns the vertices at the same position as one of another node, up to rounding.
+    /// Returns the vertices at the same position as one of another instance, up to rounding.
     fn near_across_nodes(&self) -> Vec<Home> {
         let mut across = Vec::new();
-        let ends = [self.homes.first(), self.homes.last()].map(|home| home.map(|home| home.node));
+        let ends =
+            [self.homes.first(), self.homes.last()].map(|home| home.map(|home| home.instance));
         if ends[0] == ends[1] {
             return across;
         }
@@ -126,7 +130,7 @@ impl World {
             let mut nodes: Vec<Option<usize>> = vec![None; homes.len()];
             let mut is_across = vec![false; homes.len()];
             for (&v, &place) in homes.iter().zip(&near) {
-                let node = self.homes[v].node;
+                let node = self.homes[v].instance;
                 is_across[place as usize] |= *nodes[place as usize].get_or_insert(node) != node;
             }
             let held = homes.iter().zip(&near).filter(|(_, place)| is_across[**place as usize]);

@@ -1,4 +1,4 @@
-//! Decoding of PNG and JPEG files as textures.
+//! Decoding of PNG, JPEG and WebP files as textures.
 
 use std::io::Cursor;
 
@@ -14,18 +14,27 @@ const JPEG_START: [u8; 2] = [0xff, 0xd8];
 /// Maximum number of bytes that one byte of a deflate stream can expand to.
 const MAX_DEFLATE_RATIO: usize = 1032;
 
+/// Maximum number of pixels of a WebP, of which any number may take a few bytes; 2^26 take 256 MB.
+const MAX_WEBP_PIXELS: usize = 1 << 26;
+
 /// Maximum number of pixels per byte of a JPEG: every block of 8 by 8 takes at least a bit.
 const MAX_JPEG_RATIO: usize = 8 * 64;
 
 impl Texture {
-    /// Decodes a PNG or JPEG file as a texture; the type is detected from the first bytes.
+    /// Decodes a PNG, JPEG or WebP file as a texture; the type is detected from the first bytes.
     ///
     /// Grey, palette and 16-bit images are converted to 8-bit colour.
     ///
     /// # Errors
     /// Damaged or truncated files, and images with a side above [`MAX_SIDE`].
     pub fn decode(bytes: &[u8]) -> Result<Self, PictureError> {
-        if bytes.starts_with(&JPEG_START) { Self::from_jpeg(bytes) } else { Self::from_png(bytes) }
+        match bytes {
+            _ if bytes.starts_with(&JPEG_START) => Self::from_jpeg(bytes),
+            [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => {
+                Self::from_webp(bytes)
+            }
+            _ => Self::from_png(bytes),
+        }
     }
 
     /// Decodes a PNG file as a texture.
@@ -50,6 +59,29 @@ impl Texture {
             png::ColorType::GrayscaleAlpha => rgba(&pixels, 2, |p| [p[0], p[0], p[0], p[1]]),
             png::ColorType::Grayscale => rgba(&pixels, 1, |p| [p[0], p[0], p[0], 255]),
             png::ColorType::Indexed => return Err(damaged("png", "its palette was not applied")),
+        };
+        Self::new(width, height, &rgba)
+    }
+
+    /// Decodes a WebP file as a texture; of an animation, the first picture.
+    ///
+    /// # Errors
+    /// Errors of [`Texture::decode`]; also more than 2^26 pixels, as a few bytes may stand for all
+    /// of them.
+    pub fn from_webp(bytes: &[u8]) -> Result<Self, PictureError> {
+        let wrong = |e: image_webp::DecodingError| damaged("webp", e);
+        let mut decoder = image_webp::WebPDecoder::new(Cursor::new(bytes)).map_err(wrong)?;
+        decoder.set_memory_limit(8 * MAX_WEBP_PIXELS);
+        let (width, height) = decoder.dimensions();
+        check_size(width.into(), height.into())?;
+        let length = decoder.output_buffer_size();
+        let length = length.filter(|_| width as usize * height as usize <= MAX_WEBP_PIXELS);
+        let length = length.ok_or_else(|| damaged("webp", "it has more than 2^26 pixels"))?;
+        let mut pixels = vec![0; length];
+        decoder.read_image(&mut pixels).map_err(wrong)?;
+        let rgba = match decoder.has_alpha() {
+            true => pixels,
+            false => rgba(&pixels, 3, |p| [p[0], p[1], p[2], 255]),
         };
         Self::new(width, height, &rgba)
     }
@@ -139,6 +171,32 @@ mod tests {
         bytes[frame + 5..frame + 9].copy_from_slice(&[0x40, 0, 0x40, 0]);
         let message = Texture::decode(&bytes).unwrap_err().to_string();
         assert!(message.contains("cannot hold"), "{message}");
+    }
+
+    fn webp_of(rgba: &[u8]) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let encoder = image_webp::WebPEncoder::new(&mut bytes);
+        encoder.encode(rgba, 2, 1, image_webp::ColorType::Rgba8).unwrap();
+        bytes
+    }
+
+    #[test]
+    fn a_webp_is_read() {
+        for rgba in [[1, 2, 3, 255, 9, 8, 7, 255], [1, 2, 3, 4, 5, 6, 7, 8]] {
+            let texture = Texture::decode(&webp_of(&rgba)).unwrap();
+            assert_eq!(texture, Texture::new(2, 1, &rgba).unwrap());
+        }
+    }
+
+    #[test]
+    fn a_webp_of_more_pixels_than_fit_is_refused_before_memory_is_taken() {
+        let mut bytes = webp_of(&[0; 8]);
+        let size = bytes.windows(5).position(|b| b.starts_with(b"VP8L")).unwrap() + 9;
+        // Width and height of 2^14 - 1, each less one in 14 bits.
+        bytes[size..size + 3].copy_from_slice(&[0xfe, 0xbf, 0xff]);
+        bytes[size + 3] |= 0x0f;
+        let message = Texture::decode(&bytes).unwrap_err().to_string();
+        assert!(message.contains("2^26"), "{message}");
     }
 
     #[test]

@@ -179,7 +179,7 @@ impl Compress {
         let (kind, schemes): (_, &[SchemeArg]) = match suffix.as_ref().and_then(|of| of.to_str()) {
             Some("mlq") => (Kind::Resident, SchemeArg::value_variants()),
             Some("mlz") => (Kind::Transport, &[SchemeArg::Lattice]),
-            Some("glb") => (Kind::Gltf, &[SchemeArg::Parts]),
+            Some("glb" | "vrm") => (Kind::Gltf, &[SchemeArg::Parts]),
             _ => {
                 let name = files::name(output);
                 let reason =

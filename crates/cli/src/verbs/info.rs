@@ -1,5 +1,7 @@
 //! `info`: prints what a file contains.
 
+mod contents;
+
 use std::path::PathBuf;
 
 use clap::Args;
@@ -13,10 +15,13 @@ use crate::args::ReadArgs;
 use crate::failure::Failure;
 use crate::files;
 use crate::numbers::{count, value};
+use crate::own_files::{self, OwnFormat};
 use crate::session::Session;
 use crate::table::aligned;
+use crate::verbs::info::contents::Contents;
 
-/// Print what a file contains: counts, bounds, area, volume, closed or open
+/// Print what a file contains: counts, bounds, area, volume, closed or open; textures, skins,
+/// animations, instances, extensions and bytes
 #[derive(Args)]
 pub struct Info {
     /// Mesh to read, or -
@@ -31,12 +36,24 @@ impl Info {
         let scene = files::read(&self.input, &self.reading, session)?;
         session.progress.stage("inspecting");
         let meshes = scene.meshes.len();
+        let file = (!files::is_pipe(&self.input)).then(|| std::fs::metadata(&self.input));
+        let file_bytes = file.and_then(Result::ok).map(|file| file.len());
+        let own = OwnFormat::of_path(&self.input);
+        let stored = own.map(|own| own_files::stored(&self.input, own, session)).transpose()?;
+        let contents = Contents::of(&scene, file_bytes, own.is_some());
         let mesh = scene.into_mesh();
         let facts = Facts::of(&mesh);
         let mut json = facts.json();
         json["file"] = files::name(&self.input).into();
         json["meshes"] = meshes.into();
-        let text = format!("{}\n{}", files::name(&self.input), facts.text());
+        contents.add_to(&mut json);
+        let mut text = format!("{}\n{}{}", files::name(&self.input), facts.text(), contents.text());
+        if let Some(stored) = stored {
+            json["stored"] = stored.json;
+            text += "stored as\n";
+            let rows = stored.rows.into_iter().map(|[name, of]| [format!("  {name}"), of]);
+            text += &aligned(&rows.collect::<Vec<_>>());
+        }
         Ok(Answer::new(json, text))
     }
 }

@@ -13,6 +13,7 @@ mod documents;
 mod error_bound;
 mod flock;
 mod hostile;
+mod info;
 mod kept_error;
 mod levels;
 mod model_scenes;

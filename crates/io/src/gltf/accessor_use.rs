@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use super::document::Document;
+use super::instancing::INSTANCING;
 use super::primitives::{attributes, is_surface};
 
 /// Computes one flag per accessor: true if only triangle primitives of changed meshes use it, or if
@@ -28,6 +29,7 @@ pub(super) fn animation_accessors(document: &Document<'_>, emptied: &[bool]) -> 
     mark_samplers(document.json, &mut animated);
     let mut others = vec![false; animated.len()];
     mark_skins(document.json, &mut others);
+    mark_instances(document.json, &mut others);
     let meshes = document.json.get("meshes").and_then(Value::as_array);
     for (mesh, &emptied) in meshes.into_iter().flatten().zip(emptied) {
         mark_primitives(mesh, |primitive| !(emptied && is_surface(primitive)), &mut others);
@@ -35,9 +37,10 @@ pub(super) fn animation_accessors(document: &Document<'_>, emptied: &[bool]) -> 
     animated.iter().zip(others).map(|(&animated, other)| animated && !other).collect()
 }
 
-/// Marks the accessors of skins and animations.
+/// Marks the accessors of skins, animations and instances.
 fn mark_others(json: &Value, marks: &mut [bool]) {
     mark_skins(json, marks);
+    mark_instances(json, marks);
     mark_samplers(json, marks);
 }
 
@@ -45,6 +48,14 @@ fn mark_skins(json: &Value, marks: &mut [bool]) {
     let skins = json.get("skins").and_then(Value::as_array);
     for skin in skins.into_iter().flatten() {
         mark(skin.get("inverseBindMatrices"), marks);
+    }
+}
+
+fn mark_instances(json: &Value, marks: &mut [bool]) {
+    let nodes = json.get("nodes").and_then(Value::as_array).into_iter().flatten();
+    for attributes in nodes.map(|node| &node["extensions"][INSTANCING]["attributes"]) {
+        let attributes = attributes.as_object().into_iter().flatten();
+        attributes.for_each(|(_, accessor)| mark(Some(accessor), marks));
     }
 }
 

@@ -5,6 +5,7 @@ use std::cell::Cell;
 use serde_json::Value;
 
 use super::decompress::{self, MESHOPT};
+use super::instancing::INSTANCING;
 use super::schema::{self, Accessor, Buffer, BufferView};
 use super::uri::{self, Uri};
 use crate::{ParseError, Resolve};
@@ -113,7 +114,8 @@ pub(super) fn check_head(json: &Value) -> Result<(), ParseError> {
 
 /// Reports whether an extension is supported or leaves the geometry alone.
 fn is_understood(name: &str) -> bool {
-    const GEOMETRY: [&str; 4] = ["KHR_mesh_quantization", "MSFT_lod", MESHOPT[0], MESHOPT[1]];
+    const GEOMETRY: [&str; 5] =
+        ["KHR_mesh_quantization", "MSFT_lod", INSTANCING, MESHOPT[0], MESHOPT[1]];
     const OTHERS: [&str; 12] = [
         "KHR_materials_",
         "KHR_texture_",

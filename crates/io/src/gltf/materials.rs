@@ -20,9 +20,10 @@ pub(super) fn materials(json: &Value, images: usize) -> Result<Vec<Material>, Pa
         let Some(found) = textures.get(texture.index) else {
             return Err(missing("texture", texture.index, textures.len()));
         };
-        match found.source.filter(|&image| image >= images) {
+        let source = found.webp_source().or(found.source);
+        match source.filter(|&image| image >= images) {
             Some(image) => Err(missing("image", image, images)),
-            None => Ok(found.source),
+            None => Ok(source),
         }
     };
     let read = |material: schema::GltfMaterial| {
@@ -120,6 +121,15 @@ fn is_richer(material: &Value) -> bool {
         || textures.into_iter().flatten().any(is_moved)
 }
 
+impl Texture {
+    /// Returns the image that `EXT_texture_webp` gives the texture; its source, if it has one, is
+    /// the same picture for programs that do not know WebP.
+    fn webp_source(&self) -> Option<usize> {
+        let extension = self.extensions.get("EXT_texture_webp")?;
+        extension.get("source")?.as_u64().map(|source| source as usize)
+    }
+}
+
 /// Reads the images, still encoded. An image whose file is missing gets no bytes, which costs the
 /// pictures something but not the geometry. A file that is not an image gets none either: a
 /// document from elsewhere must not make the writer copy arbitrary files from this machine.
@@ -152,6 +162,7 @@ fn file_name(name: Option<String>, index: usize, bytes: &[u8]) -> String {
     let suffix = match mime_type(bytes) {
         Some("image/png") => ".png",
         Some("image/jpeg") => ".jpg",
+        Some("image/webp") => ".webp",
         _ => "",
     };
     if name.to_ascii_lowercase().ends_with(suffix) { name } else { format!("{name}{suffix}") }

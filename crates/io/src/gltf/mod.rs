@@ -9,6 +9,8 @@ mod decompress;
 mod dequantize_nodes;
 mod document;
 mod encode;
+mod facts;
+mod instancing;
 mod local_space;
 mod lod;
 mod materials;
@@ -33,6 +35,7 @@ mod vertex_cache;
 mod write;
 
 pub use compress::{Bytes, Compression, CompressionReport};
+pub use facts::{AnimationFacts, FileFacts};
 pub(crate) use local_space::to_local;
 pub(crate) use lod::Levels;
 pub use lod::{Level, LodLayout};

@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::buffer_builder::BufferBuilder;
+use super::instancing::with_copies_as_nodes;
 use super::materials::EMISSIVE_STRENGTH;
 use super::new_material;
 use crate::scene::IDENTITY;
@@ -29,7 +30,8 @@ pub(super) fn skeleton(scene: &Scene) -> Value {
         json
     });
     let images = scene.images.iter().map(|image| json!({ "name": image.name }));
-    with_nodes(scene, materials.collect(), images.collect())
+    let (materials, images) = (materials.collect(), images.collect());
+    with_nodes(&with_copies_as_nodes(scene), materials, images)
 }
 
 /// Returns the images of a document built by [`skeleton`], without their bytes.

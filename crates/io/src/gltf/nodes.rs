@@ -3,7 +3,8 @@
 use glam::{DMat4, DQuat, DVec3};
 use serde_json::Value;
 
-use super::document::missing;
+use super::document::{Document, missing};
+use super::instancing;
 use super::schema::{self, GltfScene};
 use crate::{Node, ParseError, Scene};
 
@@ -20,7 +21,8 @@ pub(super) const MSFT_LOD: &str = "MSFT_lod";
 /// Reads nodes and roots into a scene that already has its meshes.
 ///
 /// Coarser levels linked by `MSFT_lod` stay in the list, but are no roots and nobody's children.
-pub(super) fn read(json: &Value, scene: &mut Scene) -> Result<(), ParseError> {
+pub(super) fn read(document: &Document<'_>, scene: &mut Scene) -> Result<(), ParseError> {
+    let json = document.json;
     let nodes: Vec<schema::GltfNode> = schema::array(json, "nodes", "node")?;
     let parents = parents(&nodes)?;
     check_trees(&nodes, &parents)?;
@@ -31,10 +33,15 @@ pub(super) fn read(json: &Value, scene: &mut Scene) -> Result<(), ParseError> {
             return Err(missing("mesh", mesh, scene.meshes.len()));
         }
         let transform = transform(&node).map_err(|e| ParseError::part(format!("node {i}"), e))?;
+        let instances = match node.mesh {
+            Some(_) => instancing::transforms(document, i)?,
+            None => Vec::new(),
+        };
         scene.nodes.push(Node {
             name: node.name.unwrap_or_default(),
             transform: transform.to_cols_array_2d(),
             mesh: node.mesh,
+            instances,
             children: node.children.into_iter().filter(|&child| !hidden[child]).collect(),
         });
     }
@@ -158,11 +165,17 @@ fn check_instances(scene: &Scene) -> Result<(), ParseError> {
 mod tests {
     use serde_json::json;
 
+    use super::super::document::Buffers;
     use super::*;
+
+    fn read_into(json: &Value, scene: &mut Scene) -> Result<(), ParseError> {
+        let buffers = Buffers::new(Vec::new());
+        read(&Document::new(json, &buffers)?, scene)
+    }
 
     fn read_nodes(json: Value) -> Result<Scene, String> {
         let mut scene = Scene::default();
-        read(&json, &mut scene).map_err(|error| error.to_string())?;
+        read_into(&json, &mut scene).map_err(|error| error.to_string())?;
         Ok(scene)
     }
 
@@ -196,7 +209,7 @@ mod tests {
             {"scale": [1e150, 1, 1], "mesh": 0},
         ]);
         let mut scene = Scene { meshes: vec![crate::SceneMesh::default()], ..Scene::default() };
-        let error = read(&json!({ "nodes": nodes }), &mut scene).unwrap_err().to_string();
+        let error = read_into(&json!({ "nodes": nodes }), &mut scene).unwrap_err().to_string();
         assert!(error.starts_with("node 1"), "{error}");
     }
 

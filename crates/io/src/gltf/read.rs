@@ -5,7 +5,8 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::document::{self, Buffers, Document};
-use super::{container, decompress, materials, mesh, nodes};
+use super::facts::{AnimationFacts, FileFacts};
+use super::{container, decompress, facts, materials, mesh, nodes};
 use crate::{ParseError, Resolve, Scene, SceneMesh, Weld};
 
 /// glTF document that a scene was read from; when the scene is written, all but the geometry is
@@ -27,6 +28,26 @@ impl SourceDocument {
         used.into_iter().flatten().any(|name| name == "KHR_mesh_quantization")
     }
 
+    /// Returns the extensions and the bytes of the file that the document was read from.
+    pub fn file_facts(&self) -> &FileFacts {
+        &self.0.facts
+    }
+
+    /// Lists the animations of the document.
+    pub fn animations(&self) -> Vec<AnimationFacts> {
+        facts::animations(&self.0.json)
+    }
+
+    /// Returns the number of joints of each skin.
+    pub fn joints(&self) -> Vec<usize> {
+        facts::joints(&self.0.json)
+    }
+
+    /// Returns the number of lights that nodes place.
+    pub fn lights(&self) -> usize {
+        facts::lights(&self.0.json)
+    }
+
     /// Lists the materials that have properties which [`Material`](crate::Material) lacks, by name or
     /// as `material 3`.
     pub(crate) fn richer_materials(&self) -> Vec<String> {
@@ -42,6 +63,8 @@ pub(super) struct Contents {
     pub weld: Weld,
     /// Marks the meshes whose geometry is in the scene only; empty if all are here.
     pub emptied: Vec<bool>,
+    /// What the file had before it was decompressed.
+    pub facts: FileFacts,
 }
 
 /// Parses a glTF or GLB file, told apart by the first bytes; `resolve` loads the buffers and images
@@ -54,8 +77,8 @@ pub(super) struct Contents {
 ///
 /// Supported: triangles, strips and fans; any index and component type; strides; sparse accessors;
 /// `KHR_mesh_quantization`; `EXT_meshopt_compression` and `KHR_meshopt_compression`, which are
-/// decompressed and removed; `MSFT_lod`, of which the finest level is shown. Carried through but
-/// not applied to texture coordinates: `KHR_texture_transform`.
+/// decompressed and removed; `EXT_mesh_gpu_instancing`; `MSFT_lod`, of which the finest level is
+/// shown. Carried through but not applied to texture coordinates: `KHR_texture_transform`.
 ///
 /// # Errors
 /// The location (`accessor 7`, `bufferView 3`) and the reason. Geometry compressed with Draco and
@@ -68,6 +91,7 @@ pub fn read(bytes: &[u8], resolve: Resolve<'_>, weld: Weld) -> Result<Scene, Par
         .map_err(|error| ParseError::part("JSON", error.to_string()))?;
     document::check_head(&json)?;
     let mut buffers = document::buffers(&json, chunk, resolve)?;
+    let facts = FileFacts::of(&json);
     decompress::decompress(&mut json, &mut buffers)?;
     let mut scene = Scene::default();
     let document = Document::new(&json, &buffers)?;
@@ -76,10 +100,10 @@ pub fn read(bytes: &[u8], resolve: Resolve<'_>, weld: Weld) -> Result<Scene, Par
     for index in 0..document.meshes.len() {
         scene.meshes.push(scene_mesh(&document, index, weld, &scene)?);
     }
-    nodes::read(&json, &mut scene)?;
+    nodes::read(&document, &mut scene)?;
     forget_uris(&mut json);
-    scene.source =
-        Some(SourceDocument(Arc::new(Contents { json, buffers, weld, emptied: Vec::new() })));
+    let contents = Contents { json, buffers, weld, emptied: Vec::new(), facts };
+    scene.source = Some(SourceDocument(Arc::new(contents)));
     Ok(scene)
 }
 

@@ -187,6 +187,8 @@ pub(super) struct TextureUse {
 #[derive(Debug, Deserialize)]
 pub(super) struct Texture {
     pub source: Option<usize>,
+    #[serde(default)]
+    pub extensions: Map<String, Value>,
 }
 
 /// `images[i]`.

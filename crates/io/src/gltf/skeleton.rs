@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use super::accessor_use::{animation_accessors, free_accessors};
 use super::buffer_builder::{copy_views, mark_views};
 use super::document::{self, Buffers, Document};
+use super::facts::FileFacts;
 use super::read::{Contents, SourceDocument};
 use super::skeleton_images::{SkeletonImage, attach_images, detach_images, preview_name};
 use super::write::{check_meshes, unreadable};
@@ -114,9 +115,11 @@ impl Skeleton {
         for (index, &is_empty) in self.emptied.iter().enumerate() {
             scene.meshes.push(scene_mesh(&document, index, is_empty, scene.materials.len())?);
         }
-        nodes::read(&json, &mut scene)?;
+        nodes::read(&document, &mut scene)?;
         if self.is_gltf {
-            let contents = Contents { json, buffers, weld: Weld::Off, emptied: self.emptied };
+            let facts = FileFacts::of(&json);
+            let (weld, emptied) = (Weld::Off, self.emptied);
+            let contents = Contents { json, buffers, weld, emptied, facts };
             scene.source = Some(SourceDocument(Arc::new(contents)));
         }
         Ok(scene)

@@ -7,6 +7,7 @@ use super::accessor_use::free_accessors;
 use super::buffer_builder::BufferBuilder;
 use super::compress::CompressionReport;
 use super::document::Document;
+use super::instancing::with_copies_as_nodes;
 use super::local_space::localized;
 use super::primitives::{Replacer, by_attribute, is_surface, known_attributes};
 use super::write::{GltfFiles, Output, buffer_name, check_meshes, unreadable};
@@ -68,7 +69,8 @@ pub(crate) fn strip_files(
 impl Output {
     fn of_strips(scene: &Scene, strips: &[StripMesh]) -> Result<Self, Unsupported> {
         let Some(source) = &scene.source else {
-            let (scene, _) = localized(scene, &[]);
+            let scene = with_copies_as_nodes(scene);
+            let (scene, _) = localized(&scene, &[]);
             let mut builder = BufferBuilder::default();
             let json = new_document::document(&scene, &scene.images, &mut builder);
             return finish(json, &scene, Replacer::new(None, builder), strips);

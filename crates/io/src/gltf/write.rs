@@ -7,6 +7,7 @@ use super::accessor_use::free_accessors;
 use super::buffer_builder::BufferBuilder;
 use super::compress::{self, Compression, CompressionReport};
 use super::document::Document;
+use super::instancing::with_copies_as_nodes;
 use super::local_space::localized;
 use super::lod::{self, Level, Levels, LodLayout};
 use super::object_nodes::split_objects;
@@ -151,7 +152,8 @@ impl Output {
         match &scene.source {
             Some(source) => Self::with_source(scene, &source.0, levels, compression),
             None => {
-                let (scene, moved) = localized(scene, levels.levels);
+                let scene = with_copies_as_nodes(scene);
+                let (scene, moved) = localized(&scene, levels.levels);
                 let mut builder = BufferBuilder::default();
                 // Objects on grids of their own would come apart where they meet.
                 let split = compression.is_none().then(|| split_objects(&scene, &moved)).flatten();

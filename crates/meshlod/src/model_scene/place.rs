@@ -109,7 +109,7 @@ fn each_mesh_once(scene: &mut Scene, placed: &[Option<Placement>]) -> Scene {
         let materials = labels.iter().map(|slot| of_slots.get(slot).copied()).collect();
         flat.roots.push(flat.nodes.len());
         let own = Some(flat.meshes.len());
-        flat.nodes.push(Node { name, transform, mesh: own, children: Vec::new() });
+        flat.nodes.push(Node { name, transform, mesh: own, ..Node::default() });
         flat.meshes.push(SceneMesh { materials, ..mesh });
     }
     flat

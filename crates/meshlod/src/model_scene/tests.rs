@@ -67,6 +67,7 @@ fn scene() -> Scene {
         transform,
         mesh,
         children,
+        ..Node::default()
     };
     let unmoved = DMat4::IDENTITY.to_cols_array_2d();
     let material = |name: &str, image, alpha| Material {

@@ -39,7 +39,7 @@ pub(super) fn check(out: &Path, input: &Path) -> Result<(), Failure> {
 }
 
 fn holds_scene(out: &Path) -> bool {
-    has_suffix(out, "gltf") || has_suffix(out, "glb")
+    has_suffix(out, "gltf") || has_suffix(out, "glb") || has_suffix(out, "vrm")
 }
 
 fn has_suffix(path: &Path, suffix: &str) -> bool {

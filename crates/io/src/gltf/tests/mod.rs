@@ -2,6 +2,7 @@
 
 mod broken;
 mod carried;
+mod instances;
 mod levels;
 mod mutated;
 mod packed;
