@@ -100,7 +100,10 @@ fn levels_are_nested() {
 fn a_sequence_gives_every_level_back_to_the_byte() {
     let run = Run::new();
     let exact = ["--precision", "f64"];
-    let simplify = |arguments: &[&str]| run.json(&[&["simplify"], arguments, &exact].concat());
+    // At the end of a run, lindstrom-turk also repays volume, which sequences do without.
+    let method = ["--method", "qem"];
+    let simplify =
+        |arguments: &[&str]| run.json(&[&["simplify"], arguments, &exact, &method].concat());
     run.json(&["sample", "fish", "in.ply", "--faces", "2000", "--precision", "f64"]);
     simplify(&["in.ply", "base.ply", "--ratio", "5%", "--sequence", "fish.seq"]);
     simplify(&["in.ply", "half.ply", "--ratio", "50%", "--topology", "keep"]);

@@ -22,7 +22,10 @@ fn info_knows_a_cube() {
         "pinched_vertices": 0, "components": 1, "objects": 2, "closed": true,
         "bounds": { "min": [0.0, 0.0, 0.0], "max": [1.0, 1.0, 1.0] }, "diagonal": 3f64.sqrt(),
         "area": 6.0, "volume": 1.0, "wedges": null, "attributes": [], "materials": [],
-        "file": "cube.obj", "meshes": 1, "notes": [],
+        "file": "cube.obj", "meshes": 1, "textures": [], "skins": [], "animations": [],
+        "morph_targets": 0, "instances": 1, "cameras": 0, "lights": 0, "extensions_used": [],
+        "extensions_required": [], "notes": [],
+        "bytes": { "file": obj.len(), "geometry": obj.len(), "images": 0, "animation": 0 },
     });
     assert_eq!(info, expected);
     let text = run.run(&["info", "cube.obj"]);
