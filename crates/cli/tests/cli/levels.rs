@@ -115,7 +115,7 @@ fn a_sequence_gives_every_level_back_to_the_byte() {
         assert!(bytes("back.ply") == bytes(level), "{level}");
     }
     let done = run.run(&["replay", "fish.seq", "back.ply", "--faces", "1"]);
-    assert!(done.code == 0 && done.only_line().contains("coarsest"), "{done:?}");
+    assert!(done.code == 0 && done.err.contains("coarsest"), "{done:?}");
 }
 
 /// Writes a glTF scene of a coloured fish scaled to a hundredth.
