@@ -5,7 +5,7 @@ use meshlod_simplify::Method;
 
 use super::attributes;
 use super::walks::{Dice, forest, query};
-use crate::{Cut, Forest, Hierarchy, Implicit, Query, UpdateLimits};
+use crate::{Cut, Forest, Hierarchy, Implicit, UpdateLimits};
 
 /// Gives a model the normal (node, 0, 1) at each node, and checks every cut of a walk.
 fn check(name: &str, mesh: &Mesh, mt: Implicit) {
@@ -48,17 +48,17 @@ fn touched_slots_keep_a_copy_of_the_wedges() {
         let model = Hierarchy::from(Implicit::new(&forest).unwrap());
         let mut cut = model.cut();
         let mut copy: Vec<_> = (0..cut.slots() as u32).map(|slot| cut.wedges(slot)).collect();
-        let mut dice = Dice(4);
+        let (mut dice, mut touched) = (Dice(4), 0);
         for _ in 0..8 {
             let limits = UpdateLimits { changes: Some((60.0 * dice.roll()) as usize), time: None };
             cut.update(&query(&mut dice, &mesh), &limits).unwrap();
             copy.resize(cut.slots(), None);
             for slot in cut.touched_slots() {
                 copy[slot as usize] = cut.wedges(slot);
+                touched += 1;
             }
             assert!((0..cut.slots() as u32).all(|slot| copy[slot as usize] == cut.wedges(slot)));
         }
-        cut.update(&Query::uniform(0.0), &UpdateLimits::default()).unwrap();
-        assert!(cut.touched_slots().count() > 0 || mesh.faces.len() < 10, "{name}");
+        assert!(touched > 50 || mesh.faces.len() < 10, "{name}: {touched}");
     }
 }
