@@ -10,7 +10,7 @@ use super::CutModel;
 
 /// Cut of a model, with or without motion.
 pub(super) enum Followed<'m> {
-    Cut(HierarchyCut<'m>),
+    Cut(Box<HierarchyCut<'m>>),
     Morph(Box<Geomorph<'m>>),
 }
 
@@ -19,7 +19,10 @@ impl<'m> Followed<'m> {
     pub(super) fn new(model: &'m CutModel, motion: Option<Duration>) -> Self {
         let morph = motion.zip(model.contractions());
         let morph = morph.and_then(|(duration, levels)| Geomorph::new(levels, duration).ok());
-        morph.map_or_else(|| Self::Cut(model.levels().cut()), |morph| Self::Morph(Box::new(morph)))
+        morph.map_or_else(
+            || Self::Cut(Box::new(model.levels().cut())),
+            |morph| Self::Morph(Box::new(morph)),
+        )
     }
 
     pub(super) fn update(

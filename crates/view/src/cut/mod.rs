@@ -11,6 +11,7 @@ mod materials;
 mod model;
 mod pipelines;
 mod places;
+mod scatter;
 mod slots;
 mod staged;
 mod worker;
@@ -26,6 +27,7 @@ use self::list::TriangleList;
 pub use self::model::CutModel;
 pub(crate) use self::pipelines::CutPipelines;
 use self::places::Places;
+use self::scatter::Scatter;
 pub use self::slots::CutPatch;
 use self::staged::Staged;
 use crate::mesh::{MaterialBinding, bind_faces};
@@ -49,6 +51,8 @@ pub struct GpuCut {
     places: Places,
     place_buffer: Buffer,
     has_uv: bool,
+    /// Pass that moves vertices; `None` if the buffers are too large for it.
+    scatter: Option<Scatter>,
     /// Slots whose triangles are still dissolving.
     fade: Option<Fade>,
     faces: usize,
@@ -84,11 +88,14 @@ impl GpuCut {
         let room = faces / groups.len();
         let places = model.places.for_gpu(model.origin());
         let place_bytes = bytemuck::cast_slice(&places);
+        let positions = upload("positions of all levels", bytemuck::cast_slice(&positions));
+        let attributes = upload("attributes of all levels", bytemuck::cast_slice(&attributes));
         Ok(Self {
             gpu: gpu.clone(),
             origin: model.origin().into(),
-            positions: upload("positions of all levels", bytemuck::cast_slice(&positions)),
-            attributes: upload("attributes of all levels", bytemuck::cast_slice(&attributes)),
+            scatter: Scatter::new(gpu, [&positions, &attributes]),
+            positions,
+            attributes,
             lists: groups.iter().map(|&group| TriangleList::new(gpu, group, room)).collect(),
             materials: model.materials(renderer)?,
             places: model.places.clone(),
@@ -146,21 +153,17 @@ impl GpuCut {
     pub fn apply(&mut self, step: &CutStep, transition: Transition) {
         self.finish_fade();
         self.faces = step.faces;
-        let mut staged = Staged::default();
-        self.stage_moved(&step.moved, &mut staged);
         // The first cut comes from nothing.
         let is_first = self.lists.iter().all(|list| list.slots.is_empty());
         if transition == Transition::Immediate || is_first {
-            self.write(&step.patches, &mut staged);
-        } else if !step.patches.is_empty() {
-            let fade = Fade::new(&self.gpu, &self.lists, &step.patches);
-            let emptied = |&patch: &CutPatch| CutPatch { vertices: None, ..patch };
-            let emptied: Vec<_> = step.patches.iter().map(emptied).collect();
-            self.uploaded += fade.bytes();
-            self.write(&emptied, &mut staged);
-            self.fade = Some(fade);
+            return self.send(&step.patches, &step.moved);
         }
-        self.uploaded += staged.send(&self.gpu);
+        let fade = Fade::new(&self.gpu, &self.lists, &step.patches);
+        let emptied = |&patch: &CutPatch| CutPatch { vertices: None, ..patch };
+        let emptied: Vec<_> = step.patches.iter().map(emptied).collect();
+        self.uploaded += fade.bytes();
+        self.send(&emptied, &step.moved);
+        self.fade = (!emptied.is_empty()).then_some(fade);
     }
 
     /// Returns true while old triangles dissolve into new ones.
@@ -171,9 +174,7 @@ impl GpuCut {
     /// Ends a transition.
     pub fn finish_fade(&mut self) {
         if let Some(fade) = self.fade.take() {
-            let mut staged = Staged::default();
-            self.write(&fade.changes, &mut staged);
-            self.uploaded += staged.send(&self.gpu);
+            self.send(&fade.changes, &[]);
         }
     }
 
@@ -250,12 +251,28 @@ impl GpuCut {
         list.storage.get_or_init(|| bind_faces(renderer, buffers, &[u32::MAX])).as_ref()
     }
 
-    /// Writes triangles into the slots of their groups.
-    fn write(&mut self, patches: &[CutPatch], staged: &mut Staged) {
+    /// Sends triangles for the slots of their groups, and vertices that have moved.
+    fn send(&mut self, patches: &[CutPatch], moved: &[MovedVertex]) {
+        if patches.is_empty() && moved.is_empty() {
+            return;
+        }
+        let mut staged = Staged::default();
         for of_group in patches.chunk_by(|a, b| a.group == b.group) {
             let list = &mut self.lists[of_group[0].group as usize];
-            self.uploaded += list.write(&self.gpu, of_group, staged);
+            self.uploaded += list.write(&self.gpu, of_group, &mut staged);
         }
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        match &self.scatter {
+            Some(scatter) => {
+                let buffers = [&self.positions, &self.attributes];
+                for part in moved.chunks(Scatter::MOST) {
+                    self.uploaded += scatter.write(&self.gpu, &mut encoder, part, buffers);
+                }
+            }
+            None => self.stage_moved(moved, &mut staged),
+        }
+        self.uploaded += staged.record(&self.gpu, &mut encoder);
+        self.gpu.queue.submit([encoder.finish()]);
     }
 
     /// Stages vertices that have moved, those next to each other in one piece.

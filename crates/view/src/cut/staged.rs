@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use wgpu::{Buffer, BufferUsages};
+use wgpu::{Buffer, BufferUsages, CommandEncoder};
 
 use crate::Gpu;
 use crate::renderer::buffer_of;
@@ -31,17 +31,15 @@ impl Staged {
         self.copies.push(Copy { from: start..self.bytes.len() as u64, to: to.clone(), at });
     }
 
-    /// Sends everything, and returns the number of bytes. What is submitted later sees it.
-    pub(super) fn send(self, gpu: &Gpu) -> u64 {
+    /// Uploads everything and records its copies, and returns the number of bytes.
+    pub(super) fn record(self, gpu: &Gpu, encoder: &mut CommandEncoder) -> u64 {
         if self.bytes.is_empty() {
             return 0;
         }
         let from = buffer_of(gpu, "changes of a cut", &self.bytes, BufferUsages::COPY_SRC);
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
         for Copy { from: Range { start, end }, to, at } in &self.copies {
             encoder.copy_buffer_to_buffer(&from, *start, to, *at, end - start);
         }
-        gpu.queue.submit([encoder.finish()]);
         self.bytes.len() as u64
     }
 }
