@@ -1,4 +1,4 @@
-//! Where the scene shows the faces of its levels, for renderers that draw the levels as they are.
+//! Places and materials of the faces of a scene's levels, for renderers that draw the levels as they are.
 
 use glam::DMat4;
 

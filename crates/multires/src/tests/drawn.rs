@@ -1,4 +1,4 @@
-//! What a renderer needs of a cut: normals for every wedge, and slots whose wedges have changed.
+//! Cuts as a renderer follows them: normals for every wedge, and slots whose wedges have changed.
 
 use meshlod_mesh::{LayerKind, Mesh, WedgeId};
 use meshlod_simplify::Method;

@@ -8,7 +8,7 @@ use meshlod::multires::{Hierarchy, VertexValues};
 use super::CutModel;
 use crate::mesh::{VertexAttributes, fractions};
 
-/// Where the values that are drawn are among all values of a wedge, and what they are relative to.
+/// Offsets of the values that are drawn among all values of a wedge, and the origin of positions.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct VertexFields {
     origin: DVec3,

@@ -56,7 +56,7 @@ pub struct CutStep {
     pub milliseconds: f64,
 }
 
-/// How a [`CutFollower`] follows queries.
+/// Limits and motion with which a [`CutFollower`] follows queries.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FollowOptions {
     /// Most splits and merges in one step, which bounds what a frame uploads: a change touches about

@@ -31,7 +31,7 @@ const PLACES: VertexBufferLayout<'static> = VertexBufferLayout {
 };
 
 impl GpuPlace {
-    /// Where the levels have a mesh.
+    /// Place where the levels have a mesh.
     pub(super) const OWN: Self = Self([
         [1.0, 0.0, 0.0, 0.0],
         [0.0, 1.0, 0.0, 0.0],

@@ -2,7 +2,7 @@
 
 use super::groups::Groups;
 
-/// Where each triangle of a cut is in the list of its group, and what it was at last.
+/// Places of the triangles of a cut in the lists of their groups, and their vertices at last.
 #[derive(Debug)]
 pub(super) struct GroupSlots {
     /// Place of each slot of the cut.

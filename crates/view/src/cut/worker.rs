@@ -1,4 +1,4 @@
-//! What the thread of a follower does: a cut that changes and moves as it is asked to.
+//! The thread of a follower: a cut that changes and moves as it is asked to.
 
 use std::sync::mpsc::{Receiver, SyncSender};
 use std::time::{Duration, Instant};
@@ -10,7 +10,7 @@ use super::followed::Followed;
 use super::slots::GroupSlots;
 use super::{CutModel, CutQuery, CutStep, CutTolerance, FollowOptions, MovedVertex};
 
-/// What a follower asks of its thread.
+/// Request of a follower to its thread.
 #[derive(Debug)]
 pub(super) enum Request {
     /// A query, with its number.
@@ -19,7 +19,7 @@ pub(super) enum Request {
     Advance(u64, Duration),
 }
 
-/// What the thread answers.
+/// Answer of the thread to its follower.
 #[derive(Debug)]
 pub(super) struct Answer {
     /// Number of the query that the step is towards.
