@@ -273,8 +273,8 @@ pub use meshlod_io::{Format, IoError, ReadOptions, Scene, WriteOptions, read, wr
 pub use meshlod_mesh::{Borders, Mesh};
 pub use meshlod_simplify::{Method, Options, Report, SimplifyError, Target, Topology};
 pub use model_scene::{
-    MissingParts, ModelScene, ModelSceneError, PackedScene, PlaceError, PlacedScene, SceneCounts,
-    place_scene,
+    LevelInstance, MissingParts, ModelScene, ModelSceneError, PackedScene, PlaceError, PlacedScene,
+    SceneCounts, SceneLayout, place_scene,
 };
 pub use place::{moved_at_most, rounding_of_level, world_bounds};
 pub use repair::repair_scene;

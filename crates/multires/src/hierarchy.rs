@@ -147,6 +147,24 @@ impl HierarchyCut<'_> {
         contractions.into_iter().flatten().chain(triangles.into_iter().flatten())
     }
 
+    /// Iterates over the triangle slots that the last update wrote, see [`Cut::touched_slots`].
+    pub fn touched_slots(&self) -> impl Iterator<Item = u32> + '_ {
+        let (contractions, triangles) = match self {
+            Self::Contractions(cut) => (Some(cut.touched_slots()), None),
+            Self::RightTriangles(cut) => (None, Some(cut.patches().map(|patch| patch.slot))),
+        };
+        contractions.into_iter().flatten().chain(triangles.into_iter().flatten())
+    }
+
+    /// Returns the wedges at the corners of the triangle in a slot; `None` if the slot is empty or
+    /// the model has no wedges, as height fields have none. See [`Cut::wedges`].
+    pub fn wedges(&self, slot: u32) -> Option<[u32; 3]> {
+        match self {
+            Self::Contractions(cut) => cut.wedges(slot),
+            Self::RightTriangles(_) => None,
+        }
+    }
+
     /// Returns a copy of the current level.
     pub fn level(&self) -> Level {
         match self {

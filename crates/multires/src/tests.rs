@@ -2,6 +2,7 @@
 
 mod attributes;
 mod certificates;
+mod drawn;
 mod geomorphs;
 mod locate;
 mod long;

@@ -4,12 +4,12 @@
 
 use std::sync::Arc;
 
-use meshlod::multires::{Focus, Forest, Hierarchy, Model, ViewCamera};
+use meshlod::multires::{Focus, Forest, Hierarchy, Implicit, ViewCamera};
 use meshlod::picture::{Background, Camera, Wireframe};
-use meshlod::samples;
+use meshlod::{SceneLayout, samples};
 use meshlod_view::{
-    Canvas, CutFollower, CutQuery, CutTolerance, CutVertices, Gpu, GpuCut, Renderer, Shade,
-    TargetFormat, Transition,
+    Canvas, CutFollower, CutModel, CutQuery, CutTolerance, FollowOptions, Gpu, GpuCut, Renderer,
+    Shade, TargetFormat, Transition,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -17,7 +17,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut knot = samples::knot(200_000);
     knot.attributes = None;
     let forest = Forest::new(&knot, &meshlod::Options::default())?;
-    let model = Arc::new(Hierarchy::from(Model::new(&forest)?.implicit().clone()));
+    let levels = Hierarchy::from(Implicit::new(&forest)?);
+    let model = Arc::new(CutModel::new(levels, &SceneLayout::default())?);
 
     // Bring your own device, queue and target; this canvas is one without a window.
     let gpu = Gpu::headless()?;
@@ -26,8 +27,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let renderer = Renderer::new(&gpu, TargetFormat::CANVAS);
 
     // The vertices of all levels are uploaded once; a thread follows the camera with a cut.
-    let mut cut = GpuCut::new(&renderer, &model, &CutVertices::new(&model)?)?;
-    let mut follower = CutFollower::start(model, Some(20_000));
+    let mut cut = GpuCut::new(&renderer, &model)?;
+    let options = FollowOptions { changes: Some(20_000), motion: None };
+    let mut follower = CutFollower::start(model, options);
     let placement = renderer.placement();
     let backdrop = renderer.backdrop(Background::default());
 

@@ -1,16 +1,20 @@
-//! Measures what a cut sends to the GPU while a camera orbits, and looks for cracks in it.
+//! Measures what a cut costs the processor and sends to the GPU while a camera orbits, at once and with
+//! vertices that move, and looks for cracks in it.
 //!
-//! `cargo run --release -p meshlod-view --example cut_cost -- MODEL.mlod [VIEWS]`
+//! `cargo run --release -p meshlod-view --example cut_cost -- MODEL.mlod [PIXELS] [VIEWS]`
 
+use std::path::Path;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
+use meshlod::ReadOptions;
 use meshlod::mesh::Bounds;
-use meshlod::multires::{Focus, Hierarchy, ModelFile, Query, Tolerance, UpdateLimits, ViewCamera};
+use meshlod::multires::{Focus, Query, Tolerance, UpdateLimits, ViewCamera};
 use meshlod::picture::{Antialiasing, Background, Camera, Picture, Style};
+use meshlod_view::stage::{Loaded, LoadedContent};
 use meshlod_view::{
-    Canvas, CutFollower, CutQuery, CutTolerance, CutVertices, Gpu, GpuCut, Renderer, Shade,
-    TargetFormat, Transition,
+    Canvas, CutFollower, CutModel, CutQuery, CutTolerance, FollowOptions, Gpu, GpuCut, Renderer,
+    Shade, TargetFormat, Transition,
 };
 
 const SIZE: [u32; 2] = [1920, 1080];
@@ -34,54 +38,75 @@ impl Orbit {
     }
 }
 
+const FRAME: Duration = Duration::from_micros(16_667);
+const FRAMES: u32 = 200;
+
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let path = arguments.next().ok_or("name a .mlod file")?;
+    let pixels: f64 = arguments.next().map_or(Ok(1.0), |pixels| pixels.parse())?;
     let views: u32 = arguments.next().map_or(Ok(0), |views| views.parse())?;
-    let model = Arc::new(ModelFile::open(std::fs::read(path)?)?.read()?);
+    let loaded = Loaded::read(Path::new(&path), &ReadOptions::default())?;
+    let LoadedContent::Levels(model) = loaded.content else { return Err("no levels".into()) };
     let gpu = Gpu::headless()?;
     println!("{}", gpu.name());
     let renderer = Renderer::new(&gpu, TargetFormat::CANVAS);
-    let start = Instant::now();
-    let vertices = CutVertices::new(&model)?;
-    println!("vertices of all levels: {:.0} ms", start.elapsed().as_secs_f64() * 1e3);
-    let mut cut = GpuCut::new(&renderer, &model, &vertices)?;
-    let mut follower = CutFollower::start(model.clone(), None);
-    let bounds = vertices.bounds();
+    let bounds = loaded.bounds;
     let orbit = Orbit { middle: bounds.center(), radius: 1.1 * bounds.diagonal() };
+    println!("| changes | faces | cut, ms | of it at most | upload, ms | sent, % | at most |");
+    println!("|---|--:|--:|--:|--:|--:|--:|");
+    for (name, motion) in [("at once", None), ("moving", Some(Duration::from_millis(250)))] {
+        let mut cut = GpuCut::new(&renderer, &model)?;
+        let options = FollowOptions { changes: None, motion };
+        let mut follower = CutFollower::start(model.clone(), options);
+        let figures = follow(&gpu, &mut cut, &mut follower, &orbit, pixels)?;
+        let columns = [0, 1, 2].map(|column| {
+            let mut all: Vec<f64> = figures.iter().map(|figures| figures[column]).collect();
+            all.sort_by(f64::total_cmp);
+            [all[all.len() / 2], all[all.len() - 1]]
+        });
+        let [[step, longest], [upload, _], [sent, most]] = columns;
+        let faces = cut.faces();
+        print!("| {name} | {faces} | {step:.3} | {longest:.2} | {upload:.3} ");
+        println!("| {sent:.3} | {most:.3} |");
+    }
+    let mut cut = GpuCut::new(&renderer, &model)?;
+    look_for_cracks(&gpu, &renderer, &mut cut, &model, &orbit, &bounds, views)
+}
 
-    let canvas = Canvas::new(&gpu, SIZE)?;
-    let placement = renderer.placement();
+/// Orbits by a tenth of a degree a frame, and returns for each frame the milliseconds of the cut and of
+/// its upload, and the percentage of the index buffers that was sent.
+fn follow(
+    gpu: &Gpu,
+    cut: &mut GpuCut,
+    follower: &mut CutFollower,
+    orbit: &Orbit,
+    pixels: f64,
+) -> Result<Vec<[f64; 3]>, Box<dyn std::error::Error>> {
     let mut figures = Vec::new();
-    for frame in 0..=100 {
+    for frame in 0..=FRAMES {
         let eye = orbit.eye(0.1 * f64::from(frame), 0.2);
         let (look, up) = (orbit.middle, [0.0, 1.0, 0.0]);
         let camera = ViewCamera { eye, look, up, fov_rad: FOV_RAD, viewport: SIZE };
-        let tolerance = CutTolerance::Pixels { camera, pixels: 1.0 };
+        let tolerance = CutTolerance::Pixels { camera, pixels };
+        // Vertices of the first cut arrive before the orbit begins.
+        follower.advance(if frame == 1 { Duration::MAX } else { FRAME });
         follower.ask(CutQuery { focus: Focus::Everything, tolerance });
-        let step = follower.wait().ok_or("the thread has ended")??;
-        let start = Instant::now();
-        cut.apply(&step, Transition::Immediate);
-        let sent = cut.take_uploaded() as f64 / cut.index_bytes() as f64;
-        placement.set(&orbit.camera(eye), SIZE, cut.origin(), &Shade::default());
-        canvas.draw(|pass| cut.draw(&renderer, pass, &placement));
+        let (mut steps, mut upload) = (0.0, 0.0);
+        while let Some(step) = follower.wait() {
+            let step = step?;
+            steps += step.milliseconds;
+            let start = Instant::now();
+            cut.apply(&step, Transition::Immediate);
+            upload += start.elapsed().as_secs_f64() * 1e3;
+        }
         gpu.wait()?;
-        if frame > 0 {
-            figures.push((sent, step.milliseconds, start.elapsed().as_secs_f64() * 1e3));
+        let sent = 100.0 * cut.take_uploaded() as f64 / cut.index_bytes() as f64;
+        if frame > 1 {
+            figures.push([steps, upload, sent]);
         }
     }
-    let median = |of: fn(&(f64, f64, f64)) -> f64| {
-        let mut all: Vec<f64> = figures.iter().map(of).collect();
-        all.sort_by(f64::total_cmp);
-        (all[all.len() / 2], all[all.len() - 1])
-    };
-    let (sent, most) = median(|figure| 100.0 * figure.0);
-    println!("{} faces at 1 px, 1920 x 1080, orbit of .1 degrees a frame", cut.faces());
-    println!("sent: {sent:.3} % of the index buffer, at most {most:.3} %");
-    println!("cut: {:.2} ms; draw: {:.1} ms (medians)", median(|f| f.1).0, median(|f| f.2).0);
-    drop(follower);
-    let mut cut = GpuCut::new(&renderer, &model, &vertices)?;
-    look_for_cracks(&gpu, &renderer, &mut cut, &model, &orbit, &bounds, views)
+    Ok(figures)
 }
 
 /// Draws cuts of many kinds from many sides, and counts the pixels with background that the processor
@@ -90,7 +115,7 @@ fn look_for_cracks(
     gpu: &Gpu,
     renderer: &Renderer,
     cut: &mut GpuCut,
-    model: &Hierarchy,
+    model: &Arc<CutModel>,
     orbit: &Orbit,
     bounds: &Bounds,
     views: u32,
@@ -103,7 +128,7 @@ fn look_for_cracks(
         antialiasing: Antialiasing::Sixteen,
         ..Style::default()
     };
-    let mut follower = CutFollower::start(Arc::new(model.clone()), None);
+    let mut follower = CutFollower::start(model.clone(), FollowOptions::default());
     let (mut cracks, mut gaps) = (0, 0);
     for view in 0..views {
         let turn = f64::from(view) * 137.5;
@@ -124,7 +149,7 @@ fn look_for_cracks(
             continue;
         }
         let query = Query { focus, tolerance: Tolerance::Uniform(error) };
-        let mut level = model.cut();
+        let mut level = model.levels().cut();
         level.update(&query, &UpdateLimits::default())?;
         let mesh = level.level().mesh();
         let exact = meshlod::picture::render(&mesh, &camera, &style)?;

@@ -54,7 +54,8 @@ pub mod viewer;
 
 pub use canvas::Canvas;
 pub use cut::{
-    CutError, CutFollower, CutQuery, CutStep, CutTolerance, CutVertices, GpuCut, Transition,
+    CutError, CutFollower, CutModel, CutPatch, CutQuery, CutStep, CutTolerance, FollowOptions,
+    GpuCut, MovedVertex, Transition,
 };
 pub use error::ViewError;
 pub use flock::{GpuFlock, GpuObstacles, GpuSelection, HiZ};

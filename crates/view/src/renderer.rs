@@ -15,6 +15,7 @@ use wgpu::{
     VertexBufferLayout,
 };
 
+use crate::cut::CutPipelines;
 use crate::flock::FlockPipelines;
 use crate::mesh::MeshPipelines;
 use crate::placement::{DrawUniforms, Placement};
@@ -33,6 +34,7 @@ pub struct Renderer {
     pub(crate) sampler: Sampler,
     pub(crate) meshes: OnceLock<MeshPipelines>,
     pub(crate) schemes: OnceLock<SchemePipelines>,
+    pub(crate) cuts: OnceLock<CutPipelines>,
     pub(crate) flocks: OnceLock<FlockPipelines>,
     background: OnceLock<RenderPipeline>,
 }
@@ -74,6 +76,7 @@ impl Renderer {
             }),
             meshes: OnceLock::new(),
             schemes: OnceLock::new(),
+            cuts: OnceLock::new(),
             flocks: OnceLock::new(),
             background: OnceLock::new(),
         }

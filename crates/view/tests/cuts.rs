@@ -7,12 +7,12 @@ use std::sync::Arc;
 use common::cracks::cracks;
 use common::{bumpy, gpu};
 use meshlod::Mesh;
-use meshlod::multires::{Focus, Forest, HeightField, Hierarchy, Model, Rtin, ViewCamera};
+use meshlod::multires::{Focus, Forest, HeightField, Hierarchy, Implicit, Rtin, ViewCamera};
 use meshlod::picture::{Camera, Picture, View};
-use meshlod::samples;
+use meshlod::{SceneLayout, samples};
 use meshlod_view::{
-    Canvas, CutFollower, CutQuery, CutTolerance, CutVertices, Gpu, GpuCut, Renderer, Shade,
-    TargetFormat, Transition,
+    Canvas, CutFollower, CutModel, CutQuery, CutTolerance, FollowOptions, Gpu, GpuCut, Renderer,
+    Shade, TargetFormat, Transition,
 };
 
 /// A cut and the thread that follows its queries.
@@ -23,11 +23,10 @@ struct Subject {
 }
 
 impl Subject {
-    fn new(gpu: &Gpu, model: Arc<Hierarchy>) -> Self {
+    fn new(gpu: &Gpu, model: Arc<CutModel>) -> Self {
         let renderer = Renderer::new(gpu, TargetFormat::CANVAS);
-        let vertices = CutVertices::new(&model).unwrap();
-        let cut = GpuCut::new(&renderer, &model, &vertices).unwrap();
-        Self { renderer, cut, follower: CutFollower::start(model, None) }
+        let cut = GpuCut::new(&renderer, &model).unwrap();
+        Self { renderer, cut, follower: CutFollower::start(model, FollowOptions::default()) }
     }
 
     fn follow(&mut self, focus: Focus, tolerance: CutTolerance, transition: Transition) {
@@ -53,9 +52,13 @@ impl Subject {
     }
 }
 
-fn model(mesh: &Mesh) -> Arc<Hierarchy> {
+fn of(levels: Hierarchy) -> Arc<CutModel> {
+    Arc::new(CutModel::new(levels, &SceneLayout::default()).unwrap())
+}
+
+fn model(mesh: &Mesh) -> Arc<CutModel> {
     let forest = Forest::new(mesh, &Default::default()).unwrap();
-    Arc::new(Model::new(&forest).unwrap().implicit().clone().into())
+    of(Implicit::new(&forest).unwrap().into())
 }
 
 fn view_camera(eye: [f64; 3], size: [u32; 2]) -> ViewCamera {
@@ -93,7 +96,7 @@ fn a_small_orbit_uploads_little() {
 fn a_flight_over_a_height_field_uploads_little() {
     let Some(gpu) = gpu() else { return };
     let field = HeightField::from_mesh(&samples::terrain(12_000)).unwrap();
-    let mut subject = Subject::new(gpu, Arc::new(Rtin::new(&field).into()));
+    let mut subject = Subject::new(gpu, of(Rtin::new(&field).into()));
     let tolerance = |angle: f64| CutTolerance::Pixels {
         camera: view_camera(on_circle(angle, 2.0), [1920, 1080]),
         pixels: 1.0,

@@ -79,7 +79,7 @@ fn a_height_field_is_shown_by_levels() {
     let loaded = read(&path);
     assert!(loaded.mesh.faces.len() <= terrain.faces.len());
     let LoadedContent::Levels(levels) = &loaded.content else { panic!("{loaded:?}") };
-    assert!(matches!(**levels, Hierarchy::RightTriangles(_)));
+    assert!(matches!(levels.levels(), Hierarchy::RightTriangles(_)));
     let Some(gpu) = common::gpu() else { return };
     let renderer = Renderer::new(gpu, TargetFormat::CANVAS);
     let mut stage = Stage::default();

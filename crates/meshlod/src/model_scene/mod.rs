@@ -9,6 +9,7 @@
 mod counts;
 mod head;
 mod image_versions;
+mod layout;
 mod parts;
 mod place;
 mod placement;
@@ -22,5 +23,6 @@ mod tests;
 mod weights;
 
 pub use counts::SceneCounts;
+pub use layout::{LevelInstance, SceneLayout};
 pub use place::{PackedScene, PlaceError, PlacedScene, place_scene};
 pub use restore::{MissingParts, ModelScene, ModelSceneError};

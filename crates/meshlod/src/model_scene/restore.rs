@@ -14,9 +14,9 @@ use super::split::split;
 /// Scene of a multiresolution or compressed file, without the geometry of its mesh.
 #[derive(Clone, Debug, Default)]
 pub struct ModelScene {
-    head: Head,
+    pub(super) head: Head,
     /// The scene, whose meshes of the levels are empty.
-    scene: Scene,
+    pub(super) scene: Scene,
     /// True if attributes have been rounded.
     is_rounded: bool,
     /// Parts that a truncated file lacks.

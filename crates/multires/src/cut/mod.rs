@@ -204,6 +204,14 @@ impl<'m> Cut<'m> {
         self.front.triangles.changes().map(|(slot, old, new)| Patch { slot, old, new })
     }
 
+    /// Iterates over the triangle slots that the last update wrote, in no particular order.
+    ///
+    /// Beside those of [`patches`](Self::patches) these may be slots that hold the same nodes as
+    /// before, though at other wedges: two faces may have the same three vertices.
+    pub fn touched_slots(&self) -> impl Iterator<Item = u32> + '_ {
+        self.front.triangles.touched()
+    }
+
     /// Returns a copy of the current mesh.
     pub fn level(&self) -> Level {
         self.front.level_of(&self.triangles().map(|(slot, _)| slot).collect::<Vec<_>>())

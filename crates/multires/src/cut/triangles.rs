@@ -116,6 +116,11 @@ impl Triangles {
         all.filter(|(_, was, is)| was != is).map(move |(t, was, is)| (t, real(was), real(is)))
     }
 
+    /// Iterates over the slots written since the mark, also where they are as before.
+    pub(super) fn touched(&self) -> impl Iterator<Item = u32> + '_ {
+        self.changed.iter().map(|&(t, _)| t)
+    }
+
     /// Appends the star of a vertex to `star`, given its first corner.
     #[inline]
     pub(super) fn gather(&self, first: u32, star: &mut Vec<Spoke>) {

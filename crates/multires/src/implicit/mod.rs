@@ -27,6 +27,7 @@ mod positions;
 mod saturated;
 mod splits;
 mod wedges;
+mod with_normals;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -62,6 +62,19 @@ impl Implicit {
         self.wedges.as_ref()?.labels.names[0].as_deref()
     }
 
+    /// Returns the names of the objects; `None` if the mesh has none.
+    pub fn object_names(&self) -> Option<&[String]> {
+        self.wedges.as_ref()?.labels.names[1].as_deref()
+    }
+
+    /// Returns the object of the faces that use a wedge, by its place among the
+    /// [names](Self::object_names); `None` if the mesh has no objects.
+    pub fn object_of(&self, wedge: u32) -> Option<u32> {
+        let labels = &self.wedges.as_ref()?.labels;
+        labels.names[1].as_ref()?;
+        labels.pairs.get(labels.of(wedge) as usize).map(|pair| pair[1])
+    }
+
     /// Returns the material of the faces that use a wedge, by its place among the
     /// [names](Self::material_names); `None` if the mesh has no materials.
     pub fn material_of(&self, wedge: u32) -> Option<u32> {

@@ -142,8 +142,11 @@ impl Query<'static> {
 }
 
 impl Query<'_> {
-    /// Checks that the query is valid.
-    pub(crate) fn validate(&self) -> Result<(), QueryError> {
+    /// Checks that the query is valid, as whatever answers it does first.
+    ///
+    /// # Errors
+    /// A coordinate, angle or length that is not finite or out of range.
+    pub fn validate(&self) -> Result<(), QueryError> {
         self.focus.validate()?;
         match &self.tolerance {
             Tolerance::Uniform(most) => length("the tolerance", *most),

@@ -1,49 +1,62 @@
-//! Cuts of a multiresolution model on the GPU: the index buffer is patched where the cut changes.
+//! Cuts of a multiresolution model on the GPU: index buffers are patched where the cut changes.
 
 mod dirty;
+mod fade;
+mod fields;
+mod followed;
 mod follower;
-mod vertices;
+mod groups;
+mod list;
+mod materials;
+mod model;
+mod pipelines;
+mod places;
+mod scatter;
+mod slots;
+mod staged;
+mod worker;
 
-use meshlod::multires::Hierarchy;
-use wgpu::{BindGroup, Buffer, BufferDescriptor, BufferUsages, IndexFormat, RenderPass};
+use wgpu::{BindGroup, Buffer, BufferUsages, IndexFormat, RenderPass};
 
-use self::dirty::DirtyRanges;
-pub use self::follower::{CutError, CutFollower, CutQuery, CutStep, CutTolerance};
-pub use self::vertices::CutVertices;
+use self::fade::Fade;
+pub use self::fields::MovedVertex;
+use self::fields::VertexFields;
+pub use self::follower::{CutError, CutFollower, CutQuery, CutStep, CutTolerance, FollowOptions};
+use self::groups::Group;
+use self::list::TriangleList;
+pub use self::model::CutModel;
+pub(crate) use self::pipelines::CutPipelines;
+use self::places::Places;
+use self::scatter::Scatter;
+pub use self::slots::CutPatch;
+use self::staged::Staged;
 use crate::mesh::{MaterialBinding, bind_faces};
-use crate::placement::{CLAY, Placement, linear};
+use crate::placement::Placement;
 use crate::renderer::{Renderer, buffer_of};
 use crate::{Gpu, ViewError};
 
-/// Cut on the GPU: vertices of all levels, and the triangles of the current cut by slot.
+/// Cut on the GPU: vertices of all levels, and the triangles of the current cut by mesh, material
+/// and slot.
 ///
-/// A vertex is 12 bytes of position and 20 of attributes, as in a [`GpuMesh`](crate::GpuMesh): models
-/// with texture coordinates fill them by wedge, bare ones have a computed normal only.
+/// A vertex is 12 bytes of position and 20 of attributes, as in a [`GpuMesh`](crate::GpuMesh): one
+/// for each wedge of the model.
 #[derive(Debug)]
 pub struct GpuCut {
     gpu: Gpu,
     origin: [f64; 3],
     positions: Buffer,
     attributes: Buffer,
-    indices: Buffer,
-    material: MaterialBinding,
-    storage: Option<BindGroup>,
-    /// Copy of the index buffer; empty slots have no extent.
-    slots: Vec<[u32; 3]>,
+    lists: Vec<TriangleList>,
+    materials: Vec<MaterialBinding>,
+    places: Places,
+    place_buffer: Buffer,
+    has_uv: bool,
+    /// Pass that moves vertices; `None` if the buffers are too large for it.
+    scatter: Option<Scatter>,
     /// Slots whose triangles are still dissolving.
     fade: Option<Fade>,
     faces: usize,
     uploaded: u64,
-}
-
-/// Triangles that come and go in a dithered transition.
-#[derive(Debug)]
-struct Fade {
-    /// Triangles that go, and those that come.
-    buffers: [Buffer; 2],
-    counts: [u32; 2],
-    /// Changes that the main buffer gets when it is over.
-    changes: Vec<(u32, [u32; 3])>,
 }
 
 /// Way in which a cut changes on the screen.
@@ -56,47 +69,42 @@ pub enum Transition {
     Dithered,
 }
 
-/// Slot without a triangle.
-const EMPTY: [u32; 3] = [0; 3];
-
 impl GpuCut {
-    /// Uploads the vertices of a model, with room for the triangles of any cut.
+    /// Uploads the vertices and materials of a model, with room for the triangles of any cut if they
+    /// are one group.
     ///
     /// # Errors
-    /// A model beyond the limits of the GPU.
-    pub fn new(
-        renderer: &Renderer,
-        model: &Hierarchy,
-        vertices: &CutVertices,
-    ) -> Result<Self, ViewError> {
+    /// A model beyond the limits of the GPU, or a paint that does not match it.
+    pub fn new(renderer: &Renderer, model: &CutModel) -> Result<Self, ViewError> {
         let gpu = renderer.gpu();
-        let index_bytes = 12 * model.most_faces() as u64;
-        gpu.check_buffer("the vertices of all levels", 20 * vertices.attributes.len() as u64)?;
-        gpu.check_buffer("the faces of the finest level", index_bytes)?;
-        let usage = BufferUsages::VERTEX | BufferUsages::STORAGE;
-        let positions = bytemuck::cast_slice(&vertices.positions);
-        let attributes = bytemuck::cast_slice(&vertices.attributes);
-        let mut this = Self {
+        let fields = VertexFields::new(model);
+        let (positions, attributes) = fields.all(model);
+        let faces = model.levels().most_faces();
+        gpu.check_buffer("the vertices of all levels", 20 * attributes.len() as u64)?;
+        gpu.check_buffer("the faces of the finest level", 12 * faces as u64)?;
+        let usage = BufferUsages::VERTEX | BufferUsages::STORAGE | BufferUsages::COPY_DST;
+        let upload = |label, bytes: &[u8]| buffer_of(gpu, label, bytes, usage);
+        let groups = &model.groups.all;
+        let room = faces / groups.len();
+        let places = model.places.for_gpu(model.origin());
+        let place_bytes = bytemuck::cast_slice(&places);
+        let positions = upload("positions of all levels", bytemuck::cast_slice(&positions));
+        let attributes = upload("attributes of all levels", bytemuck::cast_slice(&attributes));
+        Ok(Self {
             gpu: gpu.clone(),
-            origin: vertices.origin,
-            positions: buffer_of(gpu, "positions of all levels", positions, usage),
-            attributes: buffer_of(gpu, "attributes of all levels", attributes, usage),
-            indices: gpu.device.create_buffer(&BufferDescriptor {
-                label: Some("cut"),
-                size: index_bytes.max(16),
-                usage: BufferUsages::INDEX | BufferUsages::STORAGE | BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            }),
-            material: MaterialBinding::plain(renderer, linear(CLAY)),
-            storage: None,
-            slots: Vec::new(),
+            origin: model.origin().into(),
+            scatter: Scatter::new(gpu, [&positions, &attributes]),
+            positions,
+            attributes,
+            lists: groups.iter().map(|&group| TriangleList::new(gpu, group, room)).collect(),
+            materials: model.materials(renderer)?,
+            places: model.places.clone(),
+            place_buffer: buffer_of(gpu, "places", place_bytes, BufferUsages::VERTEX),
+            has_uv: fields.has_uv(),
             fade: None,
             faces: 0,
             uploaded: 0,
-        };
-        let buffers = [&this.positions, &this.attributes, &this.indices];
-        this.storage = bind_faces(renderer, buffers, &[u32::MAX]);
-        Ok(this)
+        })
     }
 
     /// Returns the point of the world that positions are relative to.
@@ -104,19 +112,26 @@ impl GpuCut {
         self.origin
     }
 
-    /// Returns the number of triangles of the cut.
+    /// Returns the number of triangles of the cut; those of a mesh that is shown at several places
+    /// count once.
     pub fn faces(&self) -> usize {
         self.faces
     }
 
-    /// Returns the size of the cut in the index buffer, in bytes.
+    /// Returns true if vertices have texture coordinates.
+    pub fn has_uv(&self) -> bool {
+        self.has_uv
+    }
+
+    /// Returns the size of the cut in the index buffers, in bytes.
     pub fn index_bytes(&self) -> u64 {
-        12 * self.slots.len() as u64
+        self.lists.iter().map(|list| 12 * list.slots.len() as u64).sum()
     }
 
     /// Returns the size of all buffers, in bytes.
     pub fn bytes(&self) -> u64 {
-        self.positions.size() + self.attributes.size() + self.indices.size()
+        let indices: u64 = self.lists.iter().map(|list| list.buffer.size()).sum();
+        self.positions.size() + self.attributes.size() + indices
     }
 
     /// Returns the bytes that have been uploaded since this was last asked.
@@ -124,31 +139,31 @@ impl GpuCut {
         std::mem::take(&mut self.uploaded)
     }
 
-    /// Takes a step of a [`CutFollower`]: only the slots that changed are uploaded.
+    /// Forgets the cut, so that the steps of another [`CutFollower`] can follow. The last step must
+    /// have left no vertex on its way.
+    pub fn clear(&mut self) {
+        self.fade = None;
+        self.faces = 0;
+        self.lists.iter_mut().for_each(|list| list.slots.clear());
+    }
+
+    /// Takes a step of a [`CutFollower`]: only what changed is uploaded.
     ///
     /// A transition that is still going on ends first.
     pub fn apply(&mut self, step: &CutStep, transition: Transition) {
         self.finish_fade();
         self.faces = step.faces;
-        let changes = step.patches.iter().map(|&(slot, nodes)| (slot, nodes.unwrap_or(EMPTY)));
         // The first cut comes from nothing.
-        if transition == Transition::Immediate || self.slots.is_empty() {
-            self.write(changes);
-            return;
+        let is_first = self.lists.iter().all(|list| list.slots.is_empty());
+        if transition == Transition::Immediate || is_first {
+            return self.send(&step.patches, &step.moved);
         }
-        let changes: Vec<_> = changes.collect();
-        let old = |&(slot, _): &(u32, _)| self.slots.get(slot as usize).copied().unwrap_or(EMPTY);
-        let is_real = |nodes: &[u32; 3]| *nodes != EMPTY;
-        let going: Vec<_> = changes.iter().map(old).filter(is_real).collect();
-        let coming: Vec<_> = changes.iter().map(|&(_, nodes)| nodes).filter(is_real).collect();
-        let buffer = |triangles: &[[u32; 3]]| {
-            buffer_of(&self.gpu, "fade", bytemuck::cast_slice(triangles), BufferUsages::INDEX)
-        };
-        let buffers = [buffer(&going), buffer(&coming)];
-        let counts = [&going, &coming].map(|triangles| 3 * triangles.len() as u32);
-        self.uploaded += 12 * (going.len() + coming.len()) as u64;
-        self.write(changes.iter().map(|&(slot, _)| (slot, EMPTY)));
-        self.fade = Some(Fade { buffers, counts, changes });
+        let fade = Fade::new(&self.gpu, &self.lists, &step.patches);
+        let emptied = |&patch: &CutPatch| CutPatch { vertices: None, ..patch };
+        let emptied: Vec<_> = step.patches.iter().map(emptied).collect();
+        self.uploaded += fade.bytes();
+        self.send(&emptied, &step.moved);
+        self.fade = (!emptied.is_empty()).then_some(fade);
     }
 
     /// Returns true while old triangles dissolve into new ones.
@@ -159,15 +174,19 @@ impl GpuCut {
     /// Ends a transition.
     pub fn finish_fade(&mut self) {
         if let Some(fade) = self.fade.take() {
-            self.write(fade.changes.into_iter());
+            self.send(&fade.changes, &[]);
         }
     }
 
     /// Draws the cut, without triangles that come or go.
     pub fn draw(&self, renderer: &Renderer, pass: &mut RenderPass<'_>, placement: &Placement) {
         self.bind(renderer, pass, placement);
-        pass.set_index_buffer(self.indices.slice(..), IndexFormat::Uint32);
-        pass.draw_indexed(0..3 * self.slots.len() as u32, 0, 0..1);
+        for list in self.lists.iter().filter(|list| !list.slots.is_empty()) {
+            pass.set_bind_group(1, self.material(&list.group), &[]);
+            pass.set_index_buffer(list.buffer.slice(..), IndexFormat::Uint32);
+            let places = self.places.of(list.group.mesh);
+            pass.draw_indexed(0..3 * list.slots.len() as u32, 0, places);
+        }
     }
 
     /// Draws the triangles that go and those that come. The placements differ in
@@ -180,66 +199,90 @@ impl GpuCut {
         placements: [&Placement; 2],
     ) {
         let Some(fade) = &self.fade else { return };
-        for ((buffer, &count), placement) in fade.buffers.iter().zip(&fade.counts).zip(placements) {
+        for (side, placement) in fade.sides.iter().zip(placements) {
             self.bind(renderer, pass, placement);
-            pass.set_index_buffer(buffer.slice(..), IndexFormat::Uint32);
-            pass.draw_indexed(0..count, 0, 0..1);
+            pass.set_index_buffer(side.buffer.slice(..), IndexFormat::Uint32);
+            for (group, range) in &side.ranges {
+                let group = &self.lists[*group as usize].group;
+                pass.set_bind_group(1, self.material(group), &[]);
+                pass.draw_indexed(range.clone(), 0, self.places.of(group.mesh));
+            }
         }
     }
 
-    /// Draws the cut face by face, with a wireframe if the placement has one.
+    /// Draws the cut face by face, with a wireframe if the placement has one. A cut that is too large
+    /// for that is drawn without.
     pub fn draw_faces(
         &self,
         renderer: &Renderer,
         pass: &mut RenderPass<'_>,
         placement: &Placement,
     ) {
-        let Some(storage) = &self.storage else { return self.draw(renderer, pass, placement) };
-        pass.set_pipeline(&renderer.meshes().pulled);
+        let storages: Option<Vec<&BindGroup>> =
+            self.lists.iter().map(|list| self.storage(renderer, list)).collect();
+        let Some(storages) = storages else { return self.draw(renderer, pass, placement) };
+        pass.set_pipeline(&renderer.cuts().pulled);
         pass.set_bind_group(0, &placement.bind_group, &[]);
-        pass.set_bind_group(1, &self.material.bind_group, &[]);
-        pass.set_bind_group(2, storage, &[]);
-        pass.draw(0..3 * self.slots.len() as u32, 0..1);
+        pass.set_vertex_buffer(0, self.place_buffer.slice(..));
+        let lists = self.lists.iter().zip(storages).filter(|(list, _)| !list.slots.is_empty());
+        for (list, storage) in lists {
+            pass.set_bind_group(1, self.material(&list.group), &[]);
+            pass.set_bind_group(2, storage, &[]);
+            pass.draw(0..3 * list.slots.len() as u32, self.places.of(list.group.mesh));
+        }
     }
 
     fn bind(&self, renderer: &Renderer, pass: &mut RenderPass<'_>, placement: &Placement) {
-        pass.set_pipeline(&renderer.meshes().fetched);
+        pass.set_pipeline(&renderer.cuts().fetched);
         pass.set_bind_group(0, &placement.bind_group, &[]);
-        pass.set_bind_group(1, &self.material.bind_group, &[]);
         pass.set_vertex_buffer(0, self.positions.slice(..));
         pass.set_vertex_buffer(1, self.attributes.slice(..));
+        pass.set_vertex_buffer(2, self.place_buffer.slice(..));
     }
 
-    /// Writes triangles into slots, and uploads what is around them.
-    fn write(&mut self, changes: impl Iterator<Item = (u32, [u32; 3])>) {
-        let mut dirty = DirtyRanges::default();
-        for (slot, nodes) in changes {
-            if slot as usize >= self.slots.len() {
-                self.slots.resize(slot as usize + 1, EMPTY);
-            }
-            self.slots[slot as usize] = nodes;
-            dirty.add(slot);
-        }
-        self.make_room();
-        for range in dirty.ranges() {
-            let bytes = bytemuck::cast_slice(&self.slots[range.clone()]);
-            self.gpu.queue.write_buffer(&self.indices, 12 * range.start as u64, bytes);
-            self.uploaded += bytes.len() as u64;
-        }
+    /// Returns the material of a group. A group of a label beyond the materials has the last.
+    fn material(&self, group: &Group) -> &BindGroup {
+        let last = self.materials.len() - 1;
+        &self.materials[(group.material as usize).min(last)].bind_group
     }
 
-    /// Makes the index buffer larger if a cut has more slots than the finest level has faces.
-    fn make_room(&mut self) {
-        if self.index_bytes() <= self.indices.size() {
+    fn storage<'s>(&self, renderer: &Renderer, list: &'s TriangleList) -> Option<&'s BindGroup> {
+        let buffers = [&self.positions, &self.attributes, &list.buffer];
+        list.storage.get_or_init(|| bind_faces(renderer, buffers, &[u32::MAX])).as_ref()
+    }
+
+    /// Sends triangles for the slots of their groups, and vertices that have moved.
+    fn send(&mut self, patches: &[CutPatch], moved: &[MovedVertex]) {
+        if patches.is_empty() && moved.is_empty() {
             return;
         }
-        let usage = BufferUsages::INDEX | BufferUsages::STORAGE | BufferUsages::COPY_DST;
-        let room = self.slots.len() / 4;
-        self.slots.resize(self.slots.len() + room, EMPTY);
-        self.indices = buffer_of(&self.gpu, "cut", bytemuck::cast_slice(&self.slots), usage);
-        self.slots.truncate(self.slots.len() - room);
-        self.uploaded += self.indices.size();
-        // It was bound to the old buffer; a wireframe is drawn without its lines from here on.
-        self.storage = None;
+        let mut staged = Staged::default();
+        for of_group in patches.chunk_by(|a, b| a.group == b.group) {
+            let list = &mut self.lists[of_group[0].group as usize];
+            self.uploaded += list.write(&self.gpu, of_group, &mut staged);
+        }
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        match &self.scatter {
+            Some(scatter) => {
+                let buffers = [&self.positions, &self.attributes];
+                for part in moved.chunks(Scatter::MOST) {
+                    self.uploaded += scatter.write(&self.gpu, &mut encoder, part, buffers);
+                }
+            }
+            None => self.stage_moved(moved, &mut staged),
+        }
+        self.uploaded += staged.record(&self.gpu, &mut encoder);
+        self.gpu.queue.submit([encoder.finish()]);
+    }
+
+    /// Stages vertices that have moved, those next to each other in one piece.
+    fn stage_moved(&self, moved: &[MovedVertex], staged: &mut Staged) {
+        for run in moved.chunk_by(|a, b| a.vertex + 1 == b.vertex) {
+            let first = u64::from(run[0].vertex);
+            let positions: Vec<_> = run.iter().map(|moved| moved.now.position).collect();
+            let attributes: Vec<_> = run.iter().map(|moved| moved.now.attributes).collect();
+            staged.add(&self.positions, 12 * first, bytemuck::cast_slice(&positions));
+            staged.add(&self.attributes, 20 * first, bytemuck::cast_slice(&attributes));
+        }
     }
 }

@@ -16,5 +16,5 @@ mod selection;
 pub use drawn::GpuFlock;
 pub use hiz::HiZ;
 pub use obstacles::GpuObstacles;
-pub(crate) use pipelines::FlockPipelines;
+pub(crate) use pipelines::{FlockPipelines, compute_pipeline};
 pub use selection::GpuSelection;

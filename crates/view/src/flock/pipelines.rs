@@ -82,7 +82,7 @@ fn atlas_layout(device: &wgpu::Device) -> BindGroupLayout {
 }
 
 /// Compiles a compute shader.
-pub(super) fn compute_pipeline(
+pub(crate) fn compute_pipeline(
     gpu: &Gpu,
     label: &str,
     source: &str,

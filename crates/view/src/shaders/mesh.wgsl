@@ -55,6 +55,10 @@ fn pulled(@builtin(vertex_index) at: u32) -> Fragment {
 
 @fragment
 fn shaded(in: Fragment, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    return surface(in, front);
+}
+
+fn surface(in: Fragment, front: bool) -> vec4f {
     dissolve(in.clip);
     // Backs that are tinted are there to be seen.
     if material.is_single_sided != 0u && !front && !has(TINT_BACK) {

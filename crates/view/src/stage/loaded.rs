@@ -10,10 +10,12 @@ use meshlod::mesh::Bounds;
 use meshlod::multires::{FileError, Hierarchy, ModelFile, Query, UpdateLimits};
 use meshlod::picture::Normals;
 use meshlod::{
-    IoError, Mesh, ModelScene, OwnedPaint, ReadOptions, Scene, decompress_scene, materials_of,
-    normals_of, single_sided_materials,
+    IoError, Mesh, MissingParts, ModelScene, ModelSceneError, OwnedPaint, ReadOptions, Scene,
+    decompress_scene, materials_of, normals_of, single_sided_materials,
 };
 use thiserror::Error;
+
+use crate::CutModel;
 
 /// File in memory, ready to be shown: a mesh with its appearance, and what the file holds beside it.
 #[derive(Clone, Debug)]
@@ -47,7 +49,7 @@ pub enum LoadedContent {
     /// A mesh file.
     Mesh,
     /// Levels of detail of a mesh or a height field: a `.mlod` file.
-    Levels(Arc<Hierarchy>),
+    Levels(Arc<CutModel>),
     /// Compressed geometry that can be drawn from directly: `.mlq`.
     Compressed(Arc<Compressed>),
     /// Compressed geometry to be sent: `.mlz`.
@@ -76,6 +78,14 @@ pub enum LoadError {
         /// Description of the defect.
         source: FileError,
     },
+    /// The scene of a multiresolution file is damaged.
+    #[error("{}: {source}", path.display())]
+    Scene {
+        /// Path of the file.
+        path: PathBuf,
+        /// Description of the defect.
+        source: ModelSceneError,
+    },
     /// The file holds no faces.
     #[error("{}: the mesh has no faces", .0.display())]
     Empty(PathBuf),
@@ -86,7 +96,7 @@ impl LoadedContent {
     pub fn name(&self) -> &'static str {
         match self {
             Self::Mesh => "Mesh",
-            Self::Levels(levels) => match **levels {
+            Self::Levels(levels) => match levels.levels() {
                 Hierarchy::Contractions(_) => "Levels of detail",
                 Hierarchy::RightTriangles(_) => "Levels of a height field",
             },
@@ -183,13 +193,43 @@ fn compressed(path: &Path) -> Result<Loaded, LoadError> {
 
 fn levels(path: &Path) -> Result<Loaded, LoadError> {
     let damaged = |source| LoadError::Levels { path: path.to_owned(), source };
+    let unfit = |source| LoadError::Scene { path: path.to_owned(), source };
     let file = File::open(path).map_err(|error| IoError::system(path, error))?;
-    let levels = ModelFile::open(file).and_then(|file| file.read()).map_err(damaged)?;
+    let file = ModelFile::open(file).map_err(damaged)?;
+    let scene = match &file {
+        ModelFile::Contractions(archive) => ModelScene::read(archive).map_err(unfit)?,
+        ModelFile::HeightField(..) => ModelScene::default(),
+    };
+    let levels = file.read().map_err(damaged)?;
     let mut cut = levels.cut();
     let finest = cut.update(&Query::uniform(0.0), &UpdateLimits::default());
     finest.map_err(|error| damaged(error.into()))?;
-    let (mesh, content) = (cut.level().mesh(), LoadedContent::Levels(Arc::new(levels)));
-    Ok(Loaded::of(path, mesh, OwnedPaint::CLAY, content))
+    let finest = cut.level().mesh();
+    drop(cut);
+    let objects = finest.objects.as_ref().map_or(1, |objects| objects.names.len());
+    let (layout, missing) = (scene.layout(objects), scene.missing);
+    // What it refuses, the layout does not fit either.
+    let shown = scene.into_scene("", finest).map_err(unfit)?;
+    let loaded = of_scene(path, shown, LoadedContent::Mesh);
+    let model = CutModel::new(levels, &layout).map_err(|error| damaged(error.into()))?;
+    let model = model.with_paint(loaded.paint.clone(), loaded.single_sided.clone());
+    let mut warnings = missing_parts(&missing);
+    warnings.extend(loaded.warnings);
+    let content = LoadedContent::Levels(Arc::new(model));
+    Ok(Loaded { content, warnings, ..loaded })
+}
+
+/// Returns a line for each kind of part that a truncated file lacks.
+fn missing_parts(missing: &MissingParts) -> Vec<String> {
+    let previews = format!("{} images are shown smaller than they are", missing.previews);
+    let images = format!("{} images are missing", missing.images);
+    let lines = [
+        (missing.scene, "materials and nodes are missing".to_owned()),
+        (missing.previews > 0, previews),
+        (missing.images > 0, images),
+    ];
+    let there = lines.into_iter().filter(|(is_missing, _)| *is_missing);
+    there.map(|(_, what)| format!("the file is cut off: {what}")).collect()
 }
 
 /// Returns the colouring of a mesh without materials.

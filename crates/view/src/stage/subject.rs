@@ -123,7 +123,11 @@ impl Subject {
                 }
                 Coloring::Parts => false,
             },
-            Self::Levels(_) => matches!(coloring, Coloring::Own | Coloring::Clay),
+            Self::Levels(levels) => match coloring {
+                Coloring::Own | Coloring::Clay => true,
+                Coloring::Checker => levels.cut().has_uv(),
+                _ => false,
+            },
             Self::Compressed(_) => {
                 matches!(coloring, Coloring::Own | Coloring::Clay | Coloring::Parts)
             }

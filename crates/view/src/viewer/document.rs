@@ -107,7 +107,9 @@ pub(crate) struct CutControl {
     pub radius: f64,
     /// Camera of the query, if it does not follow the view.
     pub frozen: Option<Camera>,
-    /// Old triangles dissolve into new ones.
+    /// Vertices move to where the cut takes them.
+    pub moves: bool,
+    /// Old triangles dissolve into new ones, if vertices do not move.
     pub dissolves: bool,
     /// Query that was asked for last.
     pub asked: Option<CutWish>,
@@ -200,6 +202,7 @@ impl CutControl {
             is_held: false,
             radius: 0.1,
             frozen: None,
+            moves: true,
             dissolves: false,
             asked: None,
         }

@@ -1,6 +1,7 @@
 //! News: the results of jobs, taken in.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use super::app::ViewerApp;
 use super::document::{Document, DocumentId, DocumentLevel, ShownSide};
@@ -8,6 +9,9 @@ use super::jobs::JobKind;
 use super::work::{self, Comparison, MadeLevel, News, NormalsState};
 use crate::stage::{Loaded, Subject};
 use crate::{Transition, view_camera};
+
+/// Time in which vertices move to where the cut takes them.
+const MOTION: Duration = Duration::from_millis(250);
 
 impl ViewerApp {
     /// Takes what jobs have brought since the last frame.
@@ -135,6 +139,7 @@ impl ViewerApp {
             cut.asked = Some(wish);
             levels.ask(wish.query());
         }
+        levels.set_motion(cut.moves.then_some(MOTION));
         levels.transition =
             if cut.dissolves { Transition::Dithered } else { Transition::Immediate };
         let has_changed = levels.poll(seconds);

@@ -133,6 +133,15 @@ impl<'m> Geomorph<'m> {
         self.shown.triangles.changes().map(|(slot, old, new)| Patch { slot, old, new })
     }
 
+    /// Iterates over the triangle slots that the last call of
+    /// [`update`](Self::update) or [`advance`](Self::advance) wrote, in no particular order.
+    ///
+    /// Beside those of [`patches`](Self::patches) these may be slots that hold the same nodes as
+    /// before, though at other wedges: two faces may have the same three vertices.
+    pub fn touched_slots(&self) -> impl Iterator<Item = u32> + '_ {
+        self.shown.triangles.touched()
+    }
+
     /// Iterates over the vertices whose position or values the last call of
     /// [`update`](Self::update) or [`advance`](Self::advance) may have changed, with what they are
     /// now: all that move, and those that have arrived.

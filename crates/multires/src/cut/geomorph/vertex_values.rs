@@ -68,21 +68,20 @@ impl VertexValues {
         // Unlike `from + weight * (to - from)`, this cannot overflow.
         let blend = |from: f64, to: f64| from * (1.0 - weight) + to * weight;
         let is_held = |kind| matches!(kind, LayerKind::Joints(_) | LayerKind::Weights(_));
-        let held: Vec<bool> = mt
-            .layers()
-            .iter()
-            .flat_map(|layer| std::iter::repeat_n(is_held(layer.kind), layer.width))
-            .collect();
-        let values = from.values.iter().zip(&to.values).zip(held.iter().cycle());
-        Self {
-            position: std::array::from_fn(|k| blend(from.position[k], to.position[k])),
-            values: values
-                .map(|((&from, &to), is_held)| match is_held {
-                    true => from,
-                    false => blend(from.into(), to.into()) as f32,
-                })
-                .collect(),
+        let mut values = Vec::with_capacity(from.values.len());
+        let mut layers = mt.layers().iter().cycle();
+        while let Some(layer) = layers.next().filter(|_| values.len() < from.values.len()) {
+            let of_layer = values.len()..values.len() + layer.width;
+            let (old, new) = (&from.values[of_layer.clone()], &to.values[of_layer]);
+            match is_held(layer.kind) {
+                true => values.extend_from_slice(old),
+                false => values.extend(
+                    old.iter().zip(new).map(|(&old, &new)| blend(old.into(), new.into()) as f32),
+                ),
+            }
         }
+        let position = std::array::from_fn(|k| blend(from.position[k], to.position[k]));
+        Self { position, values }
     }
 
     /// Returns the values of one wedge, given its vertex.

@@ -31,7 +31,7 @@ fn facts(loaded: &Loaded, ui: &mut Ui) {
             row(ui, "Patches", grouped(compressed.patches()));
             row(ui, "Bits per vertex", format!("{bits:.1}"));
         }
-        LoadedContent::Levels(levels) => match &**levels {
+        LoadedContent::Levels(levels) => match levels.levels() {
             Hierarchy::Contractions(model) => {
                 row(ui, "Coarsest level", format!("{} faces", grouped(model.base_faces())));
                 row(ui, "Updates", grouped(model.update_count()));

@@ -26,8 +26,12 @@ pub(super) fn show(app: &mut ViewerApp, ui: &mut Ui, out: &mut Vec<Action>) {
         {
             out.push(Action::ToggleFrozen);
         }
-        ui.checkbox(&mut cut.dissolves, "Dissolve")
-            .on_hover_text("Old triangles dissolve into new ones, pixel by pixel");
+        ui.checkbox(&mut cut.moves, "Geomorph")
+            .on_hover_text("Vertices move to where the cut takes them, in a quarter of a second");
+        ui.add_enabled_ui(!cut.moves, |ui| {
+            ui.checkbox(&mut cut.dissolves, "Dissolve")
+                .on_hover_text("Old triangles dissolve into new ones, pixel by pixel");
+        });
         let step = levels.last_step();
         ui.add_space(4.0);
         let part = 100.0 * step.faces as f64 / full.max(1) as f64;

@@ -1,0 +1,55 @@
+//! Triangles that come and go in a dithered transition.
+
+use std::ops::Range;
+
+use wgpu::{Buffer, BufferUsages};
+
+use super::CutPatch;
+use super::list::{EMPTY, TriangleList};
+use crate::Gpu;
+use crate::renderer::buffer_of;
+
+/// Triangles that come and go, and the changes that the lists get when that is over.
+#[derive(Debug)]
+pub(super) struct Fade {
+    /// Triangles that go, and those that come.
+    pub(super) sides: [FadeSide; 2],
+    pub(super) changes: Vec<CutPatch>,
+}
+
+/// Triangles of one side of a transition, group by group.
+#[derive(Debug)]
+pub(super) struct FadeSide {
+    pub(super) buffer: Buffer,
+    /// Indices of each group's triangles.
+    pub(super) ranges: Vec<(u32, Range<u32>)>,
+}
+
+impl Fade {
+    /// Uploads what patches take from lists and put there; they are in the order of groups.
+    pub(super) fn new(gpu: &Gpu, lists: &[TriangleList], changes: &[CutPatch]) -> Self {
+        let old = |patch: &CutPatch| lists[patch.group as usize].at(patch.slot);
+        let new = |patch: &CutPatch| patch.vertices.unwrap_or(EMPTY);
+        let sides = [FadeSide::new(gpu, changes, old), FadeSide::new(gpu, changes, new)];
+        Self { sides, changes: changes.to_vec() }
+    }
+
+    /// Returns the size of both buffers in bytes.
+    pub(super) fn bytes(&self) -> u64 {
+        let indices = self.sides.iter().flat_map(|side| &side.ranges);
+        indices.map(|(_, range)| 4 * range.len() as u64).sum()
+    }
+}
+
+impl FadeSide {
+    fn new(gpu: &Gpu, changes: &[CutPatch], triangle: impl Fn(&CutPatch) -> [u32; 3]) -> Self {
+        let (mut triangles, mut ranges) = (Vec::new(), Vec::new());
+        for patches in changes.chunk_by(|a, b| a.group == b.group) {
+            let start = 3 * triangles.len() as u32;
+            triangles.extend(patches.iter().map(&triangle).filter(|t| *t != EMPTY));
+            ranges.push((patches[0].group, start..3 * triangles.len() as u32));
+        }
+        let bytes = bytemuck::cast_slice(&triangles);
+        Self { buffer: buffer_of(gpu, "fade", bytes, BufferUsages::INDEX), ranges }
+    }
+}
