@@ -127,16 +127,16 @@ fn scene() -> Scene {
     knot.attributes = None;
     let mesh = |name: &str, mesh, materials| SceneMesh { name: name.into(), mesh, materials };
     let node = |transform: DMat4, mesh, children| Node {
-        name: String::new(),
         transform: transform.to_cols_array_2d(),
         mesh: Some(mesh),
         children,
+        ..Node::default()
     };
     let material = |color, image, is_double_sided| Material {
-        name: String::new(),
         base_color: color,
         base_color_image: image,
         is_double_sided,
+        ..Material::default()
     };
     let at = |x: f64, y: f64| DMat4::from_translation(DVec3::new(x, y, 0.0));
     let mirror = DMat4::from_scale(DVec3::new(-0.6, 0.9, 0.6));
