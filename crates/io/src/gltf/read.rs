@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::document::{self, Buffers, Document};
-use super::{container, decompress, materials, mesh, nodes};
+use super::{container, decompress, draco, materials, mesh, nodes};
 use crate::{ParseError, Resolve, Scene, SceneMesh, Weld};
 
 /// glTF document that a scene was read from; when the scene is written, all but the geometry is
@@ -63,6 +63,7 @@ pub fn read(bytes: &[u8], resolve: Resolve<'_>, weld: Weld) -> Result<Scene, Par
     document::check_head(&json)?;
     let mut buffers = document::buffers(&json, chunk, resolve)?;
     decompress::decompress(&mut json, &mut buffers)?;
+    draco::decompress(&mut json, &mut buffers)?;
     let mut scene = Scene::default();
     let document = Document::new(&json, &buffers)?;
     scene.images = materials::images(&document, resolve)?;

@@ -2,6 +2,8 @@
 
 mod broken;
 mod carried;
+#[cfg(feature = "draco")]
+mod draco;
 mod levels;
 mod mutated;
 mod packed;
