@@ -188,7 +188,7 @@ fn wrong(index: usize, reason: String) -> ParseError {
     ParseError::part(format!("accessor {index}"), reason)
 }
 
-fn width(shape: &str) -> Option<usize> {
+pub(super) fn width(shape: &str) -> Option<usize> {
     Some(match shape {
         "SCALAR" => 1,
         "VEC2" => 2,
@@ -200,7 +200,7 @@ fn width(shape: &str) -> Option<usize> {
     })
 }
 
-fn component_size(kind: u32) -> Option<usize> {
+pub(super) fn component_size(kind: u32) -> Option<usize> {
     Some(match kind {
         component::I8 | component::U8 => 1,
         component::I16 | component::U16 => 2,

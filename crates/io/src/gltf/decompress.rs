@@ -100,7 +100,7 @@ fn take_extension(view: &mut Value) -> Result<Option<CompressedView>, String> {
 }
 
 /// Removes an extension of an object, and its `extensions` if that was the only one.
-fn drop_entry(of: &mut Value, name: &str) {
+pub(super) fn drop_entry(of: &mut Value, name: &str) {
     let Some(of) = of.as_object_mut() else { return };
     if let Some(extensions) = of.get_mut("extensions").and_then(Value::as_object_mut) {
         extensions.shift_remove(name);
@@ -151,10 +151,15 @@ fn forget(json: &mut Value) {
         let buffers = json.get_mut("buffers").and_then(Value::as_array_mut);
         buffers.into_iter().flatten().for_each(|buffer| drop_entry(buffer, name));
     }
+    forget_names(json, &MESHOPT);
+}
+
+/// Removes extensions from the lists of those in use.
+pub(super) fn forget_names(json: &mut Value, extensions: &[&str]) {
     for key in ["extensionsUsed", "extensionsRequired"] {
         let Some(names) = json.get_mut(key).and_then(Value::as_array_mut) else { continue };
         let before = names.len();
-        names.retain(|name| !MESHOPT.iter().any(|known| *name == json!(known)));
+        names.retain(|name| !extensions.iter().any(|known| *name == json!(known)));
         if names.is_empty() && before > 0 {
             json.as_object_mut().map(|json| json.shift_remove(key));
         }

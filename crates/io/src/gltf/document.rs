@@ -5,6 +5,7 @@ use std::cell::Cell;
 use serde_json::Value;
 
 use super::decompress::{self, MESHOPT};
+use super::draco::DRACO;
 use super::instancing::INSTANCING;
 use super::schema::{self, Accessor, Buffer, BufferView};
 use super::uri::{self, Uri};
@@ -130,7 +131,8 @@ fn is_understood(name: &str) -> bool {
         "MSFT_screencoverage",
         "EXT_materials_",
     ];
-    GEOMETRY.contains(&name) || OTHERS.iter().any(|prefix| name.starts_with(prefix))
+    let is_draco = cfg!(feature = "draco") && name == DRACO;
+    is_draco || GEOMETRY.contains(&name) || OTHERS.iter().any(|prefix| name.starts_with(prefix))
 }
 
 fn compresses(name: &str) -> bool {
@@ -139,8 +141,13 @@ fn compresses(name: &str) -> bool {
 
 /// Error for geometry in an unsupported compressed form.
 pub(super) fn compressed(part: &str, extension: &str) -> ParseError {
-    let reason =
-        format!("compressed with {extension}, which is not supported; decompress it first");
+    let reason = match extension {
+        DRACO => format!(
+            "compressed with {DRACO}, which needs a build with the feature `draco`; use one, or \
+             decompress the file first"
+        ),
+        _ => format!("compressed with {extension}, which is not supported; decompress it first"),
+    };
     ParseError::part(part, reason)
 }
 

@@ -4,7 +4,7 @@ use meshlod_mesh::{Attributes, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId
 use rustc_hash::FxHashMap;
 
 use super::accessor::Values;
-use super::document::{Document, compressed};
+use super::document::Document;
 use super::schema::Primitive;
 use crate::{ParseError, Weld};
 
@@ -77,10 +77,6 @@ impl Builder {
         primitive: &Primitive,
         part: &str,
     ) -> Result<(), ParseError> {
-        const DRACO: &str = "KHR_draco_mesh_compression";
-        if primitive.extensions.contains_key(DRACO) {
-            return Err(compressed(part, DRACO));
-        }
         let accessors = primitive.accessors().map_err(|reason| ParseError::part(part, reason))?;
         let Some(&(_, positions)) = accessors.iter().find(|(name, _)| name == "POSITION") else {
             return Err(ParseError::part(part, "has no POSITION attribute"));

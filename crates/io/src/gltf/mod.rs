@@ -8,6 +8,11 @@ mod container;
 mod decompress;
 mod dequantize_nodes;
 mod document;
+mod draco;
+#[cfg(feature = "draco")]
+mod draco_stream;
+#[cfg(feature = "draco")]
+mod draco_unpack;
 mod encode;
 mod facts;
 mod instancing;

@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::document::{self, Buffers, Document};
 use super::facts::{AnimationFacts, FileFacts};
-use super::{container, decompress, facts, materials, mesh, nodes};
+use super::{container, decompress, draco, facts, materials, mesh, nodes};
 use crate::{ParseError, Resolve, Scene, SceneMesh, Weld};
 
 /// glTF document that a scene was read from; when the scene is written, all but the geometry is
@@ -93,6 +93,7 @@ pub fn read(bytes: &[u8], resolve: Resolve<'_>, weld: Weld) -> Result<Scene, Par
     let mut buffers = document::buffers(&json, chunk, resolve)?;
     let facts = FileFacts::of(&json);
     decompress::decompress(&mut json, &mut buffers)?;
+    draco::decompress(&mut json, &mut buffers)?;
     let mut scene = Scene::default();
     let document = Document::new(&json, &buffers)?;
     scene.images = materials::images(&document, resolve)?;

@@ -82,8 +82,6 @@ pub(super) struct Primitive {
     pub mode: u32,
     #[serde(default)]
     pub targets: Vec<Map<String, Value>>,
-    #[serde(default)]
-    pub extensions: Map<String, Value>,
 }
 
 impl Primitive {

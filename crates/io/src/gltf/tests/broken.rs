@@ -3,8 +3,9 @@
 use meshlod_fixtures::shared_mesh;
 use serde_json::{Value, json};
 
-use super::{read_parts, square};
+use super::{json_of, read_parts, square};
 use crate::ReadOptions;
+use crate::gltf::write_glb;
 
 /// Reads the square after a change to its JSON.
 fn spoilt(change: impl FnOnce(&mut Value)) -> Result<crate::Scene, String> {
@@ -44,22 +45,42 @@ fn each_fault_is_told_with_its_place() {
 
 #[test]
 fn geometry_that_cannot_be_decoded_is_refused_by_the_extensions_name() {
-    let draco = "KHR_draco_mesh_compression";
-    for (name, change) in [
-        (draco, json!({ "extensionsRequired": [draco] })),
-        ("EXT_unheard_of", json!({ "extensionsRequired": ["EXT_unheard_of"] })),
-    ] {
-        let error =
-            spoilt(|json| json["extensionsRequired"] = change["extensionsRequired"].clone())
-                .unwrap_err();
+    for name in ["KHR_unheard_of_draco", "EXT_unheard_of"] {
+        let error = spoilt(|json| json["extensionsRequired"] = json!([name])).unwrap_err();
         assert!(error.contains(name), "{error}");
     }
+    let draco = "KHR_draco_mesh_compression";
+    let stream = json!({ draco: { "bufferView": 0, "attributes": { "POSITION": 0 } } });
     let in_place = spoilt(|json| {
-        json["meshes"][0]["primitives"][0]["extensions"] = json!({ draco: {} });
+        json["meshes"][0]["primitives"][0]["extensions"] = stream.clone();
+        json["accessors"][0].as_object_mut().unwrap().remove("bufferView");
     });
-    assert!(in_place.unwrap_err().contains(draco));
+    let error = in_place.unwrap_err();
+    assert!(error.starts_with("mesh 0, primitive 0:"), "{error}");
+    if cfg!(not(feature = "draco")) {
+        assert!(error.contains(draco) && error.contains("feature `draco`"), "{error}");
+        let required = spoilt(|json| json["extensionsRequired"] = json!([draco])).unwrap_err();
+        assert!(required.contains("feature `draco`"), "{required}");
+    }
     let quantized = spoilt(|json| json["extensionsRequired"] = json!(["KHR_mesh_quantization"]));
     assert!(quantized.is_ok());
+}
+
+#[test]
+fn compressed_geometry_that_is_there_uncompressed_is_read_from_there() {
+    let draco = "KHR_draco_mesh_compression";
+    let scene = spoilt(|json| {
+        json["extensionsUsed"] = json!([draco]);
+        let view = json!({ "buffer": 0, "byteLength": 48 });
+        json["bufferViews"].as_array_mut().unwrap().push(view);
+        let stream = json!({ draco: { "bufferView": 2, "attributes": { "POSITION": 0 } } });
+        json["meshes"][0]["primitives"][0]["extensions"] = stream;
+    })
+    .unwrap();
+    assert_eq!(scene.meshes[0].mesh, spoilt(|_| {}).unwrap().meshes[0].mesh);
+    let written = json_of(&write_glb(&scene, &[]).unwrap());
+    assert!(!written.to_string().contains("draco"), "{written}");
+    assert_eq!(written["bufferViews"][2]["byteLength"], 4, "the stream is not carried along");
 }
 
 #[test]

@@ -2,6 +2,8 @@
 
 mod broken;
 mod carried;
+#[cfg(feature = "draco")]
+mod draco;
 mod instances;
 mod levels;
 mod mutated;
