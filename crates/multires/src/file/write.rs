@@ -95,6 +95,7 @@ pub(super) fn write(
         lattice,
         lossless: forest.exact.is_lossless(),
         has_wedges: forest.wedges.is_some(),
+        wedges_in_pairs: forest.wedges.is_some(),
         diagonal,
         rounding: forest.frame.model_length(max_displacement),
         roots: mt.root_count() as u32,
