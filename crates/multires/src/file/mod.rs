@@ -31,6 +31,7 @@ mod surroundings;
 mod tests;
 mod unflatten;
 mod wedge_names;
+mod wedge_records;
 mod wedge_state;
 mod wedge_values;
 mod write;

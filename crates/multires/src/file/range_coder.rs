@@ -7,8 +7,8 @@ pub(super) struct BitModel {
     seen: u8,
 }
 
-/// Number of bits after which a model no longer learns faster. Of flight-helmet 60 gives the same
-/// size, 250 gives .5 % more.
+/// Number of bits after which a model learns at a constant rate. Not tuned: a chunk has some
+/// thousand bits for each model in use.
 const MOST_SEEN: u8 = 120;
 /// Least probability, of 2¹⁶, so that no bit is impossible.
 const LEAST: u32 = 64;

@@ -2,14 +2,14 @@
 
 use super::range_coder::{BitCoder, BitModel};
 
-/// What the children's values of an update are to be decoded from.
+/// Role of a wedge in the values of an update's children.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Role {
-    /// First of a pair: what its parent differs by from the mean of both.
+    /// First of a pair: its parent is off the place between both by so many steps.
     Parent,
-    /// Second of a pair: what the difference of both differs by from the predicted one.
+    /// Second of a pair: the difference of both is off the predicted one.
     Difference,
-    /// Any other wedge: what it differs by from its prediction.
+    /// Any other wedge: it is off its prediction.
     Single,
 }
 
@@ -17,9 +17,9 @@ const ROLES: usize = 3;
 /// Classes of residuals: numbers of bits without the sign.
 const CLASSES: usize = 33;
 /// Classes of the children's distance.
-const SIZES: usize = 40;
+const SIZES: usize = 48;
 /// Classes of residuals close by.
-const NEAR: usize = 12;
+const NEAR: usize = 16;
 
 /// Models of all columns of a chunk.
 pub(super) struct ResidualModels {
@@ -30,7 +30,9 @@ pub(super) struct ResidualModels {
 
 type ClassModels = [BitModel; CLASSES];
 
-struct ColumnModels {
+/// Models of the numbers of one column.
+pub(super) struct ColumnModels {
+    /// Models of the bits that a class takes in unary, by role and context.
     by_size: Vec<ClassModels>,
     by_near: Vec<ClassModels>,
     /// Signs, and the highest two bits below the first, by role and class.
@@ -65,7 +67,7 @@ impl ResidualModels {
 }
 
 impl ColumnModels {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         let classes = |count: usize| vec![[BitModel::default(); CLASSES]; ROLES * count];
         Self {
             by_size: classes(SIZES),
@@ -75,7 +77,8 @@ impl ColumnModels {
         }
     }
 
-    fn code(
+    /// Codes a number, which a decoder ignores, and returns it, given its role and two contexts.
+    pub(super) fn code(
         &mut self,
         coder: &mut impl BitCoder,
         role: usize,

@@ -13,6 +13,7 @@ use meshlod_mesh::{AttributeBounds, Layer, WedgeId};
 use super::decoder_state::DecoderState;
 use super::layer_coding::{LayerCoding, Leeway};
 use super::streams::{Packer, Unpacker};
+use super::wedge_records::{self, RecordShape};
 use crate::forest::NONE;
 use crate::implicit::DetachedUpdate;
 use crate::wedges::{DetachedWedges, LOST, WedgeLabels, Wedges};
@@ -207,6 +208,10 @@ impl WedgeState {
         }
     }
 
+    fn record_shape(&self, roots: u32, update: usize, length: usize) -> RecordShape {
+        RecordShape { length, counts: children(roots, update).map(|c| self.of(c).len() as u32) }
+    }
+
     /// Encodes the wedges of a run of updates.
     pub(super) fn write_run(
         &self,
@@ -221,8 +226,9 @@ impl WedgeState {
         packer.numbers(&counts.map(|count| count as u32).collect::<Vec<_>>())?;
         let records = || recorded().map(|at| &self.records[&(at as u32)]);
         packer.numbers(&records().map(|record| record.len() as u32).collect::<Vec<_>>())?;
-        let all: Vec<u32> = records().flatten().map(|&number| number.into()).collect();
-        packer.numbers(&all)?;
+        let shape = |at: usize, length| self.record_shape(roots, at, length);
+        let shapes = recorded().zip(records()).map(|(at, all)| (shape(at, all.len()), &all[..]));
+        wedge_records::write(shapes, packer)?;
         let lineage: Vec<_> =
             run.flat_map(|at| self.lineage(updates[at].parent, at as u32, roots)).collect();
         if self.labels.pairs.len() > 1 {
@@ -249,12 +255,15 @@ impl WedgeState {
             self.extend_first(&[next(), next()])?;
         }
         let lengths: Vec<u32> = input.numbers(recorded.len())?;
-        let length =
-            lengths.iter().fold(0usize, |sum, &length| sum.saturating_add(length as usize));
-        let mut numbers = input.numbers::<u32>(length)?.into_iter();
-        for (&at, length) in recorded.iter().zip(lengths) {
-            let record = numbers.by_ref().take(length as usize).map(u16::try_from);
-            let record = record.collect::<Result<Vec<u16>, _>>();
+        let records = if self.in_pairs {
+            let shapes = recorded.iter().zip(&lengths);
+            let shape = |(&at, &length)| self.record_shape(roots, at, length as usize);
+            wedge_records::read(shapes.map(shape), input)?
+        } else {
+            read_plain_records(&lengths, input)?
+        };
+        for (&at, record) in recorded.iter().zip(records) {
+            let record = record.into_iter().map(u16::try_from).collect::<Result<Vec<u16>, _>>();
             self.records.insert(at as u32, record.map_err(|_| WedgeError::Invalid(OUT_OF_RANGE))?);
         }
         let mut lineage = Vec::new();
@@ -305,7 +314,12 @@ impl WedgeState {
             } else {
                 self.above(node, if is_lost { 0 } else { local })
             };
-            let of_first = |of: &&Lineage| !of.is_second && of.local == local && !is_lost;
+            // In the form of earlier versions, lost wedges have the first one above for a parent.
+            let is_same = |of: &Lineage| match self.in_pairs {
+                true => of.local == local,
+                false => of.parent == above,
+            };
+            let of_first = |of: &&Lineage| !of.is_second && is_same(of) && !is_lost;
             let sibling = all.iter().find(of_first);
             let sibling = sibling.map(|of| of.wedge).filter(|_| wedge >= first.end);
             let is_second = wedge >= first.end;
@@ -390,6 +404,17 @@ fn mark_pairs(all: &mut [Lineage]) {
             all[at].partner = Some(sibling);
         }
     }
+}
+
+/// Decodes records in the form of earlier versions.
+fn read_plain_records(lengths: &[u32], input: &mut Unpacker<'_>) -> io::Result<Vec<Vec<i32>>> {
+    let length = lengths.iter().fold(0usize, |sum, &length| sum.saturating_add(length as usize));
+    let mut numbers = input.numbers::<u32>(length)?.into_iter();
+    let record = |&length: &u32| {
+        let record = numbers.by_ref().take(length as usize);
+        record.map(u32::cast_signed).collect()
+    };
+    Ok(lengths.iter().map(record).collect())
 }
 
 /// Groups the wedges of a run by update.

@@ -3,7 +3,8 @@
 //! Where a wedge *p* has one child *a* at the first node and one *b* at the second, it lies about
 //! between them. So the file has the difference of *a* and *b*, and by how much *p* is off the place
 //! between them, in steps of some cells: values of nodes that are split need not be as exact as
-//! those of the finest mesh. From these and *p* the reader computes *a* and *b*, without a loss.
+//! those of the finest mesh. From these and *p* the reader computes *a* and *b*, without a loss:
+//! what is added to each depends only on what the reader has [BE92].
 
 use std::io;
 
