@@ -398,8 +398,9 @@ pub(super) struct Kin {
 fn mark_pairs(all: &mut [Lineage]) {
     for at in 0..all.len() {
         let Some(sibling) = all[at].sibling else { continue };
-        let first = all.iter().position(|of| of.wedge == sibling);
-        if let Some(first) = first.filter(|&first| all[first].partner.is_none()) {
+        // Wedges of an update are numbered one after the other.
+        let first = (sibling - all[0].wedge) as usize;
+        if all[first].partner.is_none() {
             all[first].partner = Some(all[at].wedge);
             all[at].partner = Some(sibling);
         }

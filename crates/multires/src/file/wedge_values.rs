@@ -126,9 +126,9 @@ impl WedgeState {
         let Some(pair) = self.pair(of) else { return };
         let predicted = self.predicted_difference(&pair);
         let columns = self.columns();
-        for column in 0..columns {
+        for (column, predicted) in predicted.into_iter().enumerate() {
             let [off, p, residual] = pair.wedges.map(|wedge| self.row(wedge)[column]);
-            let difference = predicted[column].wrapping_add(residual);
+            let difference = predicted.wrapping_add(residual);
             let (between, step) = self.between(&pair, column, difference);
             let a = p.wrapping_sub(off.wrapping_mul(step)).wrapping_sub(between);
             self.numbers[pair.wedges[0] as usize * columns + column] = a;
