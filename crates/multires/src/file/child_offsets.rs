@@ -69,6 +69,13 @@ impl ChildOffsets {
         }
     }
 
+    /// Returns the class of the children's distance, from the codes alone: its double logarithm.
+    pub(super) fn size_class(&self) -> u8 {
+        let squares = self.difference.map(|x| u64::from(x.unsigned_abs()).pow(2) / 4 + 1);
+        let sum = squares.iter().fold(0u64, |sum, &square| sum.saturating_add(square));
+        (u64::BITS - sum.leading_zeros()) as u8
+    }
+
     /// Returns the positions of both children, or `None` if one lies outside the lattice.
     pub(super) fn children(&self, lattice: Lattice, parent: Vec3) -> Option<[Vec3; 2]> {
         let parent = lattice.round(parent);

@@ -71,7 +71,7 @@ pub(super) fn write(state: &DecoderState, run: Range<usize>) -> io::Result<Vec<u
         packer.bytes(&updates.iter().map(|u| u.wings[side]).collect::<Vec<_>>())?;
     }
     write_errors(updates, &mut packer)?;
-    write_offsets(state, updates, &mut packer)?;
+    let sizes = write_offsets(state, updates, &mut packer)?;
     for non_fan in updates.iter().filter_map(|u| u.non_fan.as_deref()) {
         write_non_fan(non_fan, &mut packer)?;
     }
@@ -85,7 +85,7 @@ pub(super) fn write(state: &DecoderState, run: Range<usize>) -> io::Result<Vec<u
         write_stages(updates, &mut packer)?;
     }
     if let Some(wedges) = &state.wedges {
-        wedges.write_run(&state.updates, run, state.root_count(), &mut packer)?;
+        wedges.write_run(&state.updates, run, state.root_count(), &sizes, &mut packer)?;
     }
     packer.finish()
 }
@@ -119,11 +119,12 @@ fn write_stages(updates: &[DetachedUpdate], packer: &mut Packer) -> io::Result<(
     packer.numbers(&stages().map(|stage| stage - least).collect::<Vec<_>>())
 }
 
+/// Encodes the positions of children and the radii. Returns the classes of their distances.
 fn write_offsets(
     state: &DecoderState,
     updates: &[DetachedUpdate],
     packer: &mut Packer,
-) -> io::Result<()> {
+) -> io::Result<Vec<u8>> {
     let lattice = state.lattice;
     let offsets: Vec<_> = updates
         .iter()
@@ -141,7 +142,8 @@ fn write_offsets(
     let radii = updates.iter().zip(&offsets);
     packer.signed(
         radii.map(|(u, f)| i32::from(radius8(u.radius)) - i32::from(f.predicted_radius8(lattice))),
-    )
+    )?;
+    Ok(encoded.iter().map(ChildOffsets::size_class).collect())
 }
 
 fn write_non_fan(non_fan: &NonFanSplit, packer: &mut Packer) -> io::Result<()> {
@@ -225,8 +227,9 @@ pub(super) fn read(
         }
     }
     if let Some(mut wedges) = state.wedges.take() {
+        let sizes: Vec<u8> = (0..count).map(|at| offsets.offsets(at).size_class()).collect();
         let is_recorded = |at: usize| flags[at - start] & RECORDED != 0;
-        let read = wedges.read_run(state, start, is_recorded, &mut input);
+        let read = wedges.read_run(state, start, is_recorded, &sizes, &mut input);
         state.wedges = Some(wedges);
         read.map_err(|error| match error {
             WedgeError::Io(error) => ChunkError::Decompress(error),

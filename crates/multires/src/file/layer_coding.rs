@@ -24,6 +24,19 @@ pub(super) enum Numbers {
     Bits,
 }
 
+/// Greatest number by which an integer of a wedge that is split may be off the rounded value.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Leeway(i32);
+
+impl Leeway {
+    /// Returns the steps, an odd number, in which a wedge may be off the place between two children
+    /// with this difference.
+    pub(super) fn step(self, difference: i32) -> i32 {
+        let part = 1 + (difference.unsigned_abs() / 8).min(i32::MAX as u32 - 1) as i32;
+        2 * part.min(self.0) + 1
+    }
+}
+
 /// Bits by which a step may be smaller than the greatest value, the precision of `f32`.
 const F32_BITS: i32 = 23;
 /// Least and greatest exponent of a step.
@@ -50,6 +63,17 @@ impl LayerCoding {
             Numbers::Directions(_) => self.width - 1,
             Numbers::Steps(_) | Numbers::Bits => self.width,
         }
+    }
+
+    /// Returns the leeway of each integer of a wedge.
+    pub(super) fn leeways(&self) -> impl Iterator<Item = Leeway> + '_ {
+        let leeway = |column: usize| match (self.numbers, self.kind) {
+            (Numbers::Directions(_), _) if column < 2 => Leeway(3),
+            (Numbers::Steps(_), LayerKind::Uv(_) | LayerKind::Color(_)) => Leeway(7),
+            // Signs, joints and their weights, exact values, and others of any meaning.
+            _ => Leeway(0),
+        };
+        (0..self.columns()).map(leeway)
     }
 
     /// Appends the integers of a wedge.

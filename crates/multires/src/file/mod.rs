@@ -20,6 +20,8 @@ mod layer_coding;
 mod layout;
 mod normal_predictor;
 mod quantize;
+mod range_coder;
+mod residual_models;
 mod resources;
 mod slope;
 mod source;
@@ -29,7 +31,9 @@ mod surroundings;
 mod tests;
 mod unflatten;
 mod wedge_names;
+mod wedge_records;
 mod wedge_state;
+mod wedge_values;
 mod write;
 
 use std::io;

@@ -55,6 +55,13 @@ impl Packer {
         self.numbers(&folded)
     }
 
+    /// Appends bytes that encode this many numbers, after their length.
+    pub(super) fn encoded(&mut self, numbers: usize, bytes: &[u8]) -> io::Result<()> {
+        self.numbers(&[bytes.len() as u32])?;
+        self.numbers += numbers;
+        self.bytes(bytes)
+    }
+
     pub(super) fn finish(self) -> io::Result<Vec<u8>> {
         let mut bytes = self.encoder.finish()?;
         let least = self.numbers / MAX_NUMBERS_PER_BYTE;
@@ -119,6 +126,13 @@ impl<'b> Unpacker<'b> {
     pub(super) fn signed(&mut self, count: usize) -> io::Result<Vec<i32>> {
         let unfold = |n: u32| unzigzag(n.into()) as i32;
         Ok(self.numbers(count)?.into_iter().map(unfold).collect())
+    }
+
+    /// Reads the bytes that encode this many numbers.
+    pub(super) fn encoded(&mut self, numbers: usize) -> io::Result<Vec<u8>> {
+        let length = self.numbers::<u32>(1)?[0] as usize;
+        self.charge(numbers)?;
+        self.bytes(length)
     }
 
     /// Returns true if all data has been read.

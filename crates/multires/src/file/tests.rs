@@ -1,5 +1,6 @@
 //! Round trips of whole files, prefixes and queries, and the refusal of damaged files.
 
+mod attribute_bytes;
 mod lossless;
 mod resources;
 mod wrong;

@@ -7,13 +7,13 @@ use std::collections::BTreeMap;
 use std::io;
 use std::ops::Range;
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use meshlod_mesh::{AttributeBounds, Layer, WedgeId};
 
 use super::decoder_state::DecoderState;
-use super::layer_coding::LayerCoding;
-use super::slope::Slope;
+use super::layer_coding::{LayerCoding, Leeway};
 use super::streams::{Packer, Unpacker};
+use super::wedge_records::{self, RecordShape};
 use crate::forest::NONE;
 use crate::implicit::DetachedUpdate;
 use crate::wedges::{DetachedWedges, LOST, WedgeLabels, Wedges};
@@ -21,14 +21,18 @@ use crate::wedges::{DetachedWedges, LOST, WedgeLabels, Wedges};
 /// Wedges in the file's order of nodes; in part of a file, of the nodes that are loaded.
 pub(super) struct WedgeState {
     pub(super) coding: Vec<LayerCoding>,
+    /// Leeway of each column.
+    pub(super) leeways: Vec<Leeway>,
     /// Names and pairs, with the pairs of wedges.
     pub(super) labels: WedgeLabels,
     /// First wedge of each node, and the end of the last.
     first: Vec<u32>,
+    /// True if values are coded by pairs of children, and not in the form of earlier versions.
+    pub(super) in_pairs: bool,
     /// Integers of all wedges, a row for each.
-    numbers: Vec<i32>,
+    pub(super) numbers: Vec<i32>,
     /// Relations of all wedges.
-    kin: Vec<Kin>,
+    pub(super) kin: Vec<Kin>,
     /// Records of updates next to seams.
     records: BTreeMap<u32, Vec<u16>>,
     /// Wedges at the corners of the base mesh's faces.
@@ -53,9 +57,11 @@ impl WedgeState {
     /// Creates the state of a file without any wedges yet.
     pub(super) fn new(coding: Vec<LayerCoding>, labels: WedgeLabels) -> Self {
         Self {
+            leeways: coding.iter().flat_map(LayerCoding::leeways).collect(),
             coding,
             labels,
             first: vec![0],
+            in_pairs: true,
             numbers: Vec::new(),
             kin: Vec::new(),
             records: BTreeMap::new(),
@@ -93,6 +99,10 @@ impl WedgeState {
         for (at, update) in state.updates.iter().enumerate() {
             this.link(&this.lineage(update.parent, at as u32, state.root_count()), state, at);
         }
+        for (at, update) in state.updates.iter().enumerate().rev() {
+            let lineage = this.lineage(update.parent, at as u32, state.root_count());
+            this.derive_parents(&lineage);
+        }
         this
     }
 
@@ -101,7 +111,7 @@ impl WedgeState {
         self.records.contains_key(&(update as u32))
     }
 
-    fn columns(&self) -> usize {
+    pub(super) fn columns(&self) -> usize {
         self.coding.iter().map(LayerCoding::columns).sum()
     }
 
@@ -109,7 +119,7 @@ impl WedgeState {
         self.first[node as usize]..self.first[node as usize + 1]
     }
 
-    fn row(&self, wedge: u32) -> &[i32] {
+    pub(super) fn row(&self, wedge: u32) -> &[i32] {
         &self.numbers[wedge as usize * self.columns()..][..self.columns()]
     }
 
@@ -198,12 +208,17 @@ impl WedgeState {
         }
     }
 
+    fn record_shape(&self, roots: u32, update: usize, length: usize) -> RecordShape {
+        RecordShape { length, counts: children(roots, update).map(|c| self.of(c).len() as u32) }
+    }
+
     /// Encodes the wedges of a run of updates.
     pub(super) fn write_run(
         &self,
         updates: &[DetachedUpdate],
         run: Range<usize>,
         roots: u32,
+        sizes: &[u8],
         packer: &mut Packer,
     ) -> io::Result<()> {
         let recorded = || run.clone().filter(|&at| self.is_recorded(at));
@@ -211,23 +226,16 @@ impl WedgeState {
         packer.numbers(&counts.map(|count| count as u32).collect::<Vec<_>>())?;
         let records = || recorded().map(|at| &self.records[&(at as u32)]);
         packer.numbers(&records().map(|record| record.len() as u32).collect::<Vec<_>>())?;
-        let all: Vec<u32> = records().flatten().map(|&number| number.into()).collect();
-        packer.numbers(&all)?;
+        let shape = |at: usize, length| self.record_shape(roots, at, length);
+        let shapes = recorded().zip(records()).map(|(at, all)| (shape(at, all.len()), &all[..]));
+        wedge_records::write(shapes, packer)?;
         let lineage: Vec<_> =
             run.flat_map(|at| self.lineage(updates[at].parent, at as u32, roots)).collect();
         if self.labels.pairs.len() > 1 {
             let lost = lineage.iter().filter(|of| of.is_lost);
             packer.numbers(&lost.map(|of| self.labels.of(of.wedge)).collect::<Vec<_>>())?;
         }
-        let mut predicted = Vec::with_capacity(lineage.len() * self.columns());
-        lineage.iter().for_each(|of| self.predict(of, &mut predicted));
-        for column in 0..self.columns() {
-            let at = |(i, of): (usize, &Lineage)| {
-                self.row(of.wedge)[column].wrapping_sub(predicted[i * self.columns() + column])
-            };
-            packer.signed(lineage.iter().enumerate().map(at))?;
-        }
-        Ok(())
+        self.write_values(&lineage, sizes, packer)
     }
 
     /// Decodes the wedges of the updates from `start` on, of which some have records.
@@ -236,6 +244,7 @@ impl WedgeState {
         state: &DecoderState,
         start: usize,
         is_recorded: impl Fn(usize) -> bool,
+        sizes: &[u8],
         input: &mut Unpacker<'_>,
     ) -> Result<(), WedgeError> {
         let (updates, roots) = (&state.updates, state.root_count());
@@ -246,12 +255,15 @@ impl WedgeState {
             self.extend_first(&[next(), next()])?;
         }
         let lengths: Vec<u32> = input.numbers(recorded.len())?;
-        let length =
-            lengths.iter().fold(0usize, |sum, &length| sum.saturating_add(length as usize));
-        let mut numbers = input.numbers::<u32>(length)?.into_iter();
-        for (&at, length) in recorded.iter().zip(lengths) {
-            let record = numbers.by_ref().take(length as usize).map(u16::try_from);
-            let record = record.collect::<Result<Vec<u16>, _>>();
+        let records = if self.in_pairs {
+            let shapes = recorded.iter().zip(&lengths);
+            let shape = |(&at, &length)| self.record_shape(roots, at, length as usize);
+            wedge_records::read(shapes.map(shape), input)?
+        } else {
+            read_plain_records(&lengths, input)?
+        };
+        for (&at, record) in recorded.iter().zip(records) {
+            let record = record.into_iter().map(u16::try_from).collect::<Result<Vec<u16>, _>>();
             self.records.insert(at as u32, record.map_err(|_| WedgeError::Invalid(OUT_OF_RANGE))?);
         }
         let mut lineage = Vec::new();
@@ -265,18 +277,7 @@ impl WedgeState {
         for (i, pair) in (start..).zip(by_update(&lineage)) {
             self.link(pair, state, i);
         }
-        let columns = self.columns();
-        let residuals = (0..columns).map(|_| input.signed(lineage.len()));
-        let residuals = residuals.collect::<io::Result<Vec<_>>>()?;
-        self.numbers.reserve(lineage.len() * columns);
-        let mut predicted = Vec::with_capacity(columns);
-        for (i, of) in lineage.iter().enumerate() {
-            predicted.clear();
-            self.predict(of, &mut predicted);
-            let numbers = predicted.iter().zip(&residuals);
-            self.numbers.extend(numbers.map(|(&x, column)| x.wrapping_add(column[i])));
-        }
-        Ok(())
+        self.read_values(&lineage, sizes, input)
     }
 
     fn read_labels(
@@ -313,53 +314,33 @@ impl WedgeState {
             } else {
                 self.above(node, if is_lost { 0 } else { local })
             };
-            let of_first = |of: &&Lineage| !of.is_second && of.parent == above && !is_lost;
+            // In the form of earlier versions, lost wedges have the first one above for a parent.
+            let is_same = |of: &Lineage| match self.in_pairs {
+                true => of.local == local,
+                false => of.parent == above,
+            };
+            let of_first = |of: &&Lineage| !of.is_second && is_same(of) && !is_lost;
             let sibling = all.iter().find(of_first);
             let sibling = sibling.map(|of| of.wedge).filter(|_| wedge >= first.end);
             let is_second = wedge >= first.end;
-            all.push(Lineage { wedge, parent: above, is_lost, is_second, sibling });
+            all.push(Lineage {
+                wedge,
+                local,
+                update,
+                parent: above,
+                is_lost,
+                is_second,
+                sibling,
+                partner: None,
+            });
         }
+        mark_pairs(&mut all);
         all
     }
 
     fn above(&self, node: u32, local: u16) -> Option<u32> {
         let above = self.of(node);
         Some(above.start + u32::from(local)).filter(|wedge| above.contains(wedge))
-    }
-
-    /// Appends the predicted integers of a wedge.
-    fn predict(&self, of: &Lineage, to: &mut Vec<i32>) {
-        let Some(parent) = of.parent else { return to.extend((0..self.columns()).map(|_| 0)) };
-        let base = of.sibling.unwrap_or(parent);
-        let way = self.way([of.wedge, base]);
-        let mut slope = Slope::default();
-        if let Some(first) = of.sibling {
-            slope.add(self.way([first, parent]), [first, parent], OWN);
-        }
-        let (mut at, mut weight) = (parent, 1.0);
-        for _ in 0..ANCESTORS {
-            let Kin { parent, sibling, .. } = self.kin[at as usize];
-            if sibling != NONE {
-                slope.add(self.way([at, sibling]), [at, sibling], weight);
-                weight *= FADE;
-            }
-            if parent == NONE {
-                break;
-            }
-            at = parent;
-        }
-        let parts = slope.parts(way);
-        to.extend((0..self.columns()).map(|column| {
-            let at = |wedge: u32| self.row(wedge)[column];
-            let step = |[to, from]: [u32; 2]| f64::from(at(to)) - f64::from(at(from));
-            let steps: f64 = parts.iter().map(|&(part, ends)| part * step(ends)).sum();
-            at(base).wrapping_add(steps.round() as i32)
-        }));
-    }
-
-    /// Returns the way from the second wedge to the first.
-    fn way(&self, [to, from]: [u32; 2]) -> DVec3 {
-        (self.kin[to as usize].place - self.kin[from as usize].place).as_dvec3()
     }
 
     /// Decodes all values.
@@ -387,33 +368,56 @@ impl WedgeState {
 }
 
 /// A wedge of a child, and those from which its values are predicted.
-struct Lineage {
-    wedge: u32,
+pub(super) struct Lineage {
+    pub(super) wedge: u32,
+    pub(super) update: u32,
+    /// Number of the parent among the wedges of the split node, or [`LOST`].
+    local: u16,
     /// `None` if it is out of range.
-    parent: Option<u32>,
+    pub(super) parent: Option<u32>,
     is_lost: bool,
     /// True for a wedge of the second child.
-    is_second: bool,
+    pub(super) is_second: bool,
     /// Wedge of the first child that has the same parent, for one of the second child.
-    sibling: Option<u32>,
+    pub(super) sibling: Option<u32>,
+    /// The other of two wedges, one of each child, that their parent's values are coded with: the
+    /// first of either child that have this parent.
+    pub(super) partner: Option<u32>,
 }
 
 /// Relations of a wedge, and its place.
 #[derive(Clone, Copy)]
-struct Kin {
-    parent: u32,
+pub(super) struct Kin {
+    pub(super) parent: u32,
     /// Wedge of the other child that has the same parent, or [`NONE`].
-    sibling: u32,
-    place: Vec3,
+    pub(super) sibling: u32,
+    pub(super) place: Vec3,
 }
 
-/// Weight of the step from the parent to the first child, which leads on to the second: all three are
-/// mostly on a line.
-const OWN: f64 = 8.0;
-/// Number of ancestors by whose siblings values are predicted, and the weight of each relative to
-/// the one before.
-const ANCESTORS: usize = 6;
-const FADE: f64 = 0.5;
+/// Marks for each parent of an update the first wedge of either child that it has.
+fn mark_pairs(all: &mut [Lineage]) {
+    for at in 0..all.len() {
+        let Some(sibling) = all[at].sibling else { continue };
+        // Wedges of an update are numbered one after the other.
+        let first = (sibling - all[0].wedge) as usize;
+        if all[first].partner.is_none() {
+            all[first].partner = Some(all[at].wedge);
+            all[at].partner = Some(sibling);
+        }
+    }
+}
+
+/// Decodes records in the form of earlier versions.
+fn read_plain_records(lengths: &[u32], input: &mut Unpacker<'_>) -> io::Result<Vec<Vec<i32>>> {
+    let length = lengths.iter().fold(0usize, |sum, &length| sum.saturating_add(length as usize));
+    let mut numbers = input.numbers::<u32>(length)?.into_iter();
+    let record = |&length: &u32| {
+        let record = numbers.by_ref().take(length as usize);
+        record.map(u32::cast_signed).collect()
+    };
+    Ok(lengths.iter().map(record).collect())
+}
+
 /// Groups the wedges of a run by update.
 fn by_update(lineage: &[Lineage]) -> impl Iterator<Item = &[Lineage]> {
     lineage.chunk_by(|a, b| !a.is_second || b.is_second)

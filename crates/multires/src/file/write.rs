@@ -30,7 +30,12 @@ pub struct Storage {
     pub updates_per_chunk: usize,
     /// Errors to store.
     pub errors: StoredErrors,
-    /// Largest errors of attributes; a [lossless](Forest::lossless) forest keeps them bit for bit.
+    /// Largest errors of the attributes of the finest mesh; a [lossless](Forest::lossless) forest
+    /// keeps them bit for bit.
+    ///
+    /// The values of a vertex that stands for several may be off by some further steps of the
+    /// rounding: one, and an eighth of the difference between the two vertices that it is split
+    /// into, but at most three for normals and tangents and seven for uvs and colours.
     pub attributes: AttributeBounds,
 }
 
@@ -99,6 +104,7 @@ pub(super) fn write(
         lattice,
         lossless: forest.exact.is_lossless(),
         has_wedges: forest.wedges.is_some(),
+        wedges_in_pairs: forest.wedges.is_some(),
         diagonal,
         rounding: forest.frame.model_length(max_displacement),
         roots: mt.root_count() as u32,
