@@ -2,6 +2,7 @@
 //!
 //! `cargo fuzz run -s none ply` runs one of them.
 
+pub mod draco;
 mod kept;
 pub mod models;
 mod seeds;

@@ -11,6 +11,7 @@ use meshlod_mesh::{AttributeBounds, Attributes, Labels, Layer, LayerKind, Mesh, 
 use meshlod_samples as samples;
 use meshlod_simplify::{self as simplify, History, Options, Progressive, Simplifier};
 
+use crate::draco;
 use crate::kept::{corpus, kept};
 use crate::models;
 
@@ -30,6 +31,7 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
     let meshes = [fixtures::cube(), fixtures::seam_strip(), fixtures::two_objects()];
     match target {
         "check" => return few_faces(),
+        "draco" => return draco::seeds(),
         "mlod" => return models::seeds(),
         "mlq" => return compressed(),
         "mlz" => return transports(),

@@ -58,7 +58,7 @@ impl Place {
 /// The primitive or accessor, and what is wrong with it or its stream. In builds without the
 /// feature `draco`, every primitive that is only there compressed.
 /// # References
-/// [BGL17]
+/// [ZSG17]
 pub(super) fn decompress(json: &mut Value, buffers: &mut Buffers) -> Result<(), ParseError> {
     let compressed = take_extensions(json)?;
     let required: Vec<String> = schema::array(json, "extensionsRequired", "extensionsRequired")?;

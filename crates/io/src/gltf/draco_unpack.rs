@@ -10,7 +10,7 @@ use super::schema::{self, Accessor, BufferView};
 use crate::ParseError;
 
 /// Largest ratio of decompressed to stored bytes of a file.
-const MAX_EXPANSION: usize = 1024;
+const MAX_EXPANSION: usize = 64;
 
 /// Decodes the streams of primitives into a new buffer and points their accessors there.
 ///
@@ -25,7 +25,7 @@ pub(super) fn unpack(
     let mut unpacker = Unpacker {
         views: schema::array(json, "bufferViews", "bufferView")?,
         accessors,
-        room: (1 << 20) + buffers.stored.saturating_mul(MAX_EXPANSION),
+        room: (1 << 26) + buffers.stored.saturating_mul(MAX_EXPANSION),
         buffers,
         filled: FxHashMap::default(),
         taken: FxHashSet::default(),

@@ -77,11 +77,12 @@ pub(super) struct Contents {
 ///
 /// Supported: triangles, strips and fans; any index and component type; strides; sparse accessors;
 /// `KHR_mesh_quantization`; `EXT_meshopt_compression` and `KHR_meshopt_compression`, which are
-/// decompressed and removed; `EXT_mesh_gpu_instancing`; `MSFT_lod`, of which the finest level is
-/// shown. Carried through but not applied to texture coordinates: `KHR_texture_transform`.
+/// decompressed and removed, as is `KHR_draco_mesh_compression` with the feature `draco`;
+/// `EXT_mesh_gpu_instancing`; `MSFT_lod`, of which the finest level is shown. Carried through but not
+/// applied to texture coordinates: `KHR_texture_transform`.
 ///
 /// # Errors
-/// The location (`accessor 7`, `bufferView 3`) and the reason. Geometry compressed with Draco and
+/// The location (`accessor 7`, `bufferView 3`) and the reason. Draco streams without the feature and
 /// unknown required extensions are rejected by name, as are coordinates that are not finite.
 /// # References
 /// [Kap20]; [KS21] and [KSL25], in [`crate::meshopt`].
