@@ -65,13 +65,13 @@ pub fn read(
 }
 
 /// Facts about how a file of our own stores its mesh: for programs, and as lines for people.
-pub struct Stored {
+pub struct StoredForm {
     pub json: Value,
     pub rows: Vec<[String; 2]>,
 }
 
 /// Reads how a file of our own stores its mesh.
-pub fn stored(path: &Path, format: OwnFormat, session: &Session) -> Result<Stored, Failure> {
+pub fn stored(path: &Path, format: OwnFormat, session: &Session) -> Result<StoredForm, Failure> {
     let wrong = |error| Failure::at(path, error);
     match format {
         OwnFormat::Levels => {
@@ -88,13 +88,15 @@ pub fn stored(path: &Path, format: OwnFormat, session: &Session) -> Result<Store
     }
 }
 
-fn stored_levels(file: &ModelFile<std::fs::File>) -> Result<Stored, meshlod::multires::FileError> {
+fn stored_levels(
+    file: &ModelFile<std::fs::File>,
+) -> Result<StoredForm, meshlod::multires::FileError> {
     Ok(match file {
         ModelFile::Contractions(archive) => {
             let kind = model_file::error_kind(archive);
             let rounding = model_file::rounding(archive);
             let chunk_bytes: u64 = archive.chunk_lengths().iter().sum();
-            Stored {
+            StoredForm {
                 json: json!({
                     "kind": "levels",
                     "updates": archive.update_count(),
@@ -118,7 +120,7 @@ fn stored_levels(file: &ModelFile<std::fs::File>) -> Result<Stored, meshlod::mul
         }
         ModelFile::HeightField(field, parts) => {
             let rounded = field.fit().rounded;
-            Stored {
+            StoredForm {
                 json: json!({
                     "kind": "height field",
                     "parts": parts.all,
@@ -135,7 +137,7 @@ fn stored_levels(file: &ModelFile<std::fs::File>) -> Result<Stored, meshlod::mul
     })
 }
 
-fn stored_resident(file: &Compressed) -> Stored {
+fn stored_resident(file: &Compressed) -> StoredForm {
     let sizes = file.sizes();
     let layers = file.layers();
     let mut rows = vec![
@@ -160,12 +162,12 @@ fn stored_resident(file: &Compressed) -> Stored {
         "scene_bytes": sizes.resources,
         "layers": layers.collect::<Value>(),
     });
-    Stored { json, rows }
+    StoredForm { json, rows }
 }
 
-fn stored_sent(file: &TransportFile<'_>) -> Stored {
+fn stored_sent(file: &TransportFile<'_>) -> StoredForm {
     let scene = file.resources().map_or(0, <[u8]>::len);
-    Stored {
+    StoredForm {
         json: json!({
             "kind": "sent",
             "blocks": file.blocks(),

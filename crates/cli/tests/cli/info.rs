@@ -1,4 +1,4 @@
-//! What `info` shows of scenes and of our own files, and that every verb reads the latter.
+//! The verb `info` on scenes and on our own files, which every verb reads.
 
 use meshlod_fixtures::shared_mesh;
 

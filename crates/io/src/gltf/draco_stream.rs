@@ -101,7 +101,7 @@ impl Decoded {
     /// Returns the values of an attribute at all points, in the type of an accessor.
     ///
     /// # Errors
-    /// What the attribute lacks, as the end of a sentence that begins with its name.
+    /// Lack of the attribute, as the end of a sentence that begins with its name.
     pub fn attribute(&self, id: u32, accessor: &Accessor) -> Result<Array, String> {
         let Some(attribute) = self.0.attribute_by_unique_id(id) else {
             return Err(format!("is not in its Draco stream, which has no attribute {id}"));

@@ -49,7 +49,7 @@ pub(super) fn unpack(
     Ok(())
 }
 
-/// What an accessor was filled with: a stream's buffer view, and the id of an attribute in it or,
+/// Source of the data of an accessor: a stream's buffer view, and the id of an attribute in it or,
 /// for indices, none.
 type Source = (usize, Option<u32>);
 

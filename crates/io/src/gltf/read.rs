@@ -63,7 +63,7 @@ pub(super) struct Contents {
     pub weld: Weld,
     /// Marks the meshes whose geometry is in the scene only; empty if all are here.
     pub emptied: Vec<bool>,
-    /// What the file had before it was decompressed.
+    /// Facts of the file before it was decompressed.
     pub facts: FileFacts,
 }
 

@@ -1,4 +1,4 @@
-//! What a scene has beside its surface: textures, skins, animations, instances and extensions.
+//! Contents of a scene beside its surface: textures, skins, animations, instances and extensions.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use crate::numbers::{count, plural, value};
 
-/// What a scene has beside its surface.
+/// Contents of a scene beside its surface.
 pub struct Contents {
     textures: Vec<Texture>,
     /// Number of joints of each skin.
