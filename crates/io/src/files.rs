@@ -14,8 +14,8 @@ use write_ply::write_ply;
 use crate::gltf::{Levels, LodLayout};
 use crate::replace::replace;
 use crate::{
-    Format, IoError, Note, ParseError, Precision, Scene, Unsupported, gltf, normals, obj, off, ply,
-    smf, stl, weld,
+    Format, IoError, Note, ParseError, Precision, Scene, Unsupported, gltf, influences, normals,
+    obj, off, ply, smf, stl, weld,
 };
 
 mod beside;
@@ -111,6 +111,7 @@ pub fn read_bytes(
         }
     }
     normals::make_unit(&mut scene);
+    influences::note_sums(&mut scene);
     note_missing_images(&mut scene);
     Ok(scene)
 }

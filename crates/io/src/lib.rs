@@ -23,6 +23,7 @@ mod format;
 pub mod gltf;
 mod image_header;
 mod image_type;
+mod influences;
 mod limits;
 mod line_writer;
 mod material;

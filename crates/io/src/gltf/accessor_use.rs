@@ -9,6 +9,15 @@ use super::primitives::{attributes, is_surface};
 /// Computes one flag per accessor: true if only triangle primitives of changed meshes use it, or if
 /// it is empty and nothing uses it.
 pub(super) fn free_accessors(document: &Document<'_>, changed: &[bool]) -> Vec<bool> {
+    free_accessors_with(document, changed, &[])
+}
+
+/// Computes the flags of [`free_accessors`] where the marked skins get new matrices.
+pub(super) fn free_accessors_with(
+    document: &Document<'_>,
+    changed: &[bool],
+    new_skins: &[bool],
+) -> Vec<bool> {
     let count = document.accessors.len();
     let (mut replaced, mut kept) = (vec![false; count], vec![false; count]);
     let meshes = document.json.get("meshes").and_then(Value::as_array);
@@ -16,7 +25,11 @@ pub(super) fn free_accessors(document: &Document<'_>, changed: &[bool]) -> Vec<b
         mark_primitives(mesh, |primitive| changed && is_surface(primitive), &mut replaced);
         mark_primitives(mesh, |primitive| !(changed && is_surface(primitive)), &mut kept);
     }
-    mark_others(document.json, &mut kept);
+    let is_new = |skin: usize| new_skins.get(skin) == Some(&true);
+    mark_skins(document.json, is_new, &mut replaced);
+    mark_skins(document.json, |skin| !is_new(skin), &mut kept);
+    mark_instances(document.json, &mut kept);
+    mark_samplers(document.json, &mut kept);
     let is_empty = document.accessors.iter().map(|accessor| accessor.count == 0);
     let free = replaced.iter().zip(is_empty).map(|(&replaced, is_empty)| replaced || is_empty);
     free.zip(kept).map(|(free, kept)| free && !kept).collect()
@@ -28,7 +41,7 @@ pub(super) fn animation_accessors(document: &Document<'_>, emptied: &[bool]) -> 
     let mut animated = vec![false; document.accessors.len()];
     mark_samplers(document.json, &mut animated);
     let mut others = vec![false; animated.len()];
-    mark_skins(document.json, &mut others);
+    mark_skins(document.json, |_| true, &mut others);
     mark_instances(document.json, &mut others);
     let meshes = document.json.get("meshes").and_then(Value::as_array);
     for (mesh, &emptied) in meshes.into_iter().flatten().zip(emptied) {
@@ -37,16 +50,10 @@ pub(super) fn animation_accessors(document: &Document<'_>, emptied: &[bool]) -> 
     animated.iter().zip(others).map(|(&animated, other)| animated && !other).collect()
 }
 
-/// Marks the accessors of skins, animations and instances.
-fn mark_others(json: &Value, marks: &mut [bool]) {
-    mark_skins(json, marks);
-    mark_instances(json, marks);
-    mark_samplers(json, marks);
-}
-
-fn mark_skins(json: &Value, marks: &mut [bool]) {
-    let skins = json.get("skins").and_then(Value::as_array);
-    for skin in skins.into_iter().flatten() {
+/// Marks the accessors of those skins for whose number `is_meant` holds.
+fn mark_skins(json: &Value, is_meant: impl Fn(usize) -> bool, marks: &mut [bool]) {
+    let skins = json.get("skins").and_then(Value::as_array).into_iter().flatten();
+    for (_, skin) in skins.enumerate().filter(|&(skin, _)| is_meant(skin)) {
         mark(skin.get("inverseBindMatrices"), marks);
     }
 }

@@ -132,6 +132,18 @@ impl BufferBuilder {
         insert(&mut self.accessors, &mut self.free_accessors, accessor)
     }
 
+    /// Adds 4×4 matrices, column by column, as an accessor for a skin, and returns its index.
+    pub fn add_matrices(&mut self, matrices: &[[f32; 16]]) -> usize {
+        let values = matrices.as_flattened().iter();
+        let bytes = values.map(|x| x.to_le_bytes()).collect::<Vec<_>>().into_flattened();
+        let view = self.add_view(&bytes);
+        let accessor = json!({
+            "bufferView": view, "componentType": component::F32, "count": matrices.len(),
+            "type": "MAT4",
+        });
+        insert(&mut self.accessors, &mut self.free_accessors, accessor)
+    }
+
     /// Adds a buffer view without an accessor, such as an image, and returns its index.
     pub fn add_view(&mut self, bytes: &[u8]) -> usize {
         let view = self.view_of(bytes);

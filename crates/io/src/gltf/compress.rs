@@ -2,9 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use meshlod_mesh::Bounds;
+use meshlod_mesh::{Bounds, Mesh};
 use serde_json::Value;
 
+use super::dequantize_skins::SkinMatrices;
+use super::document::Document;
 use super::lod::Level;
 use super::primitives::is_surface;
 use super::schema::parse_target_name;
@@ -121,40 +123,70 @@ fn rounded_down(x: f64) -> f32 {
     if f64::from(near) > x { near.next_down() } else { near }
 }
 
-/// Chooses the grid of each mesh, shared with its levels; `None` if its positions must stay floats,
-/// with the reason appended to `kept`.
-pub(super) fn grids(
-    json: &Value,
-    scene: &Scene,
-    levels: &[Level],
-    bits: u32,
-    kept: &mut Vec<String>,
-) -> Vec<Option<QuantizationGrid>> {
-    let mut grid = |index: usize| {
-        let mesh = &scene.meshes[index].mesh;
-        let why = match why_floats(json, index) {
-            _ if mesh.faces.is_empty() => return None,
-            Some(why) => why,
-            None if has_target(scene, index) => "has morph targets",
-            None => {
-                let coarser = levels.iter().filter_map(|level| level.meshes.get(index));
-                let points = std::iter::once(mesh).chain(coarser).flat_map(|mesh| &mesh.positions);
-                match QuantizationGrid::over(points, bits) {
-                    Some(grid) => return Some(grid),
-                    None => "is too large or too small for a node's scale",
-                }
-            }
-        };
-        kept.push(format!("mesh {index}: positions stay floats, because it {why}"));
-        None
-    };
-    (0..scene.meshes.len()).map(&mut grid).collect()
+/// Grids that the meshes of a scene are quantized to, and how they come back to their places.
+pub(super) struct Grids {
+    /// Grid of each mesh, shared with its levels; `None` if its positions stay floats.
+    pub of_mesh: Vec<Option<QuantizationGrid>>,
+    /// New matrices of skins.
+    pub skins: SkinMatrices,
+    /// Meshes that have no grid, with the reasons.
+    pub kept: Vec<String>,
 }
 
-fn has_target(scene: &Scene, index: usize) -> bool {
-    let attributes = scene.meshes[index].mesh.attributes.iter();
-    let mut layers = attributes.flat_map(|attributes| &attributes.layers);
-    layers.any(|layer| matches!(parse_target_name(&layer.name), Some((_, "POSITION"))))
+impl Grids {
+    /// Makes no grids, for a file that is not compressed.
+    pub fn none(scene: &Scene) -> Self {
+        let of_mesh = vec![None; scene.meshes.len()];
+        Self { of_mesh, skins: SkinMatrices::default(), kept: Vec::new() }
+    }
+
+    /// Chooses the grids of a scene that is written as this JSON, which was made of the document,
+    /// if there is one.
+    pub fn choose(
+        (json, document): (&Value, Option<&Document<'_>>),
+        scene: &Scene,
+        levels: &[Level],
+        bits: u32,
+    ) -> Self {
+        let mut kept = Vec::new();
+        let mut of_mesh = Vec::new();
+        for (index, mesh) in scene.meshes.iter().map(|mesh| &mesh.mesh).enumerate() {
+            let coarser = levels.iter().filter_map(|level| level.meshes.get(index));
+            let meshes: Vec<&Mesh> = std::iter::once(mesh).chain(coarser).collect();
+            let grid = match why_floats(json, index) {
+                _ if mesh.faces.is_empty() => Ok(None),
+                Some(why) => Err(why),
+                None => grid_over(&meshes, bits).map(Some),
+            };
+            if let Err(why) = grid {
+                kept.push(format!("mesh {index}: positions stay floats, because it {why}"));
+            }
+            of_mesh.push(grid.unwrap_or_default());
+        }
+        let skins = match document {
+            Some(document) => SkinMatrices::of(document, &mut of_mesh, &mut kept),
+            None => SkinMatrices::default(),
+        };
+        Self { of_mesh, skins, kept }
+    }
+}
+
+/// Largest delta of a morph target, in cells.
+const MOST_CELLS: f64 = 1e9;
+
+/// Builds the grid over the positions of a mesh and its levels, or says why there is none.
+fn grid_over(meshes: &[&Mesh], bits: u32) -> Result<QuantizationGrid, &'static str> {
+    let points = meshes.iter().flat_map(|mesh| &mesh.positions);
+    let grid = QuantizationGrid::over(points, bits);
+    let grid = grid.ok_or("is too large or too small for a node's scale")?;
+    let layers = meshes.iter().filter_map(|mesh| mesh.attributes.as_ref()).flat_map(|a| &a.layers);
+    let mut deltas = layers
+        .filter(|layer| matches!(parse_target_name(&layer.name), Some((_, "POSITION"))))
+        .flat_map(|layer| &layer.values);
+    match deltas.all(|&x| (f64::from(x) / grid.cell).abs() <= MOST_CELLS) {
+        true => Ok(grid),
+        false => Err("has a morph target far larger than itself"),
+    }
 }
 
 /// Returns why no node transform can stand in for the grid of a mesh; `None` if one can.
@@ -177,9 +209,6 @@ fn why_floats(json: &Value, mesh: usize) -> Option<&'static str> {
         return Some("has a material with thickness");
     }
     for node in array(json, "nodes").iter().filter(|node| node["mesh"] == mesh) {
-        if node.get("skin").is_some() {
-            return Some("has a skin");
-        }
         let extensions = node.get("extensions").and_then(Value::as_object);
         let harmless = ["MSFT_lod", "KHR_lights_punctual", "KHR_node_visibility"];
         if extensions.into_iter().flatten().any(|(name, _)| !harmless.contains(&&name[..])) {

@@ -10,6 +10,7 @@ use super::schema::parse_target_name;
 use super::strips::StripCorner;
 use super::{quantize, vertex_cache};
 use crate::Unsupported;
+use crate::influences::{self, Weights};
 use crate::meshopt::Filter;
 
 /// Arrays of a primitive.
@@ -91,7 +92,18 @@ fn with_vertices(
     numbers: Numbers<'_>,
     indices: Vec<Blob>,
 ) -> Result<Arrays, Unsupported> {
-    let blobs = layers.iter().map(|&typed| layer_blob(typed, vertices, numbers));
+    let mut values: Vec<Vec<f32>> =
+        layers.iter().map(|typed| values_at(typed.layer, vertices)).collect();
+    let weights = match numbers.compression {
+        Some(_) => Weights::Bytes,
+        None => Weights::Floats,
+    };
+    let kinds: Vec<LayerKind> = layers.iter().map(|typed| typed.layer.kind).collect();
+    influences::normalize(&kinds, &mut values, weights);
+    let blobs = layers
+        .iter()
+        .zip(values)
+        .map(|(&typed, values)| layer_blob(typed, values, vertices.len(), numbers));
     let layers = blobs.collect::<Result<_, _>>()?;
     let (positions, position_error) = positions(mesh, vertices, numbers.grid)?;
     Ok(Arrays { layers, positions, indices, position_error })
@@ -194,9 +206,20 @@ pub(super) fn extent(points: &[[f32; 3]]) -> [[f32; 3]; 2] {
     extent
 }
 
+/// Lists the values of a layer at the vertices, as glTF has them.
+fn values_at(layer: &Layer, vertices: &[u64]) -> Vec<f32> {
+    let mut values: Vec<f32> =
+        vertices.iter().flat_map(|&key| layer.of(wedge_of(key))).copied().collect();
+    if matches!(layer.kind, LayerKind::Uv(_)) {
+        flip_v(&mut values);
+    }
+    values
+}
+
 fn layer_blob(
     typed: Typed<'_>,
-    vertices: &[u64],
+    values: Vec<f32>,
+    count: usize,
     numbers: Numbers<'_>,
 ) -> Result<Blob, Unsupported> {
     let Typed { layer, component } = typed;
@@ -212,11 +235,6 @@ fn layer_blob(
             return Err(Unsupported::new(format!("layer {:?}", layer.name), reason));
         }
     };
-    let mut values: Vec<f32> =
-        vertices.iter().flat_map(|&key| layer.of(wedge_of(key))).copied().collect();
-    if matches!(layer.kind, LayerKind::Uv(_)) {
-        flip_v(&mut values);
-    }
     // 16-bit colours keep their precision.
     let small = numbers.compression.filter(|_| component != Some(component::U16));
     let small = small
@@ -229,6 +247,7 @@ fn layer_blob(
             Some((component::U16, 1.0))
         }
         (LayerKind::Joints(_), _) => Some((component::U8, 1.0)),
+        (LayerKind::Weights(_), _) if numbers.compression.is_some() => Some((component::U8, 255.0)),
         (LayerKind::Color(_), Some(component::U16)) => Some((component::U16, 65535.0)),
         (LayerKind::Color(_), Some(component::U8)) => Some((component::U8, 255.0)),
         (LayerKind::Color(_), None) if all_are_bytes(&values) => Some((component::U8, 255.0)),
@@ -236,9 +255,12 @@ fn layer_blob(
     };
     let Some((component, scale)) = integers else {
         let moves = matches!(parse_target_name(&layer.name), Some((_, "POSITION")));
+        if let Some(grid) = numbers.grid.filter(|_| moves && layer.width == 3) {
+            return Ok(quantize::deltas(values.as_chunks().0, grid));
+        }
         return Ok(Blob {
             extent: moves.then(|| extent(values.as_chunks().0)),
-            ..floats(shape, vertices.len(), &values)
+            ..floats(shape, count, &values)
         });
     };
     let (bytes, stride) = whole_numbers(&values, layer.width, component, scale);
@@ -247,7 +269,7 @@ fn layer_blob(
         normalized: scale > 1.0,
         bytes,
         stride: (stride != layer.width * component_size(component)).then_some(stride),
-        ..floats(shape, vertices.len(), &[])
+        ..floats(shape, count, &[])
     })
 }
 
@@ -279,7 +301,7 @@ fn whole_numbers(values: &[f32], width: usize, component: u32, scale: f32) -> (V
     (bytes, stride)
 }
 
-fn floats(shape: &'static str, count: usize, values: &[f32]) -> Blob {
+pub(super) fn floats(shape: &'static str, count: usize, values: &[f32]) -> Blob {
     Blob {
         component: component::F32,
         shape,

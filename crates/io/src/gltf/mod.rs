@@ -7,6 +7,7 @@ mod compress;
 mod container;
 mod decompress;
 mod dequantize_nodes;
+mod dequantize_skins;
 mod document;
 mod draco;
 #[cfg(feature = "draco")]

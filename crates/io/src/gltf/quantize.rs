@@ -54,6 +54,26 @@ pub(super) fn positions(points: &[[f64; 3]], grid: &QuantizationGrid) -> (Blob, 
     (blob, error)
 }
 
+/// Quantizes the deltas of a morph target to cells of the grid of the positions that they move:
+/// to whole cells, unless one is longer than 16 bits count.
+pub(super) fn deltas(deltas: &[[f32; 3]], grid: &QuantizationGrid) -> Blob {
+    let in_cells = |&x: &f32| f64::from(x) / grid.cell;
+    let values: Vec<f64> = deltas.as_flattened().iter().map(in_cells).collect();
+    let most = f64::from(i16::MAX);
+    if values.iter().any(|x| x.abs() > most) {
+        let values: Vec<f32> = values.iter().map(|&x| x as f32).collect();
+        let extent = Some(super::encode::extent(values.as_chunks().0));
+        return Blob { extent, ..super::encode::floats("VEC3", deltas.len(), &values) };
+    }
+    let whole: Vec<i32> = values.iter().map(|x| x.round() as i32).collect();
+    let floats: Vec<f32> = whole.iter().map(|&x| x as f32).collect();
+    Blob {
+        normalized: false,
+        extent: Some(super::encode::extent(floats.as_chunks().0)),
+        ..integers("VEC3", component::I16, deltas.len(), &whole)
+    }
+}
+
 /// Quantizes a layer to integers or to floats with fewer bits; `None` if it stays as it is.
 pub(super) fn layer(
     kind: LayerKind,

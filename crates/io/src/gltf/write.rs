@@ -3,9 +3,9 @@
 use meshlod_mesh::Mesh;
 use serde_json::{Map, Value};
 
-use super::accessor_use::free_accessors;
+use super::accessor_use::free_accessors_with;
 use super::buffer_builder::BufferBuilder;
-use super::compress::{self, Compression, CompressionReport};
+use super::compress::{Compression, CompressionReport, Grids};
 use super::document::Document;
 use super::instancing::with_copies_as_nodes;
 use super::local_space::localized;
@@ -69,13 +69,15 @@ pub fn write_lods_glb(
 ///
 /// Positions are quantized to a uniform grid per mesh, shared by its levels, with equal cells on
 /// all axes. A vertex moves by at most half a cell per axis, and primitives that met still meet.
-/// The nodes that show the mesh, or new children of them, scale and translate it back. Positions
-/// stay floats, and the report says so, where a node cannot do that: with skins, morph targets,
-/// points or lines, materials with thickness, instancing.
+/// The nodes that show the mesh, or new children of them, scale and translate it back; of a skinned
+/// mesh, so do the inverse bind matrices. Morph targets move vertices by whole cells. Positions stay
+/// floats, and the report says so, where that cannot be: with points or lines, materials with
+/// thickness, instancing.
 ///
 /// Normals and tangents become bytes or shorts. Texture coordinates in [0, 1] become normalised
-/// integers; others stay floats. Colours in [0, 1] become bytes, unless the file had shorts.
-/// Everything else is kept. Faces and vertices are sorted for the vertex cache. With
+/// integers; others stay floats. Colours in [0, 1] become bytes, unless the file had shorts, and
+/// joint weights bytes that sum to 255. Everything else is kept. Faces and vertices are sorted for
+/// the vertex cache. With
 /// [`Compression::meshopt`], the geometry is stored in meshopt streams, and texture coordinates
 /// outside [0, 1] are rounded to the requested bits as well. Images and animations are kept. The
 /// objects of a mesh stay one mesh, and have no names.
@@ -163,9 +165,10 @@ impl Output {
                 let levels = Levels { levels: moved, ..levels };
                 let json = new_document::document(scene, images, &mut builder);
                 let all = vec![true; scene.meshes.len()];
+                let grids = grids((&json, None), scene, levels, compression);
                 let mut replacer = Replacer::new(None, builder);
                 replacer.compression = compression;
-                Self::finish(json, scene, &all, replacer, levels)
+                Self::finish(json, (scene, &all), grids, replacer, levels)
             }
         }
     }
@@ -188,26 +191,25 @@ impl Output {
             };
             changed.push(compression.is_some() || is_empty() || differs()?);
         }
-        let builder = BufferBuilder::of(&document, &free_accessors(&document, &changed));
-        let mut replacer = Replacer::new(Some(&document), builder);
+        let grids = grids((json, Some(&document)), scene, levels, compression);
+        let free = free_accessors_with(&document, &changed, &grids.skins.replaced(json));
+        let mut replacer = Replacer::new(Some(&document), BufferBuilder::of(&document, &free));
         replacer.compression = compression;
-        Self::finish(json.clone(), scene, &changed, replacer, levels)
+        Self::finish(json.clone(), (scene, &changed), grids, replacer, levels)
     }
 
     /// Puts the changed meshes and the levels into the document.
     fn finish(
         mut json: Value,
-        scene: &Scene,
-        changed: &[bool],
+        (scene, changed): (&Scene, &[bool]),
+        grids: Grids,
         mut replacer: Replacer<'_>,
         levels: Levels<'_>,
     ) -> Result<Self, Unsupported> {
         let templates = json.get("meshes").and_then(Value::as_array).cloned().unwrap_or_default();
-        let mut kept = Vec::new();
-        let mut grids = vec![None; scene.meshes.len()];
+        let Grids { of_mesh: grids, skins, kept } = grids;
         if let Some(compression) = replacer.compression {
-            grids =
-                compress::grids(&json, scene, levels.levels, compression.position_bits, &mut kept);
+            skins.enter(&mut json, &mut replacer.builder);
             dequantize_nodes::add_transforms(&mut json, &grids);
             if compression.meshopt {
                 replacer.builder.compress();
@@ -279,6 +281,19 @@ impl Output {
                 Some(Image { name: file_name(image)?, bytes: read.bytes.clone() })
             })
             .collect()
+    }
+}
+
+/// Chooses the quantization grids of a scene that is written as this JSON, of this document.
+fn grids(
+    of: (&Value, Option<&Document<'_>>),
+    scene: &Scene,
+    levels: Levels<'_>,
+    compression: Option<&Compression>,
+) -> Grids {
+    match compression {
+        Some(own) => Grids::choose(of, scene, levels.levels, own.position_bits),
+        None => Grids::none(scene),
     }
 }
 

@@ -8,6 +8,7 @@ mod instances;
 mod levels;
 mod mutated;
 mod packed;
+mod posed;
 mod shared;
 mod skeleton;
 mod small;
