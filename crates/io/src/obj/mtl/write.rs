@@ -89,10 +89,16 @@ fn statements(material: &Material, images: &[Image]) -> Vec<MtlStatement> {
 
 /// Returns the line of a statement, with the name that its image has in the scene.
 fn text_of(line: &MtlStatement, images: &[Image]) -> String {
-    let Some(map) = &line.map else { return one_line(&line.text, str::trim_end) };
+    let Some(map) = &line.map else { return one_statement(&line.text) };
     let file = images.get(map.image).map_or(&*map.name, |image| &*image.name);
     let name = if plain_slashes(&map.name) == file { &map.name } else { file };
-    one_line(&format!("{}{name}{}", line.text, map.rest), str::trim_end)
+    one_statement(&format!("{}{name}{}", line.text, map.rest))
+}
+
+/// Trims the end of a statement and replaces what would end its line or is no text. Other control
+/// characters stay, as a form feed parts words.
+fn one_statement(text: &str) -> String {
+    text.trim_end().replace(['\n', '\r', '\0'], "_")
 }
 
 /// Makes the material names unique and fit for one line.
@@ -138,7 +144,8 @@ mod tests {
     }
 
     const LIBRARY: &str = "newmtl a b\n\tKd 1 0 0  # red\n# of old\n\nTr 0.25\nfoo bar\n\
-        map_Kd -s 2 2 maps\\A b.png\nbump -bm 0.5 n.png\nrefl -type sphere n.png\n\
+        map_Kd -s 2 2 maps\\A b.png\nbump -bm 0.5 n.png\ndecal -t 0 \x0c 0 n.png\n\
+        refl -type sphere n.png\n\
         newmtl empty\nnewmtl c\nKs 1 1 1\nNs 6\nKe 1 2 3\nmap_Pr -imfchan g r.png\n";
 
     #[test]
