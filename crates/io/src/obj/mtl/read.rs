@@ -75,7 +75,7 @@ impl Library {
             if word_of(&line.text) == "newmtl" {
                 self.define(current.take());
                 let name = line.text.trim_start().get("newmtl".len()..).unwrap_or_default();
-                current = Some((name.trim().to_owned(), Vec::new()));
+                current = Some((name.trim_ascii().to_owned(), Vec::new()));
             } else if let Some((_, definition)) = &mut current {
                 let read = said.add(&line.text, None);
                 read.map_err(|error| located(FileLocation::Line(line.number), error))?;

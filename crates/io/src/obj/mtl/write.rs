@@ -95,10 +95,11 @@ fn text_of(line: &MtlStatement, images: &[Image]) -> String {
     one_statement(&format!("{}{name}{}", line.text, map.rest))
 }
 
-/// Trims the end of a statement and replaces what would end its line or is no text. Other control
-/// characters stay, as a form feed parts words.
+/// Replaces what would end the line of a statement or is no text. All else stays: a form feed parts
+/// words. A blank keeps a backslash at the end from continuing the line.
 fn one_statement(text: &str) -> String {
-    text.trim_end().replace(['\n', '\r', '\0'], "_")
+    let blank = if text.ends_with('\\') { " " } else { "" };
+    text.replace(['\n', '\r', '\0'], "_") + blank
 }
 
 /// Makes the material names unique and fit for one line.
@@ -106,6 +107,10 @@ pub(crate) fn names(materials: &[Material]) -> Vec<String> {
     let mut taken = HashSet::new();
     let unique = |(i, material): (usize, &Material)| {
         let mut name = one_line(&material.name, str::trim);
+        // Would continue the line.
+        if name.ends_with('\\') {
+            name.push('_');
+        }
         if name.is_empty() {
             name = format!("material_{i}");
         }
@@ -152,6 +157,7 @@ mod tests {
     fn statements_are_written_as_they_were() {
         let scene = read(LIBRARY);
         assert_eq!(written(&scene), LIBRARY);
+        assert_eq!(written(&read("newmtl a\nfoo \\\\")), "newmtl a\nfoo \\ \n");
         let same = |text: &str| same_library(&parsed(text.as_bytes()).unwrap(), &scene);
         assert!(same(LIBRARY) && same(&LIBRARY.replace("# of old\n", "")));
         assert!(!same(&LIBRARY.replace("Tr 0.25", "Tr 0.5")));
@@ -184,7 +190,7 @@ mod tests {
         material.shading.normal_image = Some(0);
         scene.images[0].name = "b.png".into();
         let text = written(&scene);
-        assert!(text.starts_with("newmtl a b\n# of old\n\nTr 0.25\nfoo bar\nrefl -type"), "{text}");
+        assert!(text.starts_with("newmtl a b\n# of old\n\nTr 0.25\nfoo bar\ndecal"), "{text}");
         assert!(text.contains("Kd 0 1 0\nnorm -bm 0.5 b.png\nnewmtl empty"), "{text}");
     }
 
@@ -216,8 +222,8 @@ mod tests {
 
     #[test]
     fn written_names_differ_and_fit_a_line() {
-        let named = ["", "a", "a", "b\nc", "a_2"]
+        let named = ["", "a", "a", "b\nc", "a_2", "d\\"]
             .map(|name| Material { name: name.to_owned(), ..Material::default() });
-        assert_eq!(names(&named), ["material_0", "a", "a_2", "b_c", "a_2_4"]);
+        assert_eq!(names(&named), ["material_0", "a", "a_2", "b_c", "a_2_4", "d\\_"]);
     }
 }
