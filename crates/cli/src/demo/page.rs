@@ -38,8 +38,7 @@ fn header(reports: &[SampleReport], title_picture: &TitlePicture) -> Markup {
             "figure here was made by the command that wrote this page."
         }
         figure.hero {
-            img src=(title_picture.picture.uri) alt=(title_picture.picture.alt)
-                width=(title_picture.size[0]) height=(title_picture.size[1]);
+            (title_picture.picture.image())
             figcaption {
                 @for faces in &title_picture.faces { span { b { (count(*faces)) } " faces" } }
             }
