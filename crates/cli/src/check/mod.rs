@@ -6,7 +6,7 @@
 
 mod advice;
 mod contacts;
-mod drawing;
+pub mod drawing;
 mod findings;
 pub mod group;
 pub mod inspection;

@@ -41,6 +41,7 @@ fn header(comparison: &Comparison<'_>, outcome: &ComparisonResult) -> Markup {
             "vertex and " (count(comparison.options.samples)) " samples each way to the exact closest "
             "point. Times are for one run on " (threads) " thread" (plural(threads))
             ", without reading and writing."
+            @if comparison.pictures { " A click enlarges a picture." }
         }
     }
 }

@@ -15,35 +15,27 @@ pub fn write_file(mesh: &Mesh, folder: &Path) -> Result<(), Failure> {
     Ok(write(&folder.join(BROKEN), &scene, &WriteOptions::default())?)
 }
 
-/// Balls in which the mesh is broken: centers as fractions of the bounding box, and radii as
-/// fractions of the diagonal.
-const HOLE: ([f64; 3], f64) = ([0.62, 0.62, 0.0], 0.02);
-const REVERSED: ([f64; 3], f64) = ([0.45, 0.5, 0.0], 0.05);
-const TORN: ([f64; 3], f64) = ([0.3, 0.5, 0.0], 0.05);
-const TWICE: ([f64; 3], f64) = ([0.72, 0.45, 0.0], 0.025);
+/// Where the mesh is broken, on its side that faces +z: the place as fractions of the width and
+/// height, and the radius as a fraction of the diagonal.
+struct Spot([f64; 2], f64);
+
+const HOLE: Spot = Spot([0.62, 0.62], 0.02);
+const REVERSED: Spot = Spot([0.45, 0.5], 0.05);
+const TORN: Spot = Spot([0.3, 0.5], 0.05);
+const TWICE: Spot = Spot([0.72, 0.45], 0.025);
 
 /// Breaks the geometry of a mesh; attributes are left out.
 fn broken(mesh: &Mesh) -> Mesh {
-    let bounds = mesh.bounds();
-    let inside = |face: &[VertexId; 3], (center, radius): ([f64; 3], f64)| {
-        let corners = mesh.triangle(*face);
-        let middle = ((corners[0] + corners[1] + corners[2]) / 3.0).to_array();
-        let offset = |axis: usize| {
-            let extent = bounds.max[axis] - bounds.min[axis];
-            middle[axis] - (bounds.min[axis] + center[axis] * extent)
-        };
-        let square: f64 = [0, 1, 2].map(|axis| offset(axis).powi(2)).iter().sum();
-        square < (radius * bounds.diagonal()).powi(2)
-    };
+    let [hole, reversed, torn, twice] = [HOLE, REVERSED, TORN, TWICE].map(|spot| spot.faces(mesh));
     let mut positions = mesh.positions.clone();
     let mut copies: HashMap<VertexId, VertexId> = HashMap::new();
     let mut faces = Vec::new();
-    for face in mesh.faces.iter().filter(|face| !inside(face, HOLE)) {
+    for (i, face) in mesh.faces.iter().enumerate().filter(|(i, _)| !hole[*i]) {
         let [a, b, c] = *face;
-        if inside(face, TWICE) {
+        if twice[i] {
             faces.push([a, b, c]);
         }
-        faces.push(match (inside(face, REVERSED), inside(face, TORN)) {
+        faces.push(match (reversed[i], torn[i]) {
             (true, _) => [a, c, b],
             (_, true) => face.map(|v| {
                 *copies.entry(v).or_insert_with(|| {
@@ -55,4 +47,33 @@ fn broken(mesh: &Mesh) -> Mesh {
         });
     }
     Mesh::new(positions, faces)
+}
+
+impl Spot {
+    /// Returns for each face whether its middle is in the ball around the spot.
+    fn faces(&self, mesh: &Mesh) -> Vec<bool> {
+        let Self(_, radius) = *self;
+        let most = (radius * mesh.bounds().diagonal()).powi(2);
+        let center = self.center(mesh);
+        let is_inside = |face: &[VertexId; 3]| {
+            let [a, b, c] = mesh.triangle(*face).map(|corner| corner.to_array());
+            let middle = [0, 1, 2].map(|axis| (a[axis] + b[axis] + c[axis]) / 3.0);
+            square_distance(middle, center) < most
+        };
+        mesh.faces.iter().map(is_inside).collect()
+    }
+
+    /// Returns the vertex nearest to the place as seen from far away along the z axis.
+    fn center(&self, mesh: &Mesh) -> [f64; 3] {
+        let (Self(place, _), bounds) = (self, mesh.bounds());
+        let at = |axis: usize| bounds.min[axis] + place[axis] * (bounds.max[axis] - bounds.min[axis]);
+        let seen = [at(0), at(1), bounds.max[2]];
+        let from_there = |p: &&[f64; 3]| square_distance(**p, seen);
+        let nearest = mesh.positions.iter().min_by(|a, b| from_there(a).total_cmp(&from_there(b)));
+        *nearest.expect("a sample has vertices")
+    }
+}
+
+fn square_distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    [0, 1, 2].map(|axis| (a[axis] - b[axis]).powi(2)).iter().sum()
 }

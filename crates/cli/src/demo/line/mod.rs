@@ -67,6 +67,11 @@ impl Line {
         self.done.iter().map(step).collect()
     }
 
+    /// Iterates over the files that the steps have written, with the names of the steps.
+    pub fn files(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        self.done.iter().flat_map(|done| done.step.files.iter().map(|&file| (file, done.step.name)))
+    }
+
     /// Formats a line about each step.
     pub fn text(&self) -> String {
         let line = |done: &StepDone| format!("  {}: {}\n", done.step.name, done.figure.text());

@@ -15,9 +15,12 @@ use crate::demo::line::steps::{BROKEN, Figure, STRIPS, Step};
 use crate::failure::Failure;
 use crate::files;
 use crate::page::inline_picture::InlinePicture;
-use crate::page::renderer::{LARGE, view};
+use crate::page::renderer::view;
 use crate::page::subject::Subject;
 use crate::session::Session;
+
+/// Width and height of the pictures in pixels.
+const SIZE: [u32; 2] = [480, 400];
 
 /// Painter of the steps of a sample.
 pub struct StepPainter<'p> {
@@ -29,7 +32,7 @@ pub struct StepPainter<'p> {
 
 impl<'p> StepPainter<'p> {
     pub fn new(subject: &'p Subject, folder: &'p Path, session: &'p Session) -> Self {
-        let camera = Camera::fit_mesh(&subject.mesh, &view(&subject.style, LARGE, 0.94));
+        let camera = Camera::fit_mesh(&subject.mesh, &view(&subject.style, SIZE, 0.94));
         Self { subject, folder, camera, session }
     }
 
@@ -79,7 +82,7 @@ impl<'p> StepPainter<'p> {
     }
 
     fn draw(&self, mesh: &Mesh, style: Style<'_>) -> Result<meshlod::picture::Picture, Failure> {
-        let style = Style { size: LARGE, background: Background::Transparent, ..style };
+        let style = Style { size: SIZE, background: Background::Transparent, ..style };
         render(mesh, &self.camera, &style).map_err(Failure::new)
     }
 }

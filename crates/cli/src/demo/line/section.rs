@@ -26,7 +26,7 @@ fn card(StepDone { step, figure: number, picture }: &StepDone) -> Markup {
             p.number { b { (figure(number.exact, &number.number)) } " " (number.of) }
             (picture.zoomable())
             p { (step.about) }
-            @for words in step.commands { pre { code { (shown(words)) } } }
+            div.commands { @for words in step.commands { pre { code { (shown(words)) } } } }
         }
     }
 }

@@ -45,15 +45,15 @@ impl Figure {
 /// The broken mesh that the line begins with.
 pub const BROKEN: &str = "fish-broken.ply";
 const REPAIRED: &str = "fish-repaired.ply";
-const SMALL: &str = "fish-small.ply";
+const SMALL: &str = "fish-small.glb";
 const MODEL: &str = "fish.mlod";
-const NEAR: &str = "fish-near.ply";
+const NEAR: &str = "fish-near.glb";
 /// Lists of the vertices of all strips.
 pub const STRIPS: &str = "fish-strips.json";
 const SENT: &str = "fish.mlz";
 
 /// A camera close to the head.
-const CAMERA: &str = "eye=0.9,0.15,0.45 look=0.45,0.05,0 fov=35 1280x720";
+const CAMERA: &str = "eye=-1.3,0.15,0.5 look=-0.8,0,0 fov=35 640x480";
 
 pub const STEPS: [Step; 6] = [
     Step {
@@ -76,9 +76,9 @@ pub const STEPS: [Step; 6] = [
     },
     Step {
         name: "Simplify",
-        about: "No point of the level is farther than a tenth of a percent of the diagonal from the \
-                original, and none of the original from the level. That is proved, not estimated.",
-        commands: &[&["simplify", "fish.ply", SMALL, "--error", "0.1%"]],
+        about: "No point of the level is farther than 0.2% of the diagonal from the original, and none of \
+                the original farther from the level. That is proved, not estimated.",
+        commands: &[&["simplify", "fish.ply", SMALL, "--error", "0.2%"]],
         files: &[SMALL],
         shown: SMALL,
         figure: |json| {
@@ -88,11 +88,11 @@ pub const STEPS: [Step; 6] = [
     },
     Step {
         name: "All levels in one file",
-        about: "From everything between a handful of faces and all of them, a cut that is off by less \
-                than a pixel for a camera close to the head, and as coarse as may be elsewhere.",
+        about: "From everything between a handful of faces and all of them, a cut that is off by at most \
+                two pixels for a camera close to the head, and as coarse as may be elsewhere.",
         commands: &[
             &["build", "fish.ply", MODEL],
-            &["extract", MODEL, NEAR, "--error", "1px", "--camera", CAMERA],
+            &["extract", MODEL, NEAR, "--error", "2px", "--camera", CAMERA],
         ],
         files: &[MODEL, NEAR],
         shown: NEAR,
@@ -100,14 +100,14 @@ pub const STEPS: [Step; 6] = [
     },
     Step {
         name: "Strips",
-        about: "The faces in long strips, a colour each: a triangle costs one new vertex, not three.",
+        about: "The faces of that level in long strips, a colour each. At seams of the texture a strip ends.",
         commands: &[&["strip", SMALL, "--out", STRIPS]],
         files: &[STRIPS],
         shown: SMALL,
         figure: |json| {
             let level = &json[0]["levels"][0];
             let [sent, drawn] = ["vertices_sent", "triangles"].map(|field| number(level, field) as f64);
-            Figure::new(sent / drawn, format!("{:.2}", sent / drawn), "vertices a triangle")
+            Figure::new(sent / drawn, format!("{:.2}", sent / drawn), "vertices a triangle; a list takes three")
         },
     },
     Step {
