@@ -63,7 +63,9 @@ fn invalid(kind: Kind) -> [&'static str; 2] {
             "A coordinate is not a number or infinite.",
             "`repair` drops the vertex and its faces.",
         ],
-        Kind::BadIndex => ["A face refers to a vertex that is not there.", "`repair` drops the face."],
+        Kind::BadIndex => {
+            ["A face refers to a vertex that is not there.", "`repair` drops the face."]
+        }
         _ => [
             "Attributes, materials or objects do not fit the faces.",
             "`repair` drops what does not fit.",
@@ -73,16 +75,17 @@ fn invalid(kind: Kind) -> [&'static str; 2] {
 
 fn surface(kind: Kind) -> [&'static str; 2] {
     match kind {
-        Kind::UnusedVertex => ["No face uses the vertex.", "`repair` drops it; nothing else is wrong."],
+        Kind::UnusedVertex => {
+            ["No face uses the vertex.", "`repair` drops it; nothing else is wrong."]
+        }
         Kind::CoincidentVertices => [
             "Vertices of one object lie at exactly the same place.",
             "`--weld 0` makes them one vertex in every command that reads the mesh. `repair` sews borders \
              that lie on each other without it, and so does `simplify`.",
         ],
-        Kind::DegenerateFace => [
-            "The face has no area.",
-            "`repair` removes it and leaves no hole.",
-        ],
+        Kind::DegenerateFace => {
+            ["The face has no area.", "`repair` removes it and leaves no hole."]
+        }
         Kind::DuplicateFace => [
             "The face has the same vertices as an earlier one.",
             "`repair` drops a copy; the two sides of a leaf get vertices of their own.",

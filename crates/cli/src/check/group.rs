@@ -14,11 +14,11 @@ pub enum Grade {
     Touch,
 }
 
-/// Findings of one kind and grade.
+/// Findings of one kind and grade; errors come first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Group {
-    pub kind: Kind,
     pub grade: Grade,
+    pub kind: Kind,
 }
 
 impl Grade {
@@ -71,12 +71,18 @@ impl Ownership {
             Finding::NonFiniteVertex { vertex: v }
             | Finding::UnusedVertex { vertex: v }
             | Finding::NonManifoldVertex { vertex: v, .. } => vertex(v).into_iter().collect(),
-            Finding::CoincidentVertices { vertices } => vertices.iter().filter_map(vertex).collect(),
-            Finding::BoundaryLoop { vertices, .. } => vertices.first().and_then(vertex).into_iter().collect(),
+            Finding::CoincidentVertices { vertices } => {
+                vertices.iter().filter_map(vertex).collect()
+            }
+            Finding::BoundaryLoop { vertices, .. } => {
+                vertices.first().and_then(vertex).into_iter().collect()
+            }
             Finding::BadIndex { face: f, .. }
             | Finding::DegenerateFace { face: f, .. }
             | Finding::InsideOut { face: f, .. } => face(f).into_iter().collect(),
-            Finding::DuplicateFace { face: f, of } => [f, of].into_iter().filter_map(face).collect(),
+            Finding::DuplicateFace { face: f, of } => {
+                [f, of].into_iter().filter_map(face).collect()
+            }
             Finding::InconsistentEdge { faces, .. } => faces.iter().filter_map(face).collect(),
             Finding::NonManifoldEdge { faces, .. } => faces.iter().filter_map(face).collect(),
             Finding::SelfIntersection { object, .. } => vec![*object],

@@ -74,7 +74,7 @@ impl Inspection {
         }
     }
 
-    /// Iterates over the groups with at least one finding, with their counts.
+    /// Iterates over the groups with at least one finding, with their counts, errors first.
     pub fn groups(&self) -> impl Iterator<Item = (Group, usize)> {
         self.groups.iter().map(|(&group, &count)| (group, count))
     }

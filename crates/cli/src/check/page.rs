@@ -128,7 +128,7 @@ fn legend(used: &[Mark]) -> Markup {
             }
         }
     };
-    html! { (row("Wrong", &defects)) (row("May be meant", &meant)) }
+    html! { (row("To look at", &defects)) (row("May be meant", &meant)) }
 }
 
 /// Says whether two objects touch or pass through each other.

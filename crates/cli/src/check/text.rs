@@ -111,13 +111,16 @@ fn contacts(inspection: &Inspection) -> String {
 pub fn meetings(inspection: &Inspection) -> String {
     let pairs = inspection.contacts.by_size();
     let touching = pairs.iter().filter(|(_, pair)| pair.only_touches()).count();
-    format!(
-        "{} pair{} of objects meet: {} only touch, {} pass through each other",
-        count(pairs.len()),
-        plural(pairs.len()),
-        count(touching),
-        count(pairs.len() - touching),
-    )
+    let all = format!("{} pair{} of objects", count(pairs.len()), plural(pairs.len()));
+    match pairs.len() - touching {
+        0 => format!("{all} that only touch"),
+        _ if touching == 0 => format!("{all} that pass through each other"),
+        crossing => format!(
+            "{all} that meet: {} only touch, {} pass through each other",
+            count(touching),
+            count(crossing)
+        ),
+    }
 }
 
 fn row(name: String, pair: &ObjectPair) -> Vec<String> {

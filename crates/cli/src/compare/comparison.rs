@@ -162,7 +162,10 @@ impl Comparison<'_> {
 
 impl ComparisonResult {
     /// Iterates over the sizes that at least one method came to, with their indices.
-    pub fn sizes<'s>(&self, sizes: &'s [LevelSize]) -> impl Iterator<Item = (usize, &'s LevelSize)> {
+    pub fn sizes<'s>(
+        &self,
+        sizes: &'s [LevelSize],
+    ) -> impl Iterator<Item = (usize, &'s LevelSize)> {
         sizes.iter().enumerate().filter(|(index, _)| self.at(*index).next().is_some())
     }
 

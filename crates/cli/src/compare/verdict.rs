@@ -53,12 +53,15 @@ impl Verdict {
     /// Returns the methods that won, with their figures, as JSON; `null` where none reached the size.
     pub fn json(&self) -> Value {
         let json = |contest: &Option<Contest>, unit: &str| {
-            contest.as_ref().map(|Contest(order)| json!({ "method": order[0].0.name(), unit: order[0].1 }))
+            contest
+                .as_ref()
+                .map(|Contest(order)| json!({ "method": order[0].0.name(), unit: order[0].1 }))
         };
         json!({
             "size": self.size.to_string(),
             "closest": json(&self.closest, "rms_percent"),
             "fastest": json(&self.fastest, "simplify_seconds"),
+            "sentence": self.sentence(),
         })
     }
 
@@ -73,7 +76,10 @@ impl Verdict {
         };
         if let ([(method, rms)], [(_, time)]) = (&closest.0[..], &fastest.0[..]) {
             let (rms, time) = (digits(*rms), seconds(*time));
-            return format!("At {size}, {} has an RMS error of {rms}% and takes {time}.", named(*method));
+            return format!(
+                "At {size}, {} has an RMS error of {rms}% and takes {time}.",
+                named(*method)
+            );
         }
         let both = closest.0[0].0 == fastest.0[0].0;
         let [closest, fastest] = [closest.closest(), fastest.fastest(both)];

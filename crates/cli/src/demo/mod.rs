@@ -65,7 +65,8 @@ impl Demo {
         let html = page::page(&reports, &line, &title_picture).into_string();
         write_file(&page, html.as_bytes())?;
         let seconds = start.elapsed().as_secs_f64();
-        let result = DemoResult { reports, line, title_picture, page, page_bytes: html.len(), seconds };
+        let result =
+            DemoResult { reports, line, title_picture, page, page_bytes: html.len(), seconds };
         Ok(Answer::new(summary::json(&result), summary::text(&result)))
     }
 }

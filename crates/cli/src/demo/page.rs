@@ -2,9 +2,9 @@
 
 use maud::{Markup, html};
 
+use crate::demo::line::{self, Line};
 use crate::demo::sample_report::{SAMPLES, SampleReport};
 use crate::demo::title_picture::TitlePicture;
-use crate::demo::line::{self, Line};
 use crate::demo::{next_steps, section};
 use crate::numbers::count;
 use crate::page::document::{Document, document};
@@ -16,7 +16,10 @@ pub fn page(reports: &[SampleReport], line: &Line, title_picture: &TitlePicture)
     let rest = [("own", "Your mesh"), ("files", "Files")].map(|(a, b)| (a.into(), b.into()));
     document(Document {
         title: "meshlod demo: fewer triangles, measured",
-        links: std::iter::once(("line".into(), "All steps".into())).chain(samples).chain(rest).collect(),
+        links: std::iter::once(("line".into(), "All steps".into()))
+            .chain(samples)
+            .chain(rest)
+            .collect(),
         header: header(reports, title_picture),
         main: html! {
             (line::section::section(line))

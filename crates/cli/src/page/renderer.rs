@@ -2,9 +2,7 @@
 
 use meshlod::Mesh;
 use meshlod::measure::{PreparedSurface, vertex_errors};
-use meshlod::picture::{
-    Background, Camera, Lighting, Normals, Paint, Style, View, render,
-};
+use meshlod::picture::{Background, Camera, Lighting, Normals, Paint, Style, View, render};
 
 use crate::failure::Failure;
 use crate::numbers;
@@ -39,11 +37,7 @@ pub struct SubjectRenderer<'s> {
 }
 
 impl<'s> SubjectRenderer<'s> {
-    pub fn new(
-        subject: &'s Subject,
-        original: &'s PreparedSurface<'s>,
-        size: [u32; 2],
-    ) -> Self {
+    pub fn new(subject: &'s Subject, original: &'s PreparedSurface<'s>, size: [u32; 2]) -> Self {
         let camera = Camera::fit_mesh(&subject.mesh, &view(&subject.style, size, 0.94));
         Self { subject, original, camera, size }
     }

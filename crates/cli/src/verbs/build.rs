@@ -172,12 +172,12 @@ impl Build {
         let alone = mesh.positions.len() - vertex_count(mesh);
         if alone > 0 {
             let some = if alone == 1 { "vertex" } else { "vertices" };
-            let reason = format_args!("left out: {} unused {some}", count(alone));
+            let reason = format_args!("left out: {} unused {some}, which no face needs", count(alone));
             session.warn(Failure::at(&self.input, reason));
         }
         let odd = mesh.faces.len() - built.faces;
         if odd > 0 {
-            let reason = format_args!("left out: {}, degenerate or duplicate", faces(odd));
+            let reason = format_args!("left out: {}, degenerate or duplicate; check lists them, and repair removes them", faces(odd));
             session.warn(Failure::at(&self.input, reason));
         }
     }

@@ -20,8 +20,8 @@ pub fn write_file(mesh: &Mesh, folder: &Path) -> Result<(), Failure> {
 struct Spot([f64; 2], f64);
 
 const HOLE: Spot = Spot([0.62, 0.62], 0.02);
-const REVERSED: Spot = Spot([0.45, 0.5], 0.05);
-const TORN: Spot = Spot([0.3, 0.5], 0.05);
+const REVERSED: Spot = Spot([0.55, 0.7], 0.05);
+const TORN: Spot = Spot([0.25, 0.55], 0.05);
 const TWICE: Spot = Spot([0.72, 0.45], 0.025);
 
 /// Breaks the geometry of a mesh; attributes are left out.
@@ -66,7 +66,8 @@ impl Spot {
     /// Returns the vertex nearest to the place as seen from far away along the z axis.
     fn center(&self, mesh: &Mesh) -> [f64; 3] {
         let (Self(place, _), bounds) = (self, mesh.bounds());
-        let at = |axis: usize| bounds.min[axis] + place[axis] * (bounds.max[axis] - bounds.min[axis]);
+        let at =
+            |axis: usize| bounds.min[axis] + place[axis] * (bounds.max[axis] - bounds.min[axis]);
         let seen = [at(0), at(1), bounds.max[2]];
         let from_there = |p: &&[f64; 3]| square_distance(**p, seen);
         let nearest = mesh.positions.iter().min_by(|a, b| from_there(a).total_cmp(&from_there(b)));

@@ -51,8 +51,7 @@ impl<'p> StepPainter<'p> {
     }
 
     fn defects(&self, mesh: Mesh) -> Result<meshlod::picture::Picture, Failure> {
-        let order =
-            InspectionOptions { options: CheckOptions::default(), limit: 1, marks: true };
+        let order = InspectionOptions { options: CheckOptions::default(), limit: 1, marks: true };
         let Inspection { mesh, marks, .. } = Inspection::of(mesh, order);
         let drawing = Drawing::new(&mesh, marks.as_ref().expect("asked for"), Part::Whole);
         drawing.picture(&self.camera).map_err(Failure::new)

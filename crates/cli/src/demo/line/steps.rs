@@ -106,8 +106,13 @@ pub const STEPS: [Step; 6] = [
         shown: SMALL,
         figure: |json| {
             let level = &json[0]["levels"][0];
-            let [sent, drawn] = ["vertices_sent", "triangles"].map(|field| number(level, field) as f64);
-            Figure::new(sent / drawn, format!("{:.2}", sent / drawn), "vertices a triangle; a list takes three")
+            let [sent, drawn] =
+                ["vertices_sent", "triangles"].map(|field| number(level, field) as f64);
+            Figure::new(
+                sent / drawn,
+                format!("{:.2}", sent / drawn),
+                "vertices a triangle; a list takes three",
+            )
         },
     },
     Step {
@@ -118,8 +123,13 @@ pub const STEPS: [Step; 6] = [
         files: &[SENT],
         shown: SENT,
         figure: |json| {
-            let [bytes, vertices] = ["bytes_total", "vertices"].map(|field| number(&json[0], field) as f64);
-            Figure::new(bytes / vertices, digits(bytes / vertices), "bytes a vertex, with all attributes")
+            let [bytes, vertices] =
+                ["bytes_total", "vertices"].map(|field| number(&json[0], field) as f64);
+            Figure::new(
+                bytes / vertices,
+                digits(bytes / vertices),
+                "bytes a vertex, with all attributes",
+            )
         },
     },
 ];
