@@ -165,9 +165,9 @@ fn remedy(scene: &Scene, limits: &[Note]) -> String {
     let mut formats = [(Format::Glb, ".glb"), (Format::Obj, ".obj")].into_iter();
     match limits {
         [] => String::new(),
-        _ => formats.find(holds).map_or_else(String::new, |(_, suffix)| {
-            format!("; {suffix} keeps everything")
-        }),
+        _ => formats
+            .find(holds)
+            .map_or_else(String::new, |(_, suffix)| format!("; {suffix} keeps everything")),
     }
 }
 

@@ -88,7 +88,11 @@ pub fn mesh_notes(report: &Report) -> String {
             text.push_str(&format!("{} {noun} {what}\n", count(number)));
         }
     };
-    line(report.degenerate_faces, ["degenerate face", "degenerate faces"], "left out, as repair does");
+    line(
+        report.degenerate_faces,
+        ["degenerate face", "degenerate faces"],
+        "left out, as repair does",
+    );
     line(report.duplicate_faces, ["duplicate face", "duplicate faces"], "left out, as repair does");
     let vertices = ["vertex", "vertices"];
     let non_manifold = ["non-manifold vertex", "non-manifold vertices"];

@@ -76,7 +76,7 @@ fn invalid(kind: Kind) -> [&'static str; 2] {
 fn surface(kind: Kind) -> [&'static str; 2] {
     match kind {
         Kind::UnusedVertex => {
-            ["No face uses the vertex.", "`repair` drops it; nothing else is wrong."]
+            ["No face uses the vertex.", "Nothing must be done; `repair` drops it."]
         }
         Kind::CoincidentVertices => [
             "Vertices of one object lie at exactly the same place.",

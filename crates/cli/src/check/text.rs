@@ -72,7 +72,8 @@ fn first(inspection: &Inspection, sites: &Sites, group: Group) -> String {
         return text;
     }
     let objects = objects(finding, inspection);
-    if !objects.is_empty() {
+    // Ids of a scene name its nodes already.
+    if !objects.is_empty() && !sites.are_several() {
         text += &format!(" in {objects}");
     }
     format!("first: {text} at {}", coordinates(finding, inspection))

@@ -259,7 +259,10 @@ fn left_out(mesh: &Mesh, faces_there: usize) -> Vec<String> {
     }
     let odd = mesh.faces.len() - faces_there;
     if odd > 0 {
-        left_out.push(format!("left out: {}, degenerate: check lists them, and repair removes them", faces(odd)));
+        left_out.push(format!(
+            "left out: {}, degenerate: check lists them, and repair removes them",
+            faces(odd)
+        ));
     }
     left_out
 }

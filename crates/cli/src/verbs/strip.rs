@@ -25,8 +25,8 @@ use crate::failure::Failure;
 use crate::files;
 use crate::fuse;
 use crate::kept_error::KeptError;
-use crate::numbers;
 use crate::model_query::QueryArgs;
+use crate::numbers;
 use crate::parse::{self, LevelSize};
 use crate::query_args::{self, ErrorLimit};
 use crate::session::Session;
@@ -145,7 +145,10 @@ impl Strip {
         let missed = !(reached && levels.iter().all(|level| level.reached));
         let is_wrong = levels.iter().any(|level| level.is_wrong());
         if is_wrong {
-            session.warn(Failure::at(&self.input, "the strips do not draw the faces of the level, which is a defect of this program"));
+            session.warn(Failure::at(
+                &self.input,
+                "the strips do not draw the faces of the level, which is a defect of this program",
+            ));
         }
         let (mut json, mut text) = (self.json(&source, &levels), self.text(&source, &levels));
         json["error"] = error.map(KeptError::to_json).into();

@@ -338,7 +338,7 @@ fn the_page_lists_places_and_what_to_do() {
     write(&run, "in.obj", CROSSING);
     run.json(&["check", "in.obj", "--out", "page"]);
     let page = std::fs::read_to_string(run.path("page/index.html")).unwrap();
-    for cell in ["f0 and f2", "floor – blade", "2.25 1 0", "crossing, 1 deep", "v0", "9 9 9"] {
+    for cell in ["f0 and f2", "floor – blade", "2.5 1 0", "crossing, 1 deep", "v0", "9 9 9"] {
         let is_there = |tag: &str| page.contains(&format!(">{cell}</{tag}>"));
         assert!(is_there("td") || is_there("th"), "{cell}");
     }
