@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use crate::demo::line::Line;
+use crate::demo::pipeline::Pipeline;
 use crate::demo::sample_report::SampleReport;
 
 /// Steps with their commands.
@@ -36,14 +36,14 @@ pub fn commands() -> Markup {
 }
 
 /// Lists the mesh files written next to the page.
-pub fn files(reports: &[SampleReport], line: &Line) -> Markup {
+pub fn files(reports: &[SampleReport], pipeline: &Pipeline) -> Markup {
     html! {
         section id="files" {
             h2 { "Files next to this page" }
             div.files {
                 div {
                     h3 { "All steps" }
-                    ul { @for (name, step) in line.files() { (file(name, step)) } }
+                    ul { @for (name, step) in pipeline.files() { (file(name, step)) } }
                 }
                 @for report in reports {
                     div {

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use crate::demo::line::{self, Line};
+use crate::demo::pipeline::{self, Pipeline};
 use crate::demo::sample_report::{SAMPLES, SampleReport};
 use crate::demo::title_picture::TitlePicture;
 use crate::demo::{next_steps, section};
@@ -10,22 +10,22 @@ use crate::numbers::count;
 use crate::page::document::{Document, document};
 
 /// Builds the HTML page of the demo.
-pub fn page(reports: &[SampleReport], line: &Line, title_picture: &TitlePicture) -> Markup {
+pub fn page(reports: &[SampleReport], pipeline: &Pipeline, title_picture: &TitlePicture) -> Markup {
     let samples =
         reports.iter().map(|report| (report.sample.name.into(), report.subject.title.clone()));
     let rest = [("own", "Your mesh"), ("files", "Files")].map(|(a, b)| (a.into(), b.into()));
     document(Document {
         title: "meshlod demo: fewer triangles, measured",
-        links: std::iter::once(("line".into(), "All steps".into()))
+        links: std::iter::once(("pipeline".into(), "All steps".into()))
             .chain(samples)
             .chain(rest)
             .collect(),
         header: header(reports, title_picture),
         main: html! {
-            (line::section::section(line))
+            (pipeline::section::section(pipeline))
             @for report in reports { (section::section(report)) }
             (next_steps::commands())
-            (next_steps::files(reports, line))
+            (next_steps::files(reports, pipeline))
         },
     })
 }

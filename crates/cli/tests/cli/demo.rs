@@ -105,7 +105,7 @@ fn every_file_is_there_and_holds_the_promised_faces() {
             promised.push(file);
         }
     }
-    let steps = list(json, "line").iter().flat_map(|step| list(step, "files"));
+    let steps = list(json, "pipeline").iter().flat_map(|step| list(step, "files"));
     promised.extend(steps.map(|file| file.as_str().unwrap()));
     promised.sort_unstable();
     assert!(files.keys().eq(&promised), "{promised:?} and no other");
@@ -117,10 +117,10 @@ fn every_file_is_there_and_holds_the_promised_faces() {
 
 #[test]
 fn every_step_has_a_picture_a_figure_and_commands() {
-    let section = page().split_once("<section id=\"line\"").unwrap().1;
+    let section = page().split_once("<section id=\"pipeline\"").unwrap().1;
     let section = section.split_once("</section>").unwrap().0;
     let cards: Vec<&str> = section.split("<li>").skip(1).collect();
-    let steps = list(&DEMO.json, "line");
+    let steps = list(&DEMO.json, "pipeline");
     assert_eq!((steps.len(), cards.len()), (6, 6));
     for (step, card) in steps.iter().zip(cards) {
         let figure = step["figure"].as_f64().unwrap();
@@ -142,7 +142,7 @@ fn the_commands_of_the_steps_write_the_same_files_again() {
     for name in ["fish.ply", "fish-broken.ply"] {
         std::fs::write(run.path(name), &files[&format!("out/{name}")]).unwrap();
     }
-    for step in list(json, "line") {
+    for step in list(json, "pipeline") {
         for command in list(step, "commands") {
             // Every second part is between quotes and is one word.
             let parts = command.as_str().unwrap().split('"').enumerate();
@@ -219,9 +219,10 @@ fn timeless(mut json: Value) -> Value {
 #[test]
 fn people_get_a_table_and_the_page_last() {
     let run = Run::new();
-    let done = run.run(&["demo", "new/folder"]);
+    let done = run.run(&["demo", "--", "-new/folder"]);
     assert_eq!((done.code, done.err.as_str()), (0, ""));
-    assert!(done.text().ends_with("new/folder/index.html\n"), "{}", done.text());
+    assert!(done.text().ends_with("-new/folder/index.html\n"), "{}", done.text());
+    assert!(done.text().contains("  Repair: 0 defects are left\n"), "{}", done.text());
 }
 
 #[test]

@@ -195,7 +195,12 @@ fn what_is_left_out_is_said() {
     let built = run.run(&["build", "in.obj", "out.mlod"]);
     assert_eq!(built.code, 0, "{built:?}");
     assert!(built.err.contains("left out: 1 unused vertex, which no face needs\n"), "{built:?}");
-    assert!(built.err.contains("left out: 2 faces, degenerate or duplicate; check lists them, and repair"), "{built:?}");
+    assert!(
+        built
+            .err
+            .contains("left out: 2 faces, degenerate or duplicate; check lists them, and repair"),
+        "{built:?}"
+    );
     assert!(built.text().contains("all levels of 1 face in"), "{built:?}");
 }
 

@@ -1,20 +1,20 @@
-//! Section of the demo page about the line: a card for each step.
+//! Section of the demo page about the pipeline: a card for each step.
 
 use maud::{Markup, html};
 
-use crate::demo::line::{Line, StepDone, shown};
+use crate::demo::pipeline::{Pipeline, StepDone, shown};
 use crate::page::figures::figure;
 
 /// Builds the section: a picture, a figure and the commands of each step.
-pub fn section(line: &Line) -> Markup {
+pub fn section(pipeline: &Pipeline) -> Markup {
     html! {
-        section id="line" {
-            h2 { "The whole line" }
+        section id="pipeline" {
+            h2 { "The whole pipeline" }
             p {
                 "What happens to a model between the tool that made it and the screen. The commands are \
                  those that wrote the files next to this page; they can be run again in its folder."
             }
-            ol.steps.line { @for done in &line.done { (card(done)) } }
+            ol.steps.pipeline { @for done in &pipeline.done { (card(done)) } }
         }
     }
 }

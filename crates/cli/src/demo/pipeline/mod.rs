@@ -26,7 +26,7 @@ use pictures::StepPainter;
 use steps::{Figure, STEPS, Step};
 
 /// All steps that have been run, with their pictures and figures.
-pub struct Line {
+pub struct Pipeline {
     done: Vec<StepDone>,
 }
 
@@ -37,7 +37,7 @@ struct StepDone {
     picture: InlinePicture,
 }
 
-impl Line {
+impl Pipeline {
     /// Runs all steps on the file of a sample in the folder of the page.
     pub fn make(report: &SampleReport, folder: &Path, session: &Session) -> Result<Self, Failure> {
         broken::write_file(&report.subject.mesh, folder)?;
@@ -81,13 +81,15 @@ impl Line {
 
 /// Runs a command of this program on files in a folder, and returns its JSON.
 fn run(words: &[&str], folder: &Path, session: &Session) -> Result<Value, Failure> {
+    // So that the name of a folder is not taken for an option.
+    let folder = Path::new(".").join(folder);
     let placed = words.iter().map(|word| match steps::is_file(word) {
         true => folder.join(word).into_os_string(),
         false => OsString::from(word),
     });
     let line = std::iter::once(OsString::from("meshlod")).chain(placed);
     let cli = Cli::try_parse_from(line).map_err(Failure::new)?;
-    // Broken on purpose, so that findings are no failure here.
+    // The mesh is broken on purpose: that `check` finds errors is no failure.
     let Answer { json, .. } = cli.verb.run(session)?;
     Ok(json)
 }

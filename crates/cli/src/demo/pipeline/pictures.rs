@@ -11,7 +11,7 @@ use serde_json::Value;
 use crate::args::ReadArgs;
 use crate::check::drawing::{Drawing, Part};
 use crate::check::inspection::{Inspection, InspectionOptions};
-use crate::demo::line::steps::{BROKEN, Figure, STRIPS, Step};
+use crate::demo::pipeline::steps::{BROKEN, Figure, STRIPS, Step};
 use crate::failure::Failure;
 use crate::files;
 use crate::page::inline_picture::InlinePicture;

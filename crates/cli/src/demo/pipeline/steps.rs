@@ -1,11 +1,11 @@
-//! The steps of the line: what they are for, their commands, files and figures.
+//! The steps of the pipeline: what they are for, their commands, files and figures.
 
 use serde_json::Value;
 
 use crate::numbers;
 use crate::page::figures::digits;
 
-/// A step of the line.
+/// A step of the pipeline.
 pub struct Step {
     pub name: &'static str,
     pub about: &'static str,
@@ -42,7 +42,7 @@ impl Figure {
     }
 }
 
-/// The broken mesh that the line begins with.
+/// The broken mesh that the pipeline begins with.
 pub const BROKEN: &str = "fish-broken.ply";
 const REPAIRED: &str = "fish-repaired.ply";
 const SMALL: &str = "fish-small.glb";

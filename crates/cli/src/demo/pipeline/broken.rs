@@ -6,7 +6,7 @@ use std::path::Path;
 use meshlod::mesh::VertexId;
 use meshlod::{Mesh, Scene, WriteOptions, write};
 
-use crate::demo::line::steps::BROKEN;
+use crate::demo::pipeline::steps::BROKEN;
 use crate::failure::Failure;
 
 /// Writes a mesh with a hole, a tear, reversed faces and duplicate faces.
