@@ -1,4 +1,4 @@
-//! What a finding means, and what to do about it.
+//! Advice: the meaning of each kind of finding, and what to do about it.
 
 use meshlod::check::Kind;
 
@@ -6,9 +6,9 @@ use crate::check::group::{Grade, Group};
 
 /// Explanation of a group of findings. Words between backticks are commands.
 pub struct Advice {
-    /// What is wrong, or what is there.
+    /// Description of the defect, or of what is there.
     pub about: &'static str,
-    /// What mends it, or when it may stay.
+    /// Command that mends it, or the case in which it may stay.
     pub remedy: &'static str,
 }
 

@@ -1,9 +1,12 @@
 //! Groups of findings as reports show them: by kind, and by what a finding calls for.
 
+use std::collections::HashSet;
+
 use meshlod::Mesh;
 use meshlod::check::{Finding, IntersectionKind, Kind, ObjectId, Objects, Severity};
+use meshlod::mesh::{FaceId, VertexId};
 
-/// What a finding calls for.
+/// Urgency of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Grade {
     /// Most programs reject the mesh or process it incorrectly.
@@ -64,8 +67,8 @@ impl Ownership {
 
     /// Returns the objects that a finding concerns, each once, in the order of the finding's ids.
     pub fn of(&self, finding: &Finding) -> Vec<ObjectId> {
-        let vertex = |v: &meshlod::mesh::VertexId| self.of_vertex.get(v.index()).copied().flatten();
-        let face = |f: &meshlod::mesh::FaceId| self.objects.of_face.get(f.index()).copied();
+        let vertex = |v: &VertexId| self.of_vertex.get(v.index()).copied().flatten();
+        let face = |f: &FaceId| self.objects.of_face.get(f.index()).copied();
         let mut found: Vec<ObjectId> = match finding {
             Finding::BadAttributes { .. } | Finding::Crowded { .. } => Vec::new(),
             Finding::NonFiniteVertex { vertex: v }
@@ -88,7 +91,7 @@ impl Ownership {
             Finding::SelfIntersection { object, .. } => vec![*object],
             Finding::Contact { objects, .. } => objects.to_vec(),
         };
-        let mut seen = std::collections::HashSet::new();
+        let mut seen = HashSet::new();
         found.retain(|object| seen.insert(*object));
         found
     }
@@ -112,7 +115,6 @@ pub fn is_touch(kind: IntersectionKind) -> bool {
 #[cfg(test)]
 mod tests {
     use meshlod::check::ObjectsBy;
-    use meshlod::mesh::VertexId;
 
     use super::*;
 

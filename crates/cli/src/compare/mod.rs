@@ -1,7 +1,8 @@
 //! `compare`: runs every method on one mesh and writes a table, files, and a page with pictures.
 //!
-//! [`comparison`] builds and measures the levels, and [`output`] writes them; [`verdict`] says which
-//! method did best, and [`page`] and [`summary`] show the same figures on a page and on the terminal.
+//! [`comparison`] builds and measures the levels, and [`output`] writes them; [`verdict`] says
+//! which method did best, and [`page`] and [`summary`] show the same figures on a page and on the
+//! terminal.
 
 mod comparison;
 mod output;

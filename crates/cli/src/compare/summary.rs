@@ -28,6 +28,7 @@ pub fn json(comparison: &Comparison<'_>, outcome: &ComparisonResult, output: &Ou
             "failed": entry.failure.as_ref().map(ToString::to_string),
         })
     };
+    let verdicts = outcome.verdicts(&comparison.sizes).map(|(_, verdict)| verdict.json());
     json!({
         "input": comparison.subject.name,
         "counts": input.json(),
@@ -37,7 +38,7 @@ pub fn json(comparison: &Comparison<'_>, outcome: &ComparisonResult, output: &Ou
         "threads": rayon::current_num_threads(),
         "folder": files::name(&output.folder),
         "page": "index.html",
-        "verdicts": outcome.verdicts(&comparison.sizes).map(|(_, verdict)| verdict.json()).collect::<Vec<_>>(),
+        "verdicts": verdicts.collect::<Vec<_>>(),
         "methods": outcome.entries.iter().map(entry).collect::<Vec<_>>(),
     })
 }

@@ -13,7 +13,7 @@ use crate::parse::LevelSize;
 /// repeated within 0.2 %, and a time on an idle machine within one.
 const EQUAL: f64 = 0.01;
 
-/// What the levels of one size say about their methods.
+/// Ranking of the methods by their levels of one size.
 pub struct Verdict {
     size: LevelSize,
     /// RMS distances in percent of the diagonal.

@@ -1,8 +1,8 @@
 //! `demo`: simplifies samples and writes the levels and one page with pictures.
 //!
-//! [`samples`] lists the meshes, and [`sample_report`] simplifies and measures them; [`pipeline`] takes
-//! the first through all steps from a broken mesh to a compressed one. [`page`] and [`summary`] show
-//! the same figures on a page and on the terminal.
+//! [`samples`] lists the meshes, and [`sample_report`] simplifies and measures them; [`pipeline`]
+//! takes the first through all steps from a broken mesh to a compressed one. [`page`] and
+//! [`summary`] show the same figures on a page and on the terminal.
 
 mod next_steps;
 mod page;

@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
+use meshlod::Mesh;
 use meshlod::check::CheckOptions;
-use meshlod::picture::{Background, Camera, Lighting, Normals, Paint, Style, render};
+use meshlod::mesh::VertexId;
+use meshlod::picture::{Background, Camera, Lighting, Normals, Paint, Picture, Style, render};
 use meshlod::strip::Strips;
-use meshlod::{Mesh, mesh::VertexId};
 use serde_json::Value;
 
 use crate::args::ReadArgs;
@@ -50,7 +51,7 @@ impl<'p> StepPainter<'p> {
         Ok(InlinePicture::new(&picture, format!("{}: {}", step.name, figure.text())))
     }
 
-    fn defects(&self, mesh: Mesh) -> Result<meshlod::picture::Picture, Failure> {
+    fn defects(&self, mesh: Mesh) -> Result<Picture, Failure> {
         let order = InspectionOptions { options: CheckOptions::default(), limit: 1, marks: true };
         let Inspection { mesh, marks, .. } = Inspection::of(mesh, order);
         let drawing = Drawing::new(&mesh, marks.as_ref().expect("asked for"), Part::Whole);
@@ -58,7 +59,7 @@ impl<'p> StepPainter<'p> {
     }
 
     /// Draws every strip in a colour that differs from those before.
-    fn strips(&self, mesh: &Mesh) -> Result<meshlod::picture::Picture, Failure> {
+    fn strips(&self, mesh: &Mesh) -> Result<Picture, Failure> {
         let path = self.folder.join(STRIPS);
         let lists = serde_json::from_slice(&files::read_all(&path)?);
         let lists: Value = lists.map_err(|error| Failure::at(&path, error))?;
@@ -80,7 +81,7 @@ impl<'p> StepPainter<'p> {
         self.draw(&mesh, style)
     }
 
-    fn draw(&self, mesh: &Mesh, style: Style<'_>) -> Result<meshlod::picture::Picture, Failure> {
+    fn draw(&self, mesh: &Mesh, style: Style<'_>) -> Result<Picture, Failure> {
         let style = Style { size: SIZE, background: Background::Transparent, ..style };
         render(mesh, &self.camera, &style).map_err(Failure::new)
     }

@@ -24,7 +24,7 @@ pub struct Figure {
     pub exact: f64,
     /// The number as shown, with its unit.
     pub number: String,
-    /// What the number counts or measures.
+    /// Words after the number: the thing that it counts or measures.
     pub of: String,
 }
 
