@@ -71,7 +71,7 @@ fn lead(inspection: &Inspection) -> String {
     let of = format!("{} object{}", count(objects), plural(objects));
     match inspection.summary.total() {
         0 => format!("No findings in {of}."),
-        _ => format!("{} in {of}.", text::verdict(inspection)),
+        _ => format!("{of}: {}.", text::verdict(inspection)),
     }
 }
 
