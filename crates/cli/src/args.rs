@@ -29,7 +29,7 @@ pub struct GlobalArgs {
 }
 
 /// Options of every verb that reads meshes.
-#[derive(Args)]
+#[derive(Args, Default)]
 pub struct ReadArgs {
     /// Do not weld vertices at identical positions when reading glTF and STL
     #[arg(long, conflicts_with = "weld")]

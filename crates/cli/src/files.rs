@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
-use meshlod::io::{gltf, obj, off, ply, read_bytes, smf, stl, write_file};
+use meshlod::io::{Note, gltf, obj, off, ply, read_bytes, smf, stl, write_file};
 use meshlod::{Format, ReadOptions, Scene, WriteOptions};
 
 use crate::args::{ReadArgs, WriteArgs};
@@ -149,13 +149,26 @@ pub fn write(
 ) -> Result<(), Failure> {
     session.progress.stage(&format!("writing {}", name(path)));
     let format = check_output(path, session)?;
-    session.note(path, &scene.limits_of(format))?;
+    let limits = scene.limits_of(format);
+    session.note_with(path, &limits, &remedy(scene, &limits))?;
     if !is_pipe(path) {
         return Ok(meshlod::write(path, scene, &writing.options())?);
     }
     let mut out = BufWriter::new(io::stdout().lock());
     write_pipe(format, scene, writing.options(), &mut out)?;
     out.flush().map_err(|error| Failure::at(path, error))
+}
+
+/// Names a format that holds what another does not; empty if there is none, or nothing to hold.
+fn remedy(scene: &Scene, limits: &[Note]) -> String {
+    let holds = |(format, _): &(Format, &str)| scene.limits_of(*format).is_empty();
+    let mut formats = [(Format::Glb, ".glb"), (Format::Obj, ".obj")].into_iter();
+    match limits {
+        [] => String::new(),
+        _ => formats
+            .find(holds)
+            .map_or_else(String::new, |(_, suffix)| format!("; {suffix} keeps everything")),
+    }
 }
 
 /// Reads a file just written with [`write()`] again, with default options.

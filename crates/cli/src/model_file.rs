@@ -45,8 +45,9 @@ pub fn open(path: &Path, session: &Session) -> Result<ModelFile<File>, Failure> 
         ModelFile::HeightField(..) => "parts",
     };
     if there < all {
-        let reason =
-            format_args!("the file is truncated: {there} of its {all} {pieces} are present");
+        let reason = format_args!(
+            "the file is truncated: {there} of its {all} {pieces} are present, and levels are only as fine as those"
+        );
         session.warn(Failure::at(path, reason));
     }
     Ok(model)

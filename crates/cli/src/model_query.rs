@@ -46,8 +46,8 @@ enum VerticalAxis {
 #[derive(Args)]
 #[group(multiple = false)]
 pub struct QueryTarget {
-    /// Largest error: 1px as the camera sees it, 0.01% of the diagonal, or 0.5 in model units; 0 for
-    /// the finest level. In the focus, every point of the result is as close to the mesh, and every
+    /// Largest error: 1px as the camera sees it, 0.01% of the diagonal of the meshes as
+    /// they are stored, whatever nodes make of them, or 0.5 in model units; 0 for the finest level. In the focus, every point of the result is as close to the mesh, and every
     /// point of the mesh to the result, which is proven
     #[arg(long, value_name = "BOUND", value_parser = query_args::error_limit, allow_hyphen_values = true)]
     pub error: Option<ErrorLimit>,

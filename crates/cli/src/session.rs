@@ -61,9 +61,14 @@ impl Session {
     /// # Errors
     /// With `--strict`, if something was left out.
     pub fn note(&self, path: &Path, notes: &[Note]) -> Result<(), Failure> {
+        self.note_with(path, notes, "")
+    }
+
+    /// Like [`Session::note`], with a remedy that is added to each warning.
+    pub fn note_with(&self, path: &Path, notes: &[Note], remedy: &str) -> Result<(), Failure> {
         for kind in [NoteKind::LeftOut, NoteKind::Changed] {
             let Some(list) = Note::list(notes, kind) else { continue };
-            let line = Failure::at(path, format_args!("{}: {list}", kind.word()));
+            let line = Failure::at(path, format_args!("{}: {list}{remedy}", kind.word()));
             if self.strict && kind == NoteKind::LeftOut {
                 return Err(line);
             }

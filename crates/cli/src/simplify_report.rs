@@ -73,6 +73,9 @@ fn advice(report: &Report, topology: Topology) -> Vec<String> {
     if refused(Refusal::Disproportion) {
         advice.push("what is left would destroy the shape: keep more faces".into());
     }
+    if advice.is_empty() {
+        advice.push(format!("ask for {} or more", faces(report.output_faces)));
+    }
     advice
 }
 
@@ -85,11 +88,15 @@ pub fn mesh_notes(report: &Report) -> String {
             text.push_str(&format!("{} {noun} {what}\n", count(number)));
         }
     };
-    line(report.degenerate_faces, ["degenerate face", "degenerate faces"], "left out");
-    line(report.duplicate_faces, ["duplicate face", "duplicate faces"], "left out");
+    line(
+        report.degenerate_faces,
+        ["degenerate face", "degenerate faces"],
+        "left out, as repair does",
+    );
+    line(report.duplicate_faces, ["duplicate face", "duplicate faces"], "left out, as repair does");
     let vertices = ["vertex", "vertices"];
     let non_manifold = ["non-manifold vertex", "non-manifold vertices"];
-    line(report.non_manifold_vertices, non_manifold, "kept in place");
+    line(report.non_manifold_vertices, non_manifold, "kept in place; repair would divide them");
     line(report.held.locked, vertices, "locked");
     line(report.held.protected, vertices, "protected");
     line(report.held.tied, vertices, "tied to others");

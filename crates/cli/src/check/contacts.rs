@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use meshlod::check::{Intersection, IntersectionKind, ObjectId};
 use meshlod::mesh::FaceId;
 
+use crate::check::group::is_touch;
+
 /// All contacts between two objects, with the deepest of them.
 #[derive(Clone, Debug)]
 pub struct ObjectPair {
@@ -56,5 +58,10 @@ impl ObjectPair {
     /// Returns the number of touching face pairs of all objects.
     pub fn faces(&self) -> usize {
         self.counts.iter().sum()
+    }
+
+    /// Returns whether the objects touch, but nowhere pass through or lie in each other.
+    pub fn only_touches(&self) -> bool {
+        KINDS.iter().all(|(kind, _)| is_touch(*kind) || self.counts[*kind as usize] == 0)
     }
 }

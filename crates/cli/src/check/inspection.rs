@@ -1,21 +1,26 @@
 //! Results of a mesh check, collected for its reports.
 
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 use meshlod::Mesh;
-use meshlod::check::{CheckOptions, Finding, Kind, Kinds, Objects, Severity, Summary, check};
+use meshlod::check::{CheckOptions, Finding, Kind, Kinds, ObjectId, Objects, Summary, check};
 
 use crate::check::contacts::Contacts;
+use crate::check::group::{Grade, Group, Ownership};
 use crate::check::marks::Marks;
 
 /// A mesh with the results of its check.
 pub struct Inspection {
     pub mesh: Mesh,
-    pub objects: Objects,
+    pub owners: Ownership,
     pub summary: Summary,
-    /// The first findings of each kind: as many as requested, and at least one.
-    pub findings: Vec<Finding>,
-    /// Largest number of findings listed of each kind.
+    /// Number of findings in each group.
+    groups: BTreeMap<Group, usize>,
+    /// The first findings of each group, in the order of [`Kind::ALL`]: as many as requested, and at
+    /// least one.
+    findings: Vec<(Group, Finding)>,
+    /// Largest number of findings listed of each group.
     pub limit: usize,
     pub contacts: Contacts,
     /// Marks for the pictures of a report page, if one is requested.
@@ -26,7 +31,7 @@ pub struct Inspection {
 /// Options for collecting the results of a mesh check.
 pub struct InspectionOptions {
     pub options: CheckOptions,
-    /// Largest number of findings listed of each kind.
+    /// Largest number of findings listed of each group.
     pub limit: usize,
     /// True to collect marks for the pictures of a report page.
     pub marks: bool,
@@ -36,8 +41,9 @@ impl Inspection {
     pub fn of(mesh: Mesh, order: InspectionOptions) -> Self {
         let InspectionOptions { options, limit, marks } = order;
         let mut this = Self {
-            objects: Objects::of(&mesh, options.objects),
+            owners: Ownership::new(&mesh, Objects::of(&mesh, options.objects)),
             summary: Summary::default(),
+            groups: BTreeMap::new(),
             findings: Vec::new(),
             limit,
             contacts: Contacts::default(),
@@ -54,42 +60,48 @@ impl Inspection {
 
     fn add(&mut self, mesh: &Mesh, finding: &Finding) {
         self.summary.add(finding);
-        if self.summary.count(finding.kind()) <= self.limit.max(1) {
-            self.findings.push(finding.clone());
+        let group = self.owners.group(finding);
+        let count = self.groups.entry(group).or_default();
+        *count += 1;
+        if *count <= self.limit.max(1) {
+            self.findings.push((group, finding.clone()));
         }
         if let &Finding::Contact { objects, faces, intersection } = finding {
             self.contacts.add(objects, faces, intersection);
         }
         if let Some(marks) = &mut self.marks {
-            marks.add(mesh, &self.objects, finding);
+            marks.add(mesh, &self.owners.objects, finding);
         }
     }
 
-    /// Returns the first finding of this kind.
-    pub fn first(&self, kind: Kind) -> Option<&Finding> {
-        self.findings.iter().find(|finding| finding.kind() == kind)
+    /// Iterates over the groups with at least one finding, with their counts, errors first.
+    pub fn groups(&self) -> impl Iterator<Item = (Group, usize)> {
+        self.groups.iter().map(|(&group, &count)| (group, count))
+    }
+
+    /// Iterates over the first findings of a group, of which there is at least one.
+    pub fn first_of(&self, group: Group) -> impl Iterator<Item = &Finding> {
+        self.findings.iter().filter(move |(of, _)| *of == group).map(|(_, finding)| finding)
     }
 
     /// Iterates over the findings that reports list in full.
-    pub fn listed(&self) -> impl Iterator<Item = &Finding> {
+    pub fn listed(&self) -> impl Iterator<Item = &(Group, Finding)> {
         self.findings.iter().filter(|_| self.limit > 0)
     }
 
     /// Returns the number of findings of this kind that reports do not list.
     pub fn left_out(&self, kind: Kind) -> usize {
-        self.summary.count(kind).saturating_sub(self.limit)
+        let groups = self.groups().filter(|(group, _)| group.kind == kind);
+        groups.map(|(_, count)| count.saturating_sub(self.limit)).sum()
     }
 
-    pub fn errors(&self) -> usize {
-        self.summary.of_severity(Severity::Error)
-    }
-
-    pub fn warnings(&self) -> usize {
-        self.summary.of_severity(Severity::Warning)
+    /// Returns the number of findings of this grade.
+    pub fn count(&self, grade: Grade) -> usize {
+        self.groups().filter(|(group, _)| group.grade == grade).map(|(_, count)| count).sum()
     }
 
     /// Returns the name of an object of the mesh.
-    pub fn name(&self, object: meshlod::check::ObjectId) -> &str {
-        self.objects.names.get(object.0 as usize).map_or("", String::as_str)
+    pub fn name(&self, object: ObjectId) -> &str {
+        self.owners.objects.names.get(object.0 as usize).map_or("", String::as_str)
     }
 }

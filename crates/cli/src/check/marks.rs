@@ -1,8 +1,10 @@
 //! Marks on the pictures of a mesh check: faces and edges coloured by their defect.
 
 use meshlod::Mesh;
-use meshlod::check::{Finding, IntersectionKind, Objects};
+use meshlod::check::{Finding, Objects};
 use meshlod::mesh::{FaceId, VertexId};
+
+use crate::check::group::is_touch;
 
 /// A defect or contact that pictures mark by a colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -11,10 +13,10 @@ pub enum Mark {
     NonManifold,
     Crossing,
     SelfCrossing,
-    Touching,
     Inconsistent,
     InsideOut,
     Boundary,
+    Touching,
 }
 
 impl Mark {
@@ -24,11 +26,16 @@ impl Mark {
         Self::NonManifold,
         Self::Crossing,
         Self::SelfCrossing,
-        Self::Touching,
         Self::Inconsistent,
         Self::InsideOut,
         Self::Boundary,
+        Self::Touching,
     ];
+
+    /// Returns whether the mark may be where nothing is wrong.
+    pub fn may_be_meant(self) -> bool {
+        matches!(self, Self::Boundary | Self::Touching)
+    }
 
     pub fn color(self) -> [u8; 3] {
         match self {
@@ -36,10 +43,11 @@ impl Mark {
             Self::NonManifold => [200, 0, 128],
             Self::Crossing => [214, 40, 24],
             Self::SelfCrossing => [122, 62, 208],
-            Self::Touching => [240, 158, 12],
             Self::Inconsistent => [126, 74, 28],
             Self::InsideOut => [20, 150, 140],
             Self::Boundary => [24, 110, 230],
+            // Hardly darker than unmarked faces: nothing to look for.
+            Self::Touching => [168, 196, 180],
         }
     }
 
@@ -50,10 +58,10 @@ impl Mark {
             Self::NonManifold => "non-manifold edge or vertex",
             Self::Crossing => "face that crosses or overlaps another object",
             Self::SelfCrossing => "face that intersects its own object",
-            Self::Touching => "face that touches another object",
             Self::Inconsistent => "edge whose faces are inconsistently oriented",
             Self::InsideOut => "component that is inside out",
-            Self::Boundary => "boundary",
+            Self::Boundary => "boundary: the surface ends",
+            Self::Touching => "objects touch, as parts may",
         }
     }
 }
@@ -102,10 +110,8 @@ impl Marks {
                 faces.iter().for_each(|face| self.face(*face, Mark::SelfCrossing));
             }
             Finding::Contact { faces, intersection, .. } => {
-                let mark = match intersection.kind {
-                    IntersectionKind::Crossing | IntersectionKind::Overlap => Mark::Crossing,
-                    IntersectionKind::Point | IntersectionKind::Segment => Mark::Touching,
-                };
+                let mark =
+                    if is_touch(intersection.kind) { Mark::Touching } else { Mark::Crossing };
                 faces.iter().for_each(|face| self.face(*face, mark));
             }
             Finding::NonFiniteVertex { .. }

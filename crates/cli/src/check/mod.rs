@@ -1,15 +1,19 @@
 //! Output of `check`: findings collected in one pass, shown as JSON, as text and as a page.
 //!
 //! An [`Inspection`](inspection::Inspection) holds the results; [`report`], [`text`] and [`page`]
-//! show them. [`Sites`](sites::Sites) map ids of the flattened scene to those of its meshes.
-//! [`lock_file`] writes and reads locks.
+//! show them by [`group`], each with its [`advice`]. [`Sites`](sites::Sites) map ids of the
+//! flattened scene to those of its meshes. [`lock_file`] writes and reads locks.
 
+mod advice;
 mod contacts;
-mod drawing;
+pub mod drawing;
+mod findings;
+pub mod group;
 pub mod inspection;
 pub mod lock_file;
 mod marks;
 pub mod page;
+mod places;
 pub mod proof;
 pub mod report;
 pub mod sites;

@@ -5,23 +5,23 @@ use std::path::Path;
 use maud::{Markup, html};
 use meshlod::Mesh;
 use meshlod::io::write_file;
-use meshlod::picture::{Camera, Picture};
+use meshlod::picture::Camera;
 
-use crate::check::contacts::KINDS;
+use crate::check::contacts::{KINDS, ObjectPair};
 use crate::check::drawing::{Drawing, Part, SIZE, views};
+use crate::check::findings::findings;
 use crate::check::inspection::Inspection;
 use crate::check::marks::{Mark, Marks};
-use crate::check::report::severity;
+use crate::check::places::short;
 use crate::check::sites::Sites;
 use crate::check::text;
 use crate::failure::Failure;
 use crate::files;
-use crate::numbers::{count, plural};
-use crate::page::counts::Counts;
+use crate::numbers::{count, plural, value};
 use crate::page::document::{Document, document};
-use crate::page::facts::facts;
 use crate::page::figures::{figure, whole};
-use crate::page::renderer::{uri, view_from};
+use crate::page::inline_picture::InlinePicture;
+use crate::page::renderer::view_from;
 
 /// Limit of object pairs in the table; the JSON has more.
 const MOST_PAIRS: usize = 60;
@@ -67,11 +67,11 @@ fn page(name: &str, inspection: &Inspection, sites: &Sites) -> Result<Markup, Fa
 }
 
 fn lead(inspection: &Inspection) -> String {
-    let objects = inspection.objects.names.len();
+    let objects = inspection.owners.objects.names.len();
     let of = format!("{} object{}", count(objects), plural(objects));
     match inspection.summary.total() {
         0 => format!("No findings in {of}."),
-        _ => format!("{} in {of}.", text::verdict(inspection)),
+        _ => format!("{of}: {}.", text::verdict(inspection)),
     }
 }
 
@@ -89,7 +89,7 @@ fn pictures(title: &str, mesh: &Mesh, marks: &Marks) -> Result<Markup, Failure> 
         let camera = Camera::fit_mesh(mesh, &view_from(direction, SIZE));
         let images = drawings.iter().map(|(drawing, about)| {
             let picture = drawing.picture(&camera).map_err(Failure::new)?;
-            Ok(image(&picture, &format!("{title} {side}, {about}")))
+            Ok(InlinePicture::new(&picture, format!("{title} {side}, {about}")))
         });
         figures.push((side, images.collect::<Result<Vec<_>, Failure>>()?));
     }
@@ -104,7 +104,7 @@ fn pictures(title: &str, mesh: &Mesh, marks: &Marks) -> Result<Markup, Failure> 
                 @for (side, images) in figures {
                     figure {
                         figcaption { b { (side) } }
-                        @for image in images { (image) }
+                        @for image in images { (image.zoomable()) }
                     }
                 }
             }
@@ -112,40 +112,30 @@ fn pictures(title: &str, mesh: &Mesh, marks: &Marks) -> Result<Markup, Failure> 
     })
 }
 
-fn image(picture: &Picture, alt: &str) -> Markup {
-    html! { img src=(uri(picture)) alt=(alt) width=(SIZE[0]) height=(SIZE[1]) loading="lazy"; }
-}
-
+/// Explains the colours, those of defects before those of what may be meant.
 fn legend(used: &[Mark]) -> Markup {
-    html! {
-        ul.swatches {
-            @for mark in used {
-                @let [r, g, b] = mark.color();
-                li { span style=(format!("background: rgb({r} {g} {b})")) {} (mark.about()) }
+    let (meant, defects): (Vec<Mark>, _) = used.iter().partition(|mark| mark.may_be_meant());
+    let row = |name: &str, marks: &[Mark]| {
+        html! {
+            @if !marks.is_empty() {
+                ul.swatches {
+                    li { b { (name) } }
+                    @for mark in marks {
+                        @let [r, g, b] = mark.color();
+                        li { span style=(format!("background: rgb({r} {g} {b})")) {} (mark.about()) }
+                    }
+                }
             }
         }
-    }
+    };
+    html! { (row("To look at", &defects)) (row("May be meant", &meant)) }
 }
 
-fn findings(inspection: &Inspection, sites: &Sites) -> Markup {
-    let first = |kind| inspection.first(kind).map(|f| text::first(inspection, sites, f));
-    html! {
-        section id="findings" {
-            h2 { "Findings" }
-            div.intro { (facts(&Counts::of(&inspection.mesh))) }
-            div.scroll tabindex="0" role="region" aria-label="Findings" { table {
-                thead { tr {
-                    th scope="col" { "Kind" } th scope="col" { "Severity" }
-                    th scope="col" { "Count" } th scope="col" { "Where" }
-                } }
-                tbody { @for (kind, number) in inspection.summary.found() { tr {
-                    th scope="row" { (kind.name()) }
-                    td { (severity(kind)) }
-                    td { (whole(number)) }
-                    td { (first(kind).unwrap_or_default()) }
-                } } }
-            } }
-        }
+/// Says whether two objects touch or pass through each other.
+fn meeting(pair: &ObjectPair) -> Markup {
+    match pair.only_touches() {
+        true => html! { span.chip.touch { "touch" } },
+        false => html! { span.chip.warning { "cross" } },
     }
 }
 
@@ -157,7 +147,7 @@ fn contact_table(inspection: &Inspection) -> Markup {
         section id="contacts" {
             h2 { "Contacts" }
             p {
-                (count(pairs.len())) " pair" (plural(pairs.len())) " of objects meet. Depth is the least distance, in model "
+                (text::meetings(inspection)) ". Depth is the least distance, in model "
                 "units, that a face would have to move until it only touches the other."
             }
             div.scroll tabindex="0" role="region" aria-label="Contacts" { table {
@@ -168,11 +158,12 @@ fn contact_table(inspection: &Inspection) -> Markup {
                 } }
                 tbody { @for (objects, pair) in pairs.iter().take(MOST_PAIRS) { tr {
                     th scope="row" {
-                        (inspection.name(objects[0])) " – " (inspection.name(objects[1]))
+                        (short(inspection.name(objects[0]))) " – " (short(inspection.name(objects[1])))
+                        " " (meeting(pair))
                     }
                     td { (number(pair.faces())) }
                     @for touches in pair.counts { td { (number(touches)) } }
-                    td { (figure(pair.deepest.depth, &crate::numbers::value(pair.deepest.depth))) }
+                    td { (figure(pair.deepest.depth, &value(pair.deepest.depth))) }
                 } } }
             } }
             @if more > 0 { p.about { "And " (count(more)) " more." } }

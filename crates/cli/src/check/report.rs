@@ -1,16 +1,18 @@
 //! JSON report of a mesh check.
 
-use meshlod::check::{Degeneracy, Finding, Intersection, Kind, ObjectId, Severity};
+use meshlod::check::{Degeneracy, Finding, Intersection, Kind, ObjectId};
 use serde_json::{Value, json};
 
 use crate::check::contacts::KINDS;
+use crate::check::group::{Grade, Group};
 use crate::check::inspection::Inspection;
 use crate::check::sites::Sites;
 
 /// Returns the report of a mesh check as JSON: counts by kind, findings, contacts by pair of
 /// objects.
 pub fn json(inspection: &Inspection, sites: &Sites) -> Value {
-    let Inspection { mesh, objects, summary, limit, .. } = inspection;
+    let Inspection { mesh, owners, summary, limit, .. } = inspection;
+    let objects = &owners.objects;
     let looked_for = || Kind::ALL.into_iter().filter(|&kind| inspection.kinds.contains(kind));
     let counts = looked_for().map(|kind| (kind.name().to_owned(), summary.count(kind).into()));
     let left_out = looked_for().map(|kind| (kind, inspection.left_out(kind)));
@@ -22,8 +24,9 @@ pub fn json(inspection: &Inspection, sites: &Sites) -> Value {
         "objects": objects.names.len(),
         "components": objects.components,
         "clean": summary.total() == 0,
-        "errors": inspection.errors(),
-        "warnings": inspection.warnings(),
+        "errors": inspection.count(Grade::Error),
+        "warnings": inspection.count(Grade::Warning),
+        "touches": inspection.count(Grade::Touch),
         "counts": Value::Object(counts.collect()),
         "findings": inspection.listed().map(|finding| of(inspection, finding)).collect::<Vec<_>>(),
         "findings_left_out": Value::Object(
@@ -48,19 +51,12 @@ pub fn json(inspection: &Inspection, sites: &Sites) -> Value {
 }
 
 /// Returns the JSON of a finding with its kind, position and ids.
-fn of(inspection: &Inspection, finding: &Finding) -> Value {
+fn of(inspection: &Inspection, (group, finding): &(Group, Finding)) -> Value {
     let mut json = ids(inspection, finding);
-    json["kind"] = finding.kind().name().into();
-    json["severity"] = severity(finding.kind()).into();
+    json["kind"] = group.kind.name().into();
+    json["severity"] = group.grade.name().into();
     json["place"] = json!(finding.place(&inspection.mesh));
     json
-}
-
-pub fn severity(kind: Kind) -> &'static str {
-    match kind.severity() {
-        Severity::Error => "error",
-        Severity::Warning => "warning",
-    }
 }
 
 fn ids(inspection: &Inspection, finding: &Finding) -> Value {

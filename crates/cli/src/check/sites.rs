@@ -36,10 +36,15 @@ impl Sites {
         Self(sites.collect())
     }
 
+    /// Returns whether ids are those of several nodes, which they name.
+    pub fn are_several(&self) -> bool {
+        self.0.len() > 1
+    }
+
     /// Formats a face id, preceded by its node if the scene has several.
     pub fn face(&self, face: FaceId) -> String {
         let site = self.0.iter().rfind(|site| site.first_face <= face.index());
-        match site.filter(|_| self.0.len() > 1) {
+        match site.filter(|_| self.are_several()) {
             Some(site) => format!("f{} of {}", face.index() - site.first_face, site.name),
             None => face.to_string(),
         }
@@ -48,7 +53,7 @@ impl Sites {
     /// Formats a vertex id, preceded by its node if the scene has several.
     pub fn vertex(&self, vertex: VertexId) -> String {
         let site = self.0.iter().rfind(|site| site.first_vertex <= vertex.index());
-        match site.filter(|_| self.0.len() > 1) {
+        match site.filter(|_| self.are_several()) {
             Some(site) => format!("v{} of {}", vertex.index() - site.first_vertex, site.name),
             None => vertex.to_string(),
         }

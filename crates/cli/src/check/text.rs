@@ -1,24 +1,22 @@
 //! Text report of a mesh check.
 
-use meshlod::check::{Finding, Kind};
-
+use crate::check::advice::advice;
 use crate::check::contacts::{KINDS, ObjectPair};
+use crate::check::group::{Grade, Group};
 use crate::check::inspection::Inspection;
-use crate::check::report::severity;
+use crate::check::places::{coordinates, ids, objects, short};
 use crate::check::sites::Sites;
 use crate::numbers::{count, faces, plural, value};
 use crate::table::aligned;
 
 /// Limit of object pairs on a terminal; JSON and page have more.
 const MOST_PAIRS: usize = 12;
-/// Length at which names of objects are cut.
-const LONGEST_NAME: usize = 28;
 
-/// Formats the report: a table of kinds with the first finding of each, a table of contacts, and
-/// totals.
+/// Formats the report: a table of groups with the first finding of each, what to do about them, a
+/// table of contacts, and totals.
 pub fn text(inspection: &Inspection, sites: &Sites) -> String {
-    let objects = inspection.objects.names.len();
-    let components = inspection.objects.components;
+    let objects = inspection.owners.objects.names.len();
+    let components = inspection.owners.objects.components;
     let mut text = format!(
         "{}, {} object{}, {} component{}\n",
         faces(inspection.mesh.faces.len()),
@@ -27,76 +25,68 @@ pub fn text(inspection: &Inspection, sites: &Sites) -> String {
         count(components),
         plural(components),
     );
-    text += &kinds(inspection, sites);
+    text += &groups(inspection, sites);
+    text += &remedies(inspection);
     text += &contacts(inspection);
     text + &format!("{}\n", verdict(inspection))
 }
 
-/// Formats the numbers of errors and warnings in words.
+/// Formats the numbers of errors, warnings and touches in words.
 pub fn verdict(inspection: &Inspection) -> String {
-    let (errors, warnings) = (inspection.errors(), inspection.warnings());
-    match (errors, warnings) {
+    let [errors, warnings, touches] =
+        [Grade::Error, Grade::Warning, Grade::Touch].map(|grade| inspection.count(grade));
+    let defects = format!(
+        "{} error{}, {} warning{}",
+        count(errors),
+        plural(errors),
+        count(warnings),
+        plural(warnings)
+    );
+    match (errors + warnings, touches) {
         (0, 0) => "clean".into(),
-        _ => format!(
-            "{} error{}, {} warning{}",
-            count(errors),
-            plural(errors),
-            count(warnings),
-            plural(warnings)
-        ),
+        (_, 0) => defects,
+        (_, 1) => format!("{defects}; 1 place where objects touch"),
+        _ => format!("{defects}; {} places where objects touch", count(touches)),
     }
 }
 
-fn kinds(inspection: &Inspection, sites: &Sites) -> String {
-    let found: Vec<(Kind, usize)> = inspection.summary.found().collect();
-    let row = |&(kind, number): &(Kind, usize)| {
-        let name = format!("{:<7}  {}", severity(kind), kind.name());
+fn groups(inspection: &Inspection, sites: &Sites) -> String {
+    let found: Vec<(Group, usize)> = inspection.groups().collect();
+    let row = |&(group, number): &(Group, usize)| {
+        let name = format!("{:<7}  {}", group.grade.name(), group.kind.name());
         [name, count(number)]
     };
     let rows: Vec<[String; 2]> = found.iter().map(row).collect();
     let table = aligned(&rows);
-    let first = |kind| inspection.first(kind).map(|finding| first(inspection, sites, finding));
-    let lines = table.lines().zip(&found).map(|(line, &(kind, _))| {
-        format!("  {line}  {}", first(kind).unwrap_or_default()).trim_end().to_owned() + "\n"
+    let lines = table.lines().zip(&found).map(|(line, &(group, _))| {
+        format!("  {line}  {}", first(inspection, sites, group)).trim_end().to_owned() + "\n"
     });
     lines.collect()
 }
 
-/// Describes the place of a finding, by ids and position.
-pub fn first(inspection: &Inspection, sites: &Sites, finding: &Finding) -> String {
-    let ids = match finding {
-        Finding::BadAttributes { error } => return error.to_string(),
-        Finding::Crowded { found } => {
-            return format!("stopped after {} pairs of faces that meet", count(*found));
-        }
-        Finding::NonFiniteVertex { vertex }
-        | Finding::UnusedVertex { vertex }
-        | Finding::NonManifoldVertex { vertex, .. } => sites.vertex(*vertex),
-        Finding::BadIndex { face, .. }
-        | Finding::DegenerateFace { face, .. }
-        | Finding::InsideOut { face, .. } => sites.face(*face),
-        Finding::CoincidentVertices { vertices } => {
-            let [a, b] = [vertices.first(), vertices.get(1)];
-            [a, b].into_iter().flatten().map(|v| sites.vertex(*v)).collect::<Vec<_>>().join(" and ")
-        }
-        Finding::BoundaryLoop { vertices, .. } => {
-            let number = vertices.len();
-            format!("{} vertices from {}", count(number), sites.vertex(vertices[0]))
-        }
-        Finding::InconsistentEdge { edge, .. } | Finding::NonManifoldEdge { edge, .. } => {
-            edge.map(|v| sites.vertex(v)).join(" to ")
-        }
-        Finding::DuplicateFace { face, of } => {
-            format!("{} duplicates {}", sites.face(*face), sites.face(*of))
-        }
-        Finding::SelfIntersection { faces, .. } | Finding::Contact { faces, .. } => {
-            faces.map(|f| sites.face(f)).join(" and ")
-        }
-    };
-    match finding.place(&inspection.mesh) {
-        Some(place) => format!("first: {ids} at {}", place.map(value).join(" ")),
-        None => format!("first: {ids}"),
+/// Describes the place of the first finding of a group, by ids, objects and position.
+fn first(inspection: &Inspection, sites: &Sites, group: Group) -> String {
+    let Some(finding) = inspection.first_of(group).next() else { return String::new() };
+    let mut text = ids(finding, sites);
+    if finding.place(&inspection.mesh).is_none() {
+        return text;
     }
+    let objects = objects(finding, inspection);
+    // Ids of a scene name its nodes already.
+    if !objects.is_empty() && !sites.are_several() {
+        text += &format!(" in {objects}");
+    }
+    format!("first: {text} at {}", coordinates(finding, inspection))
+}
+
+/// Formats a line for each group of findings that says what to do about it.
+fn remedies(inspection: &Inspection) -> String {
+    let line = |(group, _): (Group, usize)| {
+        let name = format!("{} ({})", group.kind.name(), group.grade.name());
+        format!("  {name}: {}\n", advice(group).remedy.replace('`', ""))
+    };
+    let lines: String = inspection.groups().map(line).collect();
+    if lines.is_empty() { lines } else { format!("what to do\n{lines}") }
 }
 
 /// Formats the table of object pairs, those with the most face pairs first.
@@ -115,11 +105,23 @@ fn contacts(inspection: &Inspection) -> String {
     let table = aligned(&rows);
     let more = pairs.len().saturating_sub(MOST_PAIRS);
     let more = if more > 0 { format!("  and {} more\n", count(more)) } else { String::new() };
-    format!(
-        "contacts between {} pair{} of objects\n{table}{more}",
-        count(pairs.len()),
-        plural(pairs.len())
-    )
+    format!("{}\n{table}{more}", meetings(inspection))
+}
+
+/// Says how many pairs of objects meet, and how many of them only touch.
+pub fn meetings(inspection: &Inspection) -> String {
+    let pairs = inspection.contacts.by_size();
+    let touching = pairs.iter().filter(|(_, pair)| pair.only_touches()).count();
+    let all = format!("{} pair{} of objects", count(pairs.len()), plural(pairs.len()));
+    match pairs.len() - touching {
+        0 => format!("{all} that only touch"),
+        _ if touching == 0 => format!("{all} that pass through each other"),
+        crossing => format!(
+            "{all} that meet: {} only touch, {} pass through each other",
+            count(touching),
+            count(crossing)
+        ),
+    }
 }
 
 fn row(name: String, pair: &ObjectPair) -> Vec<String> {
@@ -127,12 +129,4 @@ fn row(name: String, pair: &ObjectPair) -> Vec<String> {
     let depth = if pair.deepest.depth > 0.0 { value(pair.deepest.depth) } else { "-".into() };
     let counts = [pair.faces()].into_iter().chain(pair.counts).map(some);
     [name].into_iter().chain(counts).chain([depth]).collect()
-}
-
-fn short(name: &str) -> String {
-    let name: String = name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-    if name.chars().count() <= LONGEST_NAME {
-        return name;
-    }
-    name.chars().take(LONGEST_NAME - 1).chain(['…']).collect()
 }

@@ -11,7 +11,7 @@ use crate::constraints::ConstraintArgs;
 use crate::failure::Failure;
 use crate::fuse::FuseReport;
 use crate::page::chain::{Chain, ChainBuilder, ChainSetup, Level};
-use crate::page::renderer::{LevelPictures, SubjectRenderer};
+use crate::page::renderer::{LARGE, LevelPictures, SubjectRenderer};
 use crate::page::subject::Subject;
 use crate::parse::LevelSize;
 use crate::session::Session;
@@ -113,7 +113,7 @@ impl Comparison<'_> {
         };
         let reference = ReferenceImages::with_style(&subject.mesh, style)
             .map_err(|error| Failure::new(format_args!("{}: {error}", subject.name)))?;
-        Ok(PictureTools { renderer: SubjectRenderer::new(subject, original), reference })
+        Ok(PictureTools { renderer: SubjectRenderer::new(subject, original, LARGE), reference })
     }
 
     /// Runs a method through all sizes. Fails only if a picture or a file does.
@@ -161,6 +161,14 @@ impl Comparison<'_> {
 }
 
 impl ComparisonResult {
+    /// Iterates over the sizes that at least one method came to, with their indices.
+    pub fn sizes<'s>(
+        &self,
+        sizes: &'s [LevelSize],
+    ) -> impl Iterator<Item = (usize, &'s LevelSize)> {
+        sizes.iter().enumerate().filter(|(index, _)| self.at(*index).next().is_some())
+    }
+
     /// Iterates over the methods that reached one size, with their simplified meshes.
     pub fn at(&self, size: usize) -> impl Iterator<Item = (&MethodResult, &Level)> + Clone {
         self.entries.iter().filter_map(move |entry| Some((entry, entry.chain.levels.get(size)?)))

@@ -1,13 +1,15 @@
 //! `compare`: runs every method on one mesh and writes a table, files, and a page with pictures.
 //!
-//! [`comparison`] builds and measures the levels, and [`output`] writes them; [`page`] and
-//! [`summary`] show the same figures on a page and on the terminal.
+//! [`comparison`] builds and measures the levels, and [`output`] writes them; [`verdict`] says
+//! which method did best, and [`page`] and [`summary`] show the same figures on a page and on the
+//! terminal.
 
 mod comparison;
 mod output;
 mod page;
 mod section;
 mod summary;
+mod verdict;
 
 use std::path::PathBuf;
 

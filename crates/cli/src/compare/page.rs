@@ -13,30 +13,35 @@ use crate::page::facts::facts;
 
 /// Builds the HTML page of a comparison.
 pub fn page(comparison: &Comparison<'_>, outcome: &ComparisonResult) -> Markup {
-    let sizes = || (0..comparison.sizes.len()).filter(|&size| outcome.at(size).next().is_some());
-    let links = sizes().map(|size| (anchor(size), comparison.sizes[size].to_string()));
+    let sizes = || outcome.sizes(&comparison.sizes);
+    let links = sizes().map(|(index, size)| (anchor(index), size.to_string()));
     document(Document {
         title: &format!("meshlod compare: {}", comparison.subject.title),
         links: links.chain([("files".into(), "Files".into())]).collect(),
-        header: header(comparison),
+        header: header(comparison, outcome),
         main: html! {
             (overview(comparison, outcome))
-            @for size in sizes() { (section(comparison, outcome, size)) }
+            @for (index, _) in sizes() { (section(comparison, outcome, index)) }
             (files(comparison, outcome))
         },
     })
 }
 
-fn header(comparison: &Comparison<'_>) -> Markup {
+/// Opens with a sentence for each size: which method came closest, and which was fastest.
+fn header(comparison: &Comparison<'_>, outcome: &ComparisonResult) -> Markup {
     let threads = rayon::current_num_threads();
     html! {
         h1 id="top" { (comparison.subject.title) }
+        @for (_, verdict) in outcome.verdicts(&comparison.sizes) {
+            p.lead.opening { (verdict.sentence()) }
+        }
         p.lead {
             "Simplified by " (comparison.methods.len()) " method" (plural(comparison.methods.len()))
             ", independently of each other. Each level is measured against the original: from every "
             "vertex and " (count(comparison.options.samples)) " samples each way to the exact closest "
             "point. Times are for one run on " (threads) " thread" (plural(threads))
             ", without reading and writing."
+            @if comparison.pictures { " A click enlarges a picture." }
         }
     }
 }

@@ -1,10 +1,12 @@
 //! Section of the comparison page about one size.
 
 use maud::{Markup, html};
+use meshlod::Method;
 use meshlod::measure::Distance;
 use meshlod::simplify::Refusal;
 
 use crate::compare::comparison::{Comparison, ComparisonResult, MethodResult};
+use crate::compare::verdict::is_default;
 use crate::page::chain::Level;
 use crate::page::chart::{Across, Chart, Series, chart};
 use crate::page::columns::{self, Column};
@@ -53,11 +55,16 @@ fn pictures(comparison: &Comparison<'_>, outcome: &ComparisonResult, size: usize
 
 fn caption(entry: &MethodResult, level: &Level) -> Markup {
     html! {
-        b { (key(entry.chain.method)) (entry.chain.method.name()) }
+        b { (key(entry.chain.method)) (entry.chain.method.name()) (default(entry.chain.method)) }
         span { (whole(level.report.output_faces)) " faces" }
         @if let Some(rms) = level.percent(Distance::rms) { span { "RMS " (percent(rms)) "%" } }
         (not_reached(level))
     }
+}
+
+/// Marks the method that `simplify` uses unless told otherwise.
+fn default(method: Method) -> Markup {
+    html! { @if is_default(method) { " " span.chip { "default" } } }
 }
 
 fn not_reached(level: &Level) -> Markup {
@@ -106,7 +113,7 @@ fn name(entry: &MethodResult, level: &Level) -> Markup {
     let method = entry.chain.method;
     html! {
         (key(method)) a href=(level.file) { (method.name()) }
-        " " (not_reached(level))
+        (default(method)) " " (not_reached(level))
         @if let Err(reason) = &level.measured { " " span.mark { "not measured: " (reason) } }
     }
 }
@@ -116,7 +123,7 @@ fn failed(entry: &MethodResult, columns: usize) -> Markup {
     let failure = entry.failure.as_ref().map(ToString::to_string).unwrap_or_default();
     html! {
         tr {
-            th scope="row" { (key(method)) (method.name()) }
+            th scope="row" { (key(method)) (method.name()) (default(method)) }
             td.mark colspan=(columns) { (failure) }
         }
     }

@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use crate::compare::comparison::{COMPARED_SIDE, Comparison, ComparisonResult, MethodResult};
 use crate::compare::output::Output;
+use crate::compare::verdict;
 use crate::files;
 use crate::numbers;
 use crate::page::chain::{Chain, Level};
@@ -27,6 +28,7 @@ pub fn json(comparison: &Comparison<'_>, outcome: &ComparisonResult, output: &Ou
             "failed": entry.failure.as_ref().map(ToString::to_string),
         })
     };
+    let verdicts = outcome.verdicts(&comparison.sizes).map(|(_, verdict)| verdict.json());
     json!({
         "input": comparison.subject.name,
         "counts": input.json(),
@@ -36,6 +38,7 @@ pub fn json(comparison: &Comparison<'_>, outcome: &ComparisonResult, output: &Ou
         "threads": rayon::current_num_threads(),
         "folder": files::name(&output.folder),
         "page": "index.html",
+        "verdicts": verdicts.collect::<Vec<_>>(),
         "methods": outcome.entries.iter().map(entry).collect::<Vec<_>>(),
     })
 }
@@ -44,8 +47,8 @@ pub fn json(comparison: &Comparison<'_>, outcome: &ComparisonResult, output: &Ou
 pub fn text(comparison: &Comparison<'_>, outcome: &ComparisonResult, output: &Output) -> String {
     let input = &comparison.subject.counts;
     let mut text = format!("{}: {}\n", comparison.subject.name, numbers::faces(input.faces));
-    for (i, size) in comparison.sizes.iter().enumerate() {
-        text += &format!("\n{size}\n{}", table(comparison, outcome, i));
+    for (i, verdict) in outcome.verdicts(&comparison.sizes) {
+        text += &format!("\n{}\n{}", verdict.sentence(), table(comparison, outcome, i));
     }
     let levels = outcome.entries.iter().flat_map(|entry| &entry.chain.levels);
     text.push('\n');
@@ -62,7 +65,7 @@ fn table(comparison: &Comparison<'_>, outcome: &ComparisonResult, size: usize) -
     let columns = Column::of(input, levels.iter().copied());
     let heads = columns.iter().map(|column| format!("{} ", column.head.to_lowercase()));
     let mut rows = vec![std::iter::once(String::new()).chain(heads).collect::<Vec<_>>()];
-    rows.extend(outcome.at(size).map(|(entry, _)| vec![entry.chain.method.name().into()]));
+    rows.extend(outcome.at(size).map(|(entry, _)| vec![verdict::named(entry.chain.method)]));
     for column in columns {
         let wins = column.winners(input, &levels);
         for ((row, level), won) in rows[1..].iter_mut().zip(&levels).zip(wins) {

@@ -1,10 +1,12 @@
 //! `demo`: simplifies samples and writes the levels and one page with pictures.
 //!
-//! [`samples`] lists the meshes, and [`sample_report`] simplifies and measures them; [`page`] and
+//! [`samples`] lists the meshes, and [`sample_report`] simplifies and measures them; [`pipeline`]
+//! takes the first through all steps from a broken mesh to a compressed one. [`page`] and
 //! [`summary`] show the same figures on a page and on the terminal.
 
 mod next_steps;
 mod page;
+mod pipeline;
 mod sample_report;
 mod samples;
 mod section;
@@ -22,9 +24,10 @@ use crate::answer::Answer;
 use crate::failure::Failure;
 use crate::files;
 use crate::session::Session;
+use pipeline::Pipeline;
 use sample_report::SampleReport;
 
-/// Simplify sample meshes by several methods, and write a report page with pictures
+/// Take sample meshes through all steps, compare methods, and write a report page with pictures
 #[derive(Args)]
 pub struct Demo {
     /// Folder to write to; created if missing
@@ -35,6 +38,7 @@ pub struct Demo {
 /// Results of a demo run.
 struct DemoResult {
     reports: Vec<SampleReport>,
+    pipeline: Pipeline,
     /// First sample at several levels, side by side.
     title_picture: title_picture::TitlePicture,
     page: PathBuf,
@@ -54,13 +58,15 @@ impl Demo {
         files::make_folder(&self.folder)?;
         let make = |sample| SampleReport::make(sample, &self.folder, session);
         let reports: Vec<SampleReport> = samples::ALL.iter().map(make).collect::<Result<_, _>>()?;
+        let pipeline = Pipeline::make(&reports[0], &self.folder, session)?;
         session.progress.stage("drawing the picture and writing the page");
         let title_picture = title_picture::TitlePicture::make(&reports[0], &self.folder)?;
         let page = self.folder.join("index.html");
-        let html = page::page(&reports, &title_picture).into_string();
+        let html = page::page(&reports, &pipeline, &title_picture).into_string();
         write_file(&page, html.as_bytes())?;
         let seconds = start.elapsed().as_secs_f64();
-        let result = DemoResult { reports, title_picture, page, page_bytes: html.len(), seconds };
+        let result =
+            DemoResult { reports, pipeline, title_picture, page, page_bytes: html.len(), seconds };
         Ok(Answer::new(summary::json(&result), summary::text(&result)))
     }
 }

@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 
+use crate::demo::pipeline::Pipeline;
 use crate::demo::sample_report::SampleReport;
 
 /// Steps with their commands.
@@ -35,11 +36,15 @@ pub fn commands() -> Markup {
 }
 
 /// Lists the mesh files written next to the page.
-pub fn files(reports: &[SampleReport]) -> Markup {
+pub fn files(reports: &[SampleReport], pipeline: &Pipeline) -> Markup {
     html! {
         section id="files" {
             h2 { "Files next to this page" }
             div.files {
+                div {
+                    h3 { "All steps" }
+                    ul { @for (name, step) in pipeline.files() { (file(name, step)) } }
+                }
                 @for report in reports {
                     div {
                         h3 { (report.subject.title) }

@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 
+use crate::demo::pipeline::{self, Pipeline};
 use crate::demo::sample_report::{SAMPLES, SampleReport};
 use crate::demo::title_picture::TitlePicture;
 use crate::demo::{next_steps, section};
@@ -9,18 +10,22 @@ use crate::numbers::count;
 use crate::page::document::{Document, document};
 
 /// Builds the HTML page of the demo.
-pub fn page(reports: &[SampleReport], title_picture: &TitlePicture) -> Markup {
+pub fn page(reports: &[SampleReport], pipeline: &Pipeline, title_picture: &TitlePicture) -> Markup {
     let samples =
         reports.iter().map(|report| (report.sample.name.into(), report.subject.title.clone()));
     let rest = [("own", "Your mesh"), ("files", "Files")].map(|(a, b)| (a.into(), b.into()));
     document(Document {
         title: "meshlod demo: fewer triangles, measured",
-        links: samples.chain(rest).collect(),
+        links: std::iter::once(("pipeline".into(), "All steps".into()))
+            .chain(samples)
+            .chain(rest)
+            .collect(),
         header: header(reports, title_picture),
         main: html! {
+            (pipeline::section::section(pipeline))
             @for report in reports { (section::section(report)) }
             (next_steps::commands())
-            (next_steps::files(reports))
+            (next_steps::files(reports, pipeline))
         },
     })
 }
@@ -38,8 +43,7 @@ fn header(reports: &[SampleReport], title_picture: &TitlePicture) -> Markup {
             "figure here was made by the command that wrote this page."
         }
         figure.hero {
-            img src=(title_picture.picture.uri) alt=(title_picture.picture.alt)
-                width=(title_picture.size[0]) height=(title_picture.size[1]);
+            (title_picture.picture.image())
             figcaption {
                 @for faces in &title_picture.faces { span { b { (count(*faces)) } " faces" } }
             }

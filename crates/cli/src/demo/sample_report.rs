@@ -10,7 +10,7 @@ use crate::demo::samples::DemoSample;
 use crate::demo::{METHODS, main_method};
 use crate::failure::Failure;
 use crate::page::chain::{Chain, ChainBuilder, ChainSetup, Level, LevelMesh};
-use crate::page::renderer::{LevelPictures, SubjectRenderer};
+use crate::page::renderer::{LevelPictures, SIZE, SubjectRenderer};
 use crate::page::subject::Subject;
 use crate::parse::LevelSize;
 use crate::session::Session;
@@ -63,7 +63,7 @@ impl SampleReport {
             chains.push(Chain { method, levels });
         }
         session.progress.stage(&format!("{}: drawing", sample.name));
-        let renderer = SubjectRenderer::new(&subject, &original);
+        let renderer = SubjectRenderer::new(&subject, &original, SIZE);
         let pictures =
             main.iter().map(|mesh| renderer.level(mesh, "")).collect::<Result<_, _>>()?;
         let input = renderer.input()?;

@@ -25,11 +25,15 @@ pub fn section(report: &SampleReport) -> Markup {
                 (facts(&report.subject.counts))
             }
             (pictures(report))
+            // As wide as the page, so that no column is cut off on a common screen.
+            (figures(report))
             div.measured {
                 (chart(&errors(report)))
-                (figures(report))
+                div {
+                    p.about { (legend(report)) }
+                    p.verdict { (verdict(report)) }
+                }
             }
-            p.verdict { (verdict(report)) }
         }
     }
 }
@@ -76,26 +80,30 @@ fn figures(report: &SampleReport) -> Markup {
     let input = &report.subject.counts;
     let columns = Column::of(input, report.chains.iter().flat_map(|chain| &chain.levels));
     html! {
-        div {
-            p.about { (columns::legend(input, &columns).join(" ")) }
-            div.scroll tabindex="0" role="region" aria-label="Figures" { table {
-                (table::heads("Level", &columns))
-                @for chain in &report.chains {
-                    tbody {
-                        tr.method {
-                            th colspan=(columns.len() + 1) scope="rowgroup" {
-                                (key(chain.method)) (chain.method.name()) (refusals(chain))
-                            }
-                        }
-                        @for level in &chain.levels {
-                            @let name = html! { a href=(level.file) { (level.size) } };
-                            (table::row(&name, level, input, &columns, &[]))
+        div.scroll tabindex="0" role="region" aria-label="Figures" { table {
+            (table::heads("Level", &columns))
+            @for chain in &report.chains {
+                tbody {
+                    tr.method {
+                        th colspan=(columns.len() + 1) scope="rowgroup" {
+                            (key(chain.method)) (chain.method.name()) (refusals(chain))
                         }
                     }
+                    @for level in &chain.levels {
+                        @let name = html! { a href=(level.file) { (level.size) } };
+                        (table::row(&name, level, input, &columns, &[]))
+                    }
                 }
-            } }
-        }
+            }
+        } }
     }
+}
+
+/// Explains the columns of the table.
+fn legend(report: &SampleReport) -> String {
+    let input = &report.subject.counts;
+    let columns = Column::of(input, report.chains.iter().flat_map(|chain| &chain.levels));
+    columns::legend(input, &columns).join(" ")
 }
 
 /// Shows the refused contractions on the way to the last level.

@@ -21,6 +21,7 @@ pub fn json(result: &DemoResult) -> Value {
         "picture": files::name(&result.title_picture.file),
         "seconds": result.seconds,
         "samples_each_way": SAMPLES,
+        "pipeline": result.pipeline.json(result.folder()),
         "samples": result.reports.iter().map(|report| of_report(report, result.folder())).collect::<Vec<_>>(),
     })
 }
@@ -58,8 +59,9 @@ pub fn text(result: &DemoResult) -> String {
         }
     }
     format!(
-        "{}RMS, max: measured distance from the input, in % of the diagonal\n\
+        "from a broken mesh to a compressed one\n{}{}RMS, max: measured distance from the input, in % of the diagonal\n\
          done in {:.1} s, page of {:.1} MB\n{}\n",
+        result.pipeline.text(),
         aligned(&rows),
         result.seconds,
         result.page_bytes as f64 / 1e6,

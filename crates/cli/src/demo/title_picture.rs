@@ -9,6 +9,7 @@ use meshlod::picture::{Background, Camera, Style, render, side_by_side};
 use crate::demo::sample_report::SampleReport;
 use crate::failure::Failure;
 use crate::numbers::count;
+use crate::page::inline_picture::InlinePicture;
 use crate::page::renderer;
 
 /// Width and height of one of its four tiles.
@@ -17,8 +18,7 @@ const SIZE: [u32; 2] = [400, 320];
 /// Title picture of the demo page, embedded in it and as a file.
 pub struct TitlePicture {
     pub file: PathBuf,
-    pub picture: renderer::InlinePicture,
-    pub size: [u32; 2],
+    pub picture: InlinePicture,
     /// Number of faces of the mesh in each tile of the picture.
     pub faces: Vec<usize>,
 }
@@ -41,7 +41,6 @@ impl TitlePicture {
         let faces: Vec<usize> = meshes.iter().map(|mesh| mesh.faces.len()).collect();
         let counts: Vec<String> = faces.iter().map(|&faces| count(faces)).collect();
         let alt = format!("{} with {} faces", subject.title, counts.join(", "));
-        let inline = renderer::InlinePicture { uri: renderer::uri(&picture), alt };
-        Ok(Self { file, size: [picture.width(), picture.height()], picture: inline, faces })
+        Ok(Self { file, picture: InlinePicture::new(&picture, alt), faces })
     }
 }

@@ -14,6 +14,7 @@ pub mod document;
 pub mod facts;
 pub mod figures;
 pub mod heat;
+pub mod inline_picture;
 pub mod key;
 pub mod level_json;
 pub mod picture_row;

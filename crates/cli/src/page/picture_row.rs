@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use crate::page::figures::whole;
 use crate::page::heat;
-use crate::page::renderer::{InlinePicture, LevelPictures, SIZE};
+use crate::page::renderer::LevelPictures;
 use crate::page::subject::Subject;
 
 /// Column of pictures of one mesh, with a caption.
@@ -41,16 +41,16 @@ pub fn picture_row(
                     b { "Input" }
                     span { (whole(subject.counts.faces)) " faces" }
                 }
-                (image(&input.shaded))
-                (image(&input.wired))
+                (input.shaded.zoomable())
+                (input.wired.zoomable())
                 (legend())
             }
             @for PictureColumn { caption, pictures } in levels {
                 figure {
                     figcaption { (caption) }
-                    (image(&pictures.shaded))
-                    (image(&pictures.wired))
-                    @if let Some(heat) = &pictures.heat { (image(heat)) }
+                    (pictures.shaded.zoomable())
+                    (pictures.wired.zoomable())
+                    @if let Some(heat) = &pictures.heat { (heat.zoomable()) }
                 }
             }
         }
@@ -65,10 +65,6 @@ fn columns(pictures: usize) -> usize {
 }
 
 const MOST_COLUMNS: usize = 6;
-
-fn image(picture: &InlinePicture) -> Markup {
-    html! { img src=(picture.uri) alt=(picture.alt) width=(SIZE[0]) height=(SIZE[1]) loading="lazy"; }
-}
 
 /// Shows the scale of the heat maps, in place of one for the input.
 fn legend() -> Markup {

@@ -1,16 +1,13 @@
 //! Pictures of a mesh and its simplified levels from one viewpoint.
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
 use meshlod::Mesh;
 use meshlod::measure::{PreparedSurface, vertex_errors};
-use meshlod::picture::{
-    Background, Camera, Lighting, Normals, Paint, Picture, Style, View, render,
-};
+use meshlod::picture::{Background, Camera, Lighting, Normals, Paint, Style, View, render};
 
 use crate::failure::Failure;
 use crate::numbers;
 use crate::page::heat;
+use crate::page::inline_picture::InlinePicture;
 use crate::page::refine::refined;
 use crate::page::style::SubjectStyle;
 use crate::page::subject::Subject;
@@ -19,13 +16,8 @@ use crate::page::subject::Subject;
 /// screens.
 pub const SIZE: [u32; 2] = [384, 320];
 
-/// Picture that is embedded in an HTML page.
-pub struct InlinePicture {
-    /// PNG of the picture as a data URI.
-    pub uri: String,
-    /// Alternative text of the picture for screen readers.
-    pub alt: String,
-}
+/// Width and height of pictures that have more to show when they are enlarged.
+pub const LARGE: [u32; 2] = [576, 480];
 
 /// Pictures of a mesh or of one of its simplified levels.
 pub struct LevelPictures {
@@ -40,12 +32,14 @@ pub struct SubjectRenderer<'s> {
     subject: &'s Subject,
     original: &'s PreparedSurface<'s>,
     camera: Camera,
+    /// Width and height of the pictures in pixels.
+    size: [u32; 2],
 }
 
 impl<'s> SubjectRenderer<'s> {
-    pub fn new(subject: &'s Subject, original: &'s PreparedSurface<'s>) -> Self {
-        let camera = Camera::fit_mesh(&subject.mesh, &view(&subject.style, SIZE, 0.94));
-        Self { subject, original, camera }
+    pub fn new(subject: &'s Subject, original: &'s PreparedSurface<'s>, size: [u32; 2]) -> Self {
+        let camera = Camera::fit_mesh(&subject.mesh, &view(&subject.style, size, 0.94));
+        Self { subject, original, camera, size }
     }
 
     /// Draws the pictures of the original mesh.
@@ -100,9 +94,9 @@ impl<'s> SubjectRenderer<'s> {
         style: Style<'_>,
         alt: String,
     ) -> Result<InlinePicture, Failure> {
-        let style = Style { size: SIZE, background: Background::Transparent, ..style };
+        let style = Style { size: self.size, background: Background::Transparent, ..style };
         let picture = render(mesh, &self.camera, &style).map_err(Failure::new)?;
-        Ok(InlinePicture { uri: uri(&picture), alt })
+        Ok(InlinePicture::new(&picture, alt))
     }
 }
 
@@ -129,11 +123,6 @@ pub fn view_from(direction: [f64; 3], size: [u32; 2]) -> View {
     let [width, height] = size.map(f64::from);
     let view = View { direction, fov_rad: FOV_RAD, fill: 0.94, ..View::default() };
     View { aspect: width / height, ..view }
-}
-
-/// Encodes a picture as the data URI of a PNG.
-pub fn uri(picture: &Picture) -> String {
-    format!("data:image/png;base64,{}", STANDARD.encode(picture.png()))
 }
 
 fn faces(mesh: &Mesh, by: &str) -> String {

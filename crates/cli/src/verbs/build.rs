@@ -91,6 +91,8 @@ enum ModelArg {
 /// File contents with the figures to report.
 struct Built {
     bytes: Vec<u8>,
+    /// Size of the levels alone, without images, nodes and materials.
+    surface_bytes: usize,
     /// Number of faces of the finest level.
     faces: usize,
     rounding: f64,
@@ -172,12 +174,16 @@ impl Build {
         let alone = mesh.positions.len() - vertex_count(mesh);
         if alone > 0 {
             let some = if alone == 1 { "vertex" } else { "vertices" };
-            let reason = format_args!("left out: {} unused {some}", count(alone));
+            let reason =
+                format_args!("left out: {} unused {some}, which no face needs", count(alone));
             session.warn(Failure::at(&self.input, reason));
         }
         let odd = mesh.faces.len() - built.faces;
         if odd > 0 {
-            let reason = format_args!("left out: {}, degenerate or duplicate", faces(odd));
+            let reason = format_args!(
+                "left out: {}, degenerate or duplicate; check lists them, and repair removes them",
+                faces(odd)
+            );
             session.warn(Failure::at(&self.input, reason));
         }
     }
@@ -215,6 +221,7 @@ impl Build {
         let storage = Storage { rounding, updates_per_chunk: self.in_chunk, errors, attributes };
         let written = Archive::write(&forest, &storage);
         let (bytes, certificate) = written.map_err(|error| Failure::at(&self.input, error))?;
+        let surface_bytes = bytes.len();
         let archive = Archive::open(bytes).and_then(|archive| match rest {
             Some(rest) => {
                 session.progress.stage("packing images");
@@ -236,6 +243,7 @@ impl Build {
             rounding: model_file::rounding(&archive),
             moved: model_file::rounding_text(&archive),
             bytes: archive.into_source(),
+            surface_bytes,
             levels,
         })
     }
@@ -273,6 +281,7 @@ impl Build {
         let rounding = field.fit().rounded;
         let part = percent(100.0 * rounding / mesh.bounds().diagonal());
         Ok(Built {
+            surface_bytes: bytes.len(),
             bytes,
             faces: mesh.faces.len(),
             rounding,
@@ -292,7 +301,8 @@ impl Build {
             "input_vertices": vertices,
             "input_faces": mesh.faces.len(),
             "bytes": built.bytes.len(),
-            "bytes_per_vertex": built.bytes.len() as f64 / vertices as f64,
+            "scene_bytes": built.bytes.len() - built.surface_bytes,
+            "bytes_per_vertex": built.surface_bytes as f64 / vertices as f64,
             "rounding": built.rounding,
             "build_seconds": time.as_secs_f64(),
         });
@@ -320,11 +330,12 @@ impl Build {
     fn text(&self, mesh: &Mesh, built: &Built, time: Duration) -> String {
         let vertices = vertex_count(mesh);
         let mut text = format!(
-            "{}: all levels of {} in {} bytes, {:.2} per vertex; {}\n",
+            "{}: all levels of {} in {} bytes, {:.2} per vertex{}; {}\n",
             files::name(&self.output),
             faces(built.faces),
             count(built.bytes.len()),
-            built.bytes.len() as f64 / vertices as f64,
+            built.surface_bytes as f64 / vertices as f64,
+            built.scene_text(),
             built.moved,
         );
         text += &match &built.levels {
@@ -342,6 +353,16 @@ impl Build {
             ),
         };
         text + &format!("build_seconds: {}\n", value(time.as_secs_f64()))
+    }
+}
+
+impl Built {
+    /// Formats what images, nodes and materials take; empty if there are none.
+    fn scene_text(&self) -> String {
+        match self.bytes.len() - self.surface_bytes {
+            0 => String::new(),
+            bytes => format!(" without the scene's own {}", count(bytes)),
+        }
     }
 }
 

@@ -12,6 +12,7 @@ use meshlod::{Scene, scene_locks};
 
 use crate::answer::{Answer, Outcome};
 use crate::args::ReadArgs;
+use crate::check::group::Grade;
 use crate::check::inspection::{Inspection, InspectionOptions};
 use crate::check::lock_file::{self, FileRows};
 use crate::check::sites::Sites;
@@ -34,7 +35,7 @@ pub struct Check {
     /// Also exit with 3 on findings of this severity
     #[arg(long, value_name = "WHAT")]
     deny: Option<Deny>,
-    /// Maximum number of findings listed of each kind, and of pairs of objects
+    /// Maximum number of findings listed of each kind and severity, and of pairs of objects
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = parse::whole,
         allow_negative_numbers = true)]
     limit: usize,
@@ -113,8 +114,8 @@ impl Check {
         for file in written {
             text += &format!("{file}\n");
         }
-        let denied = self.deny == Some(Deny::Warnings) && inspection.warnings() > 0;
-        let outcome = Outcome::Found.when(inspection.errors() > 0 || denied);
+        let denied = self.deny == Some(Deny::Warnings) && inspection.count(Grade::Warning) > 0;
+        let outcome = Outcome::Found.when(inspection.count(Grade::Error) > 0 || denied);
         Ok(Answer { outcome, ..Answer::new(json, text) })
     }
 

@@ -122,7 +122,9 @@ impl Compress {
         }
         if !packed.reached {
             let best = percent(100.0 * packed.reduction());
-            let reason = format_args!("the target is out of reach; the reduction is {best}");
+            let reason = format_args!(
+                "the target is out of reach; the reduction is {best}: ask for a smaller --reduction or a larger --error"
+            );
             session.warn(Failure::at(&self.input, reason));
         }
         session.progress.stage(&format!("writing {}", files::name(&output)));
@@ -253,11 +255,14 @@ fn left_out(mesh: &Mesh, faces_there: usize) -> Vec<String> {
     let alone = mesh.used_vertices().iter().filter(|&&used| !used).count();
     if alone > 0 {
         let some = if alone == 1 { "vertex" } else { "vertices" };
-        left_out.push(format!("left out: {} unused {some}", count(alone)));
+        left_out.push(format!("left out: {} unused {some}, which no face needs", count(alone)));
     }
     let odd = mesh.faces.len() - faces_there;
     if odd > 0 {
-        left_out.push(format!("left out: {}, degenerate", faces(odd)));
+        left_out.push(format!(
+            "left out: {}, degenerate: check lists them, and repair removes them",
+            faces(odd)
+        ));
     }
     left_out
 }

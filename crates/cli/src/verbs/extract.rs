@@ -184,7 +184,7 @@ impl Extract {
                 if has_focus && missed().map_err(Failure::usage)? {
                     session.warn(Failure::at(
                         &self.input,
-                        "no face intersects the focus, so all are as coarse as the file has them",
+                        "no face intersects the focus, so all are as coarse as the file has them; info shows the bounds",
                     ));
                 }
                 Ok(level)

@@ -131,7 +131,11 @@ impl Repair {
     fn warn(&self, format: Format, done: &Repaired, session: &Session) {
         let shells = done.report.count(RepairStep::NotOrientable);
         if shells > 0 {
-            let reason = format!("non-orientable shells, left unchanged: {shells}");
+            let reason = format!(
+                "{} one-sided shell{} left unchanged: cut open, they could be oriented",
+                count(shells),
+                plural(shells)
+            );
             session.warn(Failure::at(&self.input, reason));
         }
         let untried = done.report.count(RepairStep::HolesUntried);
@@ -144,11 +148,11 @@ impl Repair {
             let joins = matches!(format, Format::Glb | Format::Gltf | Format::Stl)
                 && done.report.count(RepairStep::SplitVertices) > 0;
             let how = match joins {
-                true => "; reading this format without --no-weld joins what was split",
-                false => "",
+                true => "reading this format without --no-weld joins what was split".into(),
+                false => format!("check {} lists them", files::name(&self.output)),
             };
             let (errors, s) = (count(done.left.total()), plural(done.left.total()));
-            let reason = format!("has {errors} error{s} when it is read back{how}");
+            let reason = format!("has {errors} error{s} when it is read back; {how}");
             session.warn(Failure::at(&self.output, reason));
         }
     }

@@ -70,7 +70,10 @@ impl Replay {
         let (found, splits) = (sequence.live_faces(), sequence.len());
         let reached = found <= wanted;
         if !reached {
-            let reason = format_args!("its coarsest level has {}", faces(base));
+            let reason = format_args!(
+                "its coarsest level has {}, and that is what was written",
+                faces(base)
+            );
             session.warn(Failure::at(&self.input, reason));
         }
         let scene = self.scene_of(&sequence, session)?;

@@ -26,6 +26,7 @@ use crate::files;
 use crate::fuse;
 use crate::kept_error::KeptError;
 use crate::model_query::QueryArgs;
+use crate::numbers;
 use crate::parse::{self, LevelSize};
 use crate::query_args::{self, ErrorLimit};
 use crate::session::Session;
@@ -130,7 +131,12 @@ impl Strip {
                 .map_err(|error| Failure::at(&self.input, error))?;
         }
         for level in levels.iter().filter(|level| !level.reached) {
-            let reason = format_args!("{}: no further contraction is possible", level.size);
+            let reason = format_args!(
+                "{}: no further contraction is possible at {}: strips keep the topology, so ask for more, \
+                 or simplify first",
+                level.size,
+                numbers::faces(level.triangles)
+            );
             session.warn(Failure::at(&self.input, reason));
         }
         if let Some(output) = &output {
@@ -139,7 +145,10 @@ impl Strip {
         let missed = !(reached && levels.iter().all(|level| level.reached));
         let is_wrong = levels.iter().any(|level| level.is_wrong());
         if is_wrong {
-            session.warn(Failure::at(&self.input, "the strips do not draw the faces of the level"));
+            session.warn(Failure::at(
+                &self.input,
+                "the strips do not draw the faces of the level, which is a defect of this program",
+            ));
         }
         let (mut json, mut text) = (self.json(&source, &levels), self.text(&source, &levels));
         json["error"] = error.map(KeptError::to_json).into();

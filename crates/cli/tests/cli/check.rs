@@ -302,6 +302,70 @@ fn the_page_has_pictures_a_legend_and_the_tables() {
     assert!(page.contains("No findings in"));
 }
 
+/// Two closed tetrahedra that share the place of one corner.
+const TOUCHING: &str = "o left\nv 0 0 0\nv -1 0 0\nv -1 1 0\nv -1 0 1\nf 1 2 3\nf 1 4 2\nf 1 3 4\n\
+    f 2 4 3\no right\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 1 0 1\nf 5 7 6\nf 5 6 8\nf 5 8 7\nf 6 7 8\n";
+
+#[test]
+fn objects_that_touch_are_no_warning() {
+    let run = Run::new();
+    write(&run, "in.obj", TOUCHING);
+    let json = run.json(&["check", "in.obj", "--deny", "warnings", "--out", "page"]);
+    assert_eq!(
+        (&json["errors"], &json["warnings"], &json["touches"]),
+        (&json!(0), &json!(0), &json!(2))
+    );
+    let findings = json["findings"].as_array().unwrap();
+    assert_eq!(findings.len(), 2, "one place is shared, and the objects meet there: {json}");
+    assert!(findings.iter().all(|finding| finding["severity"] == "touch"), "{json}");
+    let done = check(&run, &["in.obj"]);
+    assert!(done.text().contains("1 pair of objects that only touch\n"), "{}", done.text());
+    assert!(done.text().ends_with("0 errors, 0 warnings; 2 places where objects touch\n"));
+    let page = std::fs::read_to_string(run.path("page/index.html")).unwrap();
+    assert!(page.contains("objects touch, as parts may") && page.contains("May be meant"));
+    assert!(!page.contains("To look at") && !page.contains("<span class=\"chip warning\">"));
+    // What passes through is still one.
+    write(&run, "in.obj", CROSSING);
+    assert_eq!(check(&run, &["in.obj", "--deny", "warnings"]).code, 3);
+    run.json(&["check", "in.obj", "--out", "page"]);
+    let page = std::fs::read_to_string(run.path("page/index.html")).unwrap();
+    assert!(page.contains("To look at") && page.contains("<span class=\"chip warning\">cross"));
+}
+
+#[test]
+fn the_page_lists_places_and_what_to_do() {
+    let run = Run::new();
+    write(&run, "in.obj", CROSSING);
+    run.json(&["check", "in.obj", "--out", "page"]);
+    let page = std::fs::read_to_string(run.path("page/index.html")).unwrap();
+    for cell in ["f0 and f2", "floor – blade", "2.5 1 0", "crossing, 1 deep", "v0", "9 9 9"] {
+        let is_there = |tag: &str| page.contains(&format!(">{cell}</{tag}>"));
+        assert!(is_there("td") || is_there("th"), "{cell}");
+    }
+    for command in ["repair --fuse", "simplify --lock-contacts", "repair --holes N", "--weld EPS"] {
+        assert!(page.contains(&format!("<code>{command}</code>")), "{command}");
+    }
+    // As many as are asked for, then their number.
+    let points: String = (0..40).map(|i| format!("v {i} 0 9\n")).collect();
+    write(&run, "in.obj", &(CROSSING.to_owned() + &points));
+    run.json(&["check", "in.obj", "--out", "page"]);
+    let page = std::fs::read_to_string(run.path("page/index.html")).unwrap();
+    assert!(page.contains("And 16 more, which"), "41 unused vertices, 25 of them listed");
+}
+
+#[test]
+fn text_says_what_to_do_about_every_kind() {
+    let run = Run::new();
+    write(&run, "book.obj", BOOK);
+    let done = check(&run, &["book.obj"]);
+    let text = done.text();
+    let advice = text.split_once("what to do\n").unwrap().1;
+    for line in ["  non-manifold-edge (error): repair ", "  boundary-loop (warning): "] {
+        assert!(advice.contains(line), "{text}");
+    }
+    assert!(!text.contains('`'), "{text}");
+}
+
 #[test]
 fn every_file_is_checked_or_named() {
     let run = Run::new();

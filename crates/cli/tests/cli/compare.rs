@@ -82,6 +82,63 @@ fn every_method_has_every_level_as_figures_as_a_picture_and_as_a_file() {
     assert!(levels(&json).all(written) && files.len() == 2 + levels(&json).count(), "{files:?}");
 }
 
+/// Returns the method of the least figure of the first level, which a method may not have.
+fn winner(json: &Value, figure: fn(&Value) -> &Value) -> String {
+    let of = |method: &&Value| figure(&method["levels"][0]).as_f64().unwrap();
+    let methods = list(json, "methods").iter();
+    let least = methods.min_by(|a, b| of(a).total_cmp(&of(b))).unwrap();
+    least["method"].as_str().unwrap().to_owned()
+}
+
+#[test]
+fn the_page_opens_with_who_came_closest_and_who_was_fastest() {
+    let run = Run::new();
+    run.sample("knot", 2_000, "in.ply");
+    let methods = "qem-endpoint,lee-jang,lindstrom-turk";
+    let json = compared(&run, &["in.ply", "--ratio", "20%", "--methods", methods]);
+    let verdict = &json["verdicts"][0];
+    let closest = winner(&json, |level| &level["error_measured"]["rms_percent"]);
+    let fastest = winner(&json, |level| &level["simplify_seconds"]);
+    assert_eq!((&verdict["closest"]["method"], &verdict["size"]), (&closest.into(), &"20%".into()));
+    assert_eq!(verdict["fastest"]["method"], fastest);
+    let page = page(&run);
+    let opening = page.split_once("<section").unwrap().0;
+    let sentence = verdict["sentence"].as_str().unwrap();
+    assert!(opening.contains(sentence), "{sentence}");
+    assert_eq!(page.matches("lindstrom-turk <span class=\"chip\">default</span>").count(), 1);
+    assert_eq!(page.matches("<span class=\"chip\">default</span>").count(), 2);
+}
+
+#[test]
+fn a_verdict_for_each_size_and_none_for_one_that_nobody_reached() {
+    let run = Run::new();
+    run.sample("torus", 400, "in.ply");
+    let options = ["in.ply", "--faces", "200,3", "--methods", "qem", "--no-pictures"];
+    let json = compared(&run, &options);
+    let sentence = |size: usize| json["verdicts"][size]["sentence"].as_str().unwrap();
+    assert!(sentence(0).starts_with("At 200 faces, qem has an RMS error of "), "{json}");
+    assert_eq!(sentence(1), "At 3 faces, no method reached the size.");
+    assert!(json["verdicts"][1]["closest"].is_null() && json["verdicts"][1]["fastest"].is_null());
+    let done = compare(&run, &options);
+    let text = done.text();
+    assert!(text.contains("\nAt 200 faces, qem has ") && text.contains(sentence(1)), "{text}");
+}
+
+#[test]
+fn every_picture_is_enlarged_without_a_script() {
+    let run = Run::new();
+    run.sample("sphere", 500, "in.ply");
+    compared(&run, &["in.ply", "--ratio", "30%", "--methods", "qem"]);
+    let page = page(&run);
+    let pictures = page.matches("<img ").count();
+    assert_eq!(page.matches("<details class=\"zoom\"").count(), pictures);
+    assert_eq!(page.matches("<summary><img ").count(), pictures);
+    assert!(page.contains(".zoom[open] summary {\n  position: fixed;"));
+    for script in ["<script", "onclick", "onload", "javascript:"] {
+        assert!(!page.contains(script), "{script}");
+    }
+}
+
 #[test]
 fn a_level_measures_the_same_again() {
     let run = Run::new();
@@ -158,7 +215,7 @@ fn people_get_a_table_with_the_best_marked_and_the_page_last() {
     let text = done.text();
     let row = |name: &str| text.lines().find(|line| line.starts_with(&format!("{name} "))).unwrap();
     assert!(row("qem").contains('*') && !row("qem").contains("* *"), "{text}");
-    assert_eq!(text.matches("qem-endpoint").count(), 1);
+    assert_eq!(text.lines().filter(|line| line.starts_with("qem-endpoint ")).count(), 1);
     assert!(text.ends_with("out/index.html\n"));
     assert_eq!(
         page(&run).matches("<td class=\"best\">").count(),
@@ -178,6 +235,9 @@ fn any_number_of_threads_gives_the_same_figures() {
         json["threads"].take();
         for method in json["methods"].as_array_mut().unwrap() {
             method["levels"][0]["simplify_seconds"].take();
+        }
+        for field in ["fastest", "sentence"] {
+            json["verdicts"][0][field].take();
         }
         json
     };

@@ -29,5 +29,6 @@ fn strictly_nothing_is_written_where_something_is_lost() {
     let done = run.run(&["convert", "a.obj", "b.stl", "--strict"]);
     assert!(done.code == 1 && done.only_line().contains("b.stl: left out: "), "{done:?}");
     assert_eq!(run.files(), ["a.obj"]);
+    assert!(done.only_line().ends_with("; .glb keeps everything"), "{done:?}");
     assert_eq!(run.run(&["convert", "a.obj", "b.glb", "--strict"]).code, 0);
 }

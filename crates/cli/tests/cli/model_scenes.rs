@@ -54,6 +54,22 @@ fn real_scenes_come_back_whole() {
 }
 
 #[test]
+fn images_are_no_bytes_of_vertices() {
+    let Some(path) = shared_mesh("duck.glb") else {
+        println!("skipped: the duck is not there");
+        return;
+    };
+    let run = Run::new();
+    let built = run.json(&["build", path.to_str().unwrap(), "a.mlod"]);
+    let scene = number(&built["scene_bytes"]);
+    let surface = number(&built["bytes"]) - scene;
+    let each = surface as f64 / number(&built["input_vertices"]) as f64;
+    assert_eq!(built["bytes_per_vertex"], each);
+    let largest = read(&path).images.iter().map(|image| image.bytes.len() as u64).max();
+    assert!(Some(scene) >= largest && each < 20.0, "{built}");
+}
+
+#[test]
 fn a_gltf_file_has_its_images_beside_it() {
     let Some(path) = shared_mesh("flight-helmet/FlightHelmet.gltf") else { return };
     let run = Run::new();

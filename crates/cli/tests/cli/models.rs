@@ -194,8 +194,13 @@ fn what_is_left_out_is_said() {
     write(&run, "in.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nf 1 2 3\nf 2 3 1\nf 1 1 2\n");
     let built = run.run(&["build", "in.obj", "out.mlod"]);
     assert_eq!(built.code, 0, "{built:?}");
-    assert!(built.err.contains("left out: 1 unused vertex"), "{built:?}");
-    assert!(built.err.contains("left out: 2 faces, degenerate or duplicate"), "{built:?}");
+    assert!(built.err.contains("left out: 1 unused vertex, which no face needs\n"), "{built:?}");
+    assert!(
+        built
+            .err
+            .contains("left out: 2 faces, degenerate or duplicate; check lists them, and repair"),
+        "{built:?}"
+    );
     assert!(built.text().contains("all levels of 1 face in"), "{built:?}");
 }
 

@@ -215,6 +215,10 @@ fn a_level_out_of_reach_is_said_and_is_strict_if_asked() {
         done.code == 0 && done.only_line().contains("1 face: no further contraction"),
         "{done:?}"
     );
+    assert!(
+        done.only_line().contains(" faces: strips keep the topology, so ask for more"),
+        "{done:?}"
+    );
     let done = run.run(&["strip", "in.ply", "--level", "1", "--strict", "--json"]);
     assert!(done.code == 1 && done.json()["levels"][0]["reached"] == false, "{done:?}");
 }

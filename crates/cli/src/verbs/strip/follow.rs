@@ -62,7 +62,10 @@ impl Strip {
         }
         let wrong = followed.iter().any(FollowedCut::is_wrong);
         if wrong {
-            session.warn(Failure::at(&self.input, "the strips do not draw the faces of the cut"));
+            session.warn(Failure::at(
+                &self.input,
+                "the strips do not draw the faces of the cut, which is a defect of this program",
+            ));
         }
         let json = json!({
             "file": files::name(&self.input),
