@@ -61,6 +61,8 @@ impl Session {
     /// # Errors
     /// With `--strict`, if something was left out.
     pub fn note(&self, path: &Path, notes: &[Note]) -> Result<(), Failure> {
+        let notes: Vec<Note> = notes.iter().filter(|note| note.count > 0).cloned().collect();
+        let notes = &notes[..];
         for kind in [NoteKind::LeftOut, NoteKind::Changed] {
             let Some(list) = Note::list(notes, kind) else { continue };
             let line = Failure::at(path, format_args!("{}: {list}", kind.word()));

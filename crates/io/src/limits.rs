@@ -17,21 +17,56 @@ impl Scene {
     pub fn limits_of(&self, format: Format) -> Vec<Note> {
         let mut notes = match format {
             Format::Gltf | Format::Glb if self.source.is_some() => Vec::new(),
-            Format::Gltf | Format::Glb => self.new_document_limits(),
-            Format::Obj => {
-                [self.graph_limits(), self.mtl_limits(), self.layer_limits(format)].concat()
+            Format::Gltf | Format::Glb => {
+                [self.new_document_limits(), self.ply_limits(), self.obj_limits()].concat()
             }
-            Format::Ply => [self.graph_limits(), crate::ply::limits(self)].concat(),
+            Format::Obj => {
+                let parts = [self.graph_limits(), self.mtl_limits(), self.ply_limits()].concat();
+                [parts, self.layer_limits(format)].concat()
+            }
+            Format::Ply => {
+                [self.graph_limits(), self.obj_limits(), crate::ply::limits(self)].concat()
+            }
             Format::Stl | Format::Off | Format::Smf => {
-                [self.graph_limits(), self.single_mesh_limits(), self.layer_limits(format)].concat()
+                let parts = [self.graph_limits(), self.single_mesh_limits(), self.ply_limits()];
+                [parts.concat(), self.obj_limits(), self.layer_limits(format)].concat()
             }
         };
         if let Some((most, count)) = self.unavoidable_rounding(format) {
-            let why = format!("rounded by up to {most:.1e}: the format has 32-bit coordinates");
-            notes.push(Note::changed(count, &format!("vertex {why}"), &format!("vertices {why}")));
+            let why = format!(" by up to {most:.1e}: the format has 32-bit coordinates");
+            notes.push(Note::changed(count, "vertex rounded", "vertices rounded").detailed(&why));
         }
         notes.retain(|note| note.count > 0);
         notes
+    }
+
+    /// Lists what glTF lacks of a new scene whose meshes stay whole, as strips and compressed ones
+    /// do: the names of their objects.
+    pub fn whole_mesh_limits(&self) -> Vec<Note> {
+        let names = if self.source.is_some() { Vec::new() } else { self.object_names() };
+        let note = Note::left_out(names.len(), "name of an object", "names of objects");
+        vec![note.named(names)]
+    }
+
+    /// Lists what formats other than PLY lack of a scene that was read from there.
+    pub fn ply_limits(&self) -> Vec<Note> {
+        let words = |word: &'static str| {
+            self.ply.remarks.iter().filter(move |line| line.starts_with(word)).count()
+        };
+        let [comments, infos] = ["comment", "obj_info"].map(words);
+        vec![
+            Note::left_out(comments, "comment", "comments"),
+            Note::left_out(infos, "line obj_info", "lines obj_info"),
+        ]
+    }
+
+    /// Lists what formats other than OBJ lack of a scene that was read from there.
+    pub fn obj_limits(&self) -> Vec<Note> {
+        let groups = self.meshes.iter().filter_map(|mesh| mesh.mesh.smoothing.as_ref());
+        let groups: BTreeSet<u32> = groups.flatten().copied().filter(|&group| group > 0).collect();
+        let names = groups.iter().map(u32::to_string);
+        let note = Note::left_out(groups.len(), "smoothing group", "smoothing groups");
+        vec![note.named(names)]
     }
 
     /// Lists what a new glTF document lacks.
@@ -45,32 +80,34 @@ impl Scene {
         let other = shown
             .into_iter()
             .filter_map(|image| self.images.get(image))
-            .filter(|image| !image.bytes.is_empty() && !crate::gltf::has_core_type(&image.bytes));
+            .filter(|image| !image.bytes.is_empty() && !crate::gltf::holds_image(&image.bytes));
         let names: Vec<&str> = other.map(|image| &*image.name).collect();
-        let [left_out, changed] = self.mtl_statements();
+        let [left_out, changed, apart] = self.mtl_statements();
         let [separate, opacity] = self.separate_images();
         vec![
             left_out,
             changed,
+            apart,
             separate,
             opacity,
             Note::left_out(
                 names.len(),
-                "image that is neither PNG nor JPEG",
-                "images that are neither PNG nor JPEG",
+                "image that is no PNG, JPEG or WebP",
+                "images that are no PNG, JPEG or WebP",
             )
             .named(names),
         ]
     }
 
     /// Notes the statements of MTL libraries that glTF lacks, and those that become something else.
-    fn mtl_statements(&self) -> [Note; 2] {
+    fn mtl_statements(&self) -> [Note; 3] {
         let untold = self.materials.iter().map(|material| untold(material, &self.images));
         let untold: Vec<_> = untold.collect();
         let note = |note: fn(usize, &str, &str) -> Note, words: Vec<&String>, one, many| {
             let names: BTreeSet<&String> = words.iter().copied().collect();
             note(words.len(), one, many).named(names)
         };
+        let apart = untold.iter().map(|untold| untold.apart).sum();
         let left_out = untold.iter().flat_map(|untold| &untold.left_out).collect();
         let changed = untold.iter().flat_map(|untold| &untold.changed).collect();
         [
@@ -81,6 +118,7 @@ impl Scene {
                 "MTL statement taken for a roughness or for normals",
                 "MTL statements taken for a roughness or for normals",
             ),
+            maps_apart(apart),
         ]
     }
 
@@ -103,11 +141,7 @@ impl Scene {
             opacity.is_some() && opacity != material.base_color_image
         };
         [
-            Note::left_out(
-                maps,
-                "map of metalness or roughness in an image of its own",
-                "maps of metalness or roughness in images of their own",
-            ),
+            maps_apart(maps),
             Note::left_out(
                 own.filter(is_lost).count(),
                 "map of opacity in an image of its own",
@@ -174,8 +208,8 @@ impl Scene {
             meshes.iter().filter_map(|mesh| mesh.attributes.as_ref()).flat_map(|a| &a.layers);
         let lost: BTreeSet<String> =
             layers.filter(|layer| !holds(format, layer)).map(title).collect();
-        let split =
-            if splits_seams(format) { meshes.iter().map(|mesh| seams(mesh)).sum() } else { 0 };
+        let is_new = splits_seams(format) && !self.had_split_seams();
+        let split = if is_new { meshes.iter().map(|mesh| seams(mesh)).sum() } else { 0 };
         vec![
             Note::left_out(lost.len(), "vertex attribute", "vertex attributes").named(lost),
             Note::changed(
@@ -186,10 +220,29 @@ impl Scene {
         ]
     }
 
+    /// Reports whether vertices were split at seams in the file that the scene was read from, so that
+    /// to split them again changes nothing.
+    pub(crate) fn had_split_seams(&self) -> bool {
+        self.source.is_some() || self.has_split_seams
+    }
+
     pub(crate) fn object_names(&self) -> Vec<String> {
         let labels = self.meshes.iter().filter_map(|mesh| mesh.mesh.objects.as_ref());
         labels.flat_map(|labels| &labels.names).filter(|name| !name.is_empty()).cloned().collect()
     }
+}
+
+/// Notes maps of roughness or metalness that are not in one image, as glTF has them.
+fn maps_apart(count: usize) -> Note {
+    let note = Note::left_out(
+        count,
+        "map of roughness or metalness in an image of its own",
+        "maps of roughness or metalness in images of their own",
+    );
+    note.detailed(
+        ": glTF has both in one; make an image with roughness in green and metalness in blue, and \
+         name it in map_Pr and map_Pm",
+    )
 }
 
 /// Reports whether a format has a place for a layer.
@@ -218,7 +271,7 @@ fn title(layer: &Layer) -> String {
         LayerKind::Color(set) => format!("colours {set}"),
         LayerKind::Joints(_) => "joints".to_owned(),
         LayerKind::Weights(_) => "joint weights".to_owned(),
-        LayerKind::Other => layer.name.clone(),
+        LayerKind::Other | LayerKind::Label => layer.name.clone(),
     }
 }
 

@@ -15,6 +15,7 @@ mod draco_stream;
 #[cfg(feature = "draco")]
 mod draco_unpack;
 mod encode;
+mod extents;
 mod facts;
 mod instancing;
 mod local_space;
@@ -45,7 +46,7 @@ pub use facts::{AnimationFacts, FileFacts};
 pub(crate) use local_space::to_local;
 pub(crate) use lod::Levels;
 pub use lod::{Level, LodLayout};
-pub(crate) use new_document::has_core_type;
+pub(crate) use new_document::holds_image;
 pub use parts::{QuantizedPart, write_parts_glb};
 pub use primitive_rows::PrimitiveRows;
 pub use read::{SourceDocument, read};

@@ -15,7 +15,7 @@ use super::primitives::Replacer;
 use super::read::Contents;
 use super::uri::{self, Uri};
 use super::{container, dequantize_nodes, mesh, new_document};
-use crate::{Image, ParseError, Scene, Unsupported};
+use crate::{Image, ParseError, Scene, Unsupported, image_file};
 
 /// Contents of a `.gltf` file and of the buffer and image files that belong to it.
 #[derive(Clone, Debug)]
@@ -326,7 +326,7 @@ fn mime_type(name: &str, bytes: &[u8]) -> Option<&'static str> {
         let suffix = name.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
         if suffix == "png" { "image/png" } else { "image/jpeg" }
     };
-    (!bytes.is_empty()).then(|| new_document::mime_type(bytes).unwrap_or_else(by_name))
+    (!bytes.is_empty()).then(|| image_file::mime_type(bytes).unwrap_or_else(by_name))
 }
 
 /// Reports whether two meshes are equal in everything that is written of them.

@@ -157,7 +157,7 @@ pub(crate) fn limits(scene: &Scene) -> Vec<Note> {
     });
     let colored: Vec<_> = with.iter().filter(|m| m.base_color != [1.0; 4]).collect();
     let objects = if plan.labels.is_some() { Vec::new() } else { scene.object_names() };
-    let split = plan.split();
+    let split = if scene.had_split_seams() { 0 } else { plan.split() };
     vec![
         Note::left_out(without.len(), "material", "materials")
             .named(without.iter().map(|m| &*m.name).filter(|name| !name.is_empty())),

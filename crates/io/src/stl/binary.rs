@@ -7,7 +7,7 @@ use meshlod_mesh::Mesh;
 
 use super::weld::Welder;
 use super::{invalid, normal, write_blocks};
-use crate::ParseError;
+use crate::{Note, ParseError};
 
 const HEADER: usize = 80;
 const PREAMBLE: usize = HEADER + 4;
@@ -27,8 +27,8 @@ fn claimed(bytes: &[u8]) -> Option<usize> {
     Some(u32::from_le_bytes(*count) as usize)
 }
 
-/// Reads as many facets as the header declares; bytes after them are ignored.
-pub(super) fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
+/// Reads as many facets as the header declares, and notes what they have beside corners and normals.
+pub(super) fn read(bytes: &[u8]) -> Result<(Mesh, Vec<Note>), ParseError> {
     let Some(claimed) = claimed(bytes) else {
         let reason = "not an STL file: it neither begins with \"solid\" as text does, nor is it \
                       as long as a binary header";
@@ -54,7 +54,21 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
         }
         faces.push(corners.map(|corner| welder.vertex(corner)));
     }
-    Ok(Mesh::new(welder.positions, faces))
+    let colored = body.chunks_exact(FACET).take(claimed).filter(|facet| facet[48..] != [0; 2]);
+    let mut notes = vec![
+        Note::left_out(
+            colored.count(),
+            "attribute of a facet, such as its colour",
+            "attributes of facets, such as their colours",
+        ),
+        Note::left_out(
+            body.len() - claimed * FACET,
+            "byte behind the last facet",
+            "bytes behind the last facet",
+        ),
+    ];
+    notes.retain(|note| note.count > 0);
+    Ok((Mesh::new(welder.positions, faces), notes))
 }
 
 fn float(facet: &[u8], at: usize) -> f64 {
