@@ -1,5 +1,5 @@
-//! Writing scenes to files. No verb writes one by itself, so that what a format cannot hold is
-//! always noted, and before anything is written.
+//! Writing scenes to files. No verb writes a scene that was read by itself, so that what a format
+//! cannot hold is always noted, and before anything is written.
 
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -89,8 +89,8 @@ pub fn write_encoded(
     Ok(write_file(path, bytes)?)
 }
 
-/// Notes the vertices that no face uses and the faces that a file of our own with `there` faces leaves
-/// out of a mesh.
+/// Notes the vertices that no face uses, and the faces that a file of our own with `there` faces
+/// leaves out of a mesh.
 pub fn unused_parts(mesh: &Mesh, there: usize) -> Vec<Note> {
     let alone = mesh.used_vertices().iter().filter(|&&used| !used).count();
     let odd = mesh.faces.len().saturating_sub(there);

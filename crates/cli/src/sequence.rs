@@ -21,8 +21,8 @@ pub fn check(path: &Path, input: &Path, output: &Path) -> Result<(), Failure> {
     files::check_place(path)
 }
 
-/// Fails unless the scene has exactly one mesh, and warns about data that the sequence file at `path` will
-/// not store.
+/// Fails unless the scene has exactly one mesh, and warns about data that the sequence file at
+/// `path` will not store.
 pub fn check_scene(
     path: &Path,
     scene: &Scene,

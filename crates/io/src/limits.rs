@@ -4,8 +4,7 @@ use std::collections::BTreeSet;
 
 use meshlod_mesh::{Layer, LayerKind, Mesh};
 
-use crate::obj::mtl::untold;
-use crate::{Format, Material, MeshInstance, Note, Scene, Shading};
+use crate::{Format, Material, MeshInstance, Note, Scene};
 
 impl Scene {
     /// Lists what a file of this format cannot hold of the scene, or holds in another form; empty if
@@ -18,7 +17,8 @@ impl Scene {
         let mut notes = match format {
             Format::Gltf | Format::Glb if self.source.is_some() => Vec::new(),
             Format::Gltf | Format::Glb => {
-                [self.new_document_limits(), self.ply_limits(), self.obj_limits()].concat()
+                [crate::gltf::new_document_limits(self), self.ply_limits(), self.obj_limits()]
+                    .concat()
             }
             Format::Obj => {
                 let parts = [self.graph_limits(), self.mtl_limits(), self.ply_limits()].concat();
@@ -69,87 +69,6 @@ impl Scene {
         vec![note.named(names)]
     }
 
-    /// Lists what a new glTF document lacks.
-    fn new_document_limits(&self) -> Vec<Note> {
-        let shown = self.materials.iter().flat_map(|material| {
-            let Shading { normal_image, emission_image, .. } = material.shading;
-            let combined = material.shading.metallic_roughness_image();
-            [material.base_color_image, combined, normal_image, emission_image]
-        });
-        let shown: BTreeSet<usize> = shown.flatten().collect();
-        let other = shown
-            .into_iter()
-            .filter_map(|image| self.images.get(image))
-            .filter(|image| !image.bytes.is_empty() && !crate::gltf::holds_image(&image.bytes));
-        let names: Vec<&str> = other.map(|image| &*image.name).collect();
-        let [left_out, changed, apart] = self.mtl_statements();
-        let [separate, opacity] = self.separate_images();
-        vec![
-            left_out,
-            changed,
-            apart,
-            separate,
-            opacity,
-            Note::left_out(
-                names.len(),
-                "image that is no PNG, JPEG or WebP",
-                "images that are no PNG, JPEG or WebP",
-            )
-            .named(names),
-        ]
-    }
-
-    /// Notes the statements of MTL libraries that glTF lacks, and those that become something else.
-    fn mtl_statements(&self) -> [Note; 3] {
-        let untold = self.materials.iter().map(|material| untold(material, &self.images));
-        let untold: Vec<_> = untold.collect();
-        let note = |note: fn(usize, &str, &str) -> Note, words: Vec<&String>, one, many| {
-            let names: BTreeSet<&String> = words.iter().copied().collect();
-            note(words.len(), one, many).named(names)
-        };
-        let apart = untold.iter().map(|untold| untold.apart).sum();
-        let left_out = untold.iter().flat_map(|untold| &untold.left_out).collect();
-        let changed = untold.iter().flat_map(|untold| &untold.changed).collect();
-        [
-            note(Note::left_out, left_out, "MTL statement", "MTL statements"),
-            note(
-                Note::changed,
-                changed,
-                "MTL statement taken for a roughness or for normals",
-                "MTL statements taken for a roughness or for normals",
-            ),
-            maps_apart(apart),
-        ]
-    }
-
-    /// Notes the maps that glTF would need in one image, of materials that are not from an MTL
-    /// library.
-    fn separate_images(&self) -> [Note; 2] {
-        let own = self.materials.iter().filter(|material| material.mtl.is_empty());
-        let maps = own.clone().map(|material| {
-            let Shading { metallic_image, roughness_image, .. } = material.shading;
-            let has_combined = material.shading.metallic_roughness_image().is_some();
-            if has_combined {
-                0
-            } else {
-                [metallic_image, roughness_image].iter().flatten().count()
-            }
-        });
-        let maps = maps.sum();
-        let is_lost = |material: &&Material| {
-            let opacity = material.shading.opacity_image;
-            opacity.is_some() && opacity != material.base_color_image
-        };
-        [
-            maps_apart(maps),
-            Note::left_out(
-                own.filter(is_lost).count(),
-                "map of opacity in an image of its own",
-                "maps of opacity in images of their own",
-            ),
-        ]
-    }
-
     /// Lists what formats without nodes lack.
     fn graph_limits(&self) -> Vec<Note> {
         let instances = self.instances();
@@ -158,12 +77,14 @@ impl Scene {
         let hidden = shown.iter().filter(|&&shown| !shown).count();
         let merged = if instances.len() > 1 { instances.len() } else { 0 };
         let count = |array| self.source.as_ref().map_or(0, |source| source.count(array));
+        let lights = self.source.as_ref().map_or(0, |source| source.lights());
         vec![
             Note::changed(merged, "", "instances of meshes merged into one mesh"),
             Note::left_out(hidden, "mesh that no node shows", "meshes that no node shows"),
             Note::left_out(count("skins"), "skin", "skins"),
             Note::left_out(count("animations"), "animation", "animations"),
             Note::left_out(count("cameras"), "camera", "cameras"),
+            Note::left_out(lights, "light", "lights"),
         ]
     }
 
@@ -220,8 +141,8 @@ impl Scene {
         ]
     }
 
-    /// Reports whether vertices were split at seams in the file that the scene was read from, so that
-    /// to split them again changes nothing.
+    /// Reports whether vertices were split at seams in the file that the scene was read from, so
+    /// that to split them again changes nothing.
     pub(crate) fn had_split_seams(&self) -> bool {
         self.source.is_some() || self.has_split_seams
     }
@@ -230,19 +151,6 @@ impl Scene {
         let labels = self.meshes.iter().filter_map(|mesh| mesh.mesh.objects.as_ref());
         labels.flat_map(|labels| &labels.names).filter(|name| !name.is_empty()).cloned().collect()
     }
-}
-
-/// Notes maps of roughness or metalness that are not in one image, as glTF has them.
-fn maps_apart(count: usize) -> Note {
-    let note = Note::left_out(
-        count,
-        "map of roughness or metalness in an image of its own",
-        "maps of roughness or metalness in images of their own",
-    );
-    note.detailed(
-        ": glTF has both in one; make an image with roughness in green and metalness in blue, and \
-         name it in map_Pr and map_Pm",
-    )
 }
 
 /// Reports whether a format has a place for a layer.

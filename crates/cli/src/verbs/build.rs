@@ -231,8 +231,8 @@ impl Build {
         })
     }
 
-    /// Merges the scene of a height field, of which nothing but the surface is used; also returns what
-    /// is left out.
+    /// Merges the scene of a height field, of which nothing but the surface is used; also returns
+    /// what is left out.
     fn place_field(
         &self,
         scene: Scene,

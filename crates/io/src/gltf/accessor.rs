@@ -54,8 +54,8 @@ impl Document<'_> {
         }
     }
 
-    /// Reads an accessor of any type as the numbers that are stored, with the number of components of
-    /// an element.
+    /// Reads an accessor of any type as the numbers that are stored, with the number of
+    /// components of an element.
     pub fn stored_numbers(&self, index: usize) -> Result<(usize, Vec<f32>), ParseError> {
         let PackedElements { accessor, width, bytes } = self.packed(index)?;
         Ok((width, numbers(&bytes, accessor.component_type, false)))

@@ -8,8 +8,9 @@ use super::document::Document;
 /// Corrects the `min` and `max` of the accessors that are not flagged as free, where the file has
 /// them wrong: programs cull and place the camera by them, and validators reject the file.
 ///
-/// Bounds that the file leaves out are not added. Indices of 32 bits, which have no use for them, and
-/// accessors that cannot be read stay as they are.
+/// Bounds that the file leaves out are not added. Indices of 32 bits, which have no use for them,
+/// and accessors that cannot be read stay as they are.
+///
 /// Cost: linear in the components of the accessors that have bounds.
 pub(super) fn mend_extents(document: &Document<'_>, free: &[bool], accessors: &mut [Value]) {
     for (index, accessor) in accessors.iter_mut().enumerate() {

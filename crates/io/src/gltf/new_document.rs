@@ -89,7 +89,7 @@ fn is_webp(image: &Value) -> bool {
 
 /// Reports whether a new document can hold an encoded image: a PNG, a JPEG or, by an extension, a
 /// WebP.
-pub(crate) fn holds_image(bytes: &[u8]) -> bool {
+pub(super) fn holds_image(bytes: &[u8]) -> bool {
     matches!(mime_type(bytes), Some("image/png" | "image/jpeg" | "image/webp"))
 }
 
@@ -178,8 +178,7 @@ mod tests {
         scene.materials = (0..3)
             .map(|image| Material { base_color_image: Some(image), ..Material::default() })
             .collect();
-        let notes: Vec<String> =
-            scene.limits_of(Format::Glb).iter().map(Note::to_string).collect();
+        let notes: Vec<String> = scene.limits_of(Format::Glb).iter().map(Note::to_string).collect();
         assert_eq!(notes, ["1 image that is no PNG, JPEG or WebP (c.tif)"]);
         let json = document(&scene, &scene.images, &mut BufferBuilder::default());
         assert_eq!(json["extensionsRequired"], json!([WEBP]));

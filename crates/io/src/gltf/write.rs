@@ -35,7 +35,7 @@ pub struct GltfFiles {
 /// extensions and everything else pass through. An unchanged mesh keeps its arrays bit for bit; a
 /// changed one gets new arrays (f32, 16-bit indices where possible, colours in their old type). The
 /// buffer is rebuilt without what is no longer used. Any other scene gets a new document with its
-/// nodes, materials, PNGs and JPEGs, in which each object of a mesh is a node and a mesh; meshes whose
+/// nodes, materials and images, in which each object of a mesh is a node and a mesh; meshes whose
 /// coordinates 32 bits would round are stored relative to a centre, from which their nodes move them
 /// back. A mesh without faces keeps one degenerate triangle, as glTF
 /// does not allow empty meshes.

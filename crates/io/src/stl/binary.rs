@@ -45,6 +45,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<(Mesh, Vec<Note>), ParseError> {
     }
     let mut welder = Welder::with_facets(claimed);
     let mut faces = Vec::with_capacity(claimed);
+    let mut colored = 0;
     for (i, facet) in body.chunks_exact(FACET).take(claimed).enumerate() {
         let corners = [12, 24, 36].map(|at| [0, 4, 8].map(|axis| float(facet, at + axis)));
         if let Some(corner) = corners.iter().find(|c| !c.iter().all(|x| x.is_finite())) {
@@ -53,11 +54,11 @@ pub(super) fn read(bytes: &[u8]) -> Result<(Mesh, Vec<Note>), ParseError> {
             return Err(ParseError::byte(PREAMBLE + i * FACET, reason));
         }
         faces.push(corners.map(|corner| welder.vertex(corner)));
+        colored += usize::from(facet[48..] != [0; 2]);
     }
-    let colored = body.chunks_exact(FACET).take(claimed).filter(|facet| facet[48..] != [0; 2]);
     let mut notes = vec![
         Note::left_out(
-            colored.count(),
+            colored,
             "attribute of a facet, such as its colour",
             "attributes of facets, such as their colours",
         ),
