@@ -19,7 +19,8 @@ MOST_BYTES = 7_000_000
 
 
 def main():
-    meshlod, folder = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
+    # MeshLab changes the working folder while it reads.
+    meshlod, folder = [Path(argument).resolve() for argument in sys.argv[1:3]]
     if not folder.is_dir():
         print(f"skipped: {folder} is not there")
         return 0
