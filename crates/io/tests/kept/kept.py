@@ -14,8 +14,6 @@ from facts import facts_of
 from may_differ import is_allowed
 
 FORMATS = [".ply", ".obj", ".off", ".stl", ".smf", ".gltf", ".glb"]
-# Larger files take most of the time and have nothing that smaller ones lack.
-MOST_BYTES = 7_000_000
 
 
 def main():
@@ -26,10 +24,6 @@ def main():
         return 0
     places = [folder, *sorted(place for place in folder.iterdir() if place.name == "flight-helmet")]
     paths = sorted(path for place in places for path in place.iterdir() if path.suffix in FORMATS)
-    large = [path for path in paths if path.stat().st_size > MOST_BYTES]
-    for path in large:
-        print(f"skipped: {path.name} has more than {MOST_BYTES} bytes")
-    paths = [path for path in paths if path not in large]
     with tempfile.TemporaryDirectory() as out, ThreadPoolExecutor(2) as pool:
         copies = pool.map(lambda path: copies_of(meshlod, path, Path(out)), paths)
         # The other programs are not run side by side: they are not made for it.
