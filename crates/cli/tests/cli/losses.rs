@@ -1,4 +1,4 @@
-//! What is lost on the way from file to file: named once, by every verb, and strictly refused.
+//! Losses on the way from file to file: named once, by every verb, and strictly refused.
 
 use crate::run::Run;
 
