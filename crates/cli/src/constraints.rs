@@ -70,20 +70,18 @@ impl ConstraintArgs {
         Ok(FlatInput { mesh, options, fused })
     }
 
-    /// Reads a scene, fuses it if that is asked for and merges it into one mesh that has each of its
-    /// meshes once, with the constraints added to the options.
-    pub fn read_placed(
+    /// Merges a scene read from a path into one mesh that has each of its meshes once, with the
+    /// constraints added to the options.
+    pub fn place(
         &self,
-        path: &Path,
-        reading: &ReadArgs,
+        scene: Scene,
+        (path, reading): (&Path, &ReadArgs),
         options: Options,
         session: &Session,
-    ) -> Result<(PlacedScene, Option<FuseReport>), Failure> {
-        let (scene, fused) = self.read_fused(path, reading, session)?;
+    ) -> Result<PlacedScene, Failure> {
         let constraints = self.constraints(&InputScene { scene: &scene, path, reading })?;
         note_search(&constraints, session);
-        let placed = place_scene(scene, &constraints, options);
-        Ok((placed.map_err(|error| Failure::at(path, error))?, fused))
+        place_scene(scene, &constraints, options).map_err(|error| Failure::at(path, error))
     }
 
     /// Returns true if vertices are to be held or objects to be fused.

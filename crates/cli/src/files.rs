@@ -1,13 +1,13 @@
 //! Reading and writing meshes and pictures, by path or through a pipe.
 
 use std::fs;
-use std::io::{self, BufWriter, Read, Write};
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
-use meshlod::io::{Note, gltf, obj, off, ply, read_bytes, smf, stl, write_file};
-use meshlod::{Format, ReadOptions, Scene, WriteOptions};
+use meshlod::io::{read_bytes, write_file};
+use meshlod::{Format, Scene};
 
-use crate::args::{ReadArgs, WriteArgs};
+use crate::args::ReadArgs;
 use crate::failure::Failure;
 use crate::own_files::{self, OwnFormat};
 use crate::session::Session;
@@ -140,77 +140,6 @@ pub fn write_picture(path: &Path, png: &[u8]) -> Result<(), Failure> {
     out.write_all(png).and_then(|()| out.flush()).map_err(|error| Failure::at(path, error))
 }
 
-/// Writes a scene to a file or standard output.
-pub fn write(
-    path: &Path,
-    scene: &Scene,
-    writing: &WriteArgs,
-    session: &Session,
-) -> Result<(), Failure> {
-    session.progress.stage(&format!("writing {}", name(path)));
-    let format = check_output(path, session)?;
-    let limits = scene.limits_of(format);
-    session.note_with(path, &limits, &remedy(scene, &limits))?;
-    if !is_pipe(path) {
-        return Ok(meshlod::write(path, scene, &writing.options())?);
-    }
-    let mut out = BufWriter::new(io::stdout().lock());
-    write_pipe(format, scene, writing.options(), &mut out)?;
-    out.flush().map_err(|error| Failure::at(path, error))
-}
-
-/// Names a format that holds what another does not; empty if there is none, or nothing to hold.
-fn remedy(scene: &Scene, limits: &[Note]) -> String {
-    let holds = |(format, _): &(Format, &str)| scene.limits_of(*format).is_empty();
-    let mut formats = [(Format::Glb, ".glb"), (Format::Obj, ".obj")].into_iter();
-    match limits {
-        [] => String::new(),
-        _ => formats
-            .find(holds)
-            .map_or_else(String::new, |(_, suffix)| format!("; {suffix} keeps everything")),
-    }
-}
-
-/// Reads a file just written with [`write()`] again, with default options.
-pub fn read_again(
-    path: &Path,
-    scene: &Scene,
-    writing: &WriteArgs,
-    session: &Session,
-) -> Result<Scene, Failure> {
-    session.progress.stage(&format!("reading {} again", name(path)));
-    let options = ReadOptions::default();
-    if !is_pipe(path) {
-        return Ok(meshlod::read(path, &options)?);
-    }
-    let format = pipe_format(session)?;
-    let mut bytes = Vec::new();
-    write_pipe(format, scene, writing.options(), &mut bytes)?;
-    read_bytes(&bytes, format, &mut |_| None, &options).map_err(|error| Failure::at(path, error))
-}
-
-fn write_pipe(
-    format: Format,
-    scene: &Scene,
-    options: WriteOptions,
-    out: &mut impl Write,
-) -> Result<(), Failure> {
-    let precision = options.precision;
-    let flat = || scene.flatten();
-    let written = match format {
-        Format::Ply => ply::write_scene(scene, precision, out),
-        Format::Stl => stl::write(&flat(), out),
-        Format::Off => off::write(&flat(), precision, out),
-        Format::Smf => smf::write(&flat(), precision, out),
-        Format::Obj => obj::write(scene, precision, out, &[]),
-        Format::Glb | Format::Gltf => {
-            let bytes = gltf::write_glb(scene, &[]);
-            out.write_all(&bytes.map_err(|error| Failure::at(Path::new("-"), error))?)
-        }
-    };
-    written.map_err(|error| Failure::at(Path::new("-"), error))
-}
-
 fn check_stdout(session: &Session) -> Result<(), Failure> {
     match session.json {
         true => Err(Failure::usage("-: standard output is taken by --json; name a file")),
@@ -218,7 +147,8 @@ fn check_stdout(session: &Session) -> Result<(), Failure> {
     }
 }
 
-fn pipe_format(session: &Session) -> Result<Format, Failure> {
+/// Returns the format of standard input and output.
+pub fn pipe_format(session: &Session) -> Result<Format, Failure> {
     session
         .format
         .ok_or_else(|| Failure::usage("-: standard input and output have no suffix; give --format"))

@@ -28,6 +28,7 @@ mod page;
 mod parse;
 mod progress;
 mod query_args;
+mod scene_files;
 mod sequence;
 mod session;
 mod simplify_report;

@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::path::Path;
 
+use meshlod::io::Note;
 use meshlod::multires::{Archive, Certificate, ErrorKind, FileError, Fit, ModelFile, Source};
 use serde_json::{Value, json};
 
@@ -29,7 +30,7 @@ pub fn check_output(path: &Path) -> Result<(), Failure> {
     files::check_place(path)
 }
 
-/// Opens a multiresolution file, with a warning if it is truncated.
+/// Opens a multiresolution file, with a note of how far it goes if it is truncated.
 pub fn open(path: &Path, session: &Session) -> Result<ModelFile<File>, Failure> {
     if files::is_pipe(path) {
         return Err(Failure::usage(
@@ -40,15 +41,13 @@ pub fn open(path: &Path, session: &Session) -> Result<ModelFile<File>, Failure> 
     let file = File::open(path).map_err(|error| Failure::at(path, error))?;
     let model = ModelFile::open(file).map_err(|error| Failure::at(path, error))?;
     let [there, all] = pieces(&model);
-    let pieces = match &model {
-        ModelFile::Contractions(_) => "chunks",
-        ModelFile::HeightField(..) => "parts",
-    };
     if there < all {
-        let reason = format_args!(
-            "the file is truncated: {there} of its {all} {pieces} are present, and levels are only as fine as those"
-        );
-        session.warn(Failure::at(path, reason));
+        let (one, many) = match &model {
+            ModelFile::Contractions(_) => ("chunk", "chunks"),
+            ModelFile::HeightField(..) => ("part", "parts"),
+        };
+        let goes = format!(": the file is truncated, and {there} of its {all} {many} are present");
+        session.note(path, &[Note::left_out(all - there, one, many).detailed(&goes)])?;
     }
     Ok(model)
 }

@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::path::Path;
 
+use meshlod::io::Note;
 use meshlod::multires::ModelFile;
 use meshlod::{Format, MissingParts, ModelScene, Scene, SceneCounts};
 use serde_json::{Value, json};
@@ -52,7 +53,7 @@ pub fn counts_json(counts: &SceneCounts) -> Value {
     })
 }
 
-/// Reads the scene of a multiresolution file, with a warning of what a truncated file lacks.
+/// Reads the scene of a multiresolution file, with notes of what a truncated file lacks.
 pub fn read(path: &Path, file: &ModelFile<File>, session: &Session) -> Result<ModelScene, Failure> {
     let ModelFile::Contractions(archive) = file else { return Ok(ModelScene::default()) };
     if archive.has_old_resources() {
@@ -63,17 +64,16 @@ pub fn read(path: &Path, file: &ModelFile<File>, session: &Session) -> Result<Mo
     }
     let model = ModelScene::read(archive).map_err(|error| Failure::at(path, error))?;
     let MissingParts { scene, previews, images, animations } = model.missing;
-    let lacks = list(&[
-        (previews, "image, but for a smaller version", "images, but for smaller versions"),
-        (images, "image", "images"),
-        (animations.into(), "set of animations", ""),
-    ]);
-    if scene {
-        session.warn(Failure::at(path, "nodes and materials are missing from the truncated file"));
-    } else if !lacks.is_empty() {
-        let reason = format_args!("missing from the truncated file: {lacks}");
-        session.warn(Failure::at(path, reason));
-    }
+    let note = |count, one, many| {
+        Note::left_out(count, one, many).detailed(", which the truncated file lacks")
+    };
+    let notes = [
+        note(scene.into(), "set of nodes and materials", ""),
+        note(previews, "image but for a smaller version", "images but for smaller versions"),
+        note(images, "image", "images"),
+        note(animations.into(), "set of animations", ""),
+    ];
+    session.note(path, &notes)?;
     Ok(model)
 }
 

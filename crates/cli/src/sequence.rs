@@ -21,9 +21,14 @@ pub fn check(path: &Path, input: &Path, output: &Path) -> Result<(), Failure> {
     files::check_place(path)
 }
 
-/// Fails unless the scene has exactly one mesh, and warns about data that the sequence file will
-/// not store.
-pub fn check_scene(scene: &Scene, input: &Path, session: &Session) -> Result<(), Failure> {
+/// Fails unless the scene has exactly one mesh, and warns about data that the sequence file at
+/// `path` will not store.
+pub fn check_scene(
+    path: &Path,
+    scene: &Scene,
+    input: &Path,
+    session: &Session,
+) -> Result<(), Failure> {
     if scene.meshes.len() != 1 {
         return Err(several_meshes(input));
     }
@@ -35,7 +40,7 @@ pub fn check_scene(scene: &Scene, input: &Path, session: &Session) -> Result<(),
             files::name(input)
         ));
     }
-    Ok(())
+    session.note(path, &scene.obj_limits())
 }
 
 /// Creates the failure for a scene that does not have exactly one mesh.

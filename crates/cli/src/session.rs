@@ -66,6 +66,8 @@ impl Session {
 
     /// Like [`Session::note`], with a remedy that is added to each warning.
     pub fn note_with(&self, path: &Path, notes: &[Note], remedy: &str) -> Result<(), Failure> {
+        let notes: Vec<Note> = notes.iter().filter(|note| note.count > 0).cloned().collect();
+        let notes = &notes[..];
         for kind in [NoteKind::LeftOut, NoteKind::Changed] {
             let Some(list) = Note::list(notes, kind) else { continue };
             let line = Failure::at(path, format_args!("{}: {list}{remedy}", kind.word()));

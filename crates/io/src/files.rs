@@ -97,8 +97,8 @@ pub fn read_bytes(
         Format::Gltf | Format::Glb => gltf::read(bytes, resolve, options.weld)?,
         Format::Obj => obj::read(bytes, resolve)?,
         Format::Ply => ply::read_scene(bytes, resolve)?,
-        Format::Stl => Scene::from_mesh("", stl::read(bytes)?),
-        Format::Off => Scene::from_mesh("", off::read(bytes)?),
+        Format::Stl => stl::read_scene(bytes)?,
+        Format::Off => off::read_scene(bytes)?,
         Format::Smf => Scene::from_mesh("", smf::read(bytes)?),
     };
     // glTF was welded as it was read: its document depends on it.

@@ -83,6 +83,7 @@ impl Scene {
         {
             flat.objects = Some(self.flat_objects(&instances));
         }
+        flat.smoothing = self.flat_smoothing(&instances);
         flat
     }
 
@@ -179,6 +180,15 @@ impl Scene {
         Some(flat)
     }
 
+    fn flat_smoothing(&self, instances: &[MeshInstance]) -> Option<Vec<u32>> {
+        let shown = || instances.iter().map(|instance| &self.meshes[instance.mesh].mesh);
+        shown().find(|mesh| mesh.smoothing.is_some())?;
+        let none = |mesh: &Mesh| vec![0; mesh.faces.len()];
+        Some(
+            shown().flat_map(|mesh| mesh.smoothing.clone().unwrap_or_else(|| none(mesh))).collect(),
+        )
+    }
+
     fn flat_objects(&self, instances: &[MeshInstance]) -> Labels {
         let mut flat = Labels::default();
         for &MeshInstance { node, mesh, .. } in instances {
@@ -237,7 +247,7 @@ fn union_of_layers<'a>(meshes: impl Iterator<Item = &'a Mesh>) -> Vec<Layer> {
 }
 
 fn same_meaning(a: &Layer, b: &Layer) -> bool {
-    a.kind == b.kind && (a.kind != LayerKind::Other || (a.name == b.name && a.width == b.width))
+    a.kind == b.kind && (!a.kind.is_named() || (a.name == b.name && a.width == b.width))
 }
 
 fn append_attributes(flat: &mut Attributes, mesh: &Mesh, instance: &MeshInstance) {

@@ -21,8 +21,7 @@ mod files;
 mod flatten;
 mod format;
 pub mod gltf;
-mod image_header;
-mod image_type;
+mod image_file;
 mod influences;
 mod limits;
 mod line_writer;
@@ -50,7 +49,7 @@ pub use files::{
 };
 pub use flatten::{MeshInstance, transform};
 pub use format::Format;
-pub use image_header::ImageHeader;
+pub use image_file::ImageHeader;
 pub use material::{Material, MtlMap, MtlStatement, Shading};
 pub use meshlod_mesh::{merge_equal_wedges, weld};
 pub use notes::{Note, NoteKind};

@@ -4,8 +4,7 @@ use std::collections::BTreeSet;
 
 use meshlod_mesh::{Layer, LayerKind, Mesh};
 
-use crate::obj::mtl::untold;
-use crate::{Format, Material, MeshInstance, Note, Scene, Shading};
+use crate::{Format, Material, MeshInstance, Note, Scene};
 
 impl Scene {
     /// Lists what a file of this format cannot hold of the scene, or holds in another form; empty if
@@ -17,103 +16,57 @@ impl Scene {
     pub fn limits_of(&self, format: Format) -> Vec<Note> {
         let mut notes = match format {
             Format::Gltf | Format::Glb if self.source.is_some() => Vec::new(),
-            Format::Gltf | Format::Glb => self.new_document_limits(),
-            Format::Obj => {
-                [self.graph_limits(), self.mtl_limits(), self.layer_limits(format)].concat()
+            Format::Gltf | Format::Glb => {
+                [crate::gltf::new_document_limits(self), self.ply_limits(), self.obj_limits()]
+                    .concat()
             }
-            Format::Ply => [self.graph_limits(), crate::ply::limits(self)].concat(),
+            Format::Obj => {
+                let parts = [self.graph_limits(), self.mtl_limits(), self.ply_limits()].concat();
+                [parts, self.layer_limits(format)].concat()
+            }
+            Format::Ply => {
+                [self.graph_limits(), self.obj_limits(), crate::ply::limits(self)].concat()
+            }
             Format::Stl | Format::Off | Format::Smf => {
-                [self.graph_limits(), self.single_mesh_limits(), self.layer_limits(format)].concat()
+                let parts = [self.graph_limits(), self.single_mesh_limits(), self.ply_limits()];
+                [parts.concat(), self.obj_limits(), self.layer_limits(format)].concat()
             }
         };
         if let Some((most, count)) = self.unavoidable_rounding(format) {
-            let why = format!("rounded by up to {most:.1e}: the format has 32-bit coordinates");
-            notes.push(Note::changed(count, &format!("vertex {why}"), &format!("vertices {why}")));
+            let why = format!(" by up to {most:.1e}: the format has 32-bit coordinates");
+            notes.push(Note::changed(count, "vertex rounded", "vertices rounded").detailed(&why));
         }
         notes.retain(|note| note.count > 0);
         notes
     }
 
-    /// Lists what a new glTF document lacks.
-    fn new_document_limits(&self) -> Vec<Note> {
-        let shown = self.materials.iter().flat_map(|material| {
-            let Shading { normal_image, emission_image, .. } = material.shading;
-            let combined = material.shading.metallic_roughness_image();
-            [material.base_color_image, combined, normal_image, emission_image]
-        });
-        let shown: BTreeSet<usize> = shown.flatten().collect();
-        let other = shown
-            .into_iter()
-            .filter_map(|image| self.images.get(image))
-            .filter(|image| !image.bytes.is_empty() && !crate::gltf::has_core_type(&image.bytes));
-        let names: Vec<&str> = other.map(|image| &*image.name).collect();
-        let [left_out, changed] = self.mtl_statements();
-        let [separate, opacity] = self.separate_images();
+    /// Lists what glTF lacks of a new scene whose meshes stay whole, as strips and compressed ones
+    /// do: the names of their objects.
+    pub fn whole_mesh_limits(&self) -> Vec<Note> {
+        let names = if self.source.is_some() { Vec::new() } else { self.object_names() };
+        let note = Note::left_out(names.len(), "name of an object", "names of objects");
+        vec![note.named(names)]
+    }
+
+    /// Lists what formats other than PLY lack of a scene that was read from there.
+    pub fn ply_limits(&self) -> Vec<Note> {
+        let words = |word: &'static str| {
+            self.ply.remarks.iter().filter(move |line| line.starts_with(word)).count()
+        };
+        let [comments, infos] = ["comment", "obj_info"].map(words);
         vec![
-            left_out,
-            changed,
-            separate,
-            opacity,
-            Note::left_out(
-                names.len(),
-                "image that is neither PNG nor JPEG",
-                "images that are neither PNG nor JPEG",
-            )
-            .named(names),
+            Note::left_out(comments, "comment", "comments"),
+            Note::left_out(infos, "line obj_info", "lines obj_info"),
         ]
     }
 
-    /// Notes the statements of MTL libraries that glTF lacks, and those that become something else.
-    fn mtl_statements(&self) -> [Note; 2] {
-        let untold = self.materials.iter().map(|material| untold(material, &self.images));
-        let untold: Vec<_> = untold.collect();
-        let note = |note: fn(usize, &str, &str) -> Note, words: Vec<&String>, one, many| {
-            let names: BTreeSet<&String> = words.iter().copied().collect();
-            note(words.len(), one, many).named(names)
-        };
-        let left_out = untold.iter().flat_map(|untold| &untold.left_out).collect();
-        let changed = untold.iter().flat_map(|untold| &untold.changed).collect();
-        [
-            note(Note::left_out, left_out, "MTL statement", "MTL statements"),
-            note(
-                Note::changed,
-                changed,
-                "MTL statement taken for a roughness or for normals",
-                "MTL statements taken for a roughness or for normals",
-            ),
-        ]
-    }
-
-    /// Notes the maps that glTF would need in one image, of materials that are not from an MTL
-    /// library.
-    fn separate_images(&self) -> [Note; 2] {
-        let own = self.materials.iter().filter(|material| material.mtl.is_empty());
-        let maps = own.clone().map(|material| {
-            let Shading { metallic_image, roughness_image, .. } = material.shading;
-            let has_combined = material.shading.metallic_roughness_image().is_some();
-            if has_combined {
-                0
-            } else {
-                [metallic_image, roughness_image].iter().flatten().count()
-            }
-        });
-        let maps = maps.sum();
-        let is_lost = |material: &&Material| {
-            let opacity = material.shading.opacity_image;
-            opacity.is_some() && opacity != material.base_color_image
-        };
-        [
-            Note::left_out(
-                maps,
-                "map of metalness or roughness in an image of its own",
-                "maps of metalness or roughness in images of their own",
-            ),
-            Note::left_out(
-                own.filter(is_lost).count(),
-                "map of opacity in an image of its own",
-                "maps of opacity in images of their own",
-            ),
-        ]
+    /// Lists what formats other than OBJ lack of a scene that was read from there.
+    pub fn obj_limits(&self) -> Vec<Note> {
+        let groups = self.meshes.iter().filter_map(|mesh| mesh.mesh.smoothing.as_ref());
+        let groups: BTreeSet<u32> = groups.flatten().copied().filter(|&group| group > 0).collect();
+        let names = groups.iter().map(u32::to_string);
+        let note = Note::left_out(groups.len(), "smoothing group", "smoothing groups");
+        vec![note.named(names)]
     }
 
     /// Lists what formats without nodes lack.
@@ -124,12 +77,14 @@ impl Scene {
         let hidden = shown.iter().filter(|&&shown| !shown).count();
         let merged = if instances.len() > 1 { instances.len() } else { 0 };
         let count = |array| self.source.as_ref().map_or(0, |source| source.count(array));
+        let lights = self.source.as_ref().map_or(0, |source| source.lights());
         vec![
             Note::changed(merged, "", "instances of meshes merged into one mesh"),
             Note::left_out(hidden, "mesh that no node shows", "meshes that no node shows"),
             Note::left_out(count("skins"), "skin", "skins"),
             Note::left_out(count("animations"), "animation", "animations"),
             Note::left_out(count("cameras"), "camera", "cameras"),
+            Note::left_out(lights, "light", "lights"),
         ]
     }
 
@@ -174,8 +129,8 @@ impl Scene {
             meshes.iter().filter_map(|mesh| mesh.attributes.as_ref()).flat_map(|a| &a.layers);
         let lost: BTreeSet<String> =
             layers.filter(|layer| !holds(format, layer)).map(title).collect();
-        let split =
-            if splits_seams(format) { meshes.iter().map(|mesh| seams(mesh)).sum() } else { 0 };
+        let is_new = splits_seams(format) && !self.had_split_seams();
+        let split = if is_new { meshes.iter().map(|mesh| seams(mesh)).sum() } else { 0 };
         vec![
             Note::left_out(lost.len(), "vertex attribute", "vertex attributes").named(lost),
             Note::changed(
@@ -184,6 +139,12 @@ impl Scene {
                 "vertices split at seams of their attributes",
             ),
         ]
+    }
+
+    /// Reports whether vertices were split at seams in the file that the scene was read from, so
+    /// that to split them again changes nothing.
+    pub(crate) fn had_split_seams(&self) -> bool {
+        self.source.is_some() || self.has_split_seams
     }
 
     pub(crate) fn object_names(&self) -> Vec<String> {
@@ -218,7 +179,7 @@ fn title(layer: &Layer) -> String {
         LayerKind::Color(set) => format!("colours {set}"),
         LayerKind::Joints(_) => "joints".to_owned(),
         LayerKind::Weights(_) => "joint weights".to_owned(),
-        LayerKind::Other => layer.name.clone(),
+        LayerKind::Other | LayerKind::Label => layer.name.clone(),
     }
 }
 

@@ -26,7 +26,7 @@ impl NoteKind {
 /// It is displayed as in `2 images that were not found (a.png, b.png)`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
-    /// NoteKind between the file and the scene.
+    /// Difference between the file and the scene.
     pub kind: NoteKind,
     /// Number of the things.
     pub count: usize,
@@ -34,6 +34,8 @@ pub struct Note {
     pub what: String,
     /// Names of the first few of the things, if they have names that help to find them.
     pub names: Vec<String>,
+    /// Name of the things in the plural, by which notes of one sort are known.
+    many: String,
 }
 
 /// Largest number of names that a note keeps.
@@ -52,13 +54,33 @@ impl Note {
 
     fn new(kind: NoteKind, count: usize, one: &str, many: &str) -> Self {
         let what = if count == 1 { one } else { many };
-        Self { kind, count, what: what.to_owned(), names: Vec::new() }
+        let names = Vec::new();
+        Self { kind, count, what: what.to_owned(), names, many: many.to_owned() }
+    }
+
+    /// Adds to the name of the things how much they changed, or why.
+    pub fn detailed(mut self, detail: &str) -> Self {
+        self.what += detail;
+        self
     }
 
     /// Adds the names of the things, of which the first few are kept.
     pub fn named<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
         self.names = names.into_iter().take(MOST_NAMES).map(Into::into).collect();
         self
+    }
+
+    /// Adds notes on a further part to those of the whole: of two that say the same of different
+    /// numbers of things, the one on more of them stays.
+    pub fn merge(notes: &mut Vec<Self>, further: Vec<Self>) {
+        for note in further {
+            let is_like = |known: &&mut Self| (known.kind, &known.many) == (note.kind, &note.many);
+            match notes.iter_mut().find(is_like) {
+                Some(known) if known.count >= note.count => {}
+                Some(known) => *known = note,
+                None => notes.push(note),
+            }
+        }
     }
 
     /// Describes the notes of one difference as a list; `None` if there are none.
@@ -107,6 +129,19 @@ mod tests {
         );
         let many = note(1200).named((0..1200).map(|i| i.to_string()));
         assert_eq!(many.to_string(), "1,200 images not found (0, 1, 2, 3, 4, 5, 6, 7, …)");
+    }
+
+    #[test]
+    fn merged_notes_say_the_same_once() {
+        let note = |count| {
+            let note = Note::changed(count, "vertex rounded", "vertices rounded");
+            note.detailed(&format!(" by {count} mm"))
+        };
+        let mut notes = vec![note(1)];
+        Note::merge(&mut notes, vec![note(3), Note::left_out(1, "vertex rounded", "")]);
+        Note::merge(&mut notes, vec![note(2)]);
+        assert_eq!(Note::list(&notes, NoteKind::Changed).unwrap(), "3 vertices rounded by 3 mm");
+        assert_eq!(notes.len(), 2);
     }
 
     #[test]

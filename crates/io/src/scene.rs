@@ -29,6 +29,9 @@ pub struct Scene {
     pub source: Option<SourceDocument>,
     /// Comments and types of a PLY file that the scene was read from, for writing it as PLY again.
     pub ply: PlyExtras,
+    /// True if the format that the scene was read from has one set of attributes for each vertex, so
+    /// that vertices are split at seams there. glTF has too.
+    pub has_split_seams: bool,
     /// Notes on what the reader left out or changed; writers ignore them.
     pub notes: Vec<Note>,
 }

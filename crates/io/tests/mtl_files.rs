@@ -210,7 +210,7 @@ fn what_is_missing_is_named_and_stays_named() {
 #[test]
 fn what_is_no_face_is_counted() {
     let text = format!(
-        "{SQUARE}v 2 2 2 0.5\nv 3 3 3 1 0 0 0.5\nvt 0 0 0.5\nvt 0 1 0\no a\ng b c\ns 1\nf 1 2 3\n\
+        "{SQUARE}v 2 2 2 0.5\nv 3 3 3 1 0 0 0.5\nvt 0 0 0.5\nvt 0 1 0\no a\ng b c\ns round\ns 1\nf 1 2 3\n\
          s off\nf 1 2\nf 3\nl 1 2\nl 1 3\np 1\ncstype bezier\ncurv 0 1 1 2\nmg 1\n"
     );
     let here = folder(&[("a.obj", text.as_bytes())]);
@@ -220,7 +220,7 @@ fn what_is_no_face_is_counted() {
         "2 statements of free-form curves or surfaces",
         "1 other statement (mg)",
         "2 faces of fewer than three corners",
-        "1 smoothing group (1)",
+        "1 smoothing group that is no number (round)",
         "1 name of a group (b c)",
         "1 third texture coordinate",
         "1 weight of a vertex",

@@ -25,6 +25,9 @@ pub enum LayerKind {
     Weights(u8),
     /// Any other attribute, with any number of values per wedge.
     Other,
+    /// Whole numbers that name something, such as a class or an instance, any number of them per
+    /// wedge, held as `f32` and never interpolated.
+    Label,
 }
 
 impl LayerKind {
@@ -35,13 +38,24 @@ impl LayerKind {
             Self::Normal => Some(3),
             Self::Uv(_) => Some(2),
             Self::Tangent | Self::Joints(_) | Self::Weights(_) => Some(4),
-            Self::Color(_) | Self::Other => None,
+            Self::Color(_) | Self::Other | Self::Label => None,
         }
     }
 
     /// Returns true for layers of unit directions: normals and tangents.
     pub fn is_direction(self) -> bool {
         matches!(self, Self::Normal | Self::Tangent)
+    }
+
+    /// Returns true for layers that their names tell apart.
+    pub fn is_named(self) -> bool {
+        matches!(self, Self::Other | Self::Label)
+    }
+
+    /// Returns true unless a mean of values has no meaning: joints and their weights, which go
+    /// together, and labels.
+    pub fn is_blended(self) -> bool {
+        !matches!(self, Self::Joints(_) | Self::Weights(_) | Self::Label)
     }
 
     /// Returns two bytes that stand for the type in files: its code and the number of its set.
@@ -54,6 +68,7 @@ impl LayerKind {
             Self::Joints(set) => (4, set),
             Self::Weights(set) => (5, set),
             Self::Other => (6, 0),
+            Self::Label => (7, 0),
         }
     }
 
@@ -67,6 +82,7 @@ impl LayerKind {
             Self::Joints(set),
             Self::Weights(set),
             Self::Other,
+            Self::Label,
         ];
         kinds.into_iter().nth(code.into())
     }
@@ -83,6 +99,7 @@ impl fmt::Display for LayerKind {
             Self::Joints(set) => write!(f, "joints{set}"),
             Self::Weights(set) => write!(f, "weights{set}"),
             Self::Other => f.write_str("other"),
+            Self::Label => f.write_str("label"),
         }
     }
 }
@@ -180,7 +197,7 @@ impl AttributeBounds {
             LayerKind::Color(_) => self.color,
             LayerKind::Weights(_) => self.weight,
             // Integers.
-            LayerKind::Joints(_) => 0.5,
+            LayerKind::Joints(_) | LayerKind::Label => 0.5,
             LayerKind::Other => {
                 let values = wedges.flat_map(|wedge| layer.of(wedge));
                 let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[min, max], &x| {

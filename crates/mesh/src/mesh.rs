@@ -21,6 +21,8 @@ pub struct Mesh {
     pub materials: Option<Labels>,
     /// Object that each face belongs to, by name.
     pub objects: Option<Labels>,
+    /// Smoothing group of each face, 0 for none; as OBJ has them. They change no shading here.
+    pub smoothing: Option<Vec<u32>>,
 }
 
 /// Reason why a triangle mesh is invalid.
@@ -144,7 +146,17 @@ impl Mesh {
     pub fn validate_attributes(&self) -> Result<(), MeshError> {
         self.validate_corners()?;
         self.validate_labels("material", self.materials.as_ref())?;
-        self.validate_labels("object", self.objects.as_ref())
+        self.validate_labels("object", self.objects.as_ref())?;
+        match &self.smoothing {
+            Some(groups) => same_length("smoothing groups", groups.len(), self.faces.len()),
+            None => Ok(()),
+        }
+    }
+
+    /// Returns the smoothing groups of the faces with the indices `kept`, in that order.
+    pub fn select_smoothing(&self, kept: &[u32]) -> Option<Vec<u32>> {
+        let groups = self.smoothing.as_ref()?;
+        Some(kept.iter().map(|&face| groups[face as usize]).collect())
     }
 
     fn validate_corners(&self) -> Result<(), MeshError> {

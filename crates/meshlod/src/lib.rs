@@ -274,7 +274,7 @@ pub use meshlod_mesh::{Borders, Mesh};
 pub use meshlod_simplify::{Method, Options, Report, SimplifyError, Target, Topology};
 pub use model_scene::{
     LevelInstance, MissingParts, ModelScene, ModelSceneError, PackedScene, PlaceError, PlacedScene,
-    SceneCounts, SceneLayout, place_scene,
+    SceneCounts, SceneLayout, model_limits, place_scene,
 };
 pub use place::{moved_at_most, rounding_of_level, world_bounds};
 pub use repair::repair_scene;

@@ -8,7 +8,7 @@ use super::interpolate::interpolate_wedge;
 use super::points::{EndPoint, FaceInterior, IntersectionPoints, PointId, rounding};
 use super::triangulate::{FaceCuts, FaceTriangulation, triangulate};
 use crate::check::edges::lowest_first;
-use crate::repair::labels;
+use crate::repair::face_values;
 use crate::unique_positions::UniquePositions;
 
 /// A mesh being rebuilt face by face, with its faces cut at intersections.
@@ -101,7 +101,7 @@ impl<'a> CutMesh<'a> {
     ) -> Self {
         let mut done = mesh.clone();
         done.faces.clear();
-        labels(&mut done).for_each(|labels| labels.of_face.clear());
+        face_values(&mut done).for_each(Vec::clear);
         if let Some(attributes) = &mut done.attributes {
             attributes.corners.clear();
         }
@@ -163,9 +163,10 @@ impl<'a> CutMesh<'a> {
         if let (Some(attributes), Some(wedges)) = (&mut self.done.attributes, wedges) {
             attributes.corners.push(wedges);
         }
-        let all = self.mesh.materials.iter().chain(&self.mesh.objects);
-        for (labels, all) in labels(&mut self.done).zip(all) {
-            labels.of_face.push(all.of(of.index()));
+        let labels = self.mesh.materials.iter().chain(&self.mesh.objects);
+        let all = labels.map(|labels| &labels.of_face).chain(&self.mesh.smoothing);
+        for (values, all) in face_values(&mut self.done).zip(all) {
+            values.push(all[of.index()]);
         }
     }
 

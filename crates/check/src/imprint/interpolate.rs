@@ -11,8 +11,8 @@ pub fn interpolate_wedge(
     let nearest = (0..3).max_by(|&i, &j| weights[i].total_cmp(&weights[j])).expect("three weights");
     for layer in &mut attributes.layers {
         let mut values = layer.of(corners[nearest]).to_vec();
-        // Joints and their weights are copied together from the nearest corner.
-        if !matches!(layer.kind, LayerKind::Joints(_) | LayerKind::Weights(_)) {
+        // Joints, their weights and labels are those of the nearest corner.
+        if layer.kind.is_blended() {
             // The handedness of a tangent is not interpolated.
             let width = if layer.kind == LayerKind::Tangent { 3 } else { layer.width };
             for (k, value) in values.iter_mut().enumerate().take(width) {

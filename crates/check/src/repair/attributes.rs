@@ -24,6 +24,10 @@ pub fn repair(mesh: &mut Mesh) -> usize {
             count += 1;
         }
     }
+    if mesh.smoothing.as_ref().is_some_and(|groups| groups.len() != faces) {
+        mesh.smoothing = None;
+        count += 1;
+    }
     count + own_wedges(mesh)
 }
 

@@ -4,7 +4,7 @@ use glam::DVec3;
 use meshlod_mesh::{Connectivity, FaceId, LayerKind, Mesh, Side, Twin, VertexId, WedgeId};
 use rustc_hash::FxHashSet;
 
-use super::edit::{labels, retain_faces};
+use super::edit::{face_values, retain_faces};
 use crate::imprint::interpolate::normalize;
 use crate::zero_area::has_zero_area;
 
@@ -129,8 +129,8 @@ impl Flip {
                 attributes.corners[face.index()][end] = wedge;
             }
         }
-        for labels in labels(mesh) {
-            labels.of_face[self.face.index()] = labels.of_face[self.neighbour.index()];
+        for values in face_values(mesh) {
+            values[self.face.index()] = values[self.neighbour.index()];
         }
     }
 
@@ -172,9 +172,9 @@ fn is_between(corners: [DVec3; 3], k: usize) -> bool {
     within && at != from && at != to
 }
 
-/// Interpolates the values of two wedges; joints come from the nearer one.
+/// Interpolates the values of two wedges; joints and labels come from the nearer one.
 fn between(kind: LayerKind, a: &[f32], b: &[f32], part: f32) -> Vec<f32> {
-    if let LayerKind::Joints(_) = kind {
+    if matches!(kind, LayerKind::Joints(_) | LayerKind::Label) {
         return if part <= 0.5 { a.to_vec() } else { b.to_vec() };
     }
     let mut values: Vec<f32> = a.iter().zip(b).map(|(a, b)| a + (b - a) * part).collect();

@@ -1,6 +1,6 @@
 //! Edits of a mesh together with its attributes and labels.
 
-use meshlod_mesh::{Labels, Mesh, VertexId, WedgeId};
+use meshlod_mesh::{Mesh, VertexId, WedgeId};
 use rustc_hash::FxHashMap;
 
 /// Removes the faces for which `keeps` is false, with their corners and labels; returns their
@@ -14,8 +14,8 @@ pub fn retain_faces(mesh: &mut Mesh, keeps: impl Fn(usize) -> bool) -> usize {
     if let Some(attributes) = &mut mesh.attributes {
         retain(&mut attributes.corners, &keeps);
     }
-    for labels in labels(mesh) {
-        retain(&mut labels.of_face, &keeps);
+    for values in face_values(mesh) {
+        retain(values, &keeps);
     }
     before - mesh.faces.len()
 }
@@ -28,9 +28,11 @@ fn retain<T>(items: &mut Vec<T>, keeps: impl Fn(usize) -> bool) {
     });
 }
 
-/// Iterates over the material and object labels that the mesh has.
-pub fn labels(mesh: &mut Mesh) -> impl Iterator<Item = &mut Labels> {
-    mesh.materials.iter_mut().chain(mesh.objects.iter_mut())
+/// Iterates over what the faces of a mesh have one number of each: labels of their material and
+/// object, and smoothing groups.
+pub fn face_values(mesh: &mut Mesh) -> impl Iterator<Item = &mut Vec<u32>> {
+    let labels = mesh.materials.iter_mut().chain(&mut mesh.objects);
+    labels.map(|labels| &mut labels.of_face).chain(&mut mesh.smoothing)
 }
 
 /// Copies wedges that several vertices use, so that each vertex has its own; returns the number of

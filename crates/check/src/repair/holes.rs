@@ -3,7 +3,7 @@
 use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId, WedgeId, face_components};
 use rustc_hash::FxHashSet;
 
-use super::edit::{labels, retain_faces};
+use super::edit::{face_values, retain_faces};
 use super::intersecting::intersecting;
 use super::triangulate::{HoleOutline, triangles_weighed, triangulate};
 use crate::check::boundary::{Boundary, BoundaryPolyline};
@@ -251,8 +251,8 @@ impl Hole {
             if let (Some(attributes), Some(wedges)) = (&mut mesh.attributes, &self.wedges) {
                 attributes.corners.push(indices.map(|i| wedges[i]));
             }
-            for labels in labels(mesh) {
-                labels.of_face.push(labels.of_face[self.face.index()]);
+            for values in face_values(mesh) {
+                values.push(values[self.face.index()]);
             }
         }
     }

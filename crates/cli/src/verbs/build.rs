@@ -4,13 +4,16 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum};
-use meshlod::io::write_file;
+use meshlod::io::Note;
 use meshlod::multires::{
     Archive, BuildError, Certificate, Fit, Forest, HeightField, HeightPrecision, ModelFile,
     Recorder, Storage, StoredErrors,
 };
 use meshlod::simplify::Simplifier;
-use meshlod::{Mesh, Method, Options, PackedScene, PlacedScene, SceneCounts, Target};
+use meshlod::{
+    Format, Mesh, Method, Options, PackedScene, PlacedScene, Scene, SceneCounts, Target,
+    model_limits,
+};
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
@@ -18,12 +21,13 @@ use crate::args::{AttributeErrorArgs, ReadArgs};
 use crate::constraints::{ConstraintArgs, FlatInput};
 use crate::failure::Failure;
 use crate::files;
-use crate::fuse::{self, FuseReport};
+use crate::fuse;
 use crate::locks;
 use crate::model_file;
 use crate::model_scene;
 use crate::numbers::{count, faces, percent, value};
 use crate::parse::{self, Bound};
+use crate::scene_files;
 use crate::session::Session;
 use crate::volume;
 
@@ -137,11 +141,14 @@ impl Build {
             ));
         }
         let options = Options { method: self.method, ..Options::default() };
-        let (PlacedScene { mesh, options, rest, counts }, fused) = match self.model {
+        let (scene, fused) = self.constraints.read_fused(&self.input, &self.reading, session)?;
+        let (PlacedScene { mesh, options, rest, counts }, mut notes) = match self.model {
             ModelArg::Contractions => {
-                self.constraints.read_placed(&self.input, &self.reading, options, session)?
+                let notes = model_limits(&scene);
+                let path = (self.input.as_path(), &self.reading);
+                (self.constraints.place(scene, path, options, session)?, notes)
             }
-            ModelArg::RightTriangles => self.read_field(options, session)?,
+            ModelArg::RightTriangles => self.place_field(scene, options, session)?,
         };
         if mesh.faces.is_empty() {
             return Err(Failure::at(&self.input, "the mesh has no faces"));
@@ -155,9 +162,8 @@ impl Build {
             ModelArg::Contractions => self.contractions(&mesh, &options, rest.as_ref(), session)?,
             ModelArg::RightTriangles => self.right_triangles(&mesh)?,
         };
-        self.warn(&mesh, &built, session);
-        session.progress.stage(&format!("writing {}", files::name(&self.output)));
-        write_file(&self.output, &built.bytes)?;
+        notes.extend(scene_files::unused_parts(&mesh, built.faces));
+        scene_files::write_encoded(&self.output, &notes, &built.bytes, session)?;
         let time = start.elapsed();
         let mut json = self.json(&mesh, &built, time);
         json["fused"] = fuse::to_json(fused.as_ref());
@@ -167,25 +173,6 @@ impl Build {
             text += &model_scene::counts_text(&counts);
         }
         Ok(Answer::new(json, text))
-    }
-
-    /// Warns of vertices and faces that are not in the file.
-    fn warn(&self, mesh: &Mesh, built: &Built, session: &Session) {
-        let alone = mesh.positions.len() - vertex_count(mesh);
-        if alone > 0 {
-            let some = if alone == 1 { "vertex" } else { "vertices" };
-            let reason =
-                format_args!("left out: {} unused {some}, which no face needs", count(alone));
-            session.warn(Failure::at(&self.input, reason));
-        }
-        let odd = mesh.faces.len() - built.faces;
-        if odd > 0 {
-            let reason = format_args!(
-                "left out: {}, degenerate or duplicate; check lists them, and repair removes them",
-                faces(odd)
-            );
-            session.warn(Failure::at(&self.input, reason));
-        }
     }
 
     fn contractions(
@@ -248,24 +235,21 @@ impl Build {
         })
     }
 
-    /// Reads a height field, of which nothing but the surface is used.
-    fn read_field(
+    /// Merges the scene of a height field, of which nothing but the surface is used; also returns
+    /// what is left out.
+    fn place_field(
         &self,
+        scene: Scene,
         options: Options,
         session: &Session,
-    ) -> Result<(PlacedScene, Option<FuseReport>), Failure> {
-        let read = self.constraints.read_fused(&self.input, &self.reading, session)?;
-        let is_scene = read.0.source.is_some();
+    ) -> Result<(PlacedScene, Vec<Note>), Failure> {
+        // Right triangles have what STL has: a surface.
+        let notes = scene.limits_of(Format::Stl);
         let path = (self.input.as_path(), &self.reading);
-        let FlatInput { mesh, options, fused } =
-            self.constraints.flatten(read, path, options, session)?;
-        if mesh.attributes.is_some() || mesh.materials.is_some() || is_scene {
-            session.warn(
-                "attributes, materials and nodes are left out: right triangles hold heights only",
-            );
-        }
+        let FlatInput { mesh, options, .. } =
+            self.constraints.flatten((scene, None), path, options, session)?;
         let counts = SceneCounts::default();
-        Ok((PlacedScene { mesh, options, rest: None, counts }, fused))
+        Ok((PlacedScene { mesh, options, rest: None, counts }, notes))
     }
 
     fn right_triangles(&self, mesh: &Mesh) -> Result<Built, Failure> {

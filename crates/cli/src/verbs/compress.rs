@@ -13,8 +13,7 @@ use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 use meshlod::codec::{CompressionTarget, Reconstruction, Scheme};
-use meshlod::io::write_file;
-use meshlod::{Mesh, Scene, SceneCounts};
+use meshlod::{Mesh, Scene, SceneCounts, model_limits};
 
 use crate::answer::{Answer, Outcome};
 use crate::args::{AttributeErrorArgs, ReadArgs};
@@ -23,8 +22,9 @@ use crate::failure::Failure;
 use crate::files;
 use crate::fuse;
 use crate::model_scene;
-use crate::numbers::{count, faces, percent};
+use crate::numbers::percent;
 use crate::parse::{self, Bound};
+use crate::scene_files;
 use crate::session::Session;
 
 use self::place::Placed;
@@ -117,8 +117,8 @@ impl Compress {
         let start = Instant::now();
         let (packed, counts) = self.pack(kind, scene, session)?;
         let time = start.elapsed();
-        for left_out in &packed.left_out {
-            session.warn(Failure::at(&self.input, left_out));
+        for remark in &packed.remarks {
+            session.warn(Failure::at(&self.input, remark));
         }
         if !packed.reached {
             let best = percent(100.0 * packed.reduction());
@@ -127,8 +127,7 @@ impl Compress {
             );
             session.warn(Failure::at(&self.input, reason));
         }
-        session.progress.stage(&format!("writing {}", files::name(&output)));
-        write_file(&output, &packed.bytes)?;
+        scene_files::write_encoded(&output, &packed.notes, &packed.bytes, session)?;
         let mut json = packed.json(&output, time);
         json["fused"] = fuse::to_json(fused.as_ref());
         let mut text = fuse::to_text(fused.as_ref()) + &packed.text(&output, time);
@@ -166,11 +165,14 @@ impl Compress {
         if kind == Kind::Gltf {
             return Ok((self.gltf(scene)?, None));
         }
+        let mut notes = model_limits(&scene);
         let Placed { mesh, rest, counts } = self.place(scene, session)?;
-        let packed = match kind {
+        let mut packed = match kind {
             Kind::Resident => self.resident(&mesh, rest)?,
             _ => self.transport(&mesh, &rest)?,
         };
+        notes.append(&mut packed.notes);
+        packed.notes = notes;
         Ok((packed, counts))
     }
 
@@ -247,22 +249,4 @@ impl Compress {
     fn failed(&self, error: impl std::fmt::Display) -> Failure {
         Failure::at(&self.input, error)
     }
-}
-
-/// Lists the vertices and faces that a file leaves out of a mesh.
-fn left_out(mesh: &Mesh, faces_there: usize) -> Vec<String> {
-    let mut left_out = Vec::new();
-    let alone = mesh.used_vertices().iter().filter(|&&used| !used).count();
-    if alone > 0 {
-        let some = if alone == 1 { "vertex" } else { "vertices" };
-        left_out.push(format!("left out: {} unused {some}, which no face needs", count(alone)));
-    }
-    let odd = mesh.faces.len() - faces_there;
-    if odd > 0 {
-        left_out.push(format!(
-            "left out: {}, degenerate: check lists them, and repair removes them",
-            faces(odd)
-        ));
-    }
-    left_out
 }

@@ -12,6 +12,7 @@ use crate::failure::Failure;
 use crate::files;
 use crate::model_scene::shown_faces;
 use crate::numbers::{count, faces};
+use crate::scene_files;
 use crate::session::Session;
 
 /// Write a mesh in another format, or the same one; what the format cannot hold is named
@@ -33,7 +34,7 @@ impl Convert {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         files::check_output(&self.output, session)?;
         let scene = files::read(&self.input, &self.reading, session)?;
-        files::write(&self.output, &scene, &self.writing, session)?;
+        scene_files::write(&self.output, &scene, &self.writing, session)?;
         let (json, text) = (self.json(&scene), self.text(&scene));
         Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
     }

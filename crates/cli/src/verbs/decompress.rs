@@ -13,6 +13,7 @@ use crate::failure::Failure;
 use crate::files;
 use crate::model_scene;
 use crate::numbers::{count, faces, value};
+use crate::scene_files;
 use crate::session::Session;
 
 /// Decode a compressed file (.mlq or .mlz): to glTF as the scene it was made of, else as its surface
@@ -44,7 +45,7 @@ impl Decompress {
         let time = start.elapsed();
         let shown = model_scene::shown_faces(&scene);
         let (json, text) = (self.json(counts, shown, time), self.text(counts, shown, time));
-        files::write(&self.output, &scene, &self.writing, session)?;
+        scene_files::write(&self.output, &scene, &self.writing, session)?;
         Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
     }
 

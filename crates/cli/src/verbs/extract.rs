@@ -19,6 +19,7 @@ use crate::model_file;
 use crate::model_query::QueryArgs;
 use crate::model_scene;
 use crate::numbers::{faces, value};
+use crate::scene_files;
 use crate::session::Session;
 use crate::verbs::extract::report::{Extracted, volume_text};
 
@@ -106,7 +107,7 @@ impl Extract {
         }
         let scene = model_scene::restored(&self.input, model, scene, format)?;
         json["shown_faces"] = model_scene::shown_faces(&scene).into();
-        files::write(&self.output, &scene, &writing, session)?;
+        scene_files::write(&self.output, &scene, &writing, session)?;
         Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
     }
 

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::Args;
 use meshlod::Mesh;
 use meshlod::measure::{area, volume};
-use meshlod::mesh::{Connectivity, LayerKind, face_components};
+use meshlod::mesh::{Connectivity, face_components};
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
@@ -166,7 +166,7 @@ impl<'m> Facts<'m> {
         let layers = self.mesh.attributes.iter().flat_map(|attributes| &attributes.layers);
         layers
             .map(|layer| match layer.kind {
-                LayerKind::Other => layer.name.clone(),
+                kind if kind.is_named() => layer.name.clone(),
                 kind => kind.to_string(),
             })
             .collect()

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use meshlod::io::gltf::{Level, LodLayout};
-use meshlod::io::{write_file, write_lods};
+use meshlod::io::write_file;
 use meshlod::simplify::Digits;
 use meshlod::{Format, Scene, Topology, digits_of, world_bounds};
 
@@ -18,6 +18,7 @@ use crate::fuse;
 use crate::locks::InputScene;
 use crate::model_scene;
 use crate::parse::{self, LevelSize};
+use crate::scene_files;
 use crate::session::Session;
 use crate::simplify_report;
 use crate::simplify_run::{self, ReadyScene, Simplified, SimplifyRun};
@@ -215,18 +216,13 @@ impl Lods {
         session: &Session,
     ) -> Result<(), Failure> {
         let meshes = |level: &mut LodLevel| std::mem::take(&mut level.simplified.meshes);
-        let written = chain.iter_mut().filter(|level| level.file.is_some());
         if layout == ChainLayout::Files {
-            files::write(&self.file_of(0, layout), scene, &self.writing, session)?;
-            for level in written {
-                simplify_run::replace(scene, meshes(level));
-                if let Some(file) = &level.file {
-                    files::write(file, scene, &self.writing, session)?;
-                }
-            }
-            return Ok(());
+            let file = |level: &mut LodLevel| Some((level.file.clone()?, meshes(level)));
+            let levels = chain.iter_mut().filter_map(file).collect();
+            let first = self.file_of(0, layout);
+            return scene_files::write_chain(&first, scene, levels, &self.writing, session);
         }
-        session.progress.stage("writing");
+        let written = chain.iter_mut().filter(|level| level.file.is_some());
         let level = |level: &mut LodLevel| Level {
             meshes: meshes(level),
             screen_coverage: level.screen_coverage,
@@ -236,7 +232,7 @@ impl Lods {
             ChainLayout::Scene => LodLayout::Siblings,
             _ => LodLayout::Linked,
         };
-        Ok(write_lods(&self.output, scene, &levels, layout)?)
+        scene_files::write_levels(&self.output, scene, &levels, layout, session)
     }
 }
 

@@ -18,6 +18,7 @@ use crate::files;
 use crate::fuse::{self, FuseArgs};
 use crate::numbers::{count, faces, plural, value};
 use crate::parse;
+use crate::scene_files;
 use crate::session::Session;
 use crate::table::aligned;
 
@@ -117,8 +118,8 @@ impl Repair {
         }
         // Rounding could undo repairs.
         self.writing = self.writing.within(0.0, &scene, format);
-        files::write(&self.output, &scene, &self.writing, session)?;
-        let left = errors(files::read_again(&self.output, &scene, &self.writing, session)?);
+        scene_files::write(&self.output, &scene, &self.writing, session)?;
+        let left = errors(scene_files::read_again(&self.output, &scene, &self.writing, session)?);
         let done = Repaired { report, fused, left, before, after, time };
         self.warn(format, &done, session);
         Ok(Answer {

@@ -13,6 +13,7 @@ use crate::failure::Failure;
 use crate::files;
 use crate::numbers::{count, faces};
 use crate::parse;
+use crate::scene_files;
 use crate::sequence;
 use crate::session::Session;
 
@@ -77,7 +78,7 @@ impl Replay {
             session.warn(Failure::at(&self.input, reason));
         }
         let scene = self.scene_of(&sequence, session)?;
-        files::write(&self.output, &scene, &self.writing, session)?;
+        scene_files::write(&self.output, &scene, &self.writing, session)?;
         let json = json!({
             "full_faces": full,
             "base_faces": base,

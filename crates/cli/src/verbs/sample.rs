@@ -14,6 +14,7 @@ use crate::failure::Failure;
 use crate::files;
 use crate::numbers::{self, count};
 use crate::parse;
+use crate::scene_files;
 use crate::session::Session;
 
 /// Write a procedural mesh of any size
@@ -40,7 +41,7 @@ impl Sample {
             .ok_or_else(|| Failure::usage(format_args!("no sample is called {}", self.name)))?;
         let (vertices, faces) = (mesh.positions.len(), mesh.faces.len());
         let scene = Scene::from_mesh(&self.name, mesh);
-        files::write(&self.output, &scene, &self.writing, session)?;
+        scene_files::write(&self.output, &scene, &self.writing, session)?;
         let json = json!({
             "name": self.name,
             "file": files::name(&self.output),

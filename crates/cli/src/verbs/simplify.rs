@@ -22,6 +22,7 @@ use crate::fuse;
 use crate::locks::{self, InputScene};
 use crate::numbers::{count, faces, percent, value};
 use crate::parse::{self, Bound};
+use crate::scene_files;
 use crate::sequence;
 use crate::session::Session;
 use crate::simplify_report;
@@ -180,8 +181,8 @@ impl Simplify {
             sequence::check(path, &self.input, &self.output)?;
         }
         let mut scene = files::read(&self.input, &self.reading, session)?;
-        if self.sequence.is_some() {
-            sequence::check_scene(&scene, &self.input, session)?;
+        if let Some(path) = &self.sequence {
+            sequence::check_scene(path, &scene, &self.input, session)?;
         }
         let fused = self.method.constraints.fuse.apply(&mut scene, session);
         let target = self.target.target(&scene);
@@ -219,7 +220,7 @@ impl Simplify {
         let mut text = self.text(&done, &task, fused.as_ref(), time);
         text += &kept.map_or(String::new(), |kept| kept.text());
         simplify_run::replace(&mut scene, std::mem::take(&mut done.meshes));
-        let write = || files::write(&self.output, &scene, &self.writing, session);
+        let write = || scene_files::write(&self.output, &scene, &self.writing, session);
         match (&self.sequence, &done.sequence) {
             (Some(path), Some(sequence)) => sequence::write_with(path, sequence, write)?,
             _ => write()?,

@@ -16,6 +16,7 @@ mod hostile;
 mod info;
 mod kept_error;
 mod levels;
+mod losses;
 mod model_scenes;
 mod models;
 mod pipes;

@@ -151,7 +151,7 @@ fn no_strip_has_two_materials_and_what_is_lost_is_named() {
     let strip = ["strip", "in.obj", "--levels", "100%,50%", "--verify", "--filter", "dtff"];
     let done = run.run(&[&strip[..], &["--out", "out.gltf"]].concat());
     assert_eq!(done.code, 0, "{done:?}");
-    assert!(done.err.contains("not kept: 3 names of objects"), "{done:?}");
+    assert!(done.err.contains("left out: 3 names of objects"), "{done:?}");
     let document: Value =
         serde_json::from_slice(&std::fs::read(run.path("out.gltf")).unwrap()).unwrap();
     for mesh in document["meshes"].as_array().unwrap() {

@@ -123,6 +123,6 @@ impl Merged {
                 Some(Labels { names, of_face: labels })
             }
         };
-        Mesh { positions, faces, attributes: Some(attributes), materials, objects: None }
+        Mesh { attributes: Some(attributes), materials, ..Mesh::new(positions, faces) }
     }
 }

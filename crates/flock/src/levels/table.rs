@@ -160,7 +160,7 @@ impl LevelTable {
                 layers: self.layers.clone(),
             }),
             materials: self.materials.as_ref().map(|labels| labels.select(&kept)),
-            objects: None,
+            ..Mesh::default()
         }
     }
 }

@@ -82,6 +82,7 @@ pub enum LayerWord {
     Joints,
     Weights,
     Other,
+    Label,
 }
 
 /// Axes of `differences.npy`, but for its second, the levels of the whole chain.
@@ -182,6 +183,7 @@ fn words_of(kind: LayerKind) -> (LayerWord, u8) {
         LayerKind::Joints(set) => (LayerWord::Joints, set),
         LayerKind::Weights(set) => (LayerWord::Weights, set),
         LayerKind::Other => (LayerWord::Other, 0),
+        LayerKind::Label => (LayerWord::Label, 0),
     }
 }
 
@@ -196,6 +198,7 @@ impl LayerEntry {
             LayerWord::Joints => LayerKind::Joints(self.set),
             LayerWord::Weights => LayerKind::Weights(self.set),
             LayerWord::Other => LayerKind::Other,
+            LayerWord::Label => LayerKind::Label,
         }
     }
 }

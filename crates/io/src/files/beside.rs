@@ -31,7 +31,7 @@ impl Beside {
     pub fn of(path: &Path, format: Format) -> Self {
         Self {
             folder: path.parent().unwrap_or(Path::new("")).to_owned(),
-            has_no_buffers: format == Format::Obj,
+            has_no_buffers: !matches!(format, Format::Gltf | Format::Glb),
             left: MOST_OF_ALL,
             listed: HashMap::new(),
         }
@@ -134,9 +134,11 @@ mod tests {
         let path = folder.path().join("big.png");
         // Sparse: it takes no room.
         fs::File::create(&path).unwrap().set_len(MOST_OF_ONE + 1).unwrap();
-        for format in [Format::Obj, Format::Gltf] {
+        for format in [Format::Obj, Format::Gltf, Format::Ply] {
             assert_eq!(Beside::of(&path, format).read("big.png"), None);
         }
+        fs::rename(&path, folder.path().join("big.tga")).unwrap();
+        assert_eq!(Beside::of(&path, Format::Ply).read("big.tga"), None, "whatever its suffix");
         let mut beside = Beside::of(&path, Format::Obj);
         beside.left = 3;
         fs::write(folder.path().join("a.png"), "ab").unwrap();

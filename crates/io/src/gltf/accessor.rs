@@ -54,6 +54,13 @@ impl Document<'_> {
         }
     }
 
+    /// Reads an accessor of any type as the numbers that are stored, with the number of
+    /// components of an element.
+    pub fn stored_numbers(&self, index: usize) -> Result<(usize, Vec<f32>), ParseError> {
+        let PackedElements { accessor, width, bytes } = self.packed(index)?;
+        Ok((width, numbers(&bytes, accessor.component_type, false)))
+    }
+
     /// Reads an accessor of vertex indices, each of which must be below `limit`.
     pub fn indices(&self, index: usize, limit: usize) -> Result<Vec<u32>, ParseError> {
         let PackedElements { accessor, width, bytes } = self.packed(index)?;

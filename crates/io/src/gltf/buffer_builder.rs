@@ -8,6 +8,7 @@ use super::accessor::component;
 use super::compress::Bytes;
 use super::decompress::MESHOPT;
 use super::document::Document;
+use super::extents::mend_extents;
 use crate::meshopt::{Filter, encode_attributes, encode_triangles};
 
 /// Array to be written as an accessor of its own.
@@ -79,6 +80,7 @@ impl BufferBuilder {
             views: array("bufferViews").unwrap_or_default(),
             ..Self::default()
         };
+        mend_extents(document, free_accessors, &mut builder.accessors);
         let free_views = free_views(document, &builder.accessors, free_accessors);
         builder.free_accessors = indices_of(free_accessors);
         builder.free_views = indices_of(&free_views);

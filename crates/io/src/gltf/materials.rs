@@ -3,9 +3,9 @@
 use serde_json::Value;
 
 use super::document::{Document, missing};
-use super::new_document::mime_type;
 use super::schema::{self, Texture, TextureUse};
 use super::uri::{self, Uri};
+use crate::image_file::mime_type;
 use crate::{Image, Material, ParseError, Resolve, Shading};
 
 /// Extension for emitted light brighter than 1.

@@ -36,6 +36,9 @@ pub(super) fn kind(name: &str) -> LayerKind {
     match name {
         "NORMAL" => LayerKind::Normal,
         "TANGENT" => LayerKind::Tangent,
+        // Features of 3D Tiles and of `EXT_mesh_features`.
+        "_BATCHID" => LayerKind::Label,
+        name if name.starts_with("_FEATURE_ID_") => LayerKind::Label,
         _ => numbered("TEXCOORD_")
             .map(LayerKind::Uv)
             .or_else(|| numbered("COLOR_").map(LayerKind::Color))
@@ -207,7 +210,7 @@ fn fits(kind: LayerKind, width: usize) -> bool {
         LayerKind::Uv(_) => width == 2,
         LayerKind::Color(_) => matches!(width, 3 | 4),
         LayerKind::Tangent | LayerKind::Joints(_) | LayerKind::Weights(_) => width == 4,
-        LayerKind::Other => true,
+        LayerKind::Other | LayerKind::Label => true,
     }
 }
 

@@ -15,8 +15,10 @@ mod draco_stream;
 #[cfg(feature = "draco")]
 mod draco_unpack;
 mod encode;
+mod extents;
 mod facts;
 mod instancing;
+mod limits;
 mod local_space;
 mod lod;
 mod materials;
@@ -42,10 +44,10 @@ mod write;
 
 pub use compress::{Bytes, Compression, CompressionReport};
 pub use facts::{AnimationFacts, FileFacts};
+pub(crate) use limits::new_document_limits;
 pub(crate) use local_space::to_local;
 pub(crate) use lod::Levels;
 pub use lod::{Level, LodLayout};
-pub(crate) use new_document::has_core_type;
 pub use parts::{QuantizedPart, write_parts_glb};
 pub use primitive_rows::PrimitiveRows;
 pub use read::{SourceDocument, read};

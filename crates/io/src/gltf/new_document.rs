@@ -4,8 +4,10 @@ use serde_json::{Map, Value, json};
 
 use super::buffer_builder::BufferBuilder;
 use super::instancing::with_copies_as_nodes;
+use super::lod::list_extension;
 use super::materials::EMISSIVE_STRENGTH;
 use super::new_material;
+use crate::image_file::mime_type;
 use crate::scene::IDENTITY;
 use crate::{Image, Node, Scene, SceneMesh};
 
@@ -52,13 +54,22 @@ fn with_nodes(scene: &Scene, materials: Vec<Value>, images: Vec<Value>) -> Value
         "scenes": [if scene.roots.is_empty() { json!({}) } else { json!({ "nodes": scene.roots }) }],
     });
     if materials.iter().any(|material| material.get("extensions").is_some()) {
-        json["extensionsUsed"] = json!([EMISSIVE_STRENGTH]);
+        list_extension(&mut json, "extensionsUsed", EMISSIVE_STRENGTH);
     }
+    if images.iter().any(is_webp) {
+        // Textures have no other image to fall back to.
+        list_extension(&mut json, "extensionsUsed", WEBP);
+        list_extension(&mut json, "extensionsRequired", WEBP);
+    }
+    let textures = images.iter().enumerate().map(|(source, image)| match is_webp(image) {
+        true => json!({ "extensions": { WEBP: { "source": source } } }),
+        false => json!({ "source": source }),
+    });
     for (key, values) in [
         ("nodes", scene.nodes.iter().map(node).collect()),
         ("meshes", scene.meshes.iter().map(mesh).collect()),
         ("materials", materials),
-        ("textures", (0..images.len()).map(|i| json!({ "source": i })).collect()),
+        ("textures", textures.collect()),
         ("images", images),
     ] {
         // glTF does not allow empty arrays.
@@ -69,20 +80,17 @@ fn with_nodes(scene: &Scene, materials: Vec<Value>, images: Vec<Value>) -> Value
     json
 }
 
-/// Detects the MIME type of an encoded image by its first bytes, if glTF knows the type.
-pub(super) fn mime_type(bytes: &[u8]) -> Option<&'static str> {
-    match bytes {
-        [0x89, b'P', b'N', b'G', ..] => Some("image/png"),
-        [0xff, 0xd8, 0xff, ..] => Some("image/jpeg"),
-        [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => Some("image/webp"),
-        [0xab, b'K', b'T', b'X', ..] => Some("image/ktx2"),
-        _ => None,
-    }
+/// Extension for textures whose image is a WebP.
+pub(super) const WEBP: &str = "EXT_texture_webp";
+
+fn is_webp(image: &Value) -> bool {
+    image.get("mimeType").is_some_and(|kind| kind == "image/webp")
 }
 
-/// Reports whether an encoded image is a PNG or JPEG, the only types that core glTF allows.
-pub(crate) fn has_core_type(bytes: &[u8]) -> bool {
-    matches!(mime_type(bytes), Some("image/png" | "image/jpeg"))
+/// Reports whether a new document can hold an encoded image: a PNG, a JPEG or, by an extension, a
+/// WebP.
+pub(super) fn holds_image(bytes: &[u8]) -> bool {
+    matches!(mime_type(bytes), Some("image/png" | "image/jpeg" | "image/webp"))
 }
 
 /// Images in use; image `i` is texture `i`.
@@ -94,7 +102,7 @@ struct Images {
 }
 
 impl Images {
-    /// Returns the texture of an image; `None` if that is neither PNG nor JPEG.
+    /// Returns the texture of an image; `None` if the document cannot hold it.
     fn texture(
         &mut self,
         index: Option<usize>,
@@ -106,7 +114,7 @@ impl Images {
             return Some(texture);
         }
         let image = all.get(index)?;
-        let kind = mime_type(&image.bytes).filter(|_| has_core_type(&image.bytes))?;
+        let kind = mime_type(&image.bytes).filter(|_| holds_image(&image.bytes))?;
         let view = builder.add_view(&image.bytes);
         self.json.push(json!({ "name": image.name, "bufferView": view, "mimeType": kind }));
         self.of_scene.insert(index, self.json.len() - 1);
@@ -148,4 +156,41 @@ pub(super) fn named(name: &str) -> Map<String, Value> {
         json.insert("name".into(), name.into());
     }
     json
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_fixtures::cube;
+
+    use super::*;
+    use crate::gltf::{read, write_glb};
+    use crate::{Format, Material, Note, Weld};
+
+    #[test]
+    fn webp_textures_need_the_extension_and_come_back() {
+        let mut scene = Scene::from_mesh("", cube());
+        let image = |name: &str, bytes: &[u8]| Image { name: name.into(), bytes: bytes.to_vec() };
+        scene.images = vec![
+            image("a.webp", b"RIFF\x04\0\0\0WEBPVP8L"),
+            image("b.png", b"\x89PNG\r\n\x1a\n"),
+            image("c.tif", b"II*\0"),
+        ];
+        scene.materials = (0..3)
+            .map(|image| Material { base_color_image: Some(image), ..Material::default() })
+            .collect();
+        let notes: Vec<String> = scene.limits_of(Format::Glb).iter().map(Note::to_string).collect();
+        assert_eq!(notes, ["1 image that is no PNG, JPEG or WebP (c.tif)"]);
+        let json = document(&scene, &scene.images, &mut BufferBuilder::default());
+        assert_eq!(json["extensionsRequired"], json!([WEBP]));
+        assert_eq!(json["textures"][0], json!({ "extensions": { WEBP: { "source": 0 } } }));
+        assert_eq!(json["textures"][1], json!({ "source": 1 }));
+        let glb = write_glb(&scene, &[]).unwrap();
+        let back = read(&glb, &mut |_| None, Weld::Exact).unwrap();
+        let images: Vec<_> = back.materials.iter().map(|own| own.base_color_image).collect();
+        assert_eq!(images, [Some(0), Some(1), None]);
+        assert_eq!(back.images[0].bytes, scene.images[0].bytes);
+        scene.images.remove(0);
+        let json = document(&scene, &scene.images, &mut BufferBuilder::default());
+        assert_eq!(json.get("extensionsUsed"), None);
+    }
 }

@@ -216,10 +216,10 @@ fn attribute_name(layer: &Layer) -> String {
         LayerKind::Color(set) => format!("COLOR_{set}"),
         LayerKind::Joints(set) => format!("JOINTS_{set}"),
         LayerKind::Weights(set) => format!("WEIGHTS_{set}"),
-        LayerKind::Other if layer.name.starts_with('_') => layer.name.clone(),
+        LayerKind::Other | LayerKind::Label if layer.name.starts_with('_') => layer.name.clone(),
         LayerKind::Other if parse_target_name(&layer.name).is_some() => layer.name.clone(),
         // glTF requires custom attribute names to begin with an underscore, in capitals.
-        LayerKind::Other => {
+        LayerKind::Other | LayerKind::Label => {
             let plain =
                 |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' };
             format!("_{}", layer.name.chars().map(plain).collect::<String>())

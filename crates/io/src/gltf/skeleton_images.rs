@@ -2,8 +2,9 @@
 
 use serde_json::{Value, json};
 
-use super::{document, lod, new_document};
+use super::{document, lod};
 use crate::ParseError;
+use crate::image_file::mime_type;
 
 /// Image for a scene made from a skeleton.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -50,7 +51,7 @@ pub(super) fn attach_images(
     let mut files = vec![SkeletonImage::default(); images.len()];
     for (index, SkeletonImage { mut bytes, is_preview }) in images.into_iter().enumerate() {
         let image = &mut json["images"][index];
-        let kind = new_document::mime_type(&bytes);
+        let kind = mime_type(&bytes);
         let view = image.get("bufferView").and_then(Value::as_u64).map(|view| view as usize);
         if view.is_none() && !is_preview {
             // As when a document is read, what is no image is not taken for one.

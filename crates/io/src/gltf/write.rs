@@ -15,7 +15,7 @@ use super::primitives::Replacer;
 use super::read::Contents;
 use super::uri::{self, Uri};
 use super::{container, dequantize_nodes, mesh, new_document};
-use crate::{Image, ParseError, Scene, Unsupported};
+use crate::{Image, ParseError, Scene, Unsupported, image_file};
 
 /// Contents of a `.gltf` file and of the buffer and image files that belong to it.
 #[derive(Clone, Debug)]
@@ -35,7 +35,7 @@ pub struct GltfFiles {
 /// extensions and everything else pass through. An unchanged mesh keeps its arrays bit for bit; a
 /// changed one gets new arrays (f32, 16-bit indices where possible, colours in their old type). The
 /// buffer is rebuilt without what is no longer used. Any other scene gets a new document with its
-/// nodes, materials, PNGs and JPEGs, in which each object of a mesh is a node and a mesh; meshes whose
+/// nodes, materials and images, in which each object of a mesh is a node and a mesh; meshes whose
 /// coordinates 32 bits would round are stored relative to a centre, from which their nodes move them
 /// back. A mesh without faces keeps one degenerate triangle, as glTF
 /// does not allow empty meshes.
@@ -326,7 +326,7 @@ fn mime_type(name: &str, bytes: &[u8]) -> Option<&'static str> {
         let suffix = name.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
         if suffix == "png" { "image/png" } else { "image/jpeg" }
     };
-    (!bytes.is_empty()).then(|| new_document::mime_type(bytes).unwrap_or_else(by_name))
+    (!bytes.is_empty()).then(|| image_file::mime_type(bytes).unwrap_or_else(by_name))
 }
 
 /// Reports whether two meshes are equal in everything that is written of them.

@@ -7,6 +7,7 @@ mod labels;
 pub(crate) mod mtl;
 mod read;
 mod skipped;
+mod smoothing;
 #[cfg(test)]
 mod tests;
 mod wedges;

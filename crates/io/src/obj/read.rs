@@ -7,6 +7,7 @@ use meshlod_mesh::{Mesh, VertexId};
 use super::labels::LabelRuns;
 use super::mtl::{Library, resolve_materials};
 use super::skipped::Skipped;
+use super::smoothing::SmoothingRuns;
 use super::wedges::{self, CornerIds, Pools};
 use crate::polygon::triangulate;
 use crate::text_cursor::{TextCursor, quoted, text_of};
@@ -19,8 +20,8 @@ use crate::{Node, ParseError, Scene, SceneMesh};
 /// two coordinates. Values of `vt`, `vn` and colours that are not finite become 0, as do those of
 /// corners that lack what others have. Colours above 1 are taken to be out of 255. `o` wins over
 /// `g`. A material whose library or image is missing keeps its name. Materials that no face uses come
-/// last. Lines, points, curves, smoothing groups, faces with fewer than three corners and everything
-/// else that is not a face are counted in [`Scene::notes`].
+/// last. Lines, points, curves, faces with fewer than three corners and everything else that is not a
+/// face are counted in [`Scene::notes`].
 ///
 /// Cost: O(n), n = bytes, plus that of triangulating concave polygons.
 /// # Errors
@@ -65,6 +66,7 @@ struct ObjReader<'a> {
     forward: Vec<Forward>,
     objects: LabelRuns,
     materials: LabelRuns,
+    smoothing: SmoothingRuns,
     has_object: bool,
     libraries: Vec<String>,
     skipped: Skipped,
@@ -87,6 +89,7 @@ impl<'a> ObjReader<'a> {
             forward: Vec::new(),
             objects: LabelRuns::default(),
             materials: LabelRuns::default(),
+            smoothing: SmoothingRuns::default(),
             has_object: false,
             libraries: Vec::new(),
             skipped: Skipped::default(),
@@ -134,7 +137,9 @@ impl<'a> ObjReader<'a> {
             }
             b"s" => {
                 let group = text_of(self.text.word());
-                self.skipped.smoothing(group);
+                if let Err(unknown) = self.smoothing.set(self.faces.len(), group) {
+                    self.skipped.smoothing.insert(unknown);
+                }
                 Ok(())
             }
             // Lines, curves, and vendor extensions of the format.
@@ -303,6 +308,7 @@ impl<'a> ObjReader<'a> {
         }
         let objects = self.objects.finish(self.faces.len());
         let materials = self.materials.finish(self.faces.len());
+        let smoothing = self.smoothing.finish(self.faces.len());
         let attributes =
             wedges::attributes(self.positions.len(), &self.faces, &self.corners, self.pools);
         let mut library = Library::default();
@@ -311,8 +317,13 @@ impl<'a> ObjReader<'a> {
         }
         let used = materials.as_ref().map_or(&[][..], |labels| &labels.names);
         let resolved = resolve_materials(used, &library, resolve);
-        let mesh =
-            Mesh { positions: self.positions, faces: self.faces, attributes, materials, objects };
+        let mesh = Mesh {
+            attributes,
+            materials,
+            objects,
+            smoothing,
+            ..Mesh::new(self.positions, self.faces)
+        };
         let mut notes = self.skipped.notes(self.has_object);
         notes.extend(resolved.notes);
         Ok(Scene {

@@ -10,8 +10,8 @@ use crate::text_cursor::text_of;
 pub(super) struct Skipped {
     /// Lines, by the words of the statements.
     statements: BTreeMap<Vec<u8>, usize>,
-    /// Names of smoothing groups.
-    smoothing: BTreeSet<String>,
+    /// Smoothing groups that are no numbers.
+    pub smoothing: BTreeSet<String>,
     /// Names of groups in a file that has objects.
     pub groups: BTreeSet<String>,
     /// Faces of two corners or fewer.
@@ -36,13 +36,6 @@ impl Skipped {
         match self.statements.get_mut(word) {
             Some(count) => *count += 1,
             None => drop(self.statements.insert(word.to_vec(), 1)),
-        }
-    }
-
-    /// Counts a smoothing group; `off` and 0 name no group.
-    pub fn smoothing(&mut self, group: String) {
-        if !["", "0", "off"].contains(&&*group.to_ascii_lowercase()) {
-            self.smoothing.insert(group);
         }
     }
 
@@ -71,7 +64,12 @@ impl Skipped {
                 "face of fewer than three corners",
                 "faces of fewer than three corners",
             ),
-            note(self.smoothing.len(), "smoothing group", "smoothing groups").named(self.smoothing),
+            note(
+                self.smoothing.len(),
+                "smoothing group that is no number",
+                "smoothing groups that are no numbers",
+            )
+            .named(self.smoothing),
             note(self.groups.len(), "name of a group", "names of groups").named(self.groups),
             note(self.depths, "third texture coordinate", "third texture coordinates"),
             note(self.weights, "weight of a vertex", "weights of vertices"),

@@ -13,7 +13,8 @@ use crate::{Precision, Scene};
 /// names of the material libraries, such as the one that [`write_mtl`](super::write_mtl) writes.
 ///
 /// Equal uvs and equal normals are written once. Colours follow the positions; a vertex gets the
-/// colour of its first wedge. Objects become `o`, materials `usemtl`, with names made unique.
+/// colour of its first wedge. Objects become `o`, materials `usemtl`, with names made unique, and
+/// smoothing groups `s`.
 /// Positions (at `F64`), uvs and normals read back bit for bit. Other layers are not written.
 ///
 /// # Errors
@@ -36,7 +37,8 @@ pub fn write(
     let normals = ValueNumbers::write(&mesh, LayerKind::Normal, "vn", &mut lines)?;
     let objects = Changes::new("o", mesh.objects.as_ref(), &[]);
     let materials = Changes::new("usemtl", mesh.materials.as_ref(), &names(&scene.materials));
-    write_faces(&mesh, [&uvs, &normals], [objects, materials], &mut lines)?;
+    let changes = FaceChanges { labels: [objects, materials], smoothing: 0 };
+    write_faces(&mesh, [&uvs, &normals], changes, &mut lines)?;
     lines.finish()
 }
 
@@ -132,17 +134,41 @@ impl<'a> Changes<'a> {
     }
 }
 
+/// Writer of the statements that hold for the faces that follow.
+struct FaceChanges<'a> {
+    labels: [Changes<'a>; 2],
+    /// Smoothing group in effect.
+    smoothing: u32,
+}
+
+impl FaceChanges<'_> {
+    fn write(&mut self, mesh: &Mesh, face: usize, lines: &mut LineWriter) -> io::Result<()> {
+        for change in &mut self.labels {
+            change.write(face, lines)?;
+        }
+        let group = mesh.smoothing.as_ref().map_or(0, |groups| groups[face]);
+        if group != self.smoothing {
+            self.smoothing = group;
+            lines.word("s");
+            match group {
+                0 => lines.word("off"),
+                group => lines.integer(group as usize),
+            }
+            lines.end()?;
+        }
+        Ok(())
+    }
+}
+
 fn write_faces(
     mesh: &Mesh,
     [uvs, normals]: [&ValueNumbers; 2],
-    mut changes: [Changes; 2],
+    mut changes: FaceChanges,
     lines: &mut LineWriter,
 ) -> io::Result<()> {
     let corners = mesh.attributes.as_ref().map(|attributes| &attributes.corners);
     for (i, face) in mesh.faces.iter().enumerate() {
-        for change in &mut changes {
-            change.write(i, lines)?;
-        }
+        changes.write(mesh, i, lines)?;
         lines.word("f");
         for (corner, vertex) in face.iter().enumerate() {
             lines.integer(vertex.index() + 1);
@@ -215,6 +241,16 @@ mod tests {
         let twice = read(again.as_bytes(), &mut resolve).unwrap();
         assert_eq!(twice.meshes[0].mesh, scene.meshes[0].mesh);
         assert_eq!(twice.materials, scene.materials);
+    }
+
+    #[test]
+    fn smoothing_groups_come_back() {
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n\
+            f 1 2 3\ns 4294967295\nf 1 2 4\nf 1 3 4\ns off\nf 2 3 4\n";
+        let scene = read(text.as_bytes(), &mut |_| None).unwrap();
+        assert!(scene.notes.is_empty());
+        assert_eq!(scene.meshes[0].mesh.smoothing, Some(vec![0, u32::MAX, u32::MAX, 0]));
+        assert_eq!(written(&scene, Precision::F32, None), text);
     }
 
     #[test]

@@ -4,5 +4,5 @@
 mod read;
 mod write;
 
-pub use read::read;
+pub use read::{read, read_scene};
 pub use write::write;

@@ -2,16 +2,24 @@
 
 use meshlod_mesh::{Attributes, LayerKind, Mesh, VertexId};
 
-use crate::ParseError;
 use crate::polygon::triangulate;
 use crate::text_cursor::TextCursor;
 use crate::vertex_attributes::{named_layer, normalize_colors, per_vertex};
+use crate::{Note, ParseError, Scene};
 
-/// Parses an OFF file in text form.
+/// Parses an OFF file in text form, without its notes: see [`read_scene`].
+///
+/// # Errors
+/// Those of [`read_scene`].
+pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
+    read_noted(bytes).map(|(mesh, _)| mesh)
+}
+
+/// Parses an OFF file in text form, as one mesh under one node.
 ///
 /// The header may be missing or run into the counts without a blank; comments may appear anywhere.
-/// Polygons are triangulated, and face colours ignored. Vertex colours have three or four
-/// components; if any exceeds 1, all are taken to be out of 255. Normals, colours and texture
+/// Polygons are triangulated, and face colours left out with a note. Vertex colours have three or
+/// four components; if any exceeds 1, all are taken to be out of 255. Normals, colours and texture
 /// coordinates that are not finite become 0.
 ///
 /// Cost: O(n), n = bytes, plus that of triangulating concave polygons.
@@ -21,7 +29,14 @@ use crate::vertex_attributes::{named_layer, normalize_colors, per_vertex};
 /// faces, binary files, and dimensions other than three.
 /// # References
 /// [PLM93], section OFF of its manual.
-pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
+pub fn read_scene(bytes: &[u8]) -> Result<Scene, ParseError> {
+    let (mesh, note) = read_noted(bytes)?;
+    let notes = Vec::from_iter((note.count > 0).then_some(note));
+    Ok(Scene { has_split_seams: true, notes, ..Scene::from_mesh("", mesh) })
+}
+
+/// Parses a file, and notes the faces whose colours are left out.
+fn read_noted(bytes: &[u8]) -> Result<(Mesh, Note), ParseError> {
     let mut text = TextCursor::new(bytes)?;
     if !text.more_anywhere() {
         return Err(text.error("the file is empty"));
@@ -46,7 +61,8 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
         return Err(text.error("the file has no faces"));
     }
     let attributes = columns.attributes(layout, &triangles);
-    Ok(Mesh { attributes, ..Mesh::new(columns.positions, triangles) })
+    let note = Note::left_out(scratch.colored, "colour of a face", "colours of faces");
+    Ok((Mesh { attributes, ..Mesh::new(columns.positions, triangles) }, note))
 }
 
 /// Attributes that follow each vertex position, in this order.
@@ -190,10 +206,12 @@ impl Columns {
 struct Scratch {
     polygon: Vec<u32>,
     triangles: Vec<[u32; 3]>,
+    /// Number of faces with more on their line than corners.
+    colored: usize,
 }
 
 impl Scratch {
-    /// Reads one face: the number of corners, then the corners; the rest of the line is ignored.
+    /// Reads one face: the number of corners, then the corners; the rest of the line is a colour.
     fn face(
         &mut self,
         positions: &[[f64; 3]],
@@ -217,7 +235,7 @@ impl Scratch {
             }
             self.polygon.push(index as u32);
         }
-        text.words_left();
+        self.colored += usize::from(text.words_left() > 0);
         self.triangles.clear();
         triangulate(positions, &self.polygon, &mut self.triangles);
         let corner = |i: u32| VertexId(self.polygon[i as usize]);
@@ -235,6 +253,15 @@ mod tests {
     }
 
     const TETRAHEDRON: &str = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+
+    #[test]
+    fn colours_of_faces_are_noted() {
+        let notes = |text: String| read_scene(text.as_bytes()).unwrap().notes;
+        assert!(notes(format!("OFF\n4 4 6\n{TETRAHEDRON}")).is_empty());
+        let colored = TETRAHEDRON.replace("3 0 2 1\n", "3 0 2 1 255 0 0\n");
+        let found = notes(format!("OFF\n4 4 6\n{}", colored.replace("1 2 3\n", "1 2 3 7 # map\n")));
+        assert_eq!(found[0].to_string(), "2 colours of faces");
+    }
 
     #[test]
     fn headers_come_in_many_forms() {

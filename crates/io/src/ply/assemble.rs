@@ -9,6 +9,7 @@ use super::face_values::FaceValues;
 use super::header::{Element, Header};
 use super::scalar::Scalar;
 use super::vertices::Vertices;
+use crate::image_file::is_image;
 use crate::vertex_attributes::{named_layer, per_vertex};
 use crate::{Image, Material, Node, Note, Resolve, Scene, SceneMesh};
 
@@ -32,11 +33,12 @@ pub(super) fn scene(header: Header, body: Body, resolve: Resolve<'_>) -> Scene {
         types.extend(["red", "green", "blue", "alpha"].map(|c| (format!("face {c}"), kind)));
     }
     let objects = objects(&mut values, &mut types);
+    let has_split_seams = values.uvs.is_empty() && values.colors.is_empty();
     let (materials, images) = materials(&header.textures, resolve);
     let (labels, of_label) = textures(&values, &materials, &mut notes);
     let (positions, layers) = (vertices.positions, vertices.layers);
     let attributes = attributes(positions.len(), &faces, layers, values, &mut notes);
-    let mesh = Mesh { positions, faces, attributes, materials: labels, objects };
+    let mesh = Mesh { attributes, materials: labels, objects, ..Mesh::new(positions, faces) };
     Scene {
         meshes: vec![SceneMesh { name: String::new(), mesh, materials: of_label }],
         nodes: vec![Node { mesh: Some(0), ..Node::default() }],
@@ -44,6 +46,7 @@ pub(super) fn scene(header: Header, body: Body, resolve: Resolve<'_>) -> Scene {
         materials,
         images,
         ply: PlyExtras { remarks: header.remarks, types },
+        has_split_seams,
         notes,
         ..Scene::default()
     }
@@ -135,7 +138,8 @@ fn materials(textures: &[String], resolve: Resolve<'_>) -> (Vec<Material>, Vec<I
     let material = |file: &String| {
         let name = file.replace('\\', "/");
         let image = *image_of.entry(name).or_insert_with_key(|name| {
-            let bytes = resolve(file).unwrap_or_default();
+            // As with glTF, a file from elsewhere must not make the writer copy arbitrary files.
+            let bytes = resolve(file).filter(|bytes| is_image(name, bytes)).unwrap_or_default();
             images.push(Image { name: name.clone(), bytes });
             images.len() - 1
         });

@@ -4,6 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use meshlod_mesh::{Layer, LayerKind};
 
+use super::face_values::is_label;
 use super::header::{Property, Shape};
 
 /// Attribute layer with the properties that it is read from.
@@ -26,7 +27,8 @@ pub(super) struct Column {
 
 /// Finds the attribute layers among the properties of a vertex, in the order of the file.
 ///
-/// Incomplete sets and unknown names become [`LayerKind::Other`]; lists and the coordinates are
+/// Incomplete sets and unknown names become [`LayerKind::Other`], or [`LayerKind::Label`] if they are
+/// integers that name something; lists and the coordinates are
 /// skipped.
 pub(super) fn columns(properties: &[Property]) -> Vec<LayerColumns> {
     let mut free = free_numbers(properties);
@@ -53,7 +55,10 @@ pub(super) fn columns(properties: &[Property]) -> Vec<LayerColumns> {
                 1 => property.name.clone(),
                 _ => property.name[..property.name.len() - "_0".len()].to_owned(),
             };
-            layers.push(LayerColumns { kind: LayerKind::Other, name, columns });
+            let is_label =
+                columns.iter().all(|column| names_something(&properties[column.property]));
+            let kind = if is_label { LayerKind::Label } else { LayerKind::Other };
+            layers.push(LayerColumns { kind, name, columns });
         }
     }
     layers.sort_by_key(|layer| layer.columns[0].property);
@@ -127,7 +132,7 @@ fn set_names(kind: LayerKind) -> Vec<String> {
         LayerKind::Tangent => several(&["tx", "ty", "tz", "tw"], 0),
         LayerKind::Joints(set) => four("joint", set),
         LayerKind::Weights(set) => four("weight", set),
-        LayerKind::Other => Vec::new(),
+        LayerKind::Other | LayerKind::Label => Vec::new(),
     }
 }
 
@@ -145,6 +150,16 @@ fn run_from(first: &str, free: &HashMap<&str, usize>) -> Vec<String> {
     let run = (0..).map(|i| format!("{base}_{i}"));
     let run: Vec<_> = run.take_while(|name| free.contains_key(name.as_str())).collect();
     if run.is_empty() { vec![first.to_owned()] } else { run }
+}
+
+/// Reports whether a property has integers that are names, of which a mean has no meaning.
+fn names_something(property: &Property) -> bool {
+    let Shape::One(kind) = property.shape else { return false };
+    let name = property.name.strip_prefix("scalar_").unwrap_or(&property.name);
+    let name = name.to_ascii_lowercase();
+    let is_name = |end: &str| name.strip_suffix(end).is_some_and(|rest| rest.ends_with('_'));
+    let ends = ["id", "index", "label", "labels", "class", "category", "instance", "segment"];
+    kind.whole_range().is_some() && (is_label(&name) || ends.into_iter().any(is_name))
 }
 
 /// Returns the divisor of a colour: the maximum of an integer type, 1 for other types.
@@ -222,6 +237,21 @@ mod tests {
         let found = kinds("blue x green y red z t s alpha");
         let color = (LayerKind::Color(0), "red green blue alpha".to_owned(), 4);
         assert_eq!(found, [color, (LayerKind::Uv(0), "s t".to_owned(), 2)]);
+    }
+
+    #[test]
+    fn integers_that_are_names_are_labels() {
+        let kind = |name: &str, kind| {
+            let property = Property { name: name.into(), shape: Shape::One(kind) };
+            columns(&[property])[0].kind
+        };
+        for name in ["label", "class", "scalar_Label", "instance_id", "semantic_class"] {
+            assert_eq!(kind(name, Scalar::U8), LayerKind::Label, "{name}");
+            assert_eq!(kind(name, Scalar::F32), LayerKind::Other, "{name}");
+        }
+        for name in ["intensity", "quality", "id_", "covid"] {
+            assert_eq!(kind(name, Scalar::U8), LayerKind::Other, "{name}");
+        }
     }
 
     #[test]

@@ -13,6 +13,7 @@
 //! | `joint0_0` … `joint0_3`, `weight0_0` … `weight0_3` | joints, weights 0, and so on |
 //! | consecutive `name_0 name_1` … | another layer `name` of that width |
 //! | any other scalar | another layer of its name, 1 wide |
+//! | an integer `label`, `class`, `instance_id` and the like | a layer of labels, never averaged |
 //!
 //! Integer colours are divided by the maximum of their type. Properties of faces are:
 //!

@@ -9,7 +9,7 @@ use super::extras::PlyExtras;
 use super::face_values::is_label;
 use super::scalar::Scalar;
 use crate::vertex_attributes::{distinct_wedges, has_seams};
-use crate::{Image, Note, Scene};
+use crate::{Image, Note, Scene, Shading};
 
 /// Layout of a file. Faces hold what would split vertices, where PLY has a place for that.
 pub(super) struct Plan<'a> {
@@ -156,8 +156,9 @@ pub(crate) fn limits(scene: &Scene) -> Vec<Note> {
         image.is_some_and(|image| !image.name.trim().is_empty())
     });
     let colored: Vec<_> = with.iter().filter(|m| m.base_color != [1.0; 4]).collect();
+    let richer: Vec<_> = with.iter().filter(|m| m.shading != Shading::default()).collect();
     let objects = if plan.labels.is_some() { Vec::new() } else { scene.object_names() };
-    let split = plan.split();
+    let split = if scene.had_split_seams() { 0 } else { plan.split() };
     vec![
         Note::left_out(without.len(), "material", "materials")
             .named(without.iter().map(|m| &*m.name).filter(|name| !name.is_empty())),
@@ -167,6 +168,12 @@ pub(crate) fn limits(scene: &Scene) -> Vec<Note> {
             "colours of textured materials",
         )
         .named(colored.iter().map(|m| &*m.name).filter(|name| !name.is_empty())),
+        Note::left_out(
+            richer.len(),
+            "material's properties beside its texture",
+            "materials' properties beside their textures",
+        )
+        .named(richer.iter().map(|m| &*m.name).filter(|name| !name.is_empty())),
         Note::left_out(objects.len(), "name of an object", "names of objects").named(objects),
         Note::changed(
             split,

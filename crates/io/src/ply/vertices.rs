@@ -66,6 +66,7 @@ fn types(element: &Element, columns: &[LayerColumns]) -> Vec<(String, Scalar)> {
         let usual = match layer.kind {
             LayerKind::Color(_) => Scalar::U8,
             LayerKind::Other => Scalar::F32,
+            LayerKind::Label => Scalar::I32,
             _ => continue,
         };
         for column in &layer.columns {
@@ -137,7 +138,7 @@ impl Vertices {
                         layer.name, numbers[column.property]
                     )));
                 }
-                if layer.kind == LayerKind::Other && f64::from(value) != numbers[column.property] {
+                if layer.kind.is_named() && f64::from(value) != numbers[column.property] {
                     self.rounded += 1;
                 }
                 layer.values.push(value);

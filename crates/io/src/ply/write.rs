@@ -188,6 +188,7 @@ impl<'a> LayerEncoder<'a> {
                     (kind, kind.whole_range().map_or(1.0, |(_, most)| most as f64))
                 }
                 LayerKind::Other => (known(Scalar::F32), 1.0),
+                LayerKind::Label => (known(Scalar::I32), 1.0),
                 _ => (Scalar::F32, 1.0),
             };
             (name, kind, unit)

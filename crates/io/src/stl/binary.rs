@@ -7,7 +7,7 @@ use meshlod_mesh::Mesh;
 
 use super::weld::Welder;
 use super::{invalid, normal, write_blocks};
-use crate::ParseError;
+use crate::{Note, ParseError};
 
 const HEADER: usize = 80;
 const PREAMBLE: usize = HEADER + 4;
@@ -27,8 +27,8 @@ fn claimed(bytes: &[u8]) -> Option<usize> {
     Some(u32::from_le_bytes(*count) as usize)
 }
 
-/// Reads as many facets as the header declares; bytes after them are ignored.
-pub(super) fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
+/// Reads as many facets as the header declares, and notes what they have beside corners and normals.
+pub(super) fn read(bytes: &[u8]) -> Result<(Mesh, Vec<Note>), ParseError> {
     let Some(claimed) = claimed(bytes) else {
         let reason = "not an STL file: it neither begins with \"solid\" as text does, nor is it \
                       as long as a binary header";
@@ -45,6 +45,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
     }
     let mut welder = Welder::with_facets(claimed);
     let mut faces = Vec::with_capacity(claimed);
+    let mut colored = 0;
     for (i, facet) in body.chunks_exact(FACET).take(claimed).enumerate() {
         let corners = [12, 24, 36].map(|at| [0, 4, 8].map(|axis| float(facet, at + axis)));
         if let Some(corner) = corners.iter().find(|c| !c.iter().all(|x| x.is_finite())) {
@@ -53,8 +54,22 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
             return Err(ParseError::byte(PREAMBLE + i * FACET, reason));
         }
         faces.push(corners.map(|corner| welder.vertex(corner)));
+        colored += usize::from(facet[48..] != [0; 2]);
     }
-    Ok(Mesh::new(welder.positions, faces))
+    let mut notes = vec![
+        Note::left_out(
+            colored,
+            "attribute of a facet, such as its colour",
+            "attributes of facets, such as their colours",
+        ),
+        Note::left_out(
+            body.len() - claimed * FACET,
+            "byte behind the last facet",
+            "bytes behind the last facet",
+        ),
+    ];
+    notes.retain(|note| note.count > 0);
+    Ok((Mesh::new(welder.positions, faces), notes))
 }
 
 fn float(facet: &[u8], at: usize) -> f64 {

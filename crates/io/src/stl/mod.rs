@@ -15,7 +15,7 @@ use std::io::{Error, ErrorKind, Result as IoResult, Write};
 use glam::DVec3;
 use meshlod_mesh::Mesh;
 
-use crate::ParseError;
+use crate::{ParseError, Scene};
 
 pub use binary::write;
 pub use text::write as write_ascii;
@@ -24,18 +24,31 @@ pub use text::write as write_ascii;
 /// is shorter than this, and its facet contains a zero byte in practice.
 const SNIFFED: usize = 512;
 
-/// Parses an STL file, binary or text.
+/// Parses an STL file, binary or text, without its notes: see [`read_scene`].
+///
+/// # Errors
+/// Those of [`read_scene`].
+pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
+    Ok(read_scene(bytes)?.meshes.swap_remove(0).mesh)
+}
+
+/// Parses an STL file, binary or text, as one mesh under one node.
 ///
 /// Vertices are numbered in order of appearance. A facet whose corners coincide is kept, as a face
-/// that repeats a vertex. Cost: O(n) expected, n = facets. Memory: at most a small multiple of
+/// that repeats a vertex. The two further bytes of binary facets, with which some programs colour
+/// them, and bytes behind the last facet are noted. Cost: O(n) expected, n = facets. Memory: at most a small multiple of
 /// `bytes`, whatever the header claims.
 /// # Errors
 /// Anything that is not a mesh of at least one face, with the line of text or byte of binary data.
-pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
+pub fn read_scene(bytes: &[u8]) -> Result<Scene, ParseError> {
     if bytes.is_empty() {
         return Err(ParseError::byte(0, "the file is empty"));
     }
-    if is_text(bytes) { text::read(bytes) } else { binary::read(bytes) }
+    if is_text(bytes) {
+        return text::read(bytes).map(|mesh| Scene::from_mesh("", mesh));
+    }
+    let (mesh, notes) = binary::read(bytes)?;
+    Ok(Scene { notes, ..Scene::from_mesh("", mesh) })
 }
 
 /// Tells text from binary. Some binary files begin with "solid" too: they are recognised by a

@@ -10,6 +10,7 @@ mod counts;
 mod head;
 mod image_versions;
 mod layout;
+mod limits;
 mod parts;
 mod place;
 mod placement;
@@ -24,5 +25,6 @@ mod weights;
 
 pub use counts::SceneCounts;
 pub use layout::{LevelInstance, SceneLayout};
+pub use limits::model_limits;
 pub use place::{PackedScene, PlaceError, PlacedScene, place_scene};
 pub use restore::{MissingParts, ModelScene, ModelSceneError};

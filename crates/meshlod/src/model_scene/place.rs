@@ -202,8 +202,7 @@ impl MeshParts {
     fn entry(&self, placement: Placement, all: &Self) -> MeshEntry {
         let place = |(kind, name, width): &(LayerKind, String, usize)| {
             let is_same = |other: &(LayerKind, String, usize)| {
-                let is_other = *kind == LayerKind::Other;
-                other.0 == *kind && (!is_other || (&other.1, other.2) == (name, *width))
+                other.0 == *kind && (!kind.is_named() || (&other.1, other.2) == (name, *width))
             };
             Some([all.layers.iter().position(is_same)? as u32, *width as u32])
         };

@@ -78,12 +78,28 @@ pub(crate) fn interpolate(layers: &[Layer], place: &Place, out: &mut Vec<f32>) {
             LayerKind::Normal | LayerKind::Tangent => direction(layer, place, nearest, out),
             // Written below, together with their weights.
             LayerKind::Joints(_) => out.extend_from_slice(nearest),
+            LayerKind::Label => out.extend_from_slice(majority(layer, place)),
             _ => out.extend((0..layer.width).map(linear)),
         }
     }
     if layers.iter().any(|layer| matches!(layer.kind, LayerKind::Joints(_))) {
         skin(layers, place, &mut out[start..]);
     }
+}
+
+/// Returns the values that corners of the greatest total weight have, those of the nearest corner
+/// among equals.
+fn majority<'l>(layer: &'l Layer, place: &Place) -> &'l [f32] {
+    let values = place.wedges.map(|wedge| layer.of(wedge));
+    let weight = |of: usize| -> f64 {
+        (0..3).filter(|&k| values[k] == values[of]).map(|k| place.shares[k]).sum()
+    };
+    let nearest = place.nearest();
+    let most = [0, 1, 2].into_iter().fold(nearest, |most, k| {
+        // Sums in another order may differ in their last bit.
+        if weight(k) > weight(most) + 1e-12 { k } else { most }
+    });
+    values[most]
 }
 
 /// Writes a unit vector, or the nearest corner's where the three cancel. Components beyond the
@@ -190,6 +206,16 @@ mod tests {
             let point = (0..3).map(|k| triangle[k] * expected[k]).sum();
             assert_eq!(shares(point, &triangle), expected);
         }
+    }
+
+    #[test]
+    fn labels_are_those_of_the_majority() {
+        let at = |shares| Place { shares, ..PLACE };
+        let labels = layer(LayerKind::Label, 2, &[3.0, 1.0, 7.0, 1.0, 7.0, 1.0]);
+        let of = |shares| values(std::slice::from_ref(&labels), &at(shares));
+        assert_eq!(of([0.4, 0.3, 0.3]), [7.0, 1.0]);
+        assert_eq!(of([0.5, 0.25, 0.25]), [3.0, 1.0], "the nearest corner wins a tie");
+        assert_eq!(of([0.6, 0.2, 0.2]), [3.0, 1.0]);
     }
 
     #[test]

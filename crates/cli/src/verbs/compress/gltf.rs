@@ -1,13 +1,14 @@
 //! Compressed `.glb` files for other programs.
 
-use meshlod::Scene;
 use meshlod::codec::parts_for;
 use meshlod::io::gltf::{
     Compression, CompressionReport, QuantizedPart, write_compressed_glb, write_parts_glb,
 };
+use meshlod::{Format, Scene};
 
-use super::{Compress, CompressedFile, SchemeArg, left_out};
+use super::{Compress, CompressedFile, SchemeArg};
 use crate::failure::Failure;
+use crate::scene_files::unused_parts;
 
 impl Compress {
     pub(super) fn gltf(&self, scene: Scene) -> Result<CompressedFile, Failure> {
@@ -37,7 +38,8 @@ impl Compress {
             layers: Vec::new(),
             strips: None,
             reached: true,
-            left_out: report.kept,
+            notes: [scene.limits_of(Format::Glb), scene.whole_mesh_limits()].concat(),
+            remarks: report.kept,
             bytes,
         })
     }
@@ -60,6 +62,8 @@ impl Compress {
 
     /// Writes the surface in parts, each a node with its own matrix.
     fn gltf_of_parts(&self, scene: Scene) -> Result<CompressedFile, Failure> {
+        // Parts have what STL has: a surface.
+        let limits = scene.limits_of(Format::Stl);
         let mesh = scene.into_mesh();
         let done = parts_for(&mesh, self.reconstruction(), self.target(&mesh));
         let (parts, reached) = done.map_err(|error| self.refused(error))?;
@@ -74,13 +78,8 @@ impl Compress {
             .collect();
         let bytes = write_parts_glb(&quantized).map_err(|error| self.failed(error))?;
         let faces = parts.parts().iter().map(|part| part.faces.len()).sum();
-        let mut left_out = left_out(&mesh, faces);
-        if mesh.materials.is_some() || mesh.objects.is_some() {
-            left_out.push("left out: materials and objects; parts hold the surface only".into());
-        }
-        if mesh.attributes.is_some() {
-            left_out.push("left out: attributes; parts hold the surface only".into());
-        }
+        let mut notes = limits;
+        notes.extend(unused_parts(&mesh, faces));
         // Positions are padded to four bytes, and each part has a matrix.
         let positions: usize =
             quantized.iter().map(|part| 4 * part.positions.len() + size_of_val(&part.matrix)).sum();
@@ -95,7 +94,8 @@ impl Compress {
             layers: Vec::new(),
             strips: None,
             reached,
-            left_out,
+            notes,
+            remarks: Vec::new(),
             bytes,
         })
     }

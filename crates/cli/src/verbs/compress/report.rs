@@ -4,6 +4,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use meshlod::codec::LayerReport;
+use meshlod::io::Note;
 use serde_json::{Value, json};
 
 use crate::files;
@@ -24,8 +25,10 @@ pub struct CompressedFile {
     /// Triangle strips that faces are stored as.
     pub strips: Option<StripCounts>,
     pub reached: bool,
-    /// Messages on data of the input that is left out or not compressed.
-    pub left_out: Vec<String>,
+    /// Notes on what the file lacks of the scene.
+    pub notes: Vec<Note>,
+    /// Messages on data of the input that is not compressed.
+    pub remarks: Vec<String>,
 }
 
 /// Numbers of the triangle strips in a file.

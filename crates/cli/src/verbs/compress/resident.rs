@@ -4,8 +4,9 @@ use meshlod::codec::{CompressError, Compressed, Malformed, compress};
 use meshlod::strip::StripQuality;
 use meshlod::{Mesh, compressed_strips};
 
-use super::{Compress, CompressedFile, SchemeArg, StripCounts, left_out};
+use super::{Compress, CompressedFile, SchemeArg, StripCounts};
 use crate::failure::Failure;
+use crate::scene_files::unused_parts;
 
 impl Compress {
     pub(super) fn resident(&self, mesh: &Mesh, scene: Vec<u8>) -> Result<CompressedFile, Failure> {
@@ -30,7 +31,8 @@ impl Compress {
             layers: compressed.layers(),
             strips: strip_counts(&compressed).map_err(|error| self.failed(error))?,
             reached: done.reached,
-            left_out: left_out(mesh, compressed.faces()),
+            notes: unused_parts(mesh, compressed.faces()),
+            remarks: Vec::new(),
             bytes: compressed.to_bytes(),
         })
     }

@@ -6,8 +6,9 @@ use meshlod::codec::{
     TransportSizes,
 };
 
-use super::{Compress, CompressedFile, left_out};
+use super::{Compress, CompressedFile};
 use crate::failure::Failure;
+use crate::scene_files::unused_parts;
 
 impl Compress {
     pub(super) fn transport(&self, mesh: &Mesh, scene: &[u8]) -> Result<CompressedFile, Failure> {
@@ -37,7 +38,8 @@ impl Compress {
             layers: done.layers,
             strips: None,
             reached: true,
-            left_out: left_out(mesh, file.faces()),
+            notes: unused_parts(mesh, file.faces()),
+            remarks: Vec::new(),
             bytes: done.bytes,
         })
     }

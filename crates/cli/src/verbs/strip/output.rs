@@ -1,10 +1,9 @@
 //! Writes triangle strips to files: glTF, or lists of vertices in JSON.
 
 use std::cmp::Reverse;
-use std::collections::BTreeSet;
 use std::path::Path;
 
-use meshlod::io::{write_file, write_strips};
+use meshlod::io::write_file;
 use meshlod::strip::{MergeTree, StripWedge, Strips};
 use meshlod::{Scene, scene_strips};
 use serde_json::{Value, json};
@@ -13,7 +12,7 @@ use super::StrippedLevel;
 use crate::constraints::FlatInput;
 use crate::failure::Failure;
 use crate::files;
-use crate::numbers::count;
+use crate::scene_files;
 use crate::session::Session;
 
 /// File of strips to write, with what it needs of the input.
@@ -67,11 +66,8 @@ impl<'o> StripOutput<'o> {
         let mut drawn: Vec<_> = levels.iter().filter(|level| !level.strips.is_empty()).collect();
         drawn.sort_by_key(|level| Reverse(level.triangles));
         let strips: Vec<&Strips> = drawn.iter().map(|level| &level.strips).collect();
-        write_strips(self.path, scene, &scene_strips(scene, &flat.mesh, tree, &strips))?;
-        if let Some(lost) = lost(scene) {
-            session.warn(Failure::at(self.path, format_args!("not kept: {lost}")));
-        }
-        Ok(())
+        let strips = scene_strips(scene, &flat.mesh, tree, &strips);
+        scene_files::write_stripped(self.path, scene, &strips, session)
     }
 }
 
@@ -101,28 +97,4 @@ fn lists(input: &FlatInput, tree: &MergeTree, levels: &[StrippedLevel]) -> Value
         lists["wedges"] = tree.wedges(mesh).iter().map(wedge).collect();
     }
     lists
-}
-
-/// Names what glTF does not hold of a scene that was read from another format.
-fn lost(scene: &Scene) -> Option<String> {
-    if scene.source.is_some() {
-        return None;
-    }
-    let used: BTreeSet<_> = scene.materials.iter().filter_map(|m| m.base_color_image).collect();
-    let images = used.iter().filter(|&&image| {
-        let bytes = scene.images.get(image).map_or(&[][..], |image| &image.bytes);
-        let is_known = bytes.starts_with(b"\x89PNG") || bytes.starts_with(b"\xff\xd8\xff");
-        !bytes.is_empty() && !is_known
-    });
-    let images = images.count();
-    let objects = scene.meshes.iter().filter_map(|mesh| mesh.mesh.objects.as_ref());
-    let objects = objects.map(|objects| objects.names.len()).sum();
-    let parts = [
-        (objects, "name of an object", "names of objects"),
-        (images, "image that is neither PNG nor JPEG", "images that are neither PNG nor JPEG"),
-    ];
-    let named = parts.into_iter().filter(|(number, ..)| *number > 0).map(|(number, one, many)| {
-        format!("{} {}", count(number), if number == 1 { one } else { many })
-    });
-    Some(named.collect::<Vec<_>>().join(", ")).filter(|lost| !lost.is_empty())
 }

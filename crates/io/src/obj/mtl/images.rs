@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::statement::{image_names, names_image, options, word_of};
-use crate::image_type::is_image;
+use crate::image_file::is_image;
 use crate::{Image, MtlMap, MtlStatement};
 
 /// MtlImages loaded so far, each once.

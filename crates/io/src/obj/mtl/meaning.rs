@@ -1,7 +1,7 @@
 //! Meaning of the statements of an MTL library, in the terms that scenes have.
 
 use super::statement::{self, MapOption};
-use crate::image_type::has_colors;
+use crate::image_file::has_colors;
 use crate::text_cursor::TextCursor;
 use crate::{Image, Material, MtlStatement, ParseError, Shading};
 
@@ -168,6 +168,8 @@ fn multiplier(line: &str) -> f32 {
 pub(crate) struct Untold {
     pub left_out: Vec<String>,
     pub changed: Vec<String>,
+    /// Number of maps of roughness and metalness that glTF would need in one image.
+    pub apart: usize,
 }
 
 /// Lists the statements of a material that a new glTF document does not hold.
@@ -200,6 +202,9 @@ pub(crate) fn untold(material: &Material, images: &[Image]) -> Untold {
             && surface.roughness < 1.0;
         let written = statement::split_word(line.text.trim_start()).0.to_owned();
         match arrives {
+            false if ["map_pr", "map_pm"].contains(&&*word) && combined.is_none() => {
+                untold.apart += 1;
+            }
             _ if is_guess || arrives && word.ends_with("bump") => untold.changed.push(written),
             false => untold.left_out.push(written),
             true => {

@@ -190,7 +190,12 @@ mod tests {
         material.shading.normal_image = Some(0);
         scene.images[0].name = "b.png".into();
         let text = written(&scene);
-        assert!(text.starts_with("newmtl a b\n# of old\n\nTr 0.25\nfoo bar\ndecal"), "{text}");
+        assert!(
+            text.starts_with(
+                "newmtl a b\n# of old\n\nTr 0.25\nfoo bar\ndecal -t 0 \x0c 0 n.png\nrefl -type"
+            ),
+            "{text}"
+        );
         assert!(text.contains("Kd 0 1 0\nnorm -bm 0.5 b.png\nnewmtl empty"), "{text}");
     }
 

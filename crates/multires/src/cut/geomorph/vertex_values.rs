@@ -1,7 +1,7 @@
 //! Position and attributes of a vertex while it moves, and how children come by those of the node
 //! that they replace.
 
-use meshlod_mesh::{LayerKind, WedgeId};
+use meshlod_mesh::WedgeId;
 
 use crate::cut::split_wedges::SplitWedges;
 use crate::implicit::Implicit;
@@ -60,22 +60,21 @@ impl VertexValues {
 
     /// Returns the state at a weight from 0, `from`, to 1, `to`.
     ///
-    /// Numbers of joints cannot be blended: these and their weights change at 1.
+    /// Numbers of joints and labels cannot be blended: these, and weights of joints, change at 1.
     pub(super) fn between(mt: &Implicit, [from, to]: [&Self; 2], weight: f64) -> Self {
         if weight <= 0.0 || weight >= 1.0 {
             return if weight <= 0.0 { from } else { to }.clone();
         }
         // Unlike `from + weight * (to - from)`, this cannot overflow.
         let blend = |from: f64, to: f64| from * (1.0 - weight) + to * weight;
-        let is_held = |kind| matches!(kind, LayerKind::Joints(_) | LayerKind::Weights(_));
         let mut values = Vec::with_capacity(from.values.len());
         let mut layers = mt.layers().iter().cycle();
         while let Some(layer) = layers.next().filter(|_| values.len() < from.values.len()) {
             let of_layer = values.len()..values.len() + layer.width;
             let (old, new) = (&from.values[of_layer.clone()], &to.values[of_layer]);
-            match is_held(layer.kind) {
-                true => values.extend_from_slice(old),
-                false => values.extend(
+            match layer.kind.is_blended() {
+                false => values.extend_from_slice(old),
+                true => values.extend(
                     old.iter().zip(new).map(|(&old, &new)| blend(old.into(), new.into()) as f32),
                 ),
             }

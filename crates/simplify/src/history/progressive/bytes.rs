@@ -132,6 +132,8 @@ impl Progressive {
             attributes: wedges.checked_sub(1).map(|n| input.attributes(n, faces)).transpose()?,
             materials: input.labels(faces)?,
             objects: input.labels(faces)?,
+            // A stored sequence has none.
+            smoothing: None,
         };
         let splits = input.splits(splits, mesh.attributes.as_ref())?;
         if input.at != bytes.len() {
@@ -214,6 +216,7 @@ fn code(kind: LayerKind) -> [u8; 2] {
         LayerKind::Joints(set) => [4, set],
         LayerKind::Weights(set) => [5, set],
         LayerKind::Other => [6, 0],
+        LayerKind::Label => [7, 0],
     }
 }
 
@@ -226,6 +229,7 @@ fn kind([code, set]: [u8; 2]) -> Option<LayerKind> {
         4 => LayerKind::Joints(set),
         5 => LayerKind::Weights(set),
         6 => LayerKind::Other,
+        7 => LayerKind::Label,
         _ => return None,
     })
 }

@@ -1,0 +1,175 @@
+//! Writing scenes to files. No verb writes a scene that was read by itself, so that what a format
+//! cannot hold is always noted, and before anything is written.
+
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use meshlod::io::gltf::{Level, LodLayout, StripMesh};
+use meshlod::io::{Note, gltf, obj, off, ply, read_bytes, smf, stl};
+use meshlod::io::{write_file, write_lods, write_strips};
+use meshlod::{Format, Mesh, ReadOptions, Scene, WriteOptions};
+
+use crate::args::WriteArgs;
+use crate::failure::Failure;
+use crate::files::{check_output, is_pipe, name, pipe_format};
+use crate::session::Session;
+
+/// Writes a scene to a file or standard output.
+pub fn write(
+    path: &Path,
+    scene: &Scene,
+    writing: &WriteArgs,
+    session: &Session,
+) -> Result<(), Failure> {
+    let limits = scene.limits_of(check_output(path, session)?);
+    session.note_with(path, &limits, &remedy(scene, &limits))?;
+    write_noted(path, scene, writing, session)
+}
+
+/// Names a format that holds what another does not; empty if there is none, or nothing to hold.
+fn remedy(scene: &Scene, limits: &[Note]) -> String {
+    let holds = |(format, _): &(Format, &str)| scene.limits_of(*format).is_empty();
+    let mut formats = [(Format::Glb, ".glb"), (Format::Obj, ".obj")].into_iter();
+    match limits {
+        [] => String::new(),
+        _ => formats
+            .find(holds)
+            .map_or_else(String::new, |(_, suffix)| format!("; {suffix} keeps everything")),
+    }
+}
+
+/// Writes a scene to the first file and each of its levels to one of the others. What all of them
+/// lack is noted once, on the first.
+pub fn write_chain(
+    first: &Path,
+    scene: &mut Scene,
+    mut levels: Vec<(PathBuf, Vec<Mesh>)>,
+    writing: &WriteArgs,
+    session: &Session,
+) -> Result<(), Failure> {
+    let format = check_output(first, session)?;
+    let mut notes = scene.limits_of(format);
+    for (_, level) in &mut levels {
+        swap(scene, level);
+        Note::merge(&mut notes, scene.limits_of(format));
+        swap(scene, level);
+    }
+    session.note(first, &notes)?;
+    write_noted(first, scene, writing, session)?;
+    for (path, level) in &mut levels {
+        swap(scene, level);
+        write_noted(path, scene, writing, session)?;
+    }
+    Ok(())
+}
+
+/// Writes a scene and its coarser levels to one glTF file.
+pub fn write_levels(
+    path: &Path,
+    scene: &Scene,
+    levels: &[Level],
+    layout: LodLayout,
+    session: &Session,
+) -> Result<(), Failure> {
+    let format = check_output(path, session)?;
+    session.note(path, &scene.limits_of(format))?;
+    session.progress.stage(&format!("writing {}", name(path)));
+    Ok(write_lods(path, scene, levels, layout)?)
+}
+
+/// Writes a scene to a glTF file, with these strips for faces.
+pub fn write_stripped(
+    path: &Path,
+    scene: &Scene,
+    strips: &[StripMesh],
+    session: &Session,
+) -> Result<(), Failure> {
+    let format = check_output(path, session)?;
+    session.note(path, &[scene.limits_of(format), scene.whole_mesh_limits()].concat())?;
+    Ok(write_strips(path, scene, strips)?)
+}
+
+/// Writes a file that is already encoded, given what it lacks of its scene.
+pub fn write_encoded(
+    path: &Path,
+    notes: &[Note],
+    bytes: &[u8],
+    session: &Session,
+) -> Result<(), Failure> {
+    session.note(path, notes)?;
+    session.progress.stage(&format!("writing {}", name(path)));
+    Ok(write_file(path, bytes)?)
+}
+
+/// Notes the vertices that no face uses, and the faces that a file of our own with `there` faces
+/// leaves out of a mesh.
+pub fn unused_parts(mesh: &Mesh, there: usize) -> Vec<Note> {
+    let alone = mesh.used_vertices().iter().filter(|&&used| !used).count();
+    let odd = mesh.faces.len().saturating_sub(there);
+    vec![
+        Note::left_out(alone, "unused vertex", "unused vertices"),
+        Note::left_out(odd, "degenerate or duplicate face", "degenerate or duplicate faces"),
+    ]
+}
+
+/// Exchanges the meshes of a scene for those of a level.
+fn swap(scene: &mut Scene, level: &mut [Mesh]) {
+    let meshes = scene.meshes.iter_mut().map(|mesh| &mut mesh.mesh);
+    meshes.zip(level).for_each(|(mesh, level)| std::mem::swap(mesh, level));
+}
+
+/// Reads a file just written with [`write()`] again, with default options.
+pub fn read_again(
+    path: &Path,
+    scene: &Scene,
+    writing: &WriteArgs,
+    session: &Session,
+) -> Result<Scene, Failure> {
+    session.progress.stage(&format!("reading {} again", name(path)));
+    let options = ReadOptions::default();
+    if !is_pipe(path) {
+        return Ok(meshlod::read(path, &options)?);
+    }
+    let format = pipe_format(session)?;
+    let mut bytes = Vec::new();
+    write_pipe(format, scene, writing.options(), &mut bytes)?;
+    read_bytes(&bytes, format, &mut |_| None, &options).map_err(|error| Failure::at(path, error))
+}
+
+fn write_noted(
+    path: &Path,
+    scene: &Scene,
+    writing: &WriteArgs,
+    session: &Session,
+) -> Result<(), Failure> {
+    session.progress.stage(&format!("writing {}", name(path)));
+    if !is_pipe(path) {
+        return Ok(meshlod::write(path, scene, &writing.options())?);
+    }
+    let format = check_output(path, session)?;
+    let mut out = BufWriter::new(io::stdout().lock());
+    write_pipe(format, scene, writing.options(), &mut out)?;
+    out.flush().map_err(|error| Failure::at(path, error))
+}
+
+fn write_pipe(
+    format: Format,
+    scene: &Scene,
+    options: WriteOptions,
+    out: &mut impl Write,
+) -> Result<(), Failure> {
+    let precision = options.precision;
+    let flat = || scene.flatten();
+    let written = match format {
+        Format::Ply => ply::write_scene(scene, precision, out),
+        Format::Stl => stl::write(&flat(), out),
+        Format::Off => off::write(&flat(), precision, out),
+        Format::Smf => smf::write(&flat(), precision, out),
+        Format::Obj => obj::write(scene, precision, out, &[]),
+        Format::Glb | Format::Gltf => {
+            let bytes = gltf::write_glb(scene, &[]);
+            out.write_all(&bytes.map_err(|error| Failure::at(Path::new("-"), error))?)
+        }
+    };
+    written.map_err(|error| Failure::at(Path::new("-"), error))
+}
