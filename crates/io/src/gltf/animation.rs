@@ -67,10 +67,9 @@ impl PackedAnimations {
             let sampler = &mut json["animations"][track.place.0]["samplers"][track.place.1];
             sampler["input"] = accessors[TIMES][input].into();
             sampler["output"] = accessors[kind][output].into();
-            if let Some(sampler) = sampler.as_object_mut() {
-                if sampler.get("interpolation").is_some_and(|word| word == "LINEAR") {
-                    sampler.shift_remove("interpolation");
-                }
+            let is_default = sampler.get("interpolation").is_some_and(|word| word == "LINEAR");
+            if let Some(sampler) = sampler.as_object_mut().filter(|_| is_default) {
+                sampler.shift_remove("interpolation");
             }
         }
     }
