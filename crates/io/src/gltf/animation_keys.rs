@@ -78,8 +78,9 @@ impl RoundedTrack {
 
 /// Selects the keys that tracks with the same times keep, the first and the last among them.
 ///
-/// Intervals are as long as the tolerance of every track allows, as far as doubling finds. `None` if a track is not close to
-/// its rounded poses even with all its keys. Cost: O(n log m) for n keys of all tracks, m = [`MOST_KEYS`].
+/// Intervals are as long as the tolerance of every track allows, as far as doubling finds. `None` if
+/// a track is not close to its rounded poses even with all its keys. Cost: O(n log m) for n keys of
+/// all tracks, m = [`MOST_KEYS`].
 pub(super) fn select(tracks: &[&RoundedTrack]) -> Option<Vec<usize>> {
     let count = tracks.first()?.track.times.len();
     let mut keys = vec![0];
