@@ -58,11 +58,15 @@ pub struct Compress {
     /// 1,16,64,256
     #[arg(long, value_name = "PARTS", value_delimiter = ',', value_parser = parse::whole,
         allow_negative_numbers = true, conflicts_with_all = ["output", "bits", "error", "reduction",
-        "strips", "resident", "strict", "normal_error", "uv_error", "color_error"])]
+        "strips", "resident", "strict", "animation_error", "normal_error", "uv_error", "color_error"])]
     sweep: Vec<usize>,
     /// Write .glb that a GPU reads directly: KHR_mesh_quantization without EXT_meshopt_compression
     #[arg(long)]
     resident: bool,
+    /// Largest error of animated rotations in .glb, in degrees, at any time; translations and scales
+    /// may err by the arc of this angle at the largest of their track [default: 0.1]
+    #[arg(long, value_name = "DEGREES", value_parser = parse::length, allow_hyphen_values = true)]
+    animation_error: Option<f64>,
     #[command(flatten)]
     attributes: AttributeErrorArgs,
     #[command(flatten)]
@@ -205,6 +209,12 @@ impl Compress {
         }
         if self.resident && kind != Kind::Gltf {
             return Err(Failure::usage("--resident needs a .glb file"));
+        }
+        if self.animation_error.is_some() && (kind != Kind::Gltf || self.scheme.is_some()) {
+            return Err(Failure::usage("--animation-error needs a .glb file without --scheme"));
+        }
+        if self.animation_error.is_some_and(|degrees| !(0.01..=90.0).contains(&degrees)) {
+            return Err(Failure::usage("--animation-error must be between 0.01 and 90 degrees"));
         }
         let AttributeErrorArgs { normal_error, uv_error, color_error } = &self.attributes;
         let bounds = match (kind, self.scheme) {

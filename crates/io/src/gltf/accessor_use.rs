@@ -9,14 +9,16 @@ use super::primitives::{attributes, is_surface};
 /// Computes one flag per accessor: true if only triangle primitives of changed meshes use it, or if
 /// it is empty and nothing uses it.
 pub(super) fn free_accessors(document: &Document<'_>, changed: &[bool]) -> Vec<bool> {
-    free_accessors_with(document, changed, &[])
+    free_accessors_with(document, changed, &[], &|_| false)
 }
 
-/// Computes the flags of [`free_accessors`] where the marked skins get new matrices.
+/// Computes the flags of [`free_accessors`] where the marked skins get new matrices, and samplers of
+/// animations, by animation and index, new keys.
 pub(super) fn free_accessors_with(
     document: &Document<'_>,
     changed: &[bool],
     new_skins: &[bool],
+    is_new_sampler: &dyn Fn((usize, usize)) -> bool,
 ) -> Vec<bool> {
     let count = document.accessors.len();
     let (mut replaced, mut kept) = (vec![false; count], vec![false; count]);
@@ -29,7 +31,8 @@ pub(super) fn free_accessors_with(
     mark_skins(document.json, is_new, &mut replaced);
     mark_skins(document.json, |skin| !is_new(skin), &mut kept);
     mark_instances(document.json, &mut kept);
-    mark_samplers(document.json, &mut kept);
+    mark_samplers(document.json, is_new_sampler, &mut replaced);
+    mark_samplers(document.json, |place| !is_new_sampler(place), &mut kept);
     let is_empty = document.accessors.iter().map(|accessor| accessor.count == 0);
     let free = replaced.iter().zip(is_empty).map(|(&replaced, is_empty)| replaced || is_empty);
     free.zip(kept).map(|(free, kept)| free && !kept).collect()
@@ -39,7 +42,7 @@ pub(super) fn free_accessors_with(
 /// meshes, nothing else.
 pub(super) fn animation_accessors(document: &Document<'_>, emptied: &[bool]) -> Vec<bool> {
     let mut animated = vec![false; document.accessors.len()];
-    mark_samplers(document.json, &mut animated);
+    mark_samplers(document.json, |_| true, &mut animated);
     let mut others = vec![false; animated.len()];
     mark_skins(document.json, |_| true, &mut others);
     mark_instances(document.json, &mut others);
@@ -66,11 +69,14 @@ fn mark_instances(json: &Value, marks: &mut [bool]) {
     }
 }
 
-fn mark_samplers(json: &Value, marks: &mut [bool]) {
+/// Marks the accessors of those samplers for whose animation and index `is_meant` holds.
+fn mark_samplers(json: &Value, is_meant: impl Fn((usize, usize)) -> bool, marks: &mut [bool]) {
     let animations = json.get("animations").and_then(Value::as_array).into_iter().flatten();
-    let samplers = animations.filter_map(|all| all.get("samplers").and_then(Value::as_array));
-    for sampler in samplers.flatten() {
-        ["input", "output"].into_iter().for_each(|key| mark(sampler.get(key), marks));
+    for (animation, all) in animations.enumerate() {
+        let samplers = all.get("samplers").and_then(Value::as_array).into_iter().flatten();
+        for (_, sampler) in samplers.enumerate().filter(|&(at, _)| is_meant((animation, at))) {
+            ["input", "output"].into_iter().for_each(|key| mark(sampler.get(key), marks));
+        }
     }
 }
 

@@ -146,6 +146,34 @@ impl BufferBuilder {
         insert(&mut self.accessors, &mut self.free_accessors, accessor)
     }
 
+    /// Adds an accessor and returns its index.
+    pub fn add_accessor(&mut self, accessor: Value) -> usize {
+        insert(&mut self.accessors, &mut self.free_accessors, accessor)
+    }
+
+    /// Adds a buffer view of elements that accessors share, encoded for the filter, and returns its
+    /// index.
+    pub fn add_keys(&mut self, bytes: &[u8], stride: usize, filter: Filter) -> usize {
+        let blob = Blob {
+            component: component::F32,
+            shape: "SCALAR",
+            normalized: false,
+            count: bytes.len() / stride,
+            bytes: bytes.to_vec(),
+            stride: None,
+            extent: None,
+            usage: Usage::Vertices,
+            part: Part::Attributes,
+            filter,
+        };
+        self.align();
+        let view = match self.fallback_size {
+            None => self.view_of(bytes),
+            Some(at) => self.compressed_view_of(&blob, at),
+        };
+        insert(&mut self.views, &mut self.free_views, view.into())
+    }
+
     /// Adds a buffer view without an accessor, such as an image, and returns its index.
     pub fn add_view(&mut self, bytes: &[u8]) -> usize {
         let view = self.view_of(bytes);
@@ -220,6 +248,7 @@ impl BufferBuilder {
         packed.insert("mode".into(), mode.into());
         match blob.filter {
             Filter::Octahedral => drop(packed.insert("filter".into(), "OCTAHEDRAL".into())),
+            Filter::Quaternion => drop(packed.insert("filter".into(), "QUATERNION".into())),
             Filter::Exponential => drop(packed.insert("filter".into(), "EXPONENTIAL".into())),
             _ => {}
         }

@@ -14,7 +14,7 @@ use crate::{Scene, Unsupported};
 
 /// Options for compressing the geometry of a glTF file: quantization [Kap20] and, optionally,
 /// meshopt streams [KS21].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Compression {
     /// Bits per vertex coordinate along the longest side of a mesh, 1 to 16.
     ///
@@ -24,6 +24,10 @@ pub struct Compression {
     pub normal_bits: u32,
     /// Bits per texture coordinate in [0, 1], 1 to 16; up to 8 are stored in one byte.
     pub uv_bits: u32,
+    /// Largest error of animated rotations at any time, in degrees, at least 0.01.
+    ///
+    /// Translations and scales may err by the arc of this angle at the largest of their track.
+    pub animation_degrees: f64,
     /// If true, geometry is also compressed with meshopt; if not, a GPU can use it straight from
     /// the file.
     pub meshopt: bool,
@@ -31,9 +35,15 @@ pub struct Compression {
 
 impl Default for Compression {
     /// Returns settings whose result can rarely be told from the original: 14 bits for positions, 8
-    /// for normals and 12 for texture coordinates, with meshopt compression.
+    /// for normals, 12 for texture coordinates and .1 degrees for animations, with meshopt.
     fn default() -> Self {
-        Self { position_bits: 14, normal_bits: 8, uv_bits: 12, meshopt: true }
+        Self {
+            position_bits: 14,
+            normal_bits: 8,
+            uv_bits: 12,
+            animation_degrees: 0.1,
+            meshopt: true,
+        }
     }
 }
 
@@ -47,6 +57,11 @@ impl Compression {
             if !(least..=16).contains(&bits) {
                 return Err(Unsupported::new(name, format!("must be {least} to 16, not {bits}")));
             }
+        }
+        let degrees = self.animation_degrees;
+        if !(0.01..=90.0).contains(&degrees) {
+            let reason = format!("must be 0.01 to 90 degrees, not {degrees}");
+            return Err(Unsupported::new("animation error", reason));
         }
         Ok(())
     }

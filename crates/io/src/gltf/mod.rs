@@ -2,6 +2,9 @@
 
 mod accessor;
 mod accessor_use;
+mod animation;
+mod animation_keys;
+mod animation_rounding;
 mod buffer_builder;
 mod compress;
 mod container;
@@ -32,6 +35,7 @@ mod primitive_rows;
 mod primitives;
 mod quantize;
 mod read;
+mod sampler;
 mod schema;
 mod skeleton;
 mod skeleton_images;

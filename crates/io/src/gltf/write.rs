@@ -4,6 +4,7 @@ use meshlod_mesh::Mesh;
 use serde_json::{Map, Value};
 
 use super::accessor_use::free_accessors_with;
+use super::animation::PackedAnimations;
 use super::buffer_builder::BufferBuilder;
 use super::compress::{Compression, CompressionReport, Grids};
 use super::document::Document;
@@ -79,7 +80,11 @@ pub fn write_lods_glb(
 /// joint weights bytes that sum to 255. Everything else is kept. Faces and vertices are sorted for
 /// the vertex cache. With
 /// [`Compression::meshopt`], the geometry is stored in meshopt streams, and texture coordinates
-/// outside [0, 1] are rounded to the requested bits as well. Images and animations are kept. The
+/// outside [0, 1] are rounded to the requested bits as well. Images are kept.
+///
+/// Animations keep their channels, and at any time a pose is within
+/// [`Compression::animation_degrees`] of what it was: keys that interpolation of the others gives go,
+/// rotations become shorts. Cubic splines, weights and malformed samplers stay as they are. The
 /// objects of a mesh stay one mesh, and have no names.
 ///
 /// # Errors
@@ -168,7 +173,8 @@ impl Output {
                 let grids = grids((&json, None), scene, levels, compression);
                 let mut replacer = Replacer::new(None, builder);
                 replacer.compression = compression;
-                Self::finish(json, (scene, &all), grids, replacer, levels)
+                let parts = (grids, PackedAnimations::default());
+                Self::finish(json, (scene, &all), parts, replacer, levels)
             }
         }
     }
@@ -192,17 +198,29 @@ impl Output {
             changed.push(compression.is_some() || is_empty() || differs()?);
         }
         let grids = grids((json, Some(&document)), scene, levels, compression);
-        let free = free_accessors_with(&document, &changed, &grids.skins.replaced(json));
+        // A document of its own, so that its allowance of values is not spent on animations.
+        let animations = match compression {
+            Some(own) => {
+                let document = Document::new(json, &source.buffers).map_err(unreadable)?;
+                PackedAnimations::of(&document, own)
+            }
+            None => PackedAnimations::default(),
+        };
+        let free =
+            free_accessors_with(&document, &changed, &grids.skins.replaced(json), &|place| {
+                animations.replaces(place)
+            });
         let mut replacer = Replacer::new(Some(&document), BufferBuilder::of(&document, &free));
         replacer.compression = compression;
-        Self::finish(json.clone(), (scene, &changed), grids, replacer, levels)
+        let parts = (grids, animations);
+        Self::finish(json.clone(), (scene, &changed), parts, replacer, levels)
     }
 
     /// Puts the changed meshes and the levels into the document.
     fn finish(
         mut json: Value,
         (scene, changed): (&Scene, &[bool]),
-        grids: Grids,
+        (grids, animations): (Grids, PackedAnimations),
         mut replacer: Replacer<'_>,
         levels: Levels<'_>,
     ) -> Result<Self, Unsupported> {
@@ -214,6 +232,7 @@ impl Output {
             if compression.meshopt {
                 replacer.builder.compress();
             }
+            animations.enter(&mut json, &mut replacer.builder);
         }
         for (index, mesh) in scene.meshes.iter().enumerate().filter(|&(index, _)| changed[index]) {
             let mut new = templates[index].clone();

@@ -3,7 +3,7 @@
 use super::Filter;
 
 /// Applies a filter to elements of `stride` bytes; the stride must be valid for the filter.
-pub(super) fn apply(filter: Filter, stride: usize, bytes: &mut [u8]) {
+pub(crate) fn apply(filter: Filter, stride: usize, bytes: &mut [u8]) {
     match (filter, stride) {
         (Filter::None, _) => {}
         (Filter::Octahedral, 4) => small(bytes, |e| octahedral(e, 127.0)),
@@ -112,6 +112,26 @@ pub fn encode_octahedral(directions: &[[f32; 4]], bits: u32) -> Vec<u8> {
     } else {
         elements.flat_map(i16::to_le_bytes).collect()
     }
+}
+
+/// Encodes unit quaternions with `bits` bits for each of their three smaller components, as
+/// [`Filter::Quaternion`] decodes them.
+///
+/// Elements have 8 bytes. A quaternion and its negative, which are one rotation, become the same.
+///
+/// # Panics
+/// If `bits` is not in 4 to 16.
+pub fn encode_quaternion(quaternions: &[[f64; 4]], bits: u32) -> Vec<u8> {
+    assert!((4..=16).contains(&bits), "{bits} bits");
+    let one = (1i32 << (bits - 1)) - 1;
+    let element = |q: &[f64; 4]| {
+        let at = (1..4).fold(0, |most, k| if q[k].abs() > q[most].abs() { k } else { most });
+        let scale = f64::from(one) * std::f64::consts::SQRT_2.copysign(q[at]);
+        let most = f64::from(one);
+        let part = |k: usize| (q[(at + k) % 4] * scale).round().clamp(-most, most) as i16;
+        [part(1), part(2), part(3), (one & !3) as i16 | at as i16]
+    };
+    quaternions.iter().flat_map(element).flat_map(i16::to_le_bytes).collect()
 }
 
 /// Quantizes floats to multiples of `step`, rounded down to a power of two, as

@@ -28,7 +28,8 @@ mod stream;
 mod triangles;
 
 pub use attributes::encode as encode_attributes;
-pub use filters::{encode_exponential, encode_octahedral};
+pub(crate) use filters::apply as apply_filter;
+pub use filters::{encode_exponential, encode_octahedral, encode_quaternion};
 pub use stream::Malformed;
 pub use triangles::encode as encode_triangles;
 

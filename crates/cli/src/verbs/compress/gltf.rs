@@ -56,6 +56,7 @@ impl Compress {
             position_bits: bits,
             normal_bits: self.attributes.normal_error.map_or(default.normal_bits, normal_bits),
             uv_bits: self.attributes.uv_error.map_or(default.uv_bits, uv_bits),
+            animation_degrees: self.animation_error.unwrap_or(default.animation_degrees),
             meshopt: !self.resident,
         })
     }

@@ -12,8 +12,13 @@ use crate::gltf::document::Document;
 use crate::gltf::{Compression, write_compressed_glb};
 use crate::{ReadOptions, Scene};
 
-const BITS: Compression =
-    Compression { position_bits: 12, normal_bits: 8, uv_bits: 12, meshopt: false };
+const BITS: Compression = Compression {
+    position_bits: 12,
+    normal_bits: 8,
+    uv_bits: 12,
+    animation_degrees: 0.1,
+    meshopt: false,
+};
 
 fn index(value: &Value) -> usize {
     value.as_u64().unwrap() as usize

@@ -11,8 +11,13 @@ use crate::gltf::{
 };
 use crate::{ReadOptions, Scene};
 
-const PLAIN: Compression =
-    Compression { position_bits: 12, normal_bits: 8, uv_bits: 12, meshopt: false };
+const PLAIN: Compression = Compression {
+    position_bits: 12,
+    normal_bits: 8,
+    uv_bits: 12,
+    animation_degrees: 0.1,
+    meshopt: false,
+};
 const PACKED: Compression = Compression { meshopt: true, ..PLAIN };
 
 /// Numbers all wedges of all meshes, so that they can be identified after reading.

@@ -1,0 +1,140 @@
+//! Animation samplers that move a node: their keys, and the pose between two keys.
+
+use serde_json::Value;
+
+use super::document::Document;
+
+/// Value of a sampler: a unit quaternion, or a vector with a fourth component of zero.
+pub(super) type Pose = [f64; 4];
+
+/// Property of a node that a sampler moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Property {
+    Translation,
+    Rotation,
+    Scale,
+}
+
+impl Property {
+    /// Returns the property of this name; `None` for others, as for weights of morph targets.
+    pub fn named(path: &str) -> Option<Self> {
+        match path {
+            "translation" => Some(Self::Translation),
+            "rotation" => Some(Self::Rotation),
+            "scale" => Some(Self::Scale),
+            _ => None,
+        }
+    }
+
+    /// Returns the number of components.
+    pub fn width(self) -> usize {
+        if self == Self::Rotation { 4 } else { 3 }
+    }
+
+    /// Interpolates between two keys; rotations take the shorter way.
+    pub fn between(self, a: Pose, b: Pose, part: f64) -> Pose {
+        match self {
+            Self::Rotation => slerp(a, nearer(a, b), part),
+            _ => mixed(a, b, [1.0 - part, part]),
+        }
+    }
+}
+
+/// Keys of a sampler, at least one, in the order of their times.
+#[derive(Clone, Debug)]
+pub(super) struct Track {
+    pub property: Property,
+    /// If true, each key holds until the next; if not, poses in between are interpolated.
+    pub is_step: bool,
+    /// Seconds, strictly increasing.
+    pub times: Vec<f32>,
+    pub poses: Vec<Pose>,
+}
+
+impl Track {
+    /// Reads a sampler; `None` if it is malformed, a cubic spline, or has rotations that are not
+    /// unit quaternions.
+    pub fn read(document: &Document<'_>, sampler: &Value, property: Property) -> Option<Self> {
+        let is_step = match sampler.get("interpolation") {
+            None => false,
+            Some(word) => match word.as_str()? {
+                "LINEAR" => false,
+                "STEP" => true,
+                _ => return None,
+            },
+        };
+        let floats = |key| document.floats(sampler.get(key)?.as_u64()? as usize).ok();
+        let (times, values) = (floats("input")?, floats("output")?);
+        let sound = times.width == 1
+            && values.width == property.width()
+            && times.count() == values.count()
+            && times.values.first().is_some_and(|&first| first >= 0.0)
+            && times.values.is_sorted_by(|a, b| a < b);
+        if !sound {
+            return None;
+        }
+        let pose = |key: &[f32]| {
+            let mut pose: Pose = [0.0; 4];
+            pose.iter_mut().zip(key).for_each(|(to, &from)| *to = f64::from(from));
+            match property {
+                Property::Rotation => unit(pose),
+                _ => Some(pose),
+            }
+        };
+        let poses = values.values.chunks_exact(values.width).map(pose).collect::<Option<_>>()?;
+        Some(Self { property, is_step, times: times.values, poses })
+    }
+
+    /// Returns the pose at a time in seconds; before the first key and after the last, theirs.
+    #[cfg(test)]
+    pub fn at(&self, time: f64) -> Pose {
+        let after = self.times.partition_point(|&key| f64::from(key) <= time);
+        let Some(key) = after.checked_sub(1) else { return self.poses[0] };
+        if after == self.times.len() || self.is_step {
+            return self.poses[key];
+        }
+        let [from, to] = [key, after].map(|key| f64::from(self.times[key]));
+        self.property.between(self.poses[key], self.poses[after], (time - from) / (to - from))
+    }
+}
+
+/// Scales a quaternion to length 1; `None` if it is off by more than rounding.
+fn unit(q: Pose) -> Option<Pose> {
+    let length = dot(q, q).sqrt();
+    ((length - 1.0).abs() <= 1e-3).then(|| q.map(|x| x / length))
+}
+
+pub(super) fn dot(a: Pose, b: Pose) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Returns the distance of two poses as points.
+pub(super) fn distance(a: Pose, b: Pose) -> f64 {
+    let off = mixed(a, b, [1.0, -1.0]);
+    dot(off, off).sqrt()
+}
+
+/// Returns the sign of a quaternion that is nearer to another; both signs are one rotation.
+pub(super) fn nearer(to: Pose, q: Pose) -> Pose {
+    if dot(to, q) < 0.0 { q.map(|x| -x) } else { q }
+}
+
+/// Returns the angle between two unit quaternions as points of the sphere, half that of the
+/// rotation between them.
+pub(super) fn arc(a: Pose, b: Pose) -> f64 {
+    2.0 * (0.5 * distance(a, b)).min(1.0).asin()
+}
+
+/// Interpolates along the arc between two unit quaternions, by their own signs.
+pub(super) fn slerp(a: Pose, b: Pose, part: f64) -> Pose {
+    let angle = arc(a, b);
+    let sine = angle.sin();
+    if sine < 1e-9 {
+        return mixed(a, b, [1.0 - part, part]);
+    }
+    mixed(a, b, [((1.0 - part) * angle).sin() / sine, (part * angle).sin() / sine])
+}
+
+fn mixed(a: Pose, b: Pose, [s, t]: [f64; 2]) -> Pose {
+    std::array::from_fn(|i| s * a[i] + t * b[i])
+}
