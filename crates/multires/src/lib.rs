@@ -107,3 +107,4 @@ pub use rtin::{
     FieldBytesError, Fit, HeightField, HeightFieldError, HeightPrecision, Rtin, RtinCertifyError,
     RtinCut, RtinExtractor, RtinFlaw,
 };
+pub use wedges::LayerFormat;

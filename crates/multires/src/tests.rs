@@ -1,6 +1,6 @@
 //! Properties that every encoding must have, on random walks through queries.
 
-mod attributes;
+pub(crate) mod attributes;
 mod certificates;
 mod drawn;
 mod geomorphs;

@@ -49,7 +49,6 @@ impl Cut<'_> {
     fn begin_requests(&mut self) {
         self.front.triangles.mark();
         self.schedule.forget();
-        self.last_key = None;
     }
 }
 

@@ -28,7 +28,7 @@ pub(crate) use self::meter::Meter;
 pub(crate) use self::schedule::{Schedule, ScheduleEntry, Span};
 use crate::implicit::Implicit;
 use crate::level::Level;
-use crate::query::{Ball, Criterion, QueryKey};
+use crate::query::{Ball, Criterion};
 use crate::query::{Query, QueryError};
 
 /// A mesh extracted from an [`Implicit`] model, refined and coarsened to follow a sequence of
@@ -40,8 +40,6 @@ use crate::query::{Query, QueryError};
 pub struct Cut<'m> {
     front: Front<'m>,
     schedule: Schedule,
-    /// Identity of the last query, to recognize it when it comes again.
-    last_key: Option<QueryKey>,
     /// Nodes whose updates, with all below, are still to be inspected.
     uninspected: VecDeque<u32>,
     /// Updates that the criterion requires.
@@ -93,7 +91,6 @@ impl<'m> Cut<'m> {
         let mut this = Self {
             front: Front::new(mt),
             schedule: Schedule::default(),
-            last_key: None,
             uninspected: VecDeque::new(),
             to_split: Vec::new(),
             to_merge: Vec::new(),
@@ -125,7 +122,6 @@ impl<'m> Cut<'m> {
         }
         self.hysteresis = part;
         self.schedule.forget();
-        self.last_key = None;
         Ok(())
     }
 
@@ -146,10 +142,7 @@ impl<'m> Cut<'m> {
         let criteria = Criteria::new(query, self.front.mt, self.hysteresis)?;
         self.front.triangles.mark();
         let mut meter = Meter::new(limits);
-        let last_key = criteria.refine.key();
-        let is_same = last_key.is_some() && last_key == self.last_key;
-        self.last_key = last_key;
-        if self.schedule.follow(criteria.refine.viewpoint()) || is_same {
+        if self.schedule.goes_on(&criteria.refine) {
             self.to_split.retain(|&update| criteria.refine.requires(&self.front.mt.ball(update)));
         } else {
             self.restart();

@@ -7,7 +7,7 @@
 
 use glam::Vec3;
 
-use crate::query::Viewpoint;
+use crate::query::{Criterion, QueryKey, Viewpoint};
 
 /// The finest step is 2⁻³⁰ units of distance.
 const FINEST_EXPONENT: u64 = 30;
@@ -67,6 +67,8 @@ impl Span {
 #[derive(Clone, Debug)]
 pub(crate) struct Schedule {
     viewpoint: Option<Viewpoint>,
+    /// Identity of the last query, to recognize it when it comes again.
+    last: Option<QueryKey>,
     /// Length of the path so far.
     path: f64,
     rings: Vec<Vec<ScheduleEntry>>,
@@ -79,14 +81,29 @@ pub(crate) struct Schedule {
 impl Default for Schedule {
     fn default() -> Self {
         let rings = vec![Vec::new(); OCTAVES * RING];
-        Self { viewpoint: None, path: 0.0, rings, counts: [0; OCTAVES], due: Vec::new() }
+        Self {
+            viewpoint: None,
+            last: None,
+            path: 0.0,
+            rings,
+            counts: [0; OCTAVES],
+            due: Vec::new(),
+        }
     }
 }
 
 impl Schedule {
+    /// Takes up the next query. Returns true if it goes on from the last one, by a motion of the
+    /// viewpoint or because it is the same; what is due, and waits, then is all that may change.
+    pub(crate) fn goes_on(&mut self, criterion: &Criterion<'_>) -> bool {
+        let last = std::mem::replace(&mut self.last, criterion.key());
+        let is_same = last.is_some() && last == self.last;
+        self.follow(criterion.viewpoint()) || is_same
+    }
+
     /// Moves the viewpoint and collects the entries that are due. Returns false if the query is of
     /// another kind, or the path too long, so that everything has to be inspected.
-    pub(crate) fn follow(&mut self, viewpoint: Option<Viewpoint>) -> bool {
+    fn follow(&mut self, viewpoint: Option<Viewpoint>) -> bool {
         let last = std::mem::replace(&mut self.viewpoint, viewpoint);
         let (Some(last), Some(viewpoint)) = (last, viewpoint) else { return false };
         if last.slope != viewpoint.slope {
@@ -111,7 +128,7 @@ impl Schedule {
 
     /// Makes the next query inspect everything.
     pub(crate) fn forget(&mut self) {
-        self.viewpoint = None;
+        (self.viewpoint, self.last) = (None, None);
     }
 
     /// Removes all entries and reports their nodes.

@@ -26,7 +26,7 @@ impl<'m> SplitWedges<'m> {
     pub(super) fn around(&self, child: u32, star: &[Spoke], at: usize) -> u32 {
         let local = self.record.as_ref().map_or(0, |record| {
             let rank = star.iter().filter(|s| [s.a, s.b] < [star[at].a, star[at].b]).count();
-            record.around.get(rank).copied().unwrap_or(0)
+            record.around(rank).unwrap_or(0)
         });
         self.all.at(child, local)
     }
@@ -40,7 +40,7 @@ impl<'m> SplitWedges<'m> {
         triangles: &Triangles,
     ) -> [u32; 3] {
         if let Some(record) = &self.record {
-            let local = record.created.get(at).copied().unwrap_or_default();
+            let local = record.created(at).unwrap_or_default();
             return std::array::from_fn(|k| self.all.at(face[k], local[k]));
         }
         face.map(|node| match self.children.contains(&node) {
@@ -71,8 +71,7 @@ impl SplitWedges<'_> {
     pub(super) fn is_complete(&self, around: usize, created: usize) -> bool {
         let count = |child: u32| self.all.count(child) as usize;
         self.record.is_none_or(|record| {
-            record.parents.len() == self.children.map(count).iter().sum::<usize>()
-                && (record.around.len(), record.created.len()) == (around, created)
+            record.lengths() == [self.children.map(count).iter().sum(), around, created]
         })
     }
 }

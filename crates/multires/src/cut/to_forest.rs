@@ -121,7 +121,7 @@ impl Numbering {
             level: mt.level(update),
             error: ball.error,
             radius: ball.radius,
-            stage: mt.stages().get(update as usize).copied().unwrap_or_default(),
+            stage: mt.stage(update).unwrap_or_default(),
             is_open: mt.is_open(update) && mt.non_fan_split(update).is_none(),
             children_swappable: false,
             fused_with_child: mt.is_fused_with_child(update),

@@ -26,12 +26,8 @@ impl NodeNumbers<'_> {
         ForestWedges {
             parents: vec![NONE; all.first(self.in_model.len() as u32) as usize],
             first,
-            layers: all
-                .layers
-                .iter()
-                .map(|layer| crate::wedges::select(layer, wedges.clone()))
-                .collect(),
-            labels: all.labels.renumbered(wedges),
+            values: all.values.unpacked(wedges.clone()),
+            labels: all.labels.unpacked(wedges),
             ..ForestWedges::default()
         }
     }

@@ -6,16 +6,16 @@ use meshlod_mesh::{AttributeBounds, Layer, LayerKind, WedgeId};
 
 /// Coding of one attribute layer.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct LayerCoding {
-    pub(super) kind: LayerKind,
-    pub(super) name: String,
-    pub(super) width: usize,
-    pub(super) numbers: Numbers,
+pub(crate) struct LayerCoding {
+    pub(crate) kind: LayerKind,
+    pub(crate) name: String,
+    pub(crate) width: usize,
+    pub(crate) numbers: Numbers,
 }
 
 /// Meaning of the integers of a layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Numbers {
+pub(crate) enum Numbers {
     /// Octahedral directions with this number of bits twice; tangents also have a sign.
     Directions(u8),
     /// Multiples of this power of two.
@@ -44,7 +44,7 @@ pub(super) const EXPONENTS: std::ops::RangeInclusive<i16> = -149..=104;
 
 impl LayerCoding {
     /// Chooses the coding of a layer that keeps its values within the bounds, or exactly.
-    pub(super) fn new(layer: &Layer, bounds: Option<&AttributeBounds>) -> Self {
+    pub(crate) fn new(layer: &Layer, bounds: Option<&AttributeBounds>) -> Self {
         let wedges = (0..layer.values.len() / layer.width.max(1)).map(WedgeId::new);
         let numbers = match bounds.map(|bounds| bounds.of(layer, wedges)) {
             None => Numbers::Bits,
@@ -57,7 +57,7 @@ impl LayerCoding {
     }
 
     /// Returns the number of integers of a wedge.
-    pub(super) fn columns(&self) -> usize {
+    pub(crate) fn columns(&self) -> usize {
         match self.numbers {
             // Two for a direction, and one for each further value.
             Numbers::Directions(_) => self.width - 1,
@@ -77,7 +77,7 @@ impl LayerCoding {
     }
 
     /// Appends the integers of a wedge.
-    pub(super) fn encode(&self, values: &[f32], to: &mut Vec<i32>) {
+    pub(crate) fn encode(&self, values: &[f32], to: &mut Vec<i32>) {
         match self.numbers {
             Numbers::Directions(bits) => {
                 let direction = DVec3::from_array([0, 1, 2].map(|k| values[k].into()));
@@ -93,7 +93,7 @@ impl LayerCoding {
     }
 
     /// Appends the values of a wedge, or returns `None` if one is not finite.
-    pub(super) fn decode(&self, numbers: &[i32], to: &mut Vec<f32>) -> Option<()> {
+    pub(crate) fn decode(&self, numbers: &[i32], to: &mut Vec<f32>) -> Option<()> {
         let start = to.len();
         match self.numbers {
             Numbers::Directions(bits) => {

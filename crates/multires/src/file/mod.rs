@@ -42,6 +42,7 @@ use thiserror::Error;
 
 pub use archive::{Archive, Extract};
 pub use container::{FieldParts, ModelFile};
+pub(crate) use layer_coding::LayerCoding;
 pub use resources::{Resource, pack_resource, unpack_resource};
 pub use source::Source;
 pub use surroundings::Surroundings;

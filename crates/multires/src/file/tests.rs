@@ -1,6 +1,7 @@
 //! Round trips of whole files, prefixes and queries, and the refusal of damaged files.
 
 mod attribute_bytes;
+mod attribute_memory;
 mod lossless;
 mod resources;
 mod wrong;

@@ -8,7 +8,7 @@ use std::io;
 use std::ops::Range;
 
 use glam::Vec3;
-use meshlod_mesh::{AttributeBounds, Layer, WedgeId};
+use meshlod_mesh::{AttributeBounds, WedgeId};
 
 use super::decoder_state::DecoderState;
 use super::layer_coding::{LayerCoding, Leeway};
@@ -16,7 +16,7 @@ use super::streams::{Packer, Unpacker};
 use super::wedge_records::{self, RecordShape};
 use crate::forest::NONE;
 use crate::implicit::DetachedUpdate;
-use crate::wedges::{DetachedWedges, LOST, WedgeLabels, Wedges};
+use crate::wedges::{DetachedWedges, LOST, WedgeLabels, WedgeNumbers, Wedges};
 
 /// Wedges in the file's order of nodes; in part of a file, of the nodes that are loaded.
 pub(super) struct WedgeState {
@@ -78,22 +78,23 @@ impl WedgeState {
         updates: &[u32],
         state: &DecoderState,
     ) -> Self {
-        let coding = all.layers.iter().map(|layer| LayerCoding::new(layer, bounds)).collect();
         let wedges = || nodes.iter().flat_map(|&node| all.of(node));
-        let mut this = Self::new(coding, all.labels.renumbered(wedges()));
+        let layers = all.values.layers(0..all.wedge_count() as u32);
+        let coding = layers.iter().map(|layer| LayerCoding::new(layer, bounds)).collect();
+        let mut this = Self::new(coding, all.labels.unpacked(wedges()));
         this.first.extend(nodes.iter().scan(0, |end, &node| {
             *end += all.count(node);
             Some(*end)
         }));
         for wedge in wedges() {
-            for (coding, layer) in this.coding.iter().zip(&all.layers) {
+            for (coding, layer) in this.coding.iter().zip(&layers) {
                 coding.encode(layer.of(WedgeId(wedge)), &mut this.numbers);
             }
         }
         // Roots have the same numbers in both orders.
         this.base = all.base.clone();
         for (at, &update) in (0..).zip(updates) {
-            this.records.extend(all.record(update).map(|record| (at, record.to_vec())));
+            this.records.extend(all.record(update).map(|record| (at, record)));
         }
         this.start_kin(state);
         for (at, update) in state.updates.iter().enumerate() {
@@ -343,27 +344,23 @@ impl WedgeState {
         Some(above.start + u32::from(local)).filter(|wedge| above.contains(wedge))
     }
 
-    /// Decodes all values.
+    /// Takes the wedges out, once all values are known to be finite.
     pub(super) fn into_detached(self) -> Result<DetachedWedges, &'static str> {
         let columns = self.columns();
-        let empty = |coding: &LayerCoding| Layer {
-            kind: coding.kind,
-            name: coding.name.clone(),
-            width: coding.width,
-            values: Vec::new(),
-        };
-        let mut layers: Vec<Layer> = self.coding.iter().map(empty).collect();
+        let mut values = Vec::new();
         for row in self.numbers.chunks_exact(columns.max(1)) {
             let mut start = 0;
-            for (coding, layer) in self.coding.iter().zip(&mut layers) {
+            values.clear();
+            for coding in &self.coding {
                 let end = start + coding.columns();
-                let values = coding.decode(&row[start..end], &mut layer.values);
-                values.ok_or("an attribute is not finite")?;
+                let decoded = coding.decode(&row[start..end], &mut values);
+                decoded.ok_or("an attribute is not finite")?;
                 start = end;
             }
         }
-        let Self { first, records, base, labels, .. } = self;
-        Ok(DetachedWedges { first, records, base, layers, labels })
+        let Self { first, records, base, labels, coding, numbers, .. } = self;
+        let values = WedgeNumbers { coding, numbers };
+        Ok(DetachedWedges { first, records, base, values, labels })
     }
 }
 

@@ -136,7 +136,7 @@ fn encode_sections(
     let nodes: Vec<u32> = nodes.collect();
     let exact = mt.exact().select(nodes.iter().copied());
     let mut state = DecoderState::new(*mt.frame(), lattice, mt.base_mesh(), exact);
-    state.has_stages = !mt.stages().is_empty();
+    state.has_stages = mt.stage(0).is_some();
     state.begin_run(0);
     state.updates.extend(plan.order.iter().map(|&update| {
         let update = mt.detached(update);

@@ -13,7 +13,7 @@ use crate::bounds::ErrorKind;
 use crate::forest::MAX_RANKED;
 use crate::forest::{MAX_LEVELS, NONE, NonFanSplit, Stage};
 use crate::length16::Length16;
-use crate::pack::ExactPositions;
+use crate::pack::{ExactPositions, PackedTable};
 use crate::wedges::DetachedWedges;
 
 /// An update taken out of its model. Nodes are numbered roots first, then the children of each
@@ -63,7 +63,7 @@ impl Implicit {
             wings,
             radius,
             error,
-            stage: self.stages.get(update as usize).copied().unwrap_or_default(),
+            stage: self.stage(update).unwrap_or_default(),
             is_open: level & OPEN != 0,
             fused_with_child: parent & FLAG != 0,
             non_fan: self.non_fan_split(update).cloned().map(Box::new),
@@ -136,8 +136,9 @@ impl Implicit {
             }
         }
         let staged = if about.has_stages { &order.updates[..] } else { &[] };
+        let number = |&u: &u32| i32::from(updates[u as usize].stage.number());
         Self {
-            stages: staged.iter().map(|&u| updates[u as usize].stage).collect(),
+            stages: PackedTable::list(&staged.iter().map(number).collect::<Vec<_>>()),
             frame: about.frame,
             error_kind: about.error_kind,
             roots: roots as u32,

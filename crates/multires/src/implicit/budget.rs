@@ -87,10 +87,10 @@ impl<'m> Priorities<'m> {
     fn new(model: &'m Model, criterion: &Criterion<'_>) -> Self {
         let mt = model.implicit();
         let balls = (0..mt.update_count() as u32).map(|update| mt.ball(update));
-        let stages = mt.stages();
-        if criterion.is_uniform() && !stages.is_empty() {
-            let pairs = stages.iter().zip(0..);
-            let of = pairs.map(|(&stage, update)| by_stage(stage, mt.error(update))).collect();
+        if criterion.is_uniform() && mt.stage(0).is_some() {
+            let stage = |update| mt.stage(update).unwrap_or_default();
+            let updates = 0..mt.update_count() as u32;
+            let of = updates.map(|update| by_stage(stage(update), mt.error(update))).collect();
             return Self { model, of, go_by_stages: true };
         }
         let of = criterion.priorities(balls).into_iter().map(f32::to_bits).collect();

@@ -7,6 +7,7 @@ use super::positions::StoredPositions;
 use super::splits::{Local, Split, Splits};
 use super::{FLAG, Implicit, LAST_WING, NO_WING, OPEN, Order};
 use crate::forest::{BuildError, Forest, NONE, NonFanSplit};
+use crate::pack::PackedTable;
 use crate::wedges::Wedges;
 
 impl Implicit {
@@ -49,7 +50,8 @@ impl Implicit {
         let wedges = forest.wedges.as_ref();
         let wedges = wedges.map(|wedges| Wedges::in_order(forest, wedges, order)).transpose()?;
         let ordered = if wedges.is_some() { &order.updates[..] } else { &[] };
-        let stages = ordered.iter().map(|&update| forest.updates[update as usize].stage);
+        let number = |&update: &u32| i32::from(forest.updates[update as usize].stage.number());
+        let stages: Vec<i32> = ordered.iter().map(number).collect();
         let positions = order.nodes.iter().map(|&n| forest.positions[n as usize]);
         Ok(Self {
             frame: forest.frame,
@@ -60,7 +62,7 @@ impl Implicit {
             positions: StoredPositions::Float(positions.collect()),
             splits: Splits::Full(splits),
             base: base(forest, order),
-            stages: stages.collect(),
+            stages: PackedTable::list(&stages),
             wedges: wedges.map(Arc::new),
             non_fan_splits: non_fans,
             full_faces: forest.faces.len(),

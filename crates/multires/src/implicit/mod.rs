@@ -33,13 +33,13 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
-use meshlod_mesh::{Frame, Layer};
+use meshlod_mesh::Frame;
 
 use crate::bounds::ErrorKind;
 use crate::forest::{MAX_LEVELS, NonFanSplit, Stage};
 use crate::length16::Length16;
 use crate::level::Level;
-use crate::pack::ExactPositions;
+use crate::pack::{ExactPositions, PackedTable};
 use crate::query::{Ball, PackedBall};
 use crate::wedges::{LevelWedges, Wedges};
 
@@ -74,8 +74,8 @@ pub struct Implicit {
     base: Vec<[u32; 3]>,
     /// Splits that wings cannot describe, by update, in nodes of this model.
     non_fan_splits: BTreeMap<u32, NonFanSplit>,
-    /// Stages of the updates; none if the model has no wedges.
-    stages: Vec<Stage>,
+    /// Numbers of the updates' stages; none if the model has no wedges.
+    stages: PackedTable,
     /// Wedges, if the mesh has attributes, materials or objects.
     wedges: Option<Arc<Wedges>>,
     full_faces: usize,
@@ -152,13 +152,6 @@ impl Implicit {
         self.positions.len()
     }
 
-    /// Returns the attribute layers, with the values of the wedges of all nodes.
-    ///
-    /// [`Cut::wedges`](crate::Cut::wedges) has the wedges of a cut's triangles.
-    pub fn layers(&self) -> &[Layer] {
-        self.wedges.as_ref().map_or(&[], |wedges| &wedges.layers)
-    }
-
     /// Returns a compact form of the model with 22 bytes per vertex, or `None` if the numbers would
     /// change.
     ///
@@ -201,7 +194,7 @@ impl Implicit {
             + self.splits.bytes()
             + size_of_val(&self.base[..])
             + self.non_fan_splits.values().map(non_fan).sum::<usize>()
-            + size_of_val(&self.stages[..])
+            + self.stages.bytes()
             + self.wedges.as_ref().map_or(0, |wedges| wedges.bytes())
     }
 
@@ -319,9 +312,9 @@ impl Implicit {
         made.map(|update| self.error(update)).min().unwrap_or(Length16::INFINITE)
     }
 
-    /// Returns the stages of all updates; none if they are unknown.
-    pub(crate) fn stages(&self) -> &[Stage] {
-        &self.stages
+    /// Returns the stage of an update; `None` if stages are unknown.
+    pub(crate) fn stage(&self, update: u32) -> Option<Stage> {
+        self.stages.at(update as usize).and_then(|number| Stage::new(number as u32))
     }
 
     /// Returns the ball and error by which queries judge an update.

@@ -3,8 +3,33 @@
 use std::ops::Range;
 
 use super::Implicit;
+use crate::wedges::LayerFormat;
 
 impl Implicit {
+    /// Iterates over the attribute layers, without their values, which
+    /// [`append_values`](Self::append_values) has.
+    pub fn layers(&self) -> impl Iterator<Item = LayerFormat<'_>> + Clone {
+        self.wedges.iter().flat_map(|all| all.values.formats())
+    }
+
+    /// Returns the number of values of a wedge: the widths of all [`layers`](Self::layers) together.
+    pub fn values_per_wedge(&self) -> usize {
+        self.wedges.as_ref().map_or(0, |all| all.values.width())
+    }
+
+    /// Appends the values of a wedge in all [`layers`](Self::layers), one layer after another.
+    ///
+    /// A model keeps the integers that a file has for them, and decodes them here.
+    /// [`Cut::wedges`](crate::Cut::wedges) has the wedges of a cut's triangles. Nothing is appended if
+    /// the model has no layers.
+    ///
+    /// # Panics
+    /// `wedge` is not below [`wedge_count`](Self::wedge_count).
+    pub fn append_values(&self, wedge: u32, to: &mut Vec<f32>) {
+        assert!((wedge as usize) < self.wedge_count(), "wedge {wedge} is not in the model");
+        self.wedges.iter().for_each(|all| all.values.append(wedge, to));
+    }
+
     /// Returns the number of wedges of all nodes; 0 if the mesh has neither attributes, materials
     /// nor objects.
     pub fn wedge_count(&self) -> usize {

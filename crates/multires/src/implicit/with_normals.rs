@@ -25,8 +25,7 @@ impl Implicit {
         let of_wedge = |node: u32| wedges.of(node).flat_map(move |_| of_nodes[node as usize]);
         let values = (0..of_nodes.len() as u32).flat_map(of_wedge).collect();
         let (kind, name) = (LayerKind::Normal, "NORMAL".to_owned());
-        wedges.layers.retain(|layer| layer.kind != kind);
-        wedges.layers.push(Layer { kind, name, width: 3, values });
+        wedges.values.replace(&Layer { kind, name, width: 3, values });
         self.wedges = Some(Arc::new(wedges));
         self
     }

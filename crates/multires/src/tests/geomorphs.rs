@@ -45,6 +45,15 @@ fn triangles(all: impl Iterator<Item = (u32, [u32; 3])>) -> Vec<[u32; 3]> {
     all
 }
 
+/// Returns what the last call may have moved.
+fn states(morph: &Geomorph<'_>) -> BTreeMap<u32, VertexValues> {
+    let mut all = BTreeMap::new();
+    for node in morph.moved() {
+        morph.values(node, all.entry(node).or_default());
+    }
+    all
+}
+
 /// Walks through random queries, most of which come while vertices are still moving.
 fn walk(name: &str, mesh: &Mesh, mt: &Implicit) -> usize {
     let mut morph = Geomorph::new(mt, DURATION).unwrap();
@@ -56,7 +65,7 @@ fn walk(name: &str, mesh: &Mesh, mt: &Implicit) -> usize {
         assert!(surface(&morph.mesh()) == before, "{name}: a jump by {query:?}");
         morph.advance(DURATION.mul_f64(0.6 * dice.roll()));
         let between = surface(&morph.mesh());
-        moved += usize::from(between != before && morph.moved().count() > 0);
+        moved += usize::from(between != before && morph.moved().next().is_some());
         morph.advance(STILL);
         assert!(surface(&morph.mesh()) == between, "{name}: a jump by nothing");
     }
@@ -111,7 +120,7 @@ fn patches_and_moved_vertices_keep_a_copy_up_to_date() {
             assert_eq!(slots[patch.slot as usize], patch.old);
             slots[patch.slot as usize] = patch.new;
         }
-        morph.moved().for_each(|(node, now)| places[node as usize] = now.position);
+        states(&morph).iter().for_each(|(&node, now)| places[node as usize] = now.position);
         let faces = slots.iter().flatten().map(|nodes| nodes.map(meshlod_mesh::VertexId));
         let copy = Mesh::new(places.clone(), faces.collect());
         assert!(surface(&copy) == surface(&morph.mesh()), "step {i}");
@@ -140,7 +149,7 @@ fn numbers_of_joints_are_not_blended() {
     attributes.layers.push(Layer { kind, name, width: 4, values });
     let mt = Implicit::new(&Forest::lossless(&mesh, &Options::default()).unwrap()).unwrap();
     let is_joint: Vec<bool> =
-        mt.layers().iter().flat_map(|layer| vec![layer.kind == kind; layer.width]).collect();
+        mt.layers().flat_map(|layer| vec![layer.kind == kind; layer.width]).collect();
     let split = |values: &[f32]| -> [Vec<f32>; 2] {
         [true, false].map(|joints| {
             let all = values.iter().zip(is_joint.iter().cycle());
@@ -149,10 +158,10 @@ fn numbers_of_joints_are_not_blended() {
     };
     let mut morph = Geomorph::new(&mt, DURATION).unwrap();
     morph.update(&Query::uniform(0.0), &UpdateLimits::default()).unwrap();
-    let start: BTreeMap<u32, VertexValues> = morph.moved().collect();
+    let start = states(&morph);
     morph.advance(DURATION / 2);
     let mut blended = 0;
-    for (node, now) in morph.moved() {
+    for (node, now) in states(&morph) {
         let [[joints, others], [old_joints, old_others]] =
             [&now, &start[&node]].map(|values| split(&values.values));
         assert_eq!(joints, old_joints, "vertex {node}");

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use meshlod_mesh::{Attributes, Layer, Mesh, WedgeId};
+use meshlod_mesh::{Attributes, Mesh, WedgeId};
 
 use super::Wedges;
 use crate::level::renumber;
@@ -20,7 +20,7 @@ impl LevelWedges {
         let Self { corners, all } = self;
         mesh.materials = all.labels.select(0, corners);
         mesh.objects = all.labels.select(1, corners);
-        if all.layers.is_empty() {
+        if all.values.is_empty() {
             return;
         }
         let mut corners = corners.clone();
@@ -28,13 +28,7 @@ impl LevelWedges {
         mesh.attributes = Some(Attributes {
             corners: corners.into_iter().map(|face| face.map(WedgeId)).collect(),
             wedge_count: used.len(),
-            layers: all.layers.iter().map(|layer| select(layer, used.iter().copied())).collect(),
+            layers: all.values.layers(used.iter().copied()),
         });
     }
-}
-
-/// Returns the values of the listed wedges.
-pub(crate) fn select(layer: &Layer, wedges: impl Iterator<Item = u32>) -> Layer {
-    let values = wedges.flat_map(|wedge| layer.of(WedgeId(wedge))).copied().collect();
-    Layer { values, name: layer.name.clone(), ..*layer }
 }

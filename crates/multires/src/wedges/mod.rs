@@ -10,14 +10,19 @@ mod labels;
 mod level;
 mod pack;
 mod record;
+mod recorded_splits;
+mod values;
 
 pub(crate) use labels::WedgeLabels;
-pub(crate) use level::{LevelWedges, select};
+pub(crate) use level::LevelWedges;
 pub(crate) use pack::DetachedWedges;
 pub(crate) use record::{ForestWedges, WedgeRecorder, WedgeSplit};
+pub(crate) use recorded_splits::{LOST, SplitRecord};
+pub use values::LayerFormat;
+pub(crate) use values::{WedgeNumbers, WedgeValues};
 
-use meshlod_mesh::Layer;
-
+use self::labels::PackedLabels;
+use self::recorded_splits::RecordedSplits;
 use crate::pack::RankedSet;
 
 /// Wedges of a packed model, numbered by node: first those of the roots, then those of the children
@@ -28,8 +33,8 @@ pub(crate) struct Wedges {
     /// Wedges at the corners of the base mesh's faces.
     pub(crate) base: Vec<[u32; 3]>,
     splits: RecordedSplits,
-    pub(crate) layers: Vec<Layer>,
-    pub(crate) labels: WedgeLabels,
+    pub(crate) values: WedgeValues,
+    pub(crate) labels: PackedLabels,
 }
 
 /// First wedge of each node. Only nodes of several wedges take memory.
@@ -40,51 +45,15 @@ pub(crate) struct NodeWedges {
     extra: Vec<u32>,
 }
 
-/// Records of the updates next to seams, in local numbers: wedges are counted from the first of their
-/// node.
-#[derive(Clone, Debug, Default, PartialEq)]
-struct RecordedSplits {
-    updates: RankedSet,
-    /// Start of each record, and the end of the last.
-    starts: Vec<u32>,
-    numbers: Vec<u16>,
-}
-
-/// Marks a wedge that has lost all its faces, so that it has no parent.
-pub(crate) const LOST: u16 = u16::MAX;
-
-/// Record of an update next to a seam, in local numbers.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct SplitRecord<'w> {
-    /// Parent of each wedge of the first child, then of the second; or [`LOST`].
-    pub(crate) parents: &'w [u16],
-    /// Wedge that each face around the node has after the split, in the order of its other two
-    /// nodes.
-    pub(crate) around: &'w [u16],
-    /// Wedges at the corners of the faces that the split creates.
-    pub(crate) created: &'w [[u16; 3]],
-}
-
-impl SplitRecord<'_> {
-    /// Returns the parent of one of the children's wedges, counted from the first child's; `None` if
-    /// it has none.
-    #[inline]
-    pub(crate) fn parent(&self, wedge: usize) -> Option<u16> {
-        self.parents.get(wedge).copied().filter(|&parent| parent != LOST)
-    }
-}
-
 impl NodeWedges {
     /// Numbers the wedges of nodes that have these numbers of them, each at least one.
     pub(crate) fn new(counts: impl Iterator<Item = u32>) -> Self {
-        let mut this = Self { several: RankedSet::default(), extra: vec![0] };
-        let mut extra = 0;
+        let (mut several, mut extra) = (RankedSet::default(), vec![0]);
         for (node, count) in (0..).zip(counts).filter(|&(_, count)| count > 1) {
-            this.several.push(node);
-            extra += count - 1;
-            this.extra.push(extra);
+            several.push(node);
+            extra.push(extra[extra.len() - 1] + count - 1);
         }
-        this
+        Self { several, extra }
     }
 
     /// Returns the first wedge of a node, or for the number of nodes that of all wedges.
@@ -121,7 +90,10 @@ impl Wedges {
     /// Returns a wedge of a node by its local number, of which uncertified files may have any.
     #[inline]
     pub(crate) fn at(&self, node: u32, local: u16) -> u32 {
-        self.first(node) + u32::from(local).min(self.count(node) - 1)
+        match local {
+            0 => self.first(node),
+            _ => self.first(node) + u32::from(local).min(self.count(node) - 1),
+        }
     }
 
     /// Returns the number of wedges of a node.
@@ -149,49 +121,32 @@ impl Wedges {
         children: [u32; 2],
         created: impl FnOnce() -> usize,
     ) -> Option<SplitRecord<'_>> {
-        let numbers = self.record(update)?;
-        let parents = children.map(|child| self.count(child)).iter().sum::<u32>() as usize;
-        let (parents, faces) = numbers.split_at_checked(parents).unwrap_or((numbers, &[]));
-        let around = faces.len().saturating_sub(3 * created());
-        let (around, created) = faces.split_at(around);
-        Some(SplitRecord { parents, around, created: created.as_chunks().0 })
+        let wedges = || children.map(|child| self.count(child)).iter().sum();
+        self.splits.get(update, wedges, created)
     }
 
     /// Returns the numbers of an update's record.
-    pub(crate) fn record(&self, update: u32) -> Option<&[u16]> {
-        let RecordedSplits { updates, starts, numbers } = &self.splits;
-        let rank = updates.rank(update)?;
-        Some(&numbers[starts[rank] as usize..starts[rank + 1] as usize])
+    pub(crate) fn record(&self, update: u32) -> Option<Vec<u16>> {
+        Some(self.splits.numbers(update)?.collect())
     }
 
     /// Returns true if an update has a record.
     pub(crate) fn is_recorded(&self, update: u32) -> bool {
-        self.splits.updates.rank(update).is_some()
+        self.splits.contains(update)
+    }
+
+    /// Returns the number of wedges of all nodes.
+    pub(crate) fn wedge_count(&self) -> usize {
+        self.values.wedge_count()
     }
 
     /// Returns the memory used, in bytes.
     pub(crate) fn bytes(&self) -> usize {
-        let RecordedSplits { updates, starts, numbers } = &self.splits;
-        let values: usize = self.layers.iter().map(|layer| size_of_val(&layer.values[..])).sum();
         self.of_nodes.bytes()
             + size_of_val(&self.base[..])
-            + updates.bytes()
-            + size_of_val(&starts[..])
-            + size_of_val(&numbers[..])
-            + values
+            + self.splits.bytes()
+            + self.values.bytes()
             + self.labels.bytes()
-    }
-}
-
-impl RecordedSplits {
-    /// Adds the record of an update; updates must come in rising order.
-    fn push(&mut self, update: u32, numbers: impl IntoIterator<Item = u16>) {
-        if self.starts.is_empty() {
-            self.starts.push(0);
-        }
-        self.updates.push(update);
-        self.numbers.extend(numbers);
-        self.starts.push(self.numbers.len() as u32);
     }
 }
 

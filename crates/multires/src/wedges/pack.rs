@@ -2,10 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use meshlod_mesh::Layer;
-
-use super::level::select;
-use super::{ForestWedges, LOST, NodeWedges, RecordedSplits, WedgeLabels, WedgeSplit, Wedges};
+use super::recorded_splits::{LOST, RecordedSplits};
+use super::{ForestWedges, NodeWedges, WedgeLabels, WedgeNumbers, WedgeSplit, Wedges};
 use crate::forest::{BuildError, Forest, NONE};
 use crate::implicit::Order;
 
@@ -19,19 +17,19 @@ impl Wedges {
         order: &Order,
     ) -> Result<Self, BuildError> {
         let numbers = || order.nodes.iter().flat_map(|&node| all.of(node));
-        let mut splits = RecordedSplits::default();
+        let mut records = Vec::new();
         for (at, &update) in (0..).zip(&order.updates) {
             if let Some(split) = all.splits.get(&update) {
                 let local = RecordPacker { forest, all, order, update: update as usize };
-                splits.push(at, local.record(split)?);
+                records.push((at, local.record(split)?));
             }
         }
         Ok(Self {
             of_nodes: NodeWedges::new(order.nodes.iter().map(|&node| all.count(node))),
             base: base(forest, all, order),
-            splits,
-            layers: all.layers.iter().map(|layer| select(layer, numbers())).collect(),
-            labels: all.labels.renumbered(numbers()),
+            splits: RecordedSplits::new(records.into_iter()),
+            values: all.values.packed(numbers()),
+            labels: all.labels.packed(numbers()),
         })
     }
 
@@ -40,16 +38,10 @@ impl Wedges {
         let counts = all.first.windows(2).map(|ends| ends[1] - ends[0]);
         Self {
             of_nodes: NodeWedges::new(counts),
-            layers: all.layers.clone(),
-            labels: all.labels.clone(),
+            values: all.values.packed(0..all.len() as u32),
+            labels: all.labels.packed(0..all.len() as u32),
             ..Self::default()
         }
-    }
-
-    /// Returns the number of wedges of all nodes.
-    pub(crate) fn wedge_count(&self) -> usize {
-        let nodes = |layer: &Layer| layer.values.len() / layer.width.max(1);
-        self.layers.first().map_or(self.labels.of_wedges.len(), nodes)
     }
 }
 
@@ -62,7 +54,7 @@ pub(crate) struct DetachedWedges {
     pub(crate) records: BTreeMap<u32, Vec<u16>>,
     /// Wedges at the corners of the base mesh's faces.
     pub(crate) base: Vec<[u32; 3]>,
-    pub(crate) layers: Vec<Layer>,
+    pub(crate) values: WedgeNumbers,
     pub(crate) labels: WedgeLabels,
 }
 
@@ -72,18 +64,14 @@ impl DetachedWedges {
     pub(crate) fn assemble(&self, order: &Order) -> Wedges {
         let of = |node: u32| self.first[node as usize]..self.first[node as usize + 1];
         let numbers = || order.nodes.iter().flat_map(|&node| of(node));
-        let mut splits = RecordedSplits::default();
-        for (at, update) in (0..).zip(&order.updates) {
-            if let Some(record) = self.records.get(update) {
-                splits.push(at, record.iter().copied());
-            }
-        }
+        let updates = (0..).zip(&order.updates);
+        let records = updates.filter_map(|(at, u)| Some((at, self.records.get(u)?.clone())));
         Wedges {
             of_nodes: NodeWedges::new(order.nodes.iter().map(|&node| of(node).len() as u32)),
             base: self.base.clone(),
-            splits,
-            layers: self.layers.iter().map(|layer| select(layer, numbers())).collect(),
-            labels: self.labels.renumbered(numbers()),
+            splits: RecordedSplits::new(records),
+            values: self.values.packed(numbers()),
+            labels: self.labels.packed(numbers()),
         }
     }
 }

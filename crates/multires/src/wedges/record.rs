@@ -6,7 +6,7 @@ use std::ops::Range;
 use meshlod_mesh::{FaceId, Layer, VertexId, WedgeId};
 use meshlod_simplify::{Neighbourhood, Placed, Simplifier, Spoke, Surface};
 
-use super::WedgeLabels;
+use super::{WedgeLabels, WedgeNumbers};
 use crate::forest::NONE;
 use crate::implicit::Order;
 
@@ -19,7 +19,7 @@ pub(crate) struct ForestWedges {
     /// Wedge of the node above that each wedge becomes, or [`NONE`] if it is a root's or has lost
     /// all its faces.
     pub(crate) parents: Vec<u32>,
-    pub(crate) layers: Vec<Layer>,
+    pub(crate) values: WedgeNumbers,
     pub(crate) labels: WedgeLabels,
     /// Wedges of leaves at the corners of the forest's faces.
     pub(crate) corners: Vec<[u32; 3]>,
@@ -80,12 +80,7 @@ impl ForestWedges {
     /// Adds a wedge to the last node, with values of zero unless the surface has it.
     fn push(&mut self, layers: &[Layer], wedge: Option<WedgeId>, label: u32) {
         self.parents.push(NONE);
-        for (layer, from) in self.layers.iter_mut().zip(layers) {
-            match wedge {
-                Some(wedge) => layer.values.extend(from.of(wedge)),
-                None => layer.values.extend(std::iter::repeat_n(0.0, layer.width)),
-            }
-        }
+        self.values.push(layers, wedge);
         if self.labels.pairs.len() > 1 {
             self.labels.of_wedges.push(label);
         }
@@ -120,8 +115,7 @@ impl WedgeRecorder {
             return None;
         }
         let (labels, of_faces) = WedgeLabels::of_faces(mesh);
-        let empty = |layer: &Layer| Layer { values: Vec::new(), ..layer.clone() };
-        let layers = surface.layers().iter().map(empty).collect();
+        let values = WedgeNumbers::exact(surface.layers());
         let mut at_corners: Vec<(VertexId, WedgeId, u32)> = Vec::with_capacity(3 * faces.len());
         for &face in faces {
             let corners = surface.face(face).into_iter().zip(wedges_of(surface, face));
@@ -131,7 +125,7 @@ impl WedgeRecorder {
         at_corners.dedup_by_key(|corner| corner.1);
         let count = at_corners.iter().map(|corner| corner.1.index() + 1).max().unwrap_or(0);
         let mut this = Self {
-            wedges: ForestWedges { first: vec![0], layers, labels, ..ForestWedges::default() },
+            wedges: ForestWedges { first: vec![0], values, labels, ..ForestWedges::default() },
             live: vec![NONE; count],
             before: Vec::new(),
             split: WedgeSplit::default(),

@@ -1,6 +1,6 @@
 //! Checks that the strips of a cut draw its triangles with their attributes and materials.
 
-use meshlod_mesh::{VertexId, WedgeId};
+use meshlod_mesh::VertexId;
 use meshlod_multires::{Cut, Implicit};
 use rustc_hash::FxHashMap;
 
@@ -44,8 +44,11 @@ impl CornerNames<'_> {
         let node = if *has_wedges { mt.node_of(corner) } else { corner };
         let mut bits = vec![u64::from(material)];
         bits.extend(mt.position(node).map(f64::to_bits));
-        let values = mt.layers().iter().flat_map(|layer| layer.of(WedgeId(corner)));
-        bits.extend(values.map(|value| u64::from(value.to_bits())));
+        let mut values = Vec::new();
+        if *has_wedges {
+            mt.append_values(corner, &mut values);
+        }
+        bits.extend(values.iter().map(|value| u64::from(value.to_bits())));
         let next = VertexId::new(ids.len());
         *ids.entry(bits).or_insert(next)
     }

@@ -1,6 +1,6 @@
 //! Vertices by which the strips of cuts draw the nodes or wedges of a model.
 
-use meshlod_mesh::{VertexId, WedgeId};
+use meshlod_mesh::VertexId;
 use meshlod_multires::Implicit;
 
 /// Finds for each node of a model, or for each wedge if it has any, the finest one below that looks
@@ -36,10 +36,10 @@ fn child_in_place(mt: &Implicit, node: u32) -> Option<u32> {
 
 /// Returns true if two wedges have the same values to the bit, and the same material.
 fn looks_like(mt: &Implicit, a: u32, b: u32) -> bool {
-    let bits = |x: &f32| x.to_bits();
-    let is_equal = |layer: &meshlod_mesh::Layer| {
-        let [a, b] = [a, b].map(|wedge| layer.of(WedgeId(wedge)).iter().map(bits));
-        a.eq(b)
+    let bits = |wedge: u32| {
+        let mut values = Vec::new();
+        mt.append_values(wedge, &mut values);
+        values.into_iter().map(f32::to_bits)
     };
-    mt.material_of(a) == mt.material_of(b) && mt.layers().iter().all(is_equal)
+    mt.material_of(a) == mt.material_of(b) && bits(a).eq(bits(b))
 }

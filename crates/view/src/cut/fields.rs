@@ -2,8 +2,8 @@
 
 use glam::{DVec3, Vec3};
 use meshlod::OwnedPaint;
-use meshlod::mesh::{Layer, LayerKind, WedgeId};
-use meshlod::multires::{Hierarchy, VertexValues};
+use meshlod::mesh::LayerKind;
+use meshlod::multires::{Hierarchy, LayerFormat, VertexValues};
 
 use super::CutModel;
 use crate::mesh::{VertexAttributes, fractions};
@@ -37,7 +37,8 @@ impl VertexFields {
     /// Finds the values that are drawn. Colours of vertices are white if the paint has others.
     pub(super) fn new(model: &CutModel) -> Self {
         let has_colors = matches!(model.paint(), OwnedPaint::Colors);
-        let layers = model.contractions().map_or(&[][..], |levels| levels.layers());
+        let layers: Vec<LayerFormat<'_>> =
+            model.contractions().map_or_else(Vec::new, |levels| levels.layers().collect());
         let find = |kind: LayerKind, least: usize| {
             let at = layers.iter().position(|l| l.kind == kind && l.width >= least)?;
             Some(layers[..at].iter().map(|layer| layer.width).sum())
@@ -86,11 +87,12 @@ impl VertexFields {
         let nodes = 0..levels.node_count() as u32;
         match levels {
             Hierarchy::Contractions(mt) => {
-                let mut values = vec![0.0; self.width];
+                let mut values = Vec::with_capacity(self.width);
                 nodes
                     .flat_map(|node| mt.wedges_of(node).map(move |wedge| (node, wedge)))
                     .map(|(node, wedge)| {
-                        gather(mt.layers(), wedge, &mut values);
+                        values.clear();
+                        mt.append_values(wedge, &mut values);
                         let vertex = self.vertex(mt.position(node), &values);
                         (vertex.position, vertex.attributes)
                     })
@@ -105,15 +107,5 @@ impl VertexFields {
                 })
                 .unzip(),
         }
-    }
-}
-
-/// Copies the values of a wedge, layer after layer.
-fn gather(layers: &[Layer], wedge: u32, to: &mut [f32]) {
-    let mut rest = to;
-    for layer in layers {
-        let (now, next) = rest.split_at_mut(layer.width);
-        now.copy_from_slice(layer.of(WedgeId(wedge)));
-        rest = next;
     }
 }

@@ -57,10 +57,17 @@ impl<'m> Followed<'m> {
         }
     }
 
-    /// Calls `visit` with the nodes that the last update or advance has moved.
-    pub(super) fn each_moved(&self, mut visit: impl FnMut(u32, &VertexValues)) {
+    /// Appends the nodes that the last update or advance has moved.
+    pub(super) fn moved_nodes(&self, to: &mut Vec<u32>) {
         if let Self::Morph(morph) = self {
-            morph.moved().for_each(|(node, values)| visit(node, &values));
+            to.extend(morph.moved());
+        }
+    }
+
+    /// Sets `to` to what a node that has moved is now.
+    pub(super) fn values(&self, node: u32, to: &mut VertexValues) {
+        if let Self::Morph(morph) = self {
+            morph.values(node, to);
         }
     }
 

@@ -2,6 +2,7 @@
 
 use meshlod::Mesh;
 use meshlod::mesh::{Attributes, Labels, Layer};
+use meshlod::multires::LayerFormat;
 
 use super::CutModel;
 use crate::ViewError;
@@ -22,12 +23,12 @@ impl CutModel {
 
     /// Returns a mesh without faces that has the layers and the material labels of the model.
     fn without_faces(&self) -> Mesh {
-        let layers = self.contractions().map_or(&[][..], |levels| levels.layers());
-        let empty = |layer: &Layer| {
-            let (kind, name) = (layer.kind, layer.name.clone());
+        let empty = |layer: LayerFormat<'_>| {
+            let (kind, name) = (layer.kind, layer.name.to_owned());
             Layer { kind, name, width: layer.width, values: Vec::new() }
         };
-        let layers = layers.iter().map(empty).collect();
+        let layers = self.contractions().into_iter().flat_map(|levels| levels.layers());
+        let layers = layers.map(empty).collect();
         let labels = self.groups.all.iter().map(|group| group.material as usize + 1).max();
         let names = vec![String::new(); labels.unwrap_or(1).max(self.single_sided().len())];
         Mesh {

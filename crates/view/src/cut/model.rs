@@ -47,7 +47,7 @@ impl CutModel {
             false => DVec3::from(bounds.min) / 2.0 + DVec3::from(bounds.max) / 2.0,
         };
         let has_normals =
-            |model: &Implicit| model.layers().iter().any(|layer| layer.kind == LayerKind::Normal);
+            |model: &Implicit| model.layers().any(|layer| layer.kind == LayerKind::Normal);
         let mut field_normals = Vec::new();
         let levels = match levels {
             Hierarchy::Contractions(model) if has_normals(&model) => model.into(),

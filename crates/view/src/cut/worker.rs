@@ -3,7 +3,7 @@
 use std::sync::mpsc::{Receiver, SyncSender};
 use std::time::{Duration, Instant};
 
-use meshlod::multires::{Focus, Query, QueryError, Tolerance, UpdateLimits};
+use meshlod::multires::{Focus, Query, QueryError, Tolerance, UpdateLimits, VertexValues};
 
 use super::fields::VertexFields;
 use super::followed::Followed;
@@ -41,8 +41,10 @@ pub(super) struct Worker<'m> {
     is_moving: bool,
     /// Slots that the current step has changed, some of them more than once.
     touched: Vec<u32>,
-    /// Vertices that the current step has moved, some of them more than once.
-    moved: Vec<MovedVertex>,
+    /// Nodes that the current step has moved, some of them more than once.
+    moved: Vec<u32>,
+    /// Scratch memory for what a node is.
+    state: VertexValues,
     /// Error found for the last number of faces.
     error: Option<f64>,
 }
@@ -63,6 +65,7 @@ impl<'m> Worker<'m> {
             is_moving: false,
             touched: Vec::new(),
             moved: Vec::new(),
+            state: VertexValues::default(),
         }
     }
 
@@ -170,25 +173,19 @@ impl<'m> Worker<'m> {
     /// Keeps what the last update or advance has changed.
     fn record(&mut self) {
         self.cut.touched_slots(&mut self.touched);
-        let Some(levels) = self.model.contractions() else { return };
-        let (fields, moved) = (&self.fields, &mut self.moved);
-        self.cut.each_moved(|node, state| {
-            fields.moved(levels.wedges_of(node).start, state, moved);
-        });
+        self.cut.moved_nodes(&mut self.moved);
     }
 
     /// Returns the vertices that have moved, each once and as it is now, in rising order.
     fn take_moved(&mut self) -> Vec<MovedVertex> {
-        let mut moved = std::mem::take(&mut self.moved);
-        // The order of the record is kept among equals.
-        moved.sort_by_key(|moved| moved.vertex);
-        moved.dedup_by(|later, kept| {
-            let is_same = later.vertex == kept.vertex;
-            if is_same {
-                *kept = *later;
-            }
-            is_same
-        });
+        let mut moved = Vec::new();
+        let Some(levels) = self.model.contractions() else { return moved };
+        self.moved.sort_unstable();
+        self.moved.dedup();
+        for node in self.moved.drain(..) {
+            self.cut.values(node, &mut self.state);
+            self.fields.moved(levels.wedges_of(node).start, &self.state, &mut moved);
+        }
         moved
     }
 

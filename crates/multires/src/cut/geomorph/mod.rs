@@ -6,15 +6,17 @@
 //! that replaces them. So the shown cut always contains the goal, and neither a split nor a merge
 //! changes its surface.
 
-mod motion;
+mod motions;
+mod shown_steps;
 mod vertex_values;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 use meshlod_mesh::{Layer, Mesh};
 
-use self::motion::Motion;
+use self::motions::Motions;
+use self::vertex_values::Blend;
 pub use self::vertex_values::VertexValues;
 use super::certificate::CertifyError;
 use super::front::{Front, SplitOrMerge, VertexState};
@@ -34,13 +36,22 @@ use crate::query::{Query, QueryError};
 pub struct Geomorph<'m> {
     goal: Cut<'m>,
     shown: Front<'m>,
-    /// Updates of the shown cut that are not in the goal, with their levels.
-    ending: BTreeSet<(u16, u32)>,
+    /// Updates of the shown cut that are not in the goal, by their levels, and some that are.
+    ending: Vec<(u16, u32)>,
+    is_ending_sorted: bool,
     /// Vertices of the shown cut that are not where their node is.
-    moving: BTreeMap<u32, Motion>,
-    /// Vertices that came to where their node is since the last call.
-    arrived: Vec<u32>,
+    motions: Motions,
+    blend: Blend,
+    /// Vertices that the last call may have changed, some of them more than once.
+    moved: Vec<u32>,
     duration: Duration,
+    /// Scratch memory: steps of the goal, the vertices that they brought, those below one that are
+    /// still to be sent, states of vertices, and updates that a split waits for.
+    steps: Vec<SplitOrMerge>,
+    new_goals: Vec<u32>,
+    stack: Vec<(u32, VertexValues)>,
+    spare: Vec<VertexValues>,
+    first: Vec<u32>,
 }
 
 impl<'m> Geomorph<'m> {
@@ -53,8 +64,21 @@ impl<'m> Geomorph<'m> {
         mt.certify()?;
         let mut goal = Cut::new(mt);
         goal.front.steps = Some(Vec::new());
-        let (shown, ending, moving) = (Front::new(mt), BTreeSet::new(), BTreeMap::new());
-        Ok(Self { goal, shown, ending, moving, arrived: Vec::new(), duration })
+        Ok(Self {
+            goal,
+            shown: Front::new(mt),
+            ending: Vec::new(),
+            is_ending_sorted: true,
+            motions: Motions::default(),
+            blend: Blend::new(mt.layers()),
+            moved: Vec::new(),
+            duration,
+            steps: Vec::new(),
+            new_goals: Vec::new(),
+            stack: Vec::new(),
+            spare: Vec::new(),
+            first: Vec::new(),
+        })
     }
 
     /// Sets the goal to the cut that satisfies a query, or towards it up to a limit, as
@@ -72,29 +96,27 @@ impl<'m> Geomorph<'m> {
     ) -> Result<CutChange, QueryError> {
         let change = self.goal.update(query, limits)?;
         self.begin();
-        let steps = self.goal.front.steps.replace(Vec::new()).unwrap_or_default();
+        let mut steps = std::mem::take(&mut self.steps);
+        steps.clear();
+        let mut steps = self.goal.front.steps.replace(steps).unwrap_or_default();
         steps.iter().for_each(|&step| self.follow(step));
-        for node in self.new_goals(&steps) {
-            self.send_below(node);
-        }
+        self.list_new_goals(&steps);
+        let mut new_goals = std::mem::take(&mut self.new_goals);
+        new_goals.drain(..).for_each(|node| self.send_below(node));
         self.end_merges();
+        steps.clear();
+        (self.steps, self.new_goals) = (steps, new_goals);
         Ok(change)
     }
 
     /// Moves vertices by the time that has passed, and returns whether any is still moving.
     pub fn advance(&mut self, elapsed: Duration) -> bool {
         self.begin();
-        self.moving.values_mut().for_each(|motion| motion.advance(elapsed));
-        let Self { moving, goal, arrived, duration, .. } = self;
-        moving.retain(|&node, motion| {
-            let stays = !motion.is_over(*duration) || !goal.front.is_active(node);
-            if !stays {
-                arrived.push(node);
-            }
-            stays
-        });
+        let Self { motions, goal, moved, duration, .. } = self;
+        moved.extend(motions.nodes());
+        motions.advance(elapsed, *duration, |node| goal.front.is_active(node));
         self.end_merges();
-        !self.moving.is_empty()
+        !self.motions.is_empty()
     }
 
     /// Returns the cut that is moved towards: the answer to the last query.
@@ -143,28 +165,35 @@ impl<'m> Geomorph<'m> {
     }
 
     /// Iterates over the vertices whose position or values the last call of
-    /// [`update`](Self::update) or [`advance`](Self::advance) may have changed, with what they are
-    /// now: all that move, and those that have arrived.
+    /// [`update`](Self::update) or [`advance`](Self::advance) may have changed, in no particular order
+    /// and some more than once; [`values`](Self::values) tells what they are.
     ///
-    /// All other vertices are where the model has them. Blended normals are not unit vectors.
-    pub fn moved(&self) -> impl Iterator<Item = (u32, VertexValues)> + '_ {
-        let arrived = self.arrived.iter().filter(|node| !self.moving.contains_key(node));
-        self.moving.keys().chain(arrived).map(|&node| (node, self.values(node)))
+    /// Time moves all that are on their way. An update moves none, but vertices that it brings are not
+    /// where the model has them. Some that are listed may have left the cut again.
+    pub fn moved(&self) -> impl Iterator<Item = u32> + '_ {
+        self.moved.iter().copied()
     }
 
-    /// Returns what a vertex of the shown cut is now.
-    fn values(&self, node: u32) -> VertexValues {
-        let mt = self.shown.mt;
-        let moving = self.moving.get(&node).map(|motion| motion.values(mt, self.duration));
-        moving.unwrap_or_else(|| VertexValues::of(mt, node))
+    /// Sets `to` to what a vertex is now, and reuses its memory. Blended normals are not unit vectors.
+    ///
+    /// # Panics
+    /// `node` is not below [`Implicit::node_count`].
+    pub fn values(&self, node: u32, to: &mut VertexValues) {
+        if !self.motions.now(node, self.duration, &self.blend, to) {
+            to.set_to(self.shown.mt, node);
+        }
     }
 
     /// Returns the mesh that is shown, in model units, with its attributes.
     ///
     /// Triangles without area are left out: those with two corners of one position.
     pub fn mesh(&self) -> Mesh {
-        let now: BTreeMap<u32, VertexValues> =
-            self.moving.keys().map(|&node| (node, self.values(node))).collect();
+        let mut now = BTreeMap::new();
+        for node in self.motions.nodes() {
+            let mut values = VertexValues::default();
+            self.values(node, &mut values);
+            now.insert(node, values);
+        }
         let place = |node: u32| now.get(&node).map(|values| values.position);
         let place = |node: u32| place(node).unwrap_or_else(|| self.shown.mt.position(node));
         let has_area = |nodes: [u32; 3]| {

@@ -17,7 +17,7 @@ use self::inspect::Inspected;
 use super::Rtin;
 use crate::cut::{CutChange, Meter, Patch, Schedule, UpdateLimits};
 use crate::level::Level;
-use crate::query::{Criterion, Query, QueryError, QueryKey};
+use crate::query::{Criterion, Query, QueryError};
 
 /// A level of an [`Rtin`], refined and coarsened to follow a sequence of queries such as the views
 /// of a moving camera.
@@ -30,8 +30,6 @@ pub struct RtinCut<'m> {
     schedule: Schedule,
     /// State of each vertex's inspection.
     inspected: Vec<Inspected>,
-    /// Identity of the last query, to recognize it when it comes again.
-    last_key: Option<QueryKey>,
     /// Vertices that are still to be inspected, some of them more than once.
     uninspected: VecDeque<u32>,
     /// Vertices that the criterion requires.
@@ -51,7 +49,6 @@ impl<'m> RtinCut<'m> {
             inspected: vec![Inspected::default(); model.vertices.len()],
             front,
             schedule: Schedule::default(),
-            last_key: None,
             uninspected: VecDeque::new(),
             to_insert: Vec::new(),
             to_remove: Vec::new(),
@@ -87,10 +84,7 @@ impl<'m> RtinCut<'m> {
         let criterion = Criterion::new(query, self.model().frame())?;
         self.front.triangles.mark();
         let mut meter = Meter::new(limits);
-        let last_key = criterion.key();
-        let is_same = last_key.is_some() && last_key == self.last_key;
-        self.last_key = last_key;
-        if self.schedule.follow(criterion.viewpoint()) || is_same {
+        if self.schedule.goes_on(&criterion) {
             let Self { front, to_insert, .. } = self;
             to_insert.retain(|&index| front.requires(&criterion, index));
         } else {
