@@ -2,6 +2,7 @@
 
 mod accessor;
 mod accessor_use;
+mod animation;
 mod buffer_builder;
 mod compress;
 mod container;
@@ -40,6 +41,7 @@ mod uri;
 mod vertex_cache;
 mod write;
 
+pub use animation::{Animator, Moment, Pose, Skin};
 pub use compress::{Bytes, Compression, CompressionReport};
 pub use facts::{AnimationFacts, FileFacts};
 pub(crate) use local_space::to_local;
@@ -49,6 +51,7 @@ pub(crate) use new_document::has_core_type;
 pub use parts::{QuantizedPart, write_parts_glb};
 pub use primitive_rows::PrimitiveRows;
 pub use read::{SourceDocument, read};
+pub use schema::parse_target_name;
 pub use skeleton::Skeleton;
 pub use skeleton_images::SkeletonImage;
 pub(crate) use strips::strip_files;

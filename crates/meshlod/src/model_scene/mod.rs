@@ -25,4 +25,4 @@ mod weights;
 pub use counts::SceneCounts;
 pub use layout::{LevelInstance, SceneLayout};
 pub use place::{PackedScene, PlaceError, PlacedScene, place_scene};
-pub use restore::{MissingParts, ModelScene, ModelSceneError};
+pub use restore::{MissingParts, ModelScene, ModelSceneError, measured_poses};

@@ -1,5 +1,6 @@
 //! Reader and writers together, on documents built here and on the shared meshes.
 
+mod animations;
 mod broken;
 mod carried;
 #[cfg(feature = "draco")]
