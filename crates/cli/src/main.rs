@@ -26,6 +26,7 @@ mod numbers;
 mod own_files;
 mod page;
 mod parse;
+mod poses;
 mod progress;
 mod query_args;
 mod scene_files;

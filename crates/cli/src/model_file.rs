@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::path::Path;
 
+use meshlod::PoseCounts;
 use meshlod::io::Note;
 use meshlod::multires::{Archive, Certificate, ErrorKind, FileError, Fit, ModelFile, Source};
 use serde_json::{Value, json};
@@ -127,11 +128,31 @@ pub fn rounding_text<S: Source>(archive: &Archive<S>) -> String {
     }
 }
 
-/// Returns the kind of a model's errors in words.
-pub fn errors_text(kind: &str) -> &'static str {
-    match kind {
-        "measured" => "measured errors",
-        "bound" => "error bounds",
-        _ => "error estimates",
+/// Returns the kind of a model's errors in words, and the poses in which they were measured.
+pub fn errors_text(kind: &str, poses: Option<PoseCounts>) -> String {
+    match (kind, poses) {
+        ("measured", Some(poses)) => format!("errors measured over {}", poses_text(poses)),
+        ("measured", None) => "measured errors".to_owned(),
+        ("bound", _) => "error bounds".to_owned(),
+        _ => "error estimates".to_owned(),
     }
+}
+
+/// Names the poses in which errors were measured.
+pub fn poses_text(PoseCounts { poses, animations }: PoseCounts) -> String {
+    let [poses, animations] = [poses, animations].map(|number| number as usize);
+    format!(
+        "{} pose{} of {} animation{}",
+        count(poses),
+        plural(poses),
+        count(animations),
+        plural(animations),
+    )
+}
+
+pub fn poses_json(poses: Option<PoseCounts>) -> Value {
+    poses.map_or(
+        Value::Null,
+        |PoseCounts { poses, animations }| json!({ "measured": poses, "animations": animations }),
+    )
 }

@@ -5,15 +5,37 @@ use std::path::Path;
 
 use meshlod::io::Note;
 use meshlod::multires::ModelFile;
-use meshlod::{Format, MissingParts, ModelScene, Scene, SceneCounts};
+use meshlod::{Format, MissingParts, ModelScene, PoseCounts, Scene, SceneCounts};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
+use crate::model_file;
 use crate::numbers::count;
 use crate::session::Session;
 
-/// Describes what a scene has beside its surface, and the pose for which errors hold.
-pub fn counts_text(counts: &SceneCounts) -> String {
+/// Poses other than that of the file for which errors hold.
+#[derive(Clone, Copy)]
+pub enum ErrorPoses {
+    /// None.
+    Unknown,
+    /// All, since animations move meshes as they are.
+    Unbent,
+    /// Those in which they were measured.
+    Measured(PoseCounts),
+}
+
+impl ErrorPoses {
+    /// Returns the poses in which errors were measured.
+    pub fn measured(self) -> Option<PoseCounts> {
+        match self {
+            Self::Measured(counts) => Some(counts),
+            Self::Unknown | Self::Unbent => None,
+        }
+    }
+}
+
+/// Describes what a scene has beside its surface, and the poses for which errors hold.
+pub fn counts_text(counts: &SceneCounts, poses: ErrorPoses) -> String {
     let has = list(&[
         (counts.nodes, "node", "nodes"),
         (counts.meshes, "mesh", "meshes"),
@@ -32,9 +54,20 @@ pub fn counts_text(counts: &SceneCounts) -> String {
         (counts.morphing_meshes, "mesh with morph targets", "meshes with morph targets"),
         (counts.animations, "animation", "animations"),
     ]);
-    if !moving.is_empty() {
-        text += &format!("\nerrors hold in the pose of the file, not in those of {moving}");
-    }
+    text += &match poses {
+        _ if moving.is_empty() => String::new(),
+        ErrorPoses::Unknown => {
+            format!("\nerrors hold in the pose of the file, not in those of {moving}")
+        }
+        ErrorPoses::Unbent => {
+            "\nanimations move meshes without bending or enlarging them: errors hold there too"
+                .into()
+        }
+        ErrorPoses::Measured(poses) => format!(
+            "\nerrors are measured over {}; they may be exceeded in poses between these and others",
+            model_file::poses_text(poses),
+        ),
+    };
     text + "\n"
 }
 

@@ -233,6 +233,7 @@ mod locks;
 mod materials;
 mod model_scene;
 mod place;
+mod posed;
 mod repair;
 mod scene;
 mod strips;
@@ -274,9 +275,10 @@ pub use meshlod_mesh::{Borders, Mesh};
 pub use meshlod_simplify::{Method, Options, Report, SimplifyError, Target, Topology};
 pub use model_scene::{
     LevelInstance, MissingParts, ModelScene, ModelSceneError, PackedScene, PlaceError, PlacedScene,
-    SceneCounts, SceneLayout, model_limits, place_scene,
+    SceneCounts, SceneLayout, measured_poses, model_limits, place_scene,
 };
 pub use place::{moved_at_most, rounding_of_level, world_bounds};
+pub use posed::{PoseCounts, ScenePoses, posed_mesh};
 pub use repair::repair_scene;
 pub use scene::{SceneError, SceneSimplifier, simplify_scene};
 pub use strips::scene_strips;

@@ -13,12 +13,15 @@ use meshlod_multires::{
 };
 
 use self::check::{Check, CutSurface, RESERVE};
+use crate::measured_poses;
 
 /// Part of the tolerance asked for at which a cut starts, by the stored errors. Faces of the bunny at
 /// .1 and .03 %, by smoothed estimates: 1 8,054 and 31,601, 1.5 7,848 and 31,473, 2.2 the same; by
 /// measured errors: 1 9,252 and 35,052, 1.5 7,862 and 32,196, 2.2 7,848 and 31,623. The greater, the
 /// more has to be checked again.
 const START: f64 = 1.5;
+/// The same part where the stored errors were measured in poses too, which no check looks at.
+const POSED_START: f64 = 1.0;
 
 /// Number of refinements after which the rest is refined as far as it goes, so that a file of wrong
 /// errors cannot hold up its reader. The meshes of docs/notes/multires.md take 10 at most.
@@ -59,6 +62,9 @@ pub struct Verification {
 /// without faces that `build` has left out, or what is there of a truncated file. For tolerances in
 /// pixels the distance allowed for a point is that at its own distance from the camera. The result
 /// is the same for any number of threads.
+///
+/// That is proven in the pose in which the file has the mesh. In the poses in which stored errors were
+/// measured ([`measured_poses`]) the mesh is as close by these errors.
 ///
 /// Reads all levels around the focus. Files of height fields, and of proven bounds where the focus is
 /// everything, are not checked again.
@@ -102,7 +108,8 @@ fn refine<S: Source>(
         // Nothing in the file is finer.
         return Ok(VerifiedExtract { extract: near.extract(&finest)?, verification });
     }
-    let mut cut = Cut::at(&near.model, &start(query))?;
+    let part = if measured_poses(archive)?.is_some() { POSED_START } else { START };
+    let mut cut = Cut::at(&near.model, &start(query, part))?;
     let mut check = Check::new(&surface, &near, rounding);
     loop {
         let splits = match &mut check {
@@ -117,13 +124,11 @@ fn refine<S: Source>(
     }
 }
 
-/// Returns the query that the stored errors answer first.
-fn start<'f>(query: &Query<'f>) -> Query<'f> {
+/// Returns the query that the stored errors answer first: this part of the tolerance asked for.
+fn start<'f>(query: &Query<'f>, part: f64) -> Query<'f> {
     let tolerance = match query.tolerance {
-        Tolerance::Uniform(most) => Tolerance::Uniform(START * most),
-        Tolerance::Pixels { camera, pixels } => {
-            Tolerance::Pixels { camera, pixels: START * pixels }
-        }
+        Tolerance::Uniform(most) => Tolerance::Uniform(part * most),
+        Tolerance::Pixels { camera, pixels } => Tolerance::Pixels { camera, pixels: part * pixels },
         Tolerance::Field(field) => Tolerance::Field(field),
     };
     Query { focus: query.focus.clone(), tolerance }

@@ -101,6 +101,7 @@ pub use forest::{BuildError, Forest, Recorder};
 pub use hierarchy::{Hierarchy, HierarchyCut};
 pub use implicit::{Extractor, Implicit, SplitRule};
 pub use level::Level;
+pub use measured::{PosedWedges, Posing};
 pub use model::{Model, ModelBytes};
 pub use query::{Focus, Ground, GroundShape, Limits, Query, QueryError, Tolerance, ViewCamera};
 pub use rtin::{

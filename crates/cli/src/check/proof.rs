@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::path::Path;
 
+use meshlod::measured_poses;
 use meshlod::multires::{Archive, FileError, HeightField, ModelFile, Rtin};
 use serde_json::json;
 
@@ -34,10 +35,12 @@ fn prove_contractions(
     })?;
     let [there, chunks] = [archive.complete_chunks(), archive.chunk_count()];
     let kind = model_file::error_kind(archive);
+    let poses = measured_poses(archive).map_err(|error| Failure::at(path, error))?;
     let json = json!({
         "file": files::name(path),
         "model": "contractions",
         "error_kind": kind,
+        "poses": model_file::poses_json(poses),
         "rounding": model_file::rounding(archive),
         "lossless": archive.is_lossless(),
         "chunks": chunks,
@@ -53,7 +56,7 @@ fn prove_contractions(
         count(model.base_faces()),
         faces(model.full_faces()),
         plural(chunks),
-        model_file::errors_text(kind),
+        model_file::errors_text(kind, poses),
         model_file::rounding_text(archive),
         model_file::certificate_text(&certificate),
     );

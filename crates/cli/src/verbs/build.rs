@@ -1,6 +1,7 @@
 //! `build`: writes all levels of a mesh to one file.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum};
@@ -11,8 +12,8 @@ use meshlod::multires::{
 };
 use meshlod::simplify::Simplifier;
 use meshlod::{
-    Format, Mesh, Method, Options, PackedScene, PlacedScene, Scene, SceneCounts, Target,
-    model_limits,
+    Format, Mesh, Method, Options, PackedScene, PlacedScene, PoseCounts, Scene, SceneCounts,
+    Target, model_limits,
 };
 use serde_json::{Value, json};
 
@@ -24,7 +25,7 @@ use crate::files;
 use crate::fuse;
 use crate::locks;
 use crate::model_file;
-use crate::model_scene;
+use crate::model_scene::{self, ErrorPoses};
 use crate::numbers::{count, faces, percent, value};
 use crate::parse::{self, Bound};
 use crate::scene_files;
@@ -33,8 +34,9 @@ use crate::volume;
 
 /// Write all levels of a mesh or scene to one multiresolution file (.mlod). The topology is kept,
 /// and locks hold in every level: tied vertices are locked. Nodes, materials, images, skins, morph
-/// targets and animations come back with extract. A mesh that several nodes show is stored once;
-/// errors hold for the largest of them, in the pose of the file
+/// targets and animations come back with extract. A mesh that several nodes show is stored once, and
+/// errors hold for the largest of them; in the pose of the file they are measured, proved or estimated,
+/// and in up to 64 poses of its animations they are measured too, unless --bounds or --estimates is given
 #[derive(Args)]
 pub struct Build {
     /// Mesh or scene to read, or -
@@ -103,6 +105,8 @@ struct Built {
     /// Displacement of vertices in words.
     moved: String,
     levels: Levels,
+    /// Poses for which errors hold, beside that of the file.
+    poses: ErrorPoses,
 }
 
 enum Levels {
@@ -142,7 +146,7 @@ impl Build {
         }
         let options = Options { method: self.method, ..Options::default() };
         let (scene, fused) = self.constraints.read_fused(&self.input, &self.reading, session)?;
-        let (PlacedScene { mesh, options, rest, counts }, mut notes) = match self.model {
+        let (PlacedScene { mesh, options, mut rest, counts }, mut notes) = match self.model {
             ModelArg::Contractions => {
                 let notes = model_limits(&scene);
                 let path = (self.input.as_path(), &self.reading);
@@ -159,7 +163,7 @@ impl Build {
         }
         let start = Instant::now();
         let built = match self.model {
-            ModelArg::Contractions => self.contractions(&mesh, &options, rest.as_ref(), session)?,
+            ModelArg::Contractions => self.contractions(&mesh, &options, rest.as_mut(), session)?,
             ModelArg::RightTriangles => self.right_triangles(&mesh)?,
         };
         notes.extend(scene_files::unused_parts(&mesh, built.faces));
@@ -170,7 +174,7 @@ impl Build {
         let mut text = fuse::to_text(fused.as_ref()) + &self.text(&mesh, &built, time);
         if rest.is_some() {
             json["scene"] = model_scene::counts_json(&counts);
-            text += &model_scene::counts_text(&counts);
+            text += &model_scene::counts_text(&counts, built.poses);
         }
         Ok(Answer::new(json, text))
     }
@@ -179,7 +183,7 @@ impl Build {
         &self,
         mesh: &Mesh,
         options: &Options,
-        rest: Option<&PackedScene>,
+        mut rest: Option<&mut PackedScene>,
         session: &Session,
     ) -> Result<Built, Failure> {
         let failed = |error: BuildError| Failure::at(&self.input, error);
@@ -193,6 +197,7 @@ impl Build {
         let held = locks::to_json(&report.map_err(|error| failed(error.into()))?);
         let mut forest = both.0.into_forest().map_err(failed)?;
         session.progress.stage("measuring errors");
+        let poses = self.pose(&mut forest, mesh, rest.as_deref_mut(), session);
         if self.bounds {
             forest.measure_bounds();
         } else {
@@ -232,7 +237,34 @@ impl Build {
             bytes: archive.into_source(),
             surface_bytes,
             levels,
+            poses,
         })
+    }
+
+    /// Has errors measured in the poses of the scene's animations, where they are measured and the
+    /// scene has such poses. Returns the poses for which errors will hold.
+    fn pose(
+        &self,
+        forest: &mut Forest,
+        mesh: &Mesh,
+        rest: Option<&mut PackedScene>,
+        session: &Session,
+    ) -> ErrorPoses {
+        let Some(rest) = rest else { return ErrorPoses::Unknown };
+        let Some(poses) = rest.poses(mesh) else { return ErrorPoses::Unknown };
+        for note in &poses.notes {
+            session.warn(Failure::at(&self.input, format_args!("poses: {note}")));
+        }
+        match poses.counts {
+            PoseCounts { poses: 0, .. } if poses.notes.is_empty() => ErrorPoses::Unbent,
+            PoseCounts { poses: 0, .. } => ErrorPoses::Unknown,
+            _ if self.bounds || self.estimates => ErrorPoses::Unknown,
+            counts => {
+                rest.note_poses(counts);
+                forest.pose_by(Arc::new(poses));
+                ErrorPoses::Measured(counts)
+            }
+        }
     }
 
     /// Merges the scene of a height field, of which nothing but the surface is used; also returns
@@ -271,6 +303,7 @@ impl Build {
             rounding,
             moved: format!("vertices moved by up to {} ({part})", value(rounding)),
             levels: Levels::RightTriangles { size: field.size(), fit: field.fit() },
+            poses: ErrorPoses::Unknown,
         })
     }
 
@@ -294,6 +327,7 @@ impl Build {
             Levels::Contractions { updates, base_faces, certificate, error_kind, held } => {
                 json["held"] = held.clone();
                 json["error_kind"] = (*error_kind).into();
+                json["poses"] = model_file::poses_json(built.poses.measured());
                 json["model"] = "contractions".into();
                 json["method"] = self.method.name().into();
                 json["lossless"] = self.lossless.into();
@@ -328,7 +362,7 @@ impl Build {
                 count(*updates),
                 self.method.name(),
                 faces(*base_faces),
-                model_file::errors_text(error_kind),
+                model_file::errors_text(error_kind, built.poses.measured()),
                 model_file::certificate_text(certificate),
             ),
             Levels::RightTriangles { size: [columns, rows], fit } => format!(

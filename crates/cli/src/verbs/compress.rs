@@ -21,7 +21,7 @@ use crate::constraints::ConstraintArgs;
 use crate::failure::Failure;
 use crate::files;
 use crate::fuse;
-use crate::model_scene;
+use crate::model_scene::{self, ErrorPoses};
 use crate::numbers::percent;
 use crate::parse::{self, Bound};
 use crate::scene_files;
@@ -137,7 +137,7 @@ impl Compress {
         let mut text = fuse::to_text(fused.as_ref()) + &packed.text(&output, time);
         if let Some(counts) = counts {
             json["scene"] = model_scene::counts_json(&counts);
-            text += &model_scene::counts_text(&counts);
+            text += &model_scene::counts_text(&counts, ErrorPoses::Unknown);
         }
         let outcome = Outcome::Missed.when(session.strict && !packed.reached);
         Ok(Answer { outcome, ..Answer::new(json, text) })

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use meshlod::Mesh;
 use meshlod::measure::{
     CertifiedOptions, area, certified_surface_distance, surface_distance, volume,
 };
 use meshlod::mesh::Connectivity;
+use meshlod::{Mesh, Scene};
 
 use crate::answer::Answer;
 use crate::args::{ReadArgs, SamplingArgs};
@@ -15,6 +15,8 @@ use crate::distance;
 use crate::failure::Failure;
 use crate::files;
 use crate::numbers::{change, value};
+use crate::parse;
+use crate::poses::FarthestPose;
 use crate::session::Session;
 use crate::table::aligned;
 
@@ -31,6 +33,10 @@ pub struct Measure {
     /// until none can reach farther: a proof, where samples may miss a peak
     #[arg(long)]
     certified: bool,
+    /// Measure in N poses of the animations of A, at key times and, if N is large enough, between
+    /// them, and report the pose in which the two are farthest apart. B must be a level of A
+    #[arg(long, value_name = "N", value_parser = parse::positive, allow_negative_numbers = true)]
+    poses: Option<usize>,
     #[command(flatten)]
     sampling: SamplingArgs,
     #[command(flatten)]
@@ -42,12 +48,10 @@ impl Measure {
         if files::is_pipe(&self.a) && files::is_pipe(&self.b) {
             return Err(Failure::usage("-: only one of the two meshes can be standard input"));
         }
-        let [a, b] = [&self.a, &self.b].map(|path| -> Result<Mesh, Failure> {
-            let scene = files::read(path, &self.reading, session)?;
-            Ok(distance::surface_of(&scene, distance::meshes(&scene)))
-        });
-        let (a, b) = (a?, b?);
+        let [a, b] = [&self.a, &self.b].map(|path| files::read(path, &self.reading, session));
+        let scenes = [a?, b?];
         session.progress.stage("measuring");
+        let (a, b, pose) = self.surfaces(&scenes, session)?;
         let surfaces = (distance::ready(&a, &self.a)?, distance::ready(&b, &self.b)?);
         let apart = surface_distance(&surfaces.0, &surfaces.1, &self.sampling.options())
             .map_err(Failure::new)?;
@@ -71,8 +75,12 @@ impl Measure {
         json["area_change"] = relative(areas).into();
         json["volume_change"] = relative(volumes).filter(|_| closed == [true; 2]).into();
         let row = |name: &str, [a, b]: [f64; 2]| [name.into(), value(a), value(b), change(a, b)];
+        if let Some(pose) = &pose {
+            json["pose"] = pose.to_json();
+        }
         let text = format!(
-            "{}{}diagonal {}\n\n{}{}",
+            "{}{}{}diagonal {}\n\n{}{}",
+            pose.map(|pose| pose.to_text()).unwrap_or_default(),
             distance::to_table(&apart),
             certified.as_ref().map(distance::certified_table).unwrap_or_default(),
             value(apart.diagonal),
@@ -84,6 +92,24 @@ impl Measure {
             open_note(closed),
         );
         Ok(Answer::new(json, text))
+    }
+
+    /// Returns the surfaces of both scenes, as they are or in the pose that keeps them farthest apart.
+    fn surfaces(
+        &self,
+        scenes: &[Scene; 2],
+        session: &Session,
+    ) -> Result<(Mesh, Mesh, Option<FarthestPose>), Failure> {
+        let Some(most) = self.poses else {
+            let [a, b] =
+                scenes.each_ref().map(|scene| distance::surface_of(scene, distance::meshes(scene)));
+            return Ok((a, b, None));
+        };
+        let options = self.sampling.options();
+        let paths = [self.a.as_path(), &self.b];
+        let mut pose = FarthestPose::of(scenes.each_ref(), paths, (most, &options), session)?;
+        let [a, b] = std::mem::take(&mut pose.meshes);
+        Ok((a, b, Some(pose)))
     }
 }
 

@@ -115,6 +115,33 @@ fn the_pose_for_which_errors_hold_is_told() {
 }
 
 #[test]
+fn errors_are_measured_over_the_poses_of_animations() {
+    let run = Run::new();
+    let strip = meshlod_fixtures::folding_strip(40);
+    write(&run, "strip.glb", &strip);
+    let told = run.run(&["build", "strip.glb", "a.mlod"]);
+    let line = "errors measured over 6 poses of 1 animation";
+    assert!(told.code == 0 && told.text().contains(line), "{told:?}");
+    assert!(told.text().contains("may be exceeded in poses between"), "{told:?}");
+    let told = run.run(&["check", "a.mlod"]);
+    assert!(told.code == 0 && told.text().contains(line), "{told:?}");
+    let poses = serde_json::json!({ "measured": 6, "animations": 1 });
+    assert_eq!(run.json(&["build", "strip.glb", "a.mlod"])["poses"], poses);
+    assert_eq!(run.json(&["check", "a.mlod"])["poses"], poses);
+    for kind in ["--estimates", "--bounds"] {
+        let built = run.json(&["build", "strip.glb", "b.mlod", kind]);
+        assert!(built["poses"].is_null(), "{kind}: {built}");
+    }
+    // An animation without samplers.
+    let mut damaged = strip;
+    let at = damaged.windows(8).position(|bytes| bytes == b"samplers").unwrap();
+    damaged[at] = b'x';
+    write(&run, "damaged.glb", &damaged);
+    let told = run.run(&["build", "damaged.glb", "c.mlod"]);
+    assert!(told.code == 0 && told.err.contains("sampler 0 is not there"), "{told:?}");
+}
+
+#[test]
 fn truncated_files_say_what_they_lack() {
     let Some(path) = shared_mesh("fox.glb") else { return };
     let run = Run::new();

@@ -119,8 +119,9 @@ pub(super) fn target_name(target: usize, attribute: &str) -> String {
     format!("target {target} {attribute}")
 }
 
-/// Splits a name made by [`target_name`] into target and attribute.
-pub(super) fn parse_target_name(name: &str) -> Option<(usize, &str)> {
+/// Splits the layer name of an attribute of a morph target, such as `target 0 POSITION`, into the
+/// number of the target and the attribute; `None` for the names of other layers.
+pub fn parse_target_name(name: &str) -> Option<(usize, &str)> {
     let (target, attribute) = name.strip_prefix("target ")?.split_once(' ')?;
     Some((target.parse().ok()?, attribute))
 }

@@ -3,6 +3,7 @@
 use meshlod_io::gltf::Skeleton;
 
 use super::parts::PartKind;
+use crate::PoseCounts;
 
 /// Tables and skeleton of the scene of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -18,6 +19,8 @@ pub(super) struct Head {
     pub images: u32,
     /// Parts in the order of the file.
     pub parts: Vec<PartKind>,
+    /// Poses in which the errors of the levels were measured.
+    pub poses: Option<PoseCounts>,
 }
 
 /// Mesh that is in the levels.
@@ -42,10 +45,16 @@ pub(super) struct Slot {
 
 /// No material.
 const NONE: u32 = u32::MAX;
+/// Flag of a head with numbers of poses.
+const POSED: u8 = 2;
 
 impl Head {
     pub fn to_bytes(&self) -> Vec<u8> {
-        let mut to = vec![u8::from(self.skeleton.is_gltf)];
+        let kind = u8::from(self.skeleton.is_gltf) | if self.poses.is_some() { POSED } else { 0 };
+        let mut to = vec![kind];
+        if let Some(PoseCounts { poses, animations }) = self.poses {
+            put(&mut to, &[poses, animations]);
+        }
         put(&mut to, &[self.meshes.len() as u32]);
         for mesh in &self.meshes {
             to.push(mesh.is_some().into());
@@ -77,7 +86,13 @@ impl Head {
     /// Decodes what [`Head::to_bytes`] encoded; `None` if it is damaged.
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
         let mut input = Input(bytes);
-        let is_gltf = input.flag()?;
+        let kind = input.byte()?;
+        let is_gltf = kind & 1 != 0;
+        let poses = match kind {
+            0 | 1 => None,
+            2 | 3 => Some(PoseCounts { poses: input.number()?, animations: input.number()? }),
+            _ => return None,
+        };
         let meshes = input.list(1, Input::mesh)?;
         let slots = input.list(8, |input| {
             let material = Some(input.number()?).filter(|&material| material != NONE);
@@ -99,7 +114,7 @@ impl Head {
         let emptied = meshes.iter().map(Option::is_some).collect();
         let buffer = input.0.to_vec();
         let skeleton = Skeleton { document, buffer, animations: Vec::new(), is_gltf, emptied };
-        Some(Self { skeleton, meshes, slots, images, parts })
+        Some(Self { skeleton, meshes, slots, images, parts, poses })
     }
 }
 
@@ -117,10 +132,14 @@ impl<'b> Input<'b> {
         Some(taken)
     }
 
+    fn byte(&mut self) -> Option<u8> {
+        self.take(1).map(|byte| byte[0])
+    }
+
     fn flag(&mut self) -> Option<bool> {
-        match self.take(1)? {
-            [0] => Some(false),
-            [1] => Some(true),
+        match self.byte()? {
+            0 => Some(false),
+            1 => Some(true),
             _ => None,
         }
     }
@@ -183,6 +202,7 @@ mod tests {
             ],
             images: 4,
             parts: vec![PartKind::Preview(3), PartKind::Animations, PartKind::Image(3)],
+            poses: Some(PoseCounts { poses: 64, animations: 3 }),
         }
     }
 
@@ -190,6 +210,8 @@ mod tests {
     fn a_head_comes_back() {
         assert_eq!(Head::from_bytes(&head().to_bytes()), Some(head()));
         assert_eq!(Head::from_bytes(&Head::default().to_bytes()), Some(Head::default()));
+        let unposed = Head { poses: None, ..head() };
+        assert_eq!(Head::from_bytes(&unposed.to_bytes()), Some(unposed));
     }
 
     #[test]

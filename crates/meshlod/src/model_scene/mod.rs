@@ -27,4 +27,4 @@ pub use counts::SceneCounts;
 pub use layout::{LevelInstance, SceneLayout};
 pub use limits::model_limits;
 pub use place::{PackedScene, PlaceError, PlacedScene, place_scene};
-pub use restore::{MissingParts, ModelScene, ModelSceneError};
+pub use restore::{MissingParts, ModelScene, ModelSceneError, measured_poses};

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use glam::DMat4;
 use meshlod_io::gltf::Skeleton;
 use meshlod_io::{Image, Node, Scene, SceneMesh, Unsupported};
 use meshlod_mesh::{LayerKind, Locks, Mesh};
@@ -16,7 +17,8 @@ use super::parts::{interleave, sort_parts};
 use super::placement::{Placement, placements};
 use super::resources::join_resources;
 use super::slots::{material_of, slots_of, slots_of_labels};
-use crate::{Constraints, VertexLocking, join_locks, locks};
+use crate::posed::PosedMesh;
+use crate::{Constraints, PoseCounts, ScenePoses, VertexLocking, join_locks, locks};
 
 /// A scene merged into one mesh in world space, of which levels are made or which is compressed.
 #[derive(Clone, Debug)]
@@ -42,6 +44,8 @@ pub struct PackedScene {
     images: Vec<Image>,
     /// Marks the images that are base colours.
     is_color: Vec<bool>,
+    /// Nodes of the scene and its source, by which it is animated.
+    animated: Scene,
 }
 
 /// Reason why a scene cannot be merged into one mesh for its levels.
@@ -121,7 +125,33 @@ impl PackedScene {
         let animations = std::mem::take(&mut skeleton.animations);
         let (slots, images) = (slots_of(scene), scene.images.len() as u32);
         let head = Head { skeleton, slots, images, ..Head::default() };
-        Self { head, animations, images: Vec::new(), is_color: colors(scene) }
+        let animated = Scene {
+            nodes: scene.nodes.clone(),
+            roots: scene.roots.clone(),
+            source: scene.source.clone(),
+            ..Scene::default()
+        };
+        Self { head, animations, images: Vec::new(), is_color: colors(scene), animated }
+    }
+
+    /// Chooses poses of the scene's animations, in which the errors of levels of its merged mesh can
+    /// be measured; `None` if it has no animations.
+    ///
+    /// Cost: linear in the mesh, for each pose.
+    pub fn poses(&self, mesh: &Mesh) -> Option<ScenePoses> {
+        let posed = |entry: &MeshEntry| PosedMesh {
+            back: DMat4::from_cols_array_2d(&entry.placement).inverse(),
+            objects: entry.objects.unwrap_or(1),
+            layers: entry.layers.iter().map(|[layer, _]| *layer).collect(),
+        };
+        let meshes: Vec<Option<PosedMesh>> =
+            self.head.meshes.iter().map(|entry| entry.as_ref().map(posed)).collect();
+        ScenePoses::new(&self.animated, &meshes, mesh)
+    }
+
+    /// Notes in how many poses errors were measured, for who reads the file.
+    pub fn note_poses(&mut self, counts: PoseCounts) {
+        self.head.poses = (counts.poses > 0).then_some(counts);
     }
 
     /// Returns the scene as resources of a multiresolution file whose chunks have these lengths in

@@ -10,6 +10,7 @@ use super::head::Head;
 use super::parts::PartKind;
 use super::resources::{JoinedResources, Resources};
 use super::split::split;
+use crate::PoseCounts;
 
 /// Scene of a multiresolution or compressed file, without the geometry of its mesh.
 #[derive(Clone, Debug, Default)]
@@ -103,6 +104,12 @@ impl ModelScene {
         Ok(Self { head, scene, is_rounded: false, missing })
     }
 
+    /// Returns the numbers of poses in which the errors of the levels were measured; `None` if that was
+    /// only the pose of the file.
+    pub fn poses(&self) -> Option<PoseCounts> {
+        self.head.poses
+    }
+
     /// Returns true if a level is what the scene shows: if it has each mesh where it is, and only
     /// there.
     pub fn is_flat(&self) -> bool {
@@ -156,6 +163,20 @@ impl ModelScene {
             false => Err(ModelSceneError::Damaged("it shows more than 2^28 faces")),
         }
     }
+}
+
+/// Returns the numbers of poses in which the errors stored in a file were measured; `None` if that was
+/// only the pose of the file, or if a truncated file does not tell.
+///
+/// Reads the scene without its images.
+/// # Errors
+/// A file that is damaged.
+pub fn measured_poses<S: Source>(archive: &Archive<S>) -> Result<Option<PoseCounts>, FileError> {
+    if archive.resource_count() == 0 || archive.has_old_resources() {
+        return Ok(None);
+    }
+    let head = archive.resource(0)?.and_then(|bytes| Head::from_bytes(&bytes));
+    Ok(head.and_then(|head| head.poses))
 }
 
 /// Most faces or vertices that a scene may show, over all instances, as where glTF is read.

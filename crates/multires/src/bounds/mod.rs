@@ -15,7 +15,7 @@ mod tests;
 
 use glam::{DVec3, Vec3};
 
-use crate::forest::{Forest, Stars};
+use crate::forest::{Forest, MonotoneErrors, Stars};
 use crate::length16::Length16;
 use enclosing_ball::EnclosingBall;
 use overlay::{Fragment, Overlay};
@@ -56,8 +56,7 @@ impl Forest {
         let mut balls: Vec<EnclosingBall> = (0..self.vertices as u32)
             .map(|leaf| EnclosingBall::point(self.stored_point(leaf)))
             .collect();
-        // By node: the greatest bound of the updates that depend on the one that contracts it.
-        let mut lower_bounds = vec![Length16::default(); self.positions.len()];
+        let mut bounds = MonotoneErrors::new(self);
         for u in 0..self.updates.len() {
             let (node, children) = (self.node(u) as u32, self.updates[u].children);
             let fine = stars.contract(children, node);
@@ -66,29 +65,14 @@ impl Forest {
             balls.push(ball);
             let own = |node: u32| balls[node as usize].reach(self.stored_point(node));
             let reach = self.ring(u).iter().map(|&v| own(v)).fold(own(node), f64::max);
-            let [a, b] = children.map(|child| lower_bounds[child as usize]);
-            let error = Length16::up(reach).max(a).max(b);
-            self.set_error(u, error, &mut lower_bounds);
+            bounds.push(self, Length16::up(reach));
         }
+        self.set_errors(bounds.finish());
         self.error_kind = ErrorKind::Bound;
     }
 
     /// Returns the position of a node, in stored units.
     pub(crate) fn stored_point(&self, node: u32) -> DVec3 {
         Vec3::from(self.positions[node as usize]).as_dvec3()
-    }
-
-    /// Sets the error of an update and records it as a lower bound for the updates it depends on.
-    pub(crate) fn set_error(&mut self, u: usize, error: Length16, lower_bounds: &mut [Length16]) {
-        self.updates[u].error = error;
-        if self.updates[u].fused_with_child {
-            // Both updates of a face contraction are needed as a whole.
-            self.updates[u - 1].error = error;
-        }
-        lower_bounds[self.node(u)] = error;
-        for &v in self.ring(u) {
-            let lower_bounds = &mut lower_bounds[v as usize];
-            *lower_bounds = (*lower_bounds).max(error);
-        }
     }
 }

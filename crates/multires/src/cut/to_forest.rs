@@ -40,6 +40,7 @@ impl Forest {
             created_by: vec![NONE; mt.base_faces()],
             non_fan_splits: Default::default(),
             wedges: None,
+            posing: None,
         };
         let in_model = numbers.leaves.iter().copied();
         let in_model = in_model.chain(numbers.updates.iter().map(|&update| mt.parent(update)));

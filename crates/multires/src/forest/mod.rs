@@ -1,12 +1,14 @@
 //! The contraction forest recorded from a simplification, from which all models are built.
 
 mod by_level;
+mod monotone_errors;
 mod recorder;
 mod smooth_errors;
 mod stage;
 mod stars;
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
 use meshlod_mesh::{Frame, Mesh};
@@ -15,12 +17,14 @@ use thiserror::Error;
 
 use crate::bounds::ErrorKind;
 use crate::length16::Length16;
+use crate::measured::Posing;
 use crate::pack::ExactPositions;
 use crate::pack::MIN_ERROR;
 use crate::query::{Ball, PackedBall};
 use crate::wedges::ForestWedges;
 
 pub(crate) use by_level::by_level;
+pub(crate) use monotone_errors::MonotoneErrors;
 pub(crate) use recorder::MAX_RANKED;
 pub use recorder::Recorder;
 pub(crate) use stage::Stage;
@@ -61,6 +65,8 @@ pub struct Forest {
     pub(crate) wedges: Option<ForestWedges>,
     /// Splits that wings cannot describe, by update.
     pub(crate) non_fan_splits: BTreeMap<u32, NonFanSplit>,
+    /// Poses in which errors are measured too.
+    pub(crate) posing: Option<Arc<dyn Posing>>,
 }
 
 /// Explicit faces of a split whose star is not divided at two wings, because the surface is

@@ -87,6 +87,7 @@ impl Recorder {
                 faces,
                 wedges: None,
                 non_fan_splits: BTreeMap::new(),
+                posing: None,
             },
         }
     }

@@ -6,20 +6,30 @@
 //! that it makes. In every cut each point is with exactly one face that is shown, so its distance is
 //! known there ([`handed_on`]). Points of new faces are compared with the input itself ([`probes`]).
 //! In between, single places are farther away: who needs a promise checks the cut.
+//!
+//! Where the mesh is posed ([`posing`]), the same is done once more in every pose, with the corners of
+//! all faces where the pose puts their wedges ([`corners`]).
 
+mod corners;
 mod handed_on;
+mod posing;
 mod probes;
 #[cfg(test)]
 mod tests;
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use meshlod_mesh::{Mesh, VertexId};
 use meshlod_spatial::Bvh;
+use rayon::prelude::*;
 
 use crate::bounds::ErrorKind;
-use crate::forest::{Forest, Stars};
+use crate::forest::{Forest, MonotoneErrors, Stars};
 use crate::length16::Length16;
+use corners::{AtNodes, Corners, WedgeTable};
 use handed_on::HandedOn;
+pub use posing::{PosedWedges, Posing};
 use probes::Probes;
 
 /// Distances below this part of the mesh's size are not told apart from none, and estimates are
@@ -37,13 +47,22 @@ impl Forest {
     /// depends on it. Where all distances are below a hundred-thousandth of the mesh's size the
     /// estimates stay. An update whose coarse side has no face left gets an infinite error.
     ///
-    /// Cost: O(n log n), n = faces; about as long as recording.
+    /// With [poses](Forest::pose_by) that holds in each of them, too, with cut and input posed alike.
+    ///
+    /// Cost: O(n log n), n = faces; about as long as recording, and up to as long for each pose.
     /// # References
     /// [CMO97] for errors taken from step to step; differs: distances from the input itself, of
     /// points.
     pub fn measure_errors(&mut self) {
         let input = self.input();
         self.measure_against(&input, NOISE);
+    }
+
+    /// Gives the mesh poses in which errors are measured, here and when a file is written with
+    /// [`StoredErrors::Measured`](crate::StoredErrors::Measured). Estimates and bounds know nothing
+    /// of them.
+    pub fn pose_by(&mut self, posing: Arc<dyn Posing>) {
+        self.posing = Some(posing);
     }
 
     /// Returns the input: the finest mesh, in stored units.
@@ -56,35 +75,46 @@ impl Forest {
     /// leaves as vertices; distances up to `noise` count as none.
     pub(crate) fn measure_against(&mut self, input: &Mesh, noise: f64) {
         let Ok(bvh) = Bvh::new(input) else { return };
-        let mut measure = Measure {
-            stars: Stars::new(self),
-            handed_on: HandedOn::new(input),
-            probes: Probes::new(&bvh, self.positions.len()),
-            coarse: Vec::new(),
-            noise,
-        };
-        // By node: the greatest error of the updates that depend on the one that contracts it.
-        let mut lower_bounds = vec![Length16::default(); self.positions.len()];
-        for u in 0..self.updates.len() {
-            let [a, b] = self.updates[u].children.map(|child| lower_bounds[child as usize]);
-            let least = a.max(b);
-            let apart = measure.contract(self, u, least.get());
-            let own = if apart > noise {
-                Length16::up(apart)
-            } else {
-                self.updates[u].error.min(Length16::up(noise))
-            };
-            self.set_error(u, own.max(least), &mut lower_bounds);
+        let measure = Measure::new(self, AtNodes(self), (input, &bvh), noise);
+        let rounded = Length16::up(noise);
+        let errors = measure.replay(|u| (Length16(0), self.updates[u].error.min(rounded)));
+        self.set_errors(errors);
+        if let Some(posing) = self.posing.clone() {
+            self.measure_poses(&*posing, input, noise);
         }
         self.error_kind = ErrorKind::Measured;
+    }
+
+    /// Raises all errors to the distances measured in poses. A pose of places that are not finite
+    /// makes all errors infinite.
+    fn measure_poses(&mut self, posing: &dyn Posing, input: &Mesh, noise: f64) {
+        let table = WedgeTable::new(self, input);
+        let in_pose = |pose: usize| {
+            let input = table.input(self, posing, pose);
+            let Ok(bvh) = Bvh::new(&input) else {
+                return vec![Length16::INFINITE; self.updates.len()];
+            };
+            let corners = table.corners(self, posing, pose);
+            let measure = Measure::new(self, corners, (&input, &bvh), noise);
+            // Only what is farther away than in the pose of the mesh counts.
+            measure.replay(|u| (self.updates[u].error, self.updates[u].error))
+        };
+        let greatest = |mut all: Vec<Length16>, more: Vec<Length16>| {
+            all.iter_mut().zip(more).for_each(|(error, more)| *error = (*error).max(more));
+            all
+        };
+        let errors = (0..posing.count()).into_par_iter().map(in_pose).reduce_with(greatest);
+        self.set_errors(errors.unwrap_or_default());
     }
 }
 
 /// Replay of the contractions that measures distances.
-struct Measure<'b> {
+struct Measure<'f, C> {
+    forest: &'f Forest,
     stars: Stars,
+    corners: C,
     handed_on: HandedOn,
-    probes: Probes<'b>,
+    probes: Probes<'f>,
     /// Coarse side of the current update: faces, by number and corners.
     coarse: Vec<CoarseFace>,
     noise: f64,
@@ -98,18 +128,46 @@ struct CoarseFace {
     corners: [DVec3; 3],
 }
 
-impl Measure<'_> {
+impl<'f, C: Corners> Measure<'f, C> {
+    fn new(forest: &'f Forest, corners: C, (input, bvh): (&Mesh, &'f Bvh), noise: f64) -> Self {
+        Self {
+            forest,
+            stars: Stars::new(forest),
+            corners,
+            handed_on: HandedOn::new(input),
+            probes: Probes::new(bvh, forest.positions.len()),
+            coarse: Vec::new(),
+            noise,
+        }
+    }
+
+    /// Replays all updates and returns their errors. `known` returns for an update the error that it
+    /// has at least, and the one that it has where no distance exceeds the noise.
+    fn replay(mut self, known: impl Fn(usize) -> (Length16, Length16)) -> Vec<Length16> {
+        let mut errors = MonotoneErrors::new(self.forest);
+        for u in 0..self.forest.updates.len() {
+            let (known, without) = known(u);
+            let apart = self.contract(u, errors.least(self.forest).max(known).get());
+            let own = if apart > self.noise { Length16::up(apart).max(known) } else { without };
+            errors.push(self.forest, own);
+        }
+        errors.finish()
+    }
+
     /// Replays an update. Returns the greatest distance found, or anything up to `least` or the
     /// noise if it is no greater.
-    fn contract(&mut self, forest: &Forest, u: usize, least: f64) -> f64 {
-        let node = forest.node(u) as u32;
-        self.stars.contract(forest.updates[u].children, node);
+    fn contract(&mut self, u: usize, least: f64) -> f64 {
+        let node = self.forest.node(u) as u32;
+        self.stars.contract(self.forest.updates[u].children, node);
+        self.corners.contract(&self.stars, node);
         self.coarse.clear();
         for &face in self.stars.changed() {
             let Some(mut nodes) = self.stars.face(face) else { continue };
             let first = nodes.iter().position(|&corner| corner == node).unwrap_or(0);
+            let mut corners =
+                std::array::from_fn(|corner| self.corners.at(face, corner, nodes[corner]));
             nodes.rotate_left(first);
-            let corners = nodes.map(|corner| forest.exact_stored(corner));
+            corners.rotate_left(first);
             self.coarse.push(CoarseFace { face, nodes, corners });
         }
         if self.coarse.is_empty() {

@@ -29,8 +29,12 @@ impl<'b> Probes<'b> {
         for corner in coarse.iter().flat_map(|face| &face.nodes[1..]) {
             self.near[*corner as usize].get_or_insert(near);
         }
-        for &CoarseFace { corners: [_, b, _], .. } in coarse {
-            farthest = farthest.max(self.at(apex.midpoint(b), node, farthest.max(least)));
+        for &CoarseFace { corners: [own, b, _], .. } in coarse {
+            if own != apex {
+                // A pose may tear the node's wedges apart.
+                farthest = farthest.max(self.at(own, node, farthest.max(least)));
+            }
+            farthest = farthest.max(self.at(own.midpoint(b), node, farthest.max(least)));
         }
         farthest
     }

@@ -1,6 +1,7 @@
 //! Reader and writers together, on documents built here and on the shared meshes.
 
 mod animated;
+mod animations;
 mod broken;
 mod carried;
 #[cfg(feature = "draco")]
