@@ -1,4 +1,4 @@
-//! What the rounding of a multiresolution file costs in image error, and finer rounding in bytes.
+//! Cost of the rounding of a multiresolution file in image error, and of finer rounding in bytes.
 //!
 //! ```text
 //! cargo run --release -p meshlod --example rounding -- flight-helmet/FlightHelmet.gltf fish-bream.obj

@@ -20,7 +20,7 @@ use crate::measured_poses;
 /// measured errors: 1 9,252 and 35,052, 1.5 7,862 and 32,196, 2.2 7,848 and 31,623. The greater, the
 /// more has to be checked again.
 const START: f64 = 1.5;
-/// The same part where the stored errors were measured in poses too, which no check looks at.
+/// Part where the stored errors were measured in poses too, which no check looks at.
 const POSED_START: f64 = 1.0;
 
 /// Number of refinements after which the rest is refined as far as it goes, so that a file of wrong

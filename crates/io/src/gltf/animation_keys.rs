@@ -1,15 +1,15 @@
 //! Keys that an animation needs: those that interpolating the others does not give within an error.
 
-use super::sampler::{Pose, Property, Track, arc, distance, nearer, slerp};
+use super::sampler::{KeyTrack, KeyValue, KeyedProperty, arc, distance, nearer, slerp};
 
 /// Largest number of keys that one interval takes the place of; bounds the time of [`select`].
 const MOST_KEYS: usize = 256;
 
 /// Track with the poses that its keys are rounded to.
 pub(super) struct RoundedTrack {
-    pub track: Track,
+    pub track: KeyTrack,
     /// Rounded pose of every key.
-    pub rounded: Vec<Pose>,
+    pub rounded: Vec<KeyValue>,
     /// Largest distance of poses as points of space.
     pub tolerance: f64,
 }
@@ -33,7 +33,7 @@ impl RoundedTrack {
         let time = |key: usize| f64::from(track.times[key]);
         let part = |key| (time(key) - time(from)) / (time(to) - time(from));
         let (a, mut b) = (rounded[from], rounded[to]);
-        if track.property == Property::Rotation {
+        if track.property == KeyedProperty::Rotation {
             b = nearer(a, b);
         }
         (from + 1..=to).all(|key| {
@@ -42,9 +42,9 @@ impl RoundedTrack {
         })
     }
 
-    fn blend(&self, a: Pose, b: Pose, part: f64) -> Pose {
+    fn blend(&self, a: KeyValue, b: KeyValue, part: f64) -> KeyValue {
         match self.track.property {
-            Property::Rotation => slerp(a, b, part),
+            KeyedProperty::Rotation => slerp(a, b, part),
             _ => self.track.property.between(a, b, part),
         }
     }
@@ -54,9 +54,9 @@ impl RoundedTrack {
     /// Vectors part most at one of the ends. Rotations go along arcs of constant speed, so the
     /// second derivative of their difference is at most the sum of the squares of the arcs, and
     /// between samples the difference exceeds theirs by an eighth of that at most.
-    fn joins(&self, key: usize, a: Pose, b: Pose) -> bool {
+    fn joins(&self, key: usize, a: KeyValue, b: KeyValue) -> bool {
         let [from, to] = [self.track.poses[key - 1], self.track.poses[key]];
-        if self.track.is_step || self.track.property != Property::Rotation {
+        if self.track.is_step || self.track.property != KeyedProperty::Rotation {
             return self.is_near(from, a) && self.is_near(to, b);
         }
         let from = nearer(a, from);
@@ -70,8 +70,8 @@ impl RoundedTrack {
         })
     }
 
-    fn is_near(&self, a: Pose, b: Pose) -> bool {
-        let b = if self.track.property == Property::Rotation { nearer(a, b) } else { b };
+    fn is_near(&self, a: KeyValue, b: KeyValue) -> bool {
+        let b = if self.track.property == KeyedProperty::Rotation { nearer(a, b) } else { b };
         distance(a, b) <= self.tolerance
     }
 }

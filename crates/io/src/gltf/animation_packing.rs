@@ -14,15 +14,15 @@ use super::animation_rounding::{Rounded, round};
 use super::buffer_builder::BufferBuilder;
 use super::compress::Compression;
 use super::document::Document;
-use super::sampler::{Property, Track};
+use super::sampler::{KeyTrack, KeyedProperty};
 
 /// Place of a sampler: its animation, and its index there.
-type Place = (usize, usize);
+type SamplerPlace = (usize, usize);
 
 /// Sampler with the bytes of each of its keys and the keys that it keeps.
 struct PackedTrack {
-    place: Place,
-    property: Property,
+    place: SamplerPlace,
+    property: KeyedProperty,
     times: Vec<f32>,
     elements: Rounded,
     kept: Vec<usize>,
@@ -32,7 +32,7 @@ struct PackedTrack {
 #[derive(Default)]
 pub(super) struct PackedAnimations {
     tracks: Vec<PackedTrack>,
-    places: BTreeSet<Place>,
+    places: BTreeSet<SamplerPlace>,
 }
 
 /// Bytes of a key, and of the JSON of an accessor: what sharing times saves, about.
@@ -53,13 +53,13 @@ impl PackedAnimations {
     }
 
     /// Reports whether a sampler gets new keys.
-    pub fn replaces(&self, place: Place) -> bool {
+    pub fn replaces(&self, place: SamplerPlace) -> bool {
         self.places.contains(&place)
     }
 
     /// Writes the keys, and makes the samplers refer to them.
     pub fn enter(&self, json: &mut Value, builder: &mut BufferBuilder) {
-        let mut arrays = [(); 3].map(|()| Array::default());
+        let mut arrays = [(); 3].map(|()| KeyArray::default());
         let places: Vec<_> =
             self.tracks.iter().map(|track| arrays_of(track, &mut arrays)).collect();
         let accessors = arrays.map(|array| array.enter(builder));
@@ -86,7 +86,7 @@ fn pack(
     let properties = properties(animation);
     let read = |(at, sampler): (usize, &Value)| {
         let property = properties.get(&at).copied().flatten()?;
-        let track = Track::read(document, sampler, property)?;
+        let track = KeyTrack::read(document, sampler, property)?;
         let tolerance = tolerance(&track, compression.animation_degrees);
         let elements = round(&track, tolerance, compression.meshopt)?;
         let rounded = elements.poses.clone();
@@ -105,7 +105,7 @@ fn pack(
     read.into_iter()
         .zip(kept)
         .filter_map(|((at, elements, rounded), kept)| {
-            let Track { property, times, .. } = rounded.track;
+            let KeyTrack { property, times, .. } = rounded.track;
             Some(PackedTrack { place: (index, at), property, times, elements, kept: kept? })
         })
         .collect()
@@ -186,7 +186,7 @@ fn share_keys(tracks: &[&RoundedTrack], members: &[usize], kept: &mut [Option<Ve
 }
 
 /// Returns the property that each sampler moves; `None` where its channels do not agree.
-pub(super) fn properties(animation: &Value) -> BTreeMap<usize, Option<Property>> {
+pub(super) fn properties(animation: &Value) -> BTreeMap<usize, Option<KeyedProperty>> {
     let mut properties = BTreeMap::new();
     let channels = animation.get("channels").and_then(Value::as_array);
     for channel in channels.into_iter().flatten() {
@@ -194,7 +194,7 @@ pub(super) fn properties(animation: &Value) -> BTreeMap<usize, Option<Property>>
         let target = channel.get("target");
         let is_plain = target.is_some_and(|target| target.get("extensions").is_none());
         let path = target.and_then(|target| target.get("path")?.as_str());
-        let property = path.filter(|_| is_plain).and_then(Property::named);
+        let property = path.filter(|_| is_plain).and_then(KeyedProperty::named);
         let known = properties.entry(sampler as usize).or_insert(property);
         if *known != property {
             *known = None;
@@ -207,18 +207,18 @@ pub(super) fn properties(animation: &Value) -> BTreeMap<usize, Option<Property>>
 ///
 /// A rotation by an angle moves its quaternion by the chord of half of it. The same angle moves a
 /// vector by its arc, so that a child comes as far as from the rotation of its parent.
-fn tolerance(track: &Track, degrees: f64) -> f64 {
+fn tolerance(track: &KeyTrack, degrees: f64) -> f64 {
     let angle = degrees.to_radians();
     let length = |pose: &[f64; 4]| pose.iter().map(|x| x * x).sum::<f64>().sqrt();
     match track.property {
-        Property::Rotation => 2.0 * (angle / 4.0).sin(),
+        KeyedProperty::Rotation => 2.0 * (angle / 4.0).sin(),
         _ => angle * track.poses.iter().map(length).fold(0.0, f64::max),
     }
 }
 
 /// Array of times, of rotations or of vectors, in one buffer view.
 #[derive(Default)]
-struct Array {
+struct KeyArray {
     bytes: Vec<u8>,
     /// Accessors without their buffer view.
     accessors: Vec<Value>,
@@ -234,7 +234,7 @@ const VECTORS: usize = 2;
 
 /// Appends the kept keys of a track, and returns the accessors of its times and of its poses with
 /// their array.
-fn arrays_of(track: &PackedTrack, arrays: &mut [Array; 3]) -> (usize, (usize, usize)) {
+fn arrays_of(track: &PackedTrack, arrays: &mut [KeyArray; 3]) -> (usize, (usize, usize)) {
     let times: Vec<f32> = track.kept.iter().map(|&key| track.times[key]).collect();
     let bytes = times.iter().flat_map(|time| time.to_le_bytes()).collect();
     let mut accessor = json!({ "componentType": component::F32, "type": "SCALAR" });
@@ -245,7 +245,7 @@ fn arrays_of(track: &PackedTrack, arrays: &mut [Array; 3]) -> (usize, (usize, us
     let Rounded { bytes, stride, filter, .. } = &track.elements;
     let elements = track.kept.iter().flat_map(|&key| &bytes[key * stride..][..*stride]);
     let (kind, accessor) = match track.property {
-        Property::Rotation => (
+        KeyedProperty::Rotation => (
             ROTATIONS,
             json!({ "componentType": component::I16, "type": "VEC4", "normalized": true }),
         ),
@@ -255,7 +255,7 @@ fn arrays_of(track: &PackedTrack, arrays: &mut [Array; 3]) -> (usize, (usize, us
     (input, (kind, arrays[kind].add(elements.copied().collect(), accessor)))
 }
 
-impl Array {
+impl KeyArray {
     /// Appends elements, unless they are there, and returns the index of their accessor.
     fn add(&mut self, bytes: Vec<u8>, mut accessor: Value) -> usize {
         if let Some(&known) = self.known.get(&bytes) {

@@ -1,6 +1,6 @@
 //! Rounding of the poses of an animation to what is stored of them.
 
-use super::sampler::{Pose, Property, Track, distance, nearer};
+use super::sampler::{KeyTrack, KeyValue, KeyedProperty, distance, nearer};
 use crate::meshopt::{Filter, apply_filter, encode_exponential, encode_quaternion};
 
 /// Poses of all keys of a track as they are stored, and as they are decoded.
@@ -10,7 +10,7 @@ pub(super) struct Rounded {
     /// Bytes of an element.
     pub stride: usize,
     pub filter: Filter,
-    pub poses: Vec<Pose>,
+    pub poses: Vec<KeyValue>,
 }
 
 /// Fewest and most bits of a component of a rotation.
@@ -21,14 +21,14 @@ const ROUNDING: f64 = 0.6;
 
 /// Rounds the poses of a track to as few bits as the tolerance allows: with `filters` for a meshopt
 /// stream, without to shorts and floats. `None` if there is no such form.
-pub(super) fn round(track: &Track, tolerance: f64, filters: bool) -> Option<Rounded> {
+pub(super) fn round(track: &KeyTrack, tolerance: f64, filters: bool) -> Option<Rounded> {
     match track.property {
-        Property::Rotation => rotations(track, tolerance, filters),
+        KeyedProperty::Rotation => rotations(track, tolerance, filters),
         _ => vectors(track, tolerance, filters),
     }
 }
 
-fn rotations(track: &Track, tolerance: f64, filters: bool) -> Option<Rounded> {
+fn rotations(track: &KeyTrack, tolerance: f64, filters: bool) -> Option<Rounded> {
     if !filters {
         let short = |x: &f64| (x * 32767.0).round() as i16;
         let bytes: Vec<u8> =
@@ -51,17 +51,17 @@ fn rotations(track: &Track, tolerance: f64, filters: bool) -> Option<Rounded> {
 }
 
 /// Decodes normalized shorts, and makes them unit quaternions again.
-fn decoded_rotations(bytes: &[u8]) -> Vec<Pose> {
+fn decoded_rotations(bytes: &[u8]) -> Vec<KeyValue> {
     let pose = |element: &[u8; 8]| {
         let shorts = element.as_chunks::<2>().0;
-        let q: Pose = std::array::from_fn(|k| f64::from(i16::from_le_bytes(shorts[k])));
+        let q: KeyValue = std::array::from_fn(|k| f64::from(i16::from_le_bytes(shorts[k])));
         let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
         q.map(|x| x / length.max(1.0))
     };
     bytes.as_chunks().0.iter().map(pose).collect()
 }
 
-fn vectors(track: &Track, tolerance: f64, filters: bool) -> Option<Rounded> {
+fn vectors(track: &KeyTrack, tolerance: f64, filters: bool) -> Option<Rounded> {
     let floats: Vec<f32> =
         track.poses.iter().flat_map(|pose| &pose[..3]).map(|&x| x as f32).collect();
     if !filters {

@@ -5,17 +5,17 @@ use serde_json::Value;
 use super::document::Document;
 
 /// Value of a sampler: a unit quaternion, or a vector with a fourth component of zero.
-pub(super) type Pose = [f64; 4];
+pub(super) type KeyValue = [f64; 4];
 
 /// Property of a node that a sampler moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Property {
+pub(super) enum KeyedProperty {
     Translation,
     Rotation,
     Scale,
 }
 
-impl Property {
+impl KeyedProperty {
     /// Returns the property of this name; `None` for others, as for weights of morph targets.
     pub fn named(path: &str) -> Option<Self> {
         match path {
@@ -32,7 +32,7 @@ impl Property {
     }
 
     /// Interpolates between two keys; rotations take the shorter way.
-    pub fn between(self, a: Pose, b: Pose, part: f64) -> Pose {
+    pub fn between(self, a: KeyValue, b: KeyValue, part: f64) -> KeyValue {
         match self {
             Self::Rotation => slerp(a, nearer(a, b), part),
             _ => mixed(a, b, [1.0 - part, part]),
@@ -42,19 +42,19 @@ impl Property {
 
 /// Keys of a sampler, at least one, in the order of their times.
 #[derive(Clone, Debug)]
-pub(super) struct Track {
-    pub property: Property,
+pub(super) struct KeyTrack {
+    pub property: KeyedProperty,
     /// If true, each key holds until the next; if not, poses in between are interpolated.
     pub is_step: bool,
     /// Seconds, strictly increasing.
     pub times: Vec<f32>,
-    pub poses: Vec<Pose>,
+    pub poses: Vec<KeyValue>,
 }
 
-impl Track {
+impl KeyTrack {
     /// Reads a sampler; `None` if it is malformed, a cubic spline, or has rotations that are not
     /// unit quaternions.
-    pub fn read(document: &Document<'_>, sampler: &Value, property: Property) -> Option<Self> {
+    pub fn read(document: &Document<'_>, sampler: &Value, property: KeyedProperty) -> Option<Self> {
         let is_step = match sampler.get("interpolation") {
             None => false,
             Some(word) => match word.as_str()? {
@@ -74,10 +74,10 @@ impl Track {
             return None;
         }
         let pose = |key: &[f32]| {
-            let mut pose: Pose = [0.0; 4];
+            let mut pose: KeyValue = [0.0; 4];
             pose.iter_mut().zip(key).for_each(|(to, &from)| *to = f64::from(from));
             match property {
-                Property::Rotation => unit(pose),
+                KeyedProperty::Rotation => unit(pose),
                 _ => Some(pose),
             }
         };
@@ -87,7 +87,7 @@ impl Track {
 
     /// Returns the pose at a time in seconds; before the first key and after the last, theirs.
     #[cfg(test)]
-    pub fn at(&self, time: f64) -> Pose {
+    pub fn at(&self, time: f64) -> KeyValue {
         let after = self.times.partition_point(|&key| f64::from(key) <= time);
         let Some(key) = after.checked_sub(1) else { return self.poses[0] };
         if after == self.times.len() || self.is_step {
@@ -99,34 +99,34 @@ impl Track {
 }
 
 /// Scales a quaternion to length 1; `None` if it is off by more than rounding.
-fn unit(q: Pose) -> Option<Pose> {
+fn unit(q: KeyValue) -> Option<KeyValue> {
     let length = dot(q, q).sqrt();
     ((length - 1.0).abs() <= 1e-3).then(|| q.map(|x| x / length))
 }
 
-pub(super) fn dot(a: Pose, b: Pose) -> f64 {
+pub(super) fn dot(a: KeyValue, b: KeyValue) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Returns the distance of two poses as points.
-pub(super) fn distance(a: Pose, b: Pose) -> f64 {
+pub(super) fn distance(a: KeyValue, b: KeyValue) -> f64 {
     let off = mixed(a, b, [1.0, -1.0]);
     dot(off, off).sqrt()
 }
 
 /// Returns the sign of a quaternion that is nearer to another; both signs are one rotation.
-pub(super) fn nearer(to: Pose, q: Pose) -> Pose {
+pub(super) fn nearer(to: KeyValue, q: KeyValue) -> KeyValue {
     if dot(to, q) < 0.0 { q.map(|x| -x) } else { q }
 }
 
 /// Returns the angle between two unit quaternions as points of the sphere, half that of the
 /// rotation between them.
-pub(super) fn arc(a: Pose, b: Pose) -> f64 {
+pub(super) fn arc(a: KeyValue, b: KeyValue) -> f64 {
     2.0 * (0.5 * distance(a, b)).min(1.0).asin()
 }
 
 /// Interpolates along the arc between two unit quaternions, by their own signs.
-pub(super) fn slerp(a: Pose, b: Pose, part: f64) -> Pose {
+pub(super) fn slerp(a: KeyValue, b: KeyValue, part: f64) -> KeyValue {
     let angle = arc(a, b);
     let sine = angle.sin();
     if sine < 1e-9 {
@@ -135,6 +135,6 @@ pub(super) fn slerp(a: Pose, b: Pose, part: f64) -> Pose {
     mixed(a, b, [((1.0 - part) * angle).sin() / sine, (part * angle).sin() / sine])
 }
 
-fn mixed(a: Pose, b: Pose, [s, t]: [f64; 2]) -> Pose {
+fn mixed(a: KeyValue, b: KeyValue, [s, t]: [f64; 2]) -> KeyValue {
     std::array::from_fn(|i| s * a[i] + t * b[i])
 }

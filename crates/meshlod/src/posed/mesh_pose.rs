@@ -22,7 +22,7 @@ pub(super) struct MeshPose {
     back: DMat4,
     /// From its own space to the scene, by the node.
     world: DMat4,
-    /// The same by each joint of the node's skin.
+    /// Such matrices by each joint of the node's skin.
     joints: Option<Vec<DMat4>>,
     /// Weights of morph targets.
     weights: Vec<f64>,

@@ -25,7 +25,7 @@ pub struct ScenePoses {
     of_objects: Vec<u32>,
     /// Numbers of poses and animations.
     pub counts: PoseCounts,
-    /// What was left out, and why; one line each.
+    /// Reasons why something was left out, one line each.
     pub notes: Vec<String>,
 }
 
@@ -64,7 +64,7 @@ impl ScenePoses {
     pub(crate) fn new(scene: &Scene, meshes: &[Option<PosedMesh>], mesh: &Mesh) -> Option<Self> {
         let animator = Animator::new(scene)?;
         let layers = mesh.attributes.as_ref().map_or(&[][..], |all| &all.layers);
-        let corners = Corners::of(mesh, meshes);
+        let corners = PosedCorners::of(mesh, meshes);
         let mut this = Self {
             notes: animator.notes.clone(),
             of_objects: corners.of_objects.clone(),
@@ -98,7 +98,7 @@ impl ScenePoses {
         &mut self,
         moment: Option<Moment>,
         variants: usize,
-        (corners, layers): (&Corners, &[Layer]),
+        (corners, layers): (&PosedCorners, &[Layer]),
     ) {
         for variant in 0..variants.min(MOST - self.poses.len()) {
             let meshes = self.meshes((moment, variant));
@@ -117,7 +117,7 @@ impl ScenePoses {
     }
 
     /// Notes meshes with weights of joints that are not there.
-    fn note_joints(&mut self, corners: &Corners, layers: &[Layer]) {
+    fn note_joints(&mut self, corners: &PosedCorners, layers: &[Layer]) {
         let meshes = &self.shown.meshes;
         let mut greatest = vec![None; meshes.len()];
         for (wedge, &object) in corners.objects.iter().enumerate().filter(|at| corners.used[at.0]) {
@@ -172,7 +172,7 @@ impl Posing for ScenePoses {
 }
 
 /// Wedges of the mesh of which levels are made.
-struct Corners {
+struct PosedCorners {
     positions: Vec<[f64; 3]>,
     objects: Vec<u32>,
     /// Marks the wedges that faces use.
@@ -183,7 +183,7 @@ struct Corners {
     middle: DVec3,
 }
 
-impl Corners {
+impl PosedCorners {
     fn of(mesh: &Mesh, meshes: &[Option<PosedMesh>]) -> Self {
         let of_mesh = |(index, mesh): (u32, &Option<PosedMesh>)| {
             let count = mesh.as_ref().map_or(0, |mesh| mesh.objects);

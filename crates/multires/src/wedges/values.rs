@@ -165,7 +165,7 @@ fn columns(coding: &[LayerCoding]) -> usize {
     coding.iter().map(LayerCoding::columns).sum()
 }
 
-/// What an attribute layer of a model is, without its values.
+/// Kind, name and width of an attribute layer of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LayerFormat<'m> {
     /// Type of the attribute, such as normals or texture coordinates.

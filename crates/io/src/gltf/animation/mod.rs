@@ -23,7 +23,7 @@ pub struct Animator {
     order: Vec<usize>,
     clips: Vec<Clip>,
     skins: Vec<Option<Skin>>,
-    /// What was left out, and why; one line each.
+    /// Reasons why something was left out, one line each.
     pub notes: Vec<String>,
 }
 
@@ -65,19 +65,19 @@ enum Local {
 #[derive(Clone, Debug)]
 struct Clip {
     number: usize,
-    channels: Vec<Channel>,
+    channels: Vec<AnimatedChannel>,
 }
 
 /// Movement of one property of one node.
 #[derive(Clone, Debug)]
-struct Channel {
+struct AnimatedChannel {
     node: usize,
-    property: Property,
+    property: AnimatedProperty,
     track: Track,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Property {
+enum AnimatedProperty {
     Translation,
     Rotation,
     Scale,
@@ -141,7 +141,7 @@ impl Animator {
             let (local, weights) = &mut nodes[channel.node];
             let value = channel.track.at(moment.map_or(0.0, |at| at.seconds));
             match channel.property {
-                Property::Weights => *weights = value,
+                AnimatedProperty::Weights => *weights = value,
                 property => local.set(property, &value),
             }
         }
@@ -194,10 +194,10 @@ impl Animator {
         for (i, channel) in channels.iter().enumerate() {
             let target = &channel["target"];
             let property = match target["path"].as_str() {
-                Some("translation") => Property::Translation,
-                Some("rotation") => Property::Rotation,
-                Some("scale") => Property::Scale,
-                Some("weights") => Property::Weights,
+                Some("translation") => AnimatedProperty::Translation,
+                Some("rotation") => AnimatedProperty::Rotation,
+                Some("scale") => AnimatedProperty::Scale,
+                Some("weights") => AnimatedProperty::Weights,
                 path => {
                     let path = path.unwrap_or("nothing");
                     self.notes.push(format!(
@@ -222,15 +222,15 @@ impl Animator {
         document: &Document<'_>,
         animation: &Value,
         channel: &Value,
-        (node, property): (usize, Property),
-    ) -> Result<Channel, String> {
+        (node, property): (usize, AnimatedProperty),
+    ) -> Result<AnimatedChannel, String> {
         let rest = &self.nodes[node];
         let quantity = match property {
-            Property::Weights => Quantity::Numbers(rest.weights.len()),
-            Property::Rotation => Quantity::Rotation,
-            Property::Translation | Property::Scale => Quantity::Numbers(3),
+            AnimatedProperty::Weights => Quantity::Numbers(rest.weights.len()),
+            AnimatedProperty::Rotation => Quantity::Rotation,
+            AnimatedProperty::Translation | AnimatedProperty::Scale => Quantity::Numbers(3),
         };
-        if property != Property::Weights && matches!(rest.local, Local::Matrix(_)) {
+        if property != AnimatedProperty::Weights && matches!(rest.local, Local::Matrix(_)) {
             return Err(format!("node {node} has a matrix, which animations cannot move"));
         }
         let number = channel["sampler"].as_u64().ok_or("it has no sampler")?;
@@ -238,7 +238,7 @@ impl Animator {
         let sampler = sampler.ok_or(format!("sampler {number} is not there"))?;
         let track = Track::read(document, sampler, quantity);
         let track = track.map_err(|why| format!("sampler {number}: {why}"))?;
-        Ok(Channel { node, property, track })
+        Ok(AnimatedChannel { node, property, track })
     }
 }
 
@@ -271,13 +271,13 @@ impl Local {
         Self::Parts { translation, rotation: rotation.normalize(), scale }
     }
 
-    fn set(&mut self, property: Property, value: &[f64]) {
+    fn set(&mut self, property: AnimatedProperty, value: &[f64]) {
         let Self::Parts { translation, rotation, scale } = self else { return };
         match property {
-            Property::Translation => *translation = DVec3::from_slice(value),
-            Property::Rotation => *rotation = DQuat::from_slice(value),
-            Property::Scale => *scale = DVec3::from_slice(value),
-            Property::Weights => {}
+            AnimatedProperty::Translation => *translation = DVec3::from_slice(value),
+            AnimatedProperty::Rotation => *rotation = DQuat::from_slice(value),
+            AnimatedProperty::Scale => *scale = DVec3::from_slice(value),
+            AnimatedProperty::Weights => {}
         }
     }
 

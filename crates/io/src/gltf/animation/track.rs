@@ -15,7 +15,7 @@ enum Interpolation {
     CubicSpline,
 }
 
-/// What a track's numbers are.
+/// Meaning of a track's numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
     /// Vectors or lists of weights, this long.

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::super::animation_packing::properties;
 use super::super::document::Document;
-use super::super::sampler::{Property, Track, arc, distance, nearer};
+use super::super::sampler::{KeyTrack, KeyedProperty, arc, distance, nearer};
 use super::super::{Compression, write_compressed_glb};
 use crate::{Format, ReadOptions, Scene, read_bytes};
 
@@ -15,14 +15,14 @@ fn packing(meshopt: bool) -> Compression {
 }
 
 /// Lists the tracks of all samplers, by animation and sampler.
-fn tracks(scene: &Scene) -> Vec<((usize, usize), Option<Track>)> {
+fn tracks(scene: &Scene) -> Vec<((usize, usize), Option<KeyTrack>)> {
     let contents = &scene.source.as_ref().unwrap().0;
     let document = Document::new(&contents.json, &contents.buffers).unwrap();
     let animations = contents.json["animations"].as_array().unwrap();
     let mut tracks = Vec::new();
     for (a, animation) in animations.iter().enumerate() {
         for (sampler, property) in properties(animation) {
-            let read = |p| Track::read(&document, &animation["samplers"][sampler], p);
+            let read = |p| KeyTrack::read(&document, &animation["samplers"][sampler], p);
             tracks.push(((a, sampler), property.and_then(read)));
         }
     }
@@ -30,13 +30,17 @@ fn tracks(scene: &Scene) -> Vec<((usize, usize), Option<Track>)> {
 }
 
 /// Returns the largest error of a rotation in radians, or that of a vector.
-fn error(old: &Track, new: &Track) -> f64 {
+fn error(old: &KeyTrack, new: &KeyTrack) -> f64 {
     let times: Vec<f64> = old.times.iter().map(|&time| f64::from(time)).collect();
     let between =
         times.windows(2).flat_map(|w| (0..8).map(|i| w[0] + (w[1] - w[0]) * 0.125 * f64::from(i)));
     let at = |time: f64| {
         let (a, b) = (old.at(time), new.at(time));
-        if old.property == Property::Rotation { 2.0 * arc(a, nearer(a, b)) } else { distance(a, b) }
+        if old.property == KeyedProperty::Rotation {
+            2.0 * arc(a, nearer(a, b))
+        } else {
+            distance(a, b)
+        }
     };
     between.chain(times.last().copied()).map(at).fold(0.0, f64::max)
 }
@@ -52,7 +56,7 @@ fn check(scene: &Scene, meshopt: bool) -> Scene {
     for ((place, old), (_, new)) in old.into_iter().zip(new) {
         let (Some(old), Some(new)) = (old, new) else { continue };
         let size = old.poses.iter().map(|&pose| distance(pose, [0.0; 4])).fold(0.0, f64::max);
-        let limit = if old.property == Property::Rotation { limit } else { limit * size };
+        let limit = if old.property == KeyedProperty::Rotation { limit } else { limit * size };
         let error = error(&old, &new);
         assert!(error <= limit, "{place:?}: {error} exceeds {limit}");
         assert!(new.times.len() <= old.times.len());
