@@ -55,7 +55,7 @@ mod on_a_gpu {
             assert!(png.starts_with(b"\x89PNG"), "{file}");
         }
         let done = run.run(&["render", "a.mlq", "b.png"]);
-        assert_eq!(done.code, 1, "the processor does not draw it: {done:?}");
+        assert_eq!(done.code, 0, "without a GPU it is decoded: {done:?}");
     }
 
     #[test]
