@@ -10,7 +10,7 @@
 
 use anyhow::{Context, Result};
 use meshlod::mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId};
-use meshlod::picture::{Paint, ReferenceImages, Style};
+use meshlod::picture::{ReferenceImages, Style};
 use meshlod::simplify::{Method, Options, Target, simplify};
 use meshlod::{materials_of, single_sided_materials};
 use meshlod_bench::peer::{GpuMesh, Settings, SimplifyOptions, Update, simplify_with_attributes};
@@ -40,12 +40,8 @@ fn main() -> Result<()> {
             mesh.attributes = Some(smooth_normals(&mesh));
         }
         let single_sided = single_sided_materials(&scene);
-        let style = Style {
-            size: [side; 2],
-            paint: Paint::comparison(&mesh, &materials),
-            single_sided: &single_sided,
-            ..Style::comparison()
-        };
+        let style = Style::comparison_of(&mesh, &materials, &single_sided);
+        let style = Style { size: [side; 2], ..style };
         let portrait = (side > 0).then(|| ReferenceImages::with_style(&mesh, style)).transpose()?;
         for ratio in [0.25, 0.1, 0.01] {
             print!("{name} {ratio}");

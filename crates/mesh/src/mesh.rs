@@ -3,7 +3,7 @@
 use glam::DVec3;
 use thiserror::Error;
 
-use crate::{Attributes, Bounds, FaceId, Labels, VertexId};
+use crate::{Attributes, Bounds, FaceId, Labels, VertexId, WedgeId};
 
 /// Triangle mesh: vertex positions, faces, attributes, and material and object labels.
 ///
@@ -101,6 +101,17 @@ impl Mesh {
     pub fn triangle(&self, [a, b, c]: [VertexId; 3]) -> [DVec3; 3] {
         let at = |v: VertexId| DVec3::from(self.positions[v.index()]);
         [at(a), at(b), at(c)]
+    }
+
+    /// Returns the wedges at the corners of a face; without attributes each vertex is one.
+    ///
+    /// # Panics
+    /// There is no such face.
+    pub fn corner_wedges(&self, face: usize) -> [WedgeId; 3] {
+        match &self.attributes {
+            Some(attributes) => attributes.corners[face],
+            None => self.faces[face].map(|v| WedgeId(v.0)),
+        }
     }
 
     /// Returns the bounding box of all vertices that faces use; unused vertices do not count.

@@ -25,8 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (materials, _) = materials_of(&scene);
     let single_sided = single_sided_materials(&scene);
     let mesh = scene.flatten();
-    let paint = Paint::comparison(&mesh, &materials);
-    let style = Style { paint, single_sided: &single_sided, ..Style::comparison() };
+    let style = Style::comparison_of(&mesh, &materials, &single_sided);
     let portrait = ReferenceImages::with_style(&mesh, style)?;
 
     let placed = place_scene(scene, &Constraints::default(), Options::default())?;

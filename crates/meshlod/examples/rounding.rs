@@ -12,7 +12,7 @@ use std::error::Error;
 
 use meshlod::mesh::{AttributeBounds, Mesh};
 use meshlod::multires::{Archive, Forest, Query, Storage, StoredErrors};
-use meshlod::picture::{Paint, ReferenceImages, Style};
+use meshlod::picture::{ReferenceImages, Style};
 use meshlod::simplify::Target;
 use meshlod::{
     Constraints, ModelScene, Options, ReadOptions, Topology, materials_of, place_scene, read,
@@ -46,8 +46,7 @@ fn measure(name: &str) -> Result<(), Box<dyn Error>> {
     let (materials, _) = materials_of(&scene);
     let single_sided = single_sided_materials(&scene);
     let mesh = scene.flatten();
-    let paint = Paint::comparison(&mesh, &materials);
-    let style = Style { paint, single_sided: &single_sided, ..Style::comparison() };
+    let style = Style::comparison_of(&mesh, &materials, &single_sided);
     let portrait = ReferenceImages::with_style(&mesh, style)?;
     let counts = PARTS.map(|part| Target::Ratio(part).faces_of(mesh.faces.len()));
     let flips = |levels: [Mesh; 2]| -> Result<String, Box<dyn Error>> {

@@ -47,7 +47,13 @@ impl Default for Style<'_> {
     }
 }
 
-impl Style<'_> {
+impl<'a> Style<'a> {
+    /// Returns the style for comparing a mesh with its levels: that of [`comparison`](Self::comparison)
+    /// in the colours of [`Paint::comparison`], with the materials that are seen from the front alone.
+    pub fn comparison_of(mesh: &Mesh, materials: &'a Materials, single_sided: &'a [bool]) -> Self {
+        Self { paint: Paint::comparison(mesh, materials), single_sided, ..Self::comparison() }
+    }
+
     /// Returns the style for comparing pictures of two meshes, with the cameras of
     /// [`Camera::icosahedron_views`](crate::Camera::icosahedron_views).
     ///

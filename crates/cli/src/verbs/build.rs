@@ -1,35 +1,36 @@
 //! `build`: writes all levels of a mesh to one file.
 
+mod report;
+
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 use meshlod::io::Note;
 use meshlod::multires::{
-    Archive, BuildError, Certificate, Fit, Forest, HeightField, HeightPrecision, ModelFile,
-    Recorder, Storage, StoredErrors,
+    Archive, BuildError, Forest, HeightField, HeightPrecision, ModelFile, Recorder, Storage,
+    StoredErrors,
 };
 use meshlod::simplify::Simplifier;
 use meshlod::{
     Format, Mesh, Method, Options, PackedScene, PlacedScene, PoseCounts, Scene, SceneCounts,
     Target, model_limits,
 };
-use serde_json::{Value, json};
 
 use crate::answer::Answer;
 use crate::args::{AttributeErrorArgs, ReadArgs};
 use crate::constraints::{ConstraintArgs, FlatInput};
 use crate::failure::Failure;
-use crate::files;
 use crate::fuse;
 use crate::locks;
 use crate::model_file;
 use crate::model_scene::{self, ErrorPoses};
-use crate::numbers::{count, faces, percent, value};
+use crate::numbers::{percent, value};
 use crate::parse::{self, Bound};
 use crate::scene_files;
 use crate::session::Session;
+use crate::verbs::build::report::{Built, Levels};
 use crate::volume;
 
 /// Write all levels of a mesh or scene to one multiresolution file (.mlod). The topology is kept,
@@ -92,36 +93,6 @@ enum ModelArg {
     Contractions,
     /// Right-triangle hierarchy, for a height field on a regular grid
     RightTriangles,
-}
-
-/// File contents with the figures to report.
-struct Built {
-    bytes: Vec<u8>,
-    /// Size of the levels alone, without images, nodes and materials.
-    surface_bytes: usize,
-    /// Number of faces of the finest level.
-    faces: usize,
-    rounding: f64,
-    /// Displacement of vertices in words.
-    moved: String,
-    levels: Levels,
-    /// Poses for which errors hold, beside that of the file.
-    poses: ErrorPoses,
-}
-
-enum Levels {
-    Contractions {
-        updates: usize,
-        base_faces: usize,
-        certificate: Certificate,
-        error_kind: &'static str,
-        /// Numbers of vertices that were held, as JSON.
-        held: Value,
-    },
-    RightTriangles {
-        size: [u32; 2],
-        fit: Fit,
-    },
 }
 
 impl Build {
@@ -310,81 +281,4 @@ impl Build {
     fn rounding(&self, mesh: &Mesh) -> f64 {
         self.rounding.length(mesh.bounds().diagonal())
     }
-
-    fn json(&self, mesh: &Mesh, built: &Built, time: Duration) -> Value {
-        let vertices = vertex_count(mesh);
-        let mut json = json!({
-            "file": files::name(&self.output),
-            "input_vertices": vertices,
-            "input_faces": mesh.faces.len(),
-            "bytes": built.bytes.len(),
-            "scene_bytes": built.bytes.len() - built.surface_bytes,
-            "bytes_per_vertex": built.surface_bytes as f64 / vertices as f64,
-            "rounding": built.rounding,
-            "build_seconds": time.as_secs_f64(),
-        });
-        match &built.levels {
-            Levels::Contractions { updates, base_faces, certificate, error_kind, held } => {
-                json["held"] = held.clone();
-                json["error_kind"] = (*error_kind).into();
-                json["poses"] = model_file::poses_json(built.poses.measured());
-                json["model"] = "contractions".into();
-                json["method"] = self.method.name().into();
-                json["lossless"] = self.lossless.into();
-                json["updates"] = (*updates).into();
-                json["base_faces"] = (*base_faces).into();
-                json["certificate"] = model_file::certificate_json(certificate);
-            }
-            Levels::RightTriangles { size, fit } => {
-                json["model"] = "right-triangles".into();
-                json["error_kind"] = "bound".into();
-                json["grid"] = json!(size);
-                json["fit"] = model_file::fit_json(fit);
-            }
-        }
-        json
-    }
-
-    fn text(&self, mesh: &Mesh, built: &Built, time: Duration) -> String {
-        let vertices = vertex_count(mesh);
-        let mut text = format!(
-            "{}: all levels of {} in {} bytes, {:.2} per vertex{}; {}\n",
-            files::name(&self.output),
-            faces(built.faces),
-            count(built.bytes.len()),
-            built.surface_bytes as f64 / vertices as f64,
-            built.scene_text(),
-            built.moved,
-        );
-        text += &match &built.levels {
-            Levels::Contractions { updates, base_faces, certificate, error_kind, .. } => format!(
-                "{} updates by {} down to {}, with {}; {}\n",
-                count(*updates),
-                self.method.name(),
-                faces(*base_faces),
-                model_file::errors_text(error_kind, built.poses.measured()),
-                model_file::certificate_text(certificate),
-            ),
-            Levels::RightTriangles { size: [columns, rows], fit } => format!(
-                "right triangles of {columns} x {rows} heights; {}\n",
-                model_file::fit_text(fit),
-            ),
-        };
-        text + &format!("build_seconds: {}\n", value(time.as_secs_f64()))
-    }
-}
-
-impl Built {
-    /// Formats what images, nodes and materials take; empty if there are none.
-    fn scene_text(&self) -> String {
-        match self.bytes.len() - self.surface_bytes {
-            0 => String::new(),
-            bytes => format!(" without the scene's own {}", count(bytes)),
-        }
-    }
-}
-
-/// Returns the number of vertices used by faces.
-fn vertex_count(mesh: &Mesh) -> usize {
-    mesh.used_vertices().iter().filter(|&&used| used).count()
 }

@@ -130,11 +130,7 @@ pub(super) fn nothing(point: [f64; 3]) -> Result<Arrays, Unsupported> {
 
 /// Packs wedge and vertex of each corner into one number, the wedge in the high half.
 fn keys(mesh: &Mesh, face: usize) -> [u64; 3] {
-    let vertices = mesh.faces[face];
-    let wedges = match &mesh.attributes {
-        Some(attributes) => attributes.corners[face],
-        None => vertices.map(|v| WedgeId(v.0)),
-    };
+    let (vertices, wedges) = (mesh.faces[face], mesh.corner_wedges(face));
     std::array::from_fn(|i| key(vertices[i], wedges[i]))
 }
 

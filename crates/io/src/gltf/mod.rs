@@ -3,9 +3,6 @@
 mod accessor;
 mod accessor_use;
 mod animation;
-mod animation_keys;
-mod animation_packing;
-mod animation_rounding;
 mod buffer_builder;
 mod compress;
 mod container;
@@ -36,7 +33,6 @@ mod primitive_rows;
 mod primitives;
 mod quantize;
 mod read;
-mod sampler;
 mod schema;
 mod skeleton;
 mod skeleton_images;

@@ -4,7 +4,7 @@ use meshlod_mesh::Mesh;
 use serde_json::{Map, Value};
 
 use super::accessor_use::free_accessors_with;
-use super::animation_packing::PackedAnimations;
+use super::animation::packing::PackedAnimations;
 use super::buffer_builder::BufferBuilder;
 use super::compress::{Compression, CompressionReport, Grids};
 use super::document::Document;

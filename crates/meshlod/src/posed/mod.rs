@@ -12,7 +12,7 @@ mod tests;
 use glam::DMat4;
 use meshlod_io::Scene;
 use meshlod_io::gltf::{Animator, Moment};
-use meshlod_mesh::{Mesh, VertexId, WedgeId};
+use meshlod_mesh::{Mesh, VertexId};
 
 use mesh_pose::{MeshPose, PoseLayers};
 pub(crate) use scene_poses::PosedMesh;
@@ -38,8 +38,7 @@ pub fn posed_mesh(scene: &Scene, animator: &Animator, moment: Option<Moment>) ->
         let wedges = attributes.map_or(mesh.positions.len(), |all| all.wedge_count);
         posed.positions.resize(first + wedges, [0.0; 3]);
         for (index, face) in mesh.faces.iter().enumerate() {
-            let corners = attributes.map(|all| all.corners[index]);
-            let corners = corners.unwrap_or(face.map(|v| WedgeId(v.0)));
+            let corners = mesh.corner_wedges(index);
             for (wedge, v) in corners.into_iter().zip(face) {
                 let place = moved.place(mesh.positions[v.index()], (&roles, layers), wedge);
                 posed.positions[first + wedge.index()] = place.to_array();

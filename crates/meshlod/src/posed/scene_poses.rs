@@ -200,9 +200,7 @@ impl PosedCorners {
             middle: (DVec3::from(mesh.bounds().min) + DVec3::from(mesh.bounds().max)) * 0.5,
         };
         for (index, face) in mesh.faces.iter().enumerate() {
-            let corners = mesh.attributes.as_ref().map(|all| all.corners[index]);
-            let corners = corners.unwrap_or(face.map(|v| WedgeId(v.0)));
-            for (wedge, v) in corners.into_iter().zip(face) {
+            for (wedge, v) in mesh.corner_wedges(index).into_iter().zip(face) {
                 this.positions[wedge.index()] = mesh.positions[v.index()];
                 this.objects[wedge.index()] = mesh.objects.as_ref().map_or(0, |all| all.of(index));
                 this.used[wedge.index()] = true;

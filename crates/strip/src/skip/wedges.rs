@@ -70,10 +70,7 @@ impl MeshWedges {
         let mut copies = FxHashMap::default();
         for (face, vertices) in mesh.faces.iter().enumerate() {
             let labels = labels(face);
-            let wedges = match &mesh.attributes {
-                Some(attributes) => attributes.corners[face],
-                None => vertices.map(|v| WedgeId(v.0)),
-            };
+            let wedges = mesh.corner_wedges(face);
             let corner = |k: usize| {
                 let own = wedges[k];
                 let wedge = StripWedge {

@@ -4,7 +4,7 @@
 use anyhow::{Context, Result};
 use meshlod::mesh::Mesh;
 use meshlod::multires::{Archive, Forest, Query, Storage, StoredErrors};
-use meshlod::picture::{ImageError, Paint, ReferenceImages, Style};
+use meshlod::picture::{ImageError, ReferenceImages, Style};
 use meshlod::simplify::{Method, Options, Target};
 use meshlod::{
     Constraints, ModelScene, Scene, Topology, materials_of, place_scene, simplify_scene,
@@ -63,11 +63,7 @@ fn table(models: &[&str]) -> Result<String> {
         let (materials, _) = materials_of(&scene);
         let mesh = scene.flatten();
         let single_sided = single_sided_materials(&scene);
-        let style = Style {
-            paint: Paint::comparison(&mesh, &materials),
-            single_sided: &single_sided,
-            ..Style::comparison()
-        };
+        let style = Style::comparison_of(&mesh, &materials, &single_sided);
         let portrait = ReferenceImages::with_style(&mesh, style)?;
         for ratio in RATIOS {
             for (method, level) in levels(&scene, &mesh, ratio)? {

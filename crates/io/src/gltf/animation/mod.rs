@@ -1,6 +1,8 @@
 //! Animations of a glTF document, and the poses that they give its nodes.
 
 mod key_times;
+pub(super) mod packing;
+mod sampler;
 mod skin;
 mod track;
 
@@ -10,6 +12,7 @@ use serde_json::Value;
 use super::document::Document;
 use super::schema::parse_target_name;
 use crate::Scene;
+use sampler::AnimatedProperty;
 pub use skin::Skin;
 use track::{Quantity, Track};
 
@@ -74,14 +77,6 @@ struct AnimatedChannel {
     node: usize,
     property: AnimatedProperty,
     track: Track,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum AnimatedProperty {
-    Translation,
-    Rotation,
-    Scale,
-    Weights,
 }
 
 impl Animator {
@@ -193,18 +188,13 @@ impl Animator {
         let channels = animation["channels"].as_array().ok_or("it has no channels")?;
         for (i, channel) in channels.iter().enumerate() {
             let target = &channel["target"];
-            let property = match target["path"].as_str() {
-                Some("translation") => AnimatedProperty::Translation,
-                Some("rotation") => AnimatedProperty::Rotation,
-                Some("scale") => AnimatedProperty::Scale,
-                Some("weights") => AnimatedProperty::Weights,
-                path => {
-                    let path = path.unwrap_or("nothing");
-                    self.notes.push(format!(
-                        "animation {number}: channel {i} is left out, as it moves {path:?}"
-                    ));
-                    continue;
-                }
+            let path = target["path"].as_str();
+            let Some(property) = path.and_then(AnimatedProperty::named) else {
+                let path = path.unwrap_or("nothing");
+                self.notes.push(format!(
+                    "animation {number}: channel {i} is left out, as it moves {path:?}"
+                ));
+                continue;
             };
             // A channel without a node is one for extensions.
             let Some(node) = target.get("node") else { continue };

@@ -3,17 +3,8 @@
 use glam::{DQuat, DVec4};
 use serde_json::Value;
 
-use crate::gltf::accessor::Values;
+use super::sampler::{Interpolation, Sampler};
 use crate::gltf::document::Document;
-
-/// How values between two keys are found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Interpolation {
-    Linear,
-    Step,
-    /// Hermite splines; each key has a tangent before its value and one after it.
-    CubicSpline,
-}
 
 /// Meaning of a track's numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,33 +41,15 @@ impl Track {
     /// Reads a sampler of an animation.
     ///
     /// # Errors
-    /// What is wrong with it: accessors that are missing or of another size, times that do not rise,
-    /// rotations without a direction.
+    /// What is wrong with it: those of [`Sampler::read`], values of another number, rotations without
+    /// a direction.
     pub(super) fn read(
         document: &Document<'_>,
         sampler: &Value,
         quantity: Quantity,
     ) -> Result<Self, String> {
-        let interpolation = match sampler.get("interpolation").map(Value::as_str) {
-            None | Some(Some("LINEAR")) => Interpolation::Linear,
-            Some(Some("STEP")) => Interpolation::Step,
-            Some(Some("CUBICSPLINE")) => Interpolation::CubicSpline,
-            Some(other) => {
-                return Err(format!("its interpolation is {:?}", other.unwrap_or_default()));
-            }
-        };
-        let read = |key: &str| {
-            let index = sampler[key].as_u64().ok_or(format!("its {key} is no accessor"))?;
-            document.floats(index as usize).map_err(|error| error.to_string())
-        };
-        let (input, output): (Values, Values) = (read("input")?, read("output")?);
-        if input.width != 1 || input.values.is_empty() {
-            return Err("its input must be one time or more".to_owned());
-        }
-        if let Some(at) = input.values.windows(2).position(|pair| pair[0] >= pair[1]) {
-            return Err(format!("its times do not rise at key {}", at + 1));
-        }
-        let times: Vec<f64> = input.values.into_iter().map(f64::from).collect();
+        let Sampler { interpolation, times, output } = Sampler::read(document, sampler)?;
+        let times: Vec<f64> = times.into_iter().map(f64::from).collect();
         let values: Vec<f64> = output.values.into_iter().map(f64::from).collect();
         let of_key = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
         let expected = times.len().saturating_mul(of_key).saturating_mul(quantity.width());

@@ -2,9 +2,9 @@
 
 use serde_json::{Value, json};
 
-use super::super::animation_packing::properties;
+use super::super::animation::packing::key_track::{KeyTrack, arc, distance, nearer};
+use super::super::animation::packing::properties;
 use super::super::document::Document;
-use super::super::sampler::{KeyTrack, KeyedProperty, arc, distance, nearer};
 use super::super::{Compression, write_compressed_glb};
 use crate::{Format, ReadOptions, Scene, read_bytes};
 
@@ -36,11 +36,7 @@ fn error(old: &KeyTrack, new: &KeyTrack) -> f64 {
         times.windows(2).flat_map(|w| (0..8).map(|i| w[0] + (w[1] - w[0]) * 0.125 * f64::from(i)));
     let at = |time: f64| {
         let (a, b) = (old.at(time), new.at(time));
-        if old.property == KeyedProperty::Rotation {
-            2.0 * arc(a, nearer(a, b))
-        } else {
-            distance(a, b)
-        }
+        if old.is_rotation() { 2.0 * arc(a, nearer(a, b)) } else { distance(a, b) }
     };
     between.chain(times.last().copied()).map(at).fold(0.0, f64::max)
 }
@@ -56,7 +52,7 @@ fn check(scene: &Scene, meshopt: bool) -> Scene {
     for ((place, old), (_, new)) in old.into_iter().zip(new) {
         let (Some(old), Some(new)) = (old, new) else { continue };
         let size = old.poses.iter().map(|&pose| distance(pose, [0.0; 4])).fold(0.0, f64::max);
-        let limit = if old.property == KeyedProperty::Rotation { limit } else { limit * size };
+        let limit = if old.is_rotation() { limit } else { limit * size };
         let error = error(&old, &new);
         assert!(error <= limit, "{place:?}: {error} exceeds {limit}");
         assert!(new.times.len() <= old.times.len());

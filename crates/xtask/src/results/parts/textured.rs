@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use meshlod::mesh::Mesh;
-use meshlod::picture::{Materials, Paint, ReferenceImages, Style};
+use meshlod::picture::{Materials, ReferenceImages, Style};
 use meshlod::{Options, Scene, Target, materials_of, simplify_scene, single_sided_materials};
 use meshlod_bench::peer::{Settings, SimplifyOptions, Update, simplify_with_attributes};
 use serde_json::{Value, json};
@@ -43,11 +43,7 @@ pub fn table(tools: &Tools<'_>) -> Result<String> {
     for name in MODELS {
         let Some(model) = TexturedModel::read(name)? else { continue };
         let single_sided = single_sided_materials(&model.scene);
-        let style = Style {
-            paint: Paint::comparison(&model.mesh, &model.materials),
-            single_sided: &single_sided,
-            ..Style::comparison()
-        };
+        let style = Style::comparison_of(&model.mesh, &model.materials, &single_sided);
         let references = ReferenceImages::with_style(&model.mesh, style)?;
         for percent in PERCENTS {
             eprintln!("  {name}, {percent} % …");

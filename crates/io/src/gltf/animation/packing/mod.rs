@@ -4,17 +4,22 @@
 //! times a third. Whatever is not understood stays as it is: cubic splines, weights of morph
 //! targets, pointers, and samplers that break the rules of the specification.
 
+pub(in crate::gltf) mod key_track;
+mod keys;
+mod rounding;
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Value, json};
 
-use super::accessor::component;
-use super::animation_keys::{RoundedTrack, select};
-use super::animation_rounding::{Rounded, round};
-use super::buffer_builder::BufferBuilder;
-use super::compress::Compression;
-use super::document::Document;
-use super::sampler::{KeyTrack, KeyedProperty};
+use self::key_track::KeyTrack;
+use self::keys::{RoundedTrack, select};
+use self::rounding::{Rounded, round};
+use super::sampler::AnimatedProperty;
+use crate::gltf::accessor::component;
+use crate::gltf::buffer_builder::BufferBuilder;
+use crate::gltf::compress::Compression;
+use crate::gltf::document::Document;
 
 /// Place of a sampler: its animation, and its index there.
 type SamplerPlace = (usize, usize);
@@ -22,7 +27,7 @@ type SamplerPlace = (usize, usize);
 /// Sampler with the bytes of each of its keys and the keys that it keeps.
 struct PackedTrack {
     place: SamplerPlace,
-    property: KeyedProperty,
+    property: AnimatedProperty,
     times: Vec<f32>,
     elements: Rounded,
     kept: Vec<usize>,
@@ -30,7 +35,7 @@ struct PackedTrack {
 
 /// Samplers that get new keys.
 #[derive(Default)]
-pub(super) struct PackedAnimations {
+pub(in crate::gltf) struct PackedAnimations {
     tracks: Vec<PackedTrack>,
     places: BTreeSet<SamplerPlace>,
 }
@@ -186,7 +191,7 @@ fn share_keys(tracks: &[&RoundedTrack], members: &[usize], kept: &mut [Option<Ve
 }
 
 /// Returns the property that each sampler moves; `None` where its channels do not agree.
-pub(super) fn properties(animation: &Value) -> BTreeMap<usize, Option<KeyedProperty>> {
+pub(in crate::gltf) fn properties(animation: &Value) -> BTreeMap<usize, Option<AnimatedProperty>> {
     let mut properties = BTreeMap::new();
     let channels = animation.get("channels").and_then(Value::as_array);
     for channel in channels.into_iter().flatten() {
@@ -194,7 +199,8 @@ pub(super) fn properties(animation: &Value) -> BTreeMap<usize, Option<KeyedPrope
         let target = channel.get("target");
         let is_plain = target.is_some_and(|target| target.get("extensions").is_none());
         let path = target.and_then(|target| target.get("path")?.as_str());
-        let property = path.filter(|_| is_plain).and_then(KeyedProperty::named);
+        let property = path.filter(|_| is_plain).and_then(AnimatedProperty::named);
+        let property = property.filter(|&property| property != AnimatedProperty::Weights);
         let known = properties.entry(sampler as usize).or_insert(property);
         if *known != property {
             *known = None;
@@ -210,9 +216,9 @@ pub(super) fn properties(animation: &Value) -> BTreeMap<usize, Option<KeyedPrope
 fn tolerance(track: &KeyTrack, degrees: f64) -> f64 {
     let angle = degrees.to_radians();
     let length = |pose: &[f64; 4]| pose.iter().map(|x| x * x).sum::<f64>().sqrt();
-    match track.property {
-        KeyedProperty::Rotation => 2.0 * (angle / 4.0).sin(),
-        _ => angle * track.poses.iter().map(length).fold(0.0, f64::max),
+    match track.is_rotation() {
+        true => 2.0 * (angle / 4.0).sin(),
+        false => angle * track.poses.iter().map(length).fold(0.0, f64::max),
     }
 }
 
@@ -245,7 +251,7 @@ fn arrays_of(track: &PackedTrack, arrays: &mut [KeyArray; 3]) -> (usize, (usize,
     let Rounded { bytes, stride, filter, .. } = &track.elements;
     let elements = track.kept.iter().flat_map(|&key| &bytes[key * stride..][..*stride]);
     let (kind, accessor) = match track.property {
-        KeyedProperty::Rotation => (
+        AnimatedProperty::Rotation => (
             ROTATIONS,
             json!({ "componentType": component::I16, "type": "VEC4", "normalized": true }),
         ),

@@ -1,6 +1,6 @@
 //! Rounding of the poses of an animation to what is stored of them.
 
-use super::sampler::{KeyTrack, KeyValue, KeyedProperty, distance, nearer};
+use super::key_track::{KeyTrack, KeyValue, distance, nearer};
 use crate::meshopt::{Filter, apply_filter, encode_exponential, encode_quaternion};
 
 /// Poses of all keys of a track as they are stored, and as they are decoded.
@@ -22,9 +22,9 @@ const ROUNDING: f64 = 0.6;
 /// Rounds the poses of a track to as few bits as the tolerance allows: with `filters` for a meshopt
 /// stream, without to shorts and floats. `None` if there is no such form.
 pub(super) fn round(track: &KeyTrack, tolerance: f64, filters: bool) -> Option<Rounded> {
-    match track.property {
-        KeyedProperty::Rotation => rotations(track, tolerance, filters),
-        _ => vectors(track, tolerance, filters),
+    match track.is_rotation() {
+        true => rotations(track, tolerance, filters),
+        false => vectors(track, tolerance, filters),
     }
 }
 

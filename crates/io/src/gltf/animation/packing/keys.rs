@@ -1,6 +1,6 @@
 //! Keys that an animation needs: those that interpolating the others does not give within an error.
 
-use super::sampler::{KeyTrack, KeyValue, KeyedProperty, arc, distance, nearer, slerp};
+use super::key_track::{KeyTrack, KeyValue, arc, distance, nearer, slerp};
 
 /// Largest number of keys that one interval takes the place of; bounds the time of [`select`].
 const MOST_KEYS: usize = 256;
@@ -32,21 +32,11 @@ impl RoundedTrack {
         }
         let time = |key: usize| f64::from(track.times[key]);
         let part = |key| (time(key) - time(from)) / (time(to) - time(from));
-        let (a, mut b) = (rounded[from], rounded[to]);
-        if track.property == KeyedProperty::Rotation {
-            b = nearer(a, b);
-        }
+        let (a, b) = (rounded[from], rounded[to]);
         (from + 1..=to).all(|key| {
-            let at = |key| self.blend(a, b, part(key));
+            let at = |key| track.between(a, b, part(key));
             self.joins(key, at(key - 1), at(key))
         })
-    }
-
-    fn blend(&self, a: KeyValue, b: KeyValue, part: f64) -> KeyValue {
-        match self.track.property {
-            KeyedProperty::Rotation => slerp(a, b, part),
-            _ => self.track.property.between(a, b, part),
-        }
     }
 
     /// Reports whether the way from key `key - 1` to `key` is close to the way from `a` to `b`.
@@ -56,7 +46,7 @@ impl RoundedTrack {
     /// between samples the difference exceeds theirs by an eighth of that at most.
     fn joins(&self, key: usize, a: KeyValue, b: KeyValue) -> bool {
         let [from, to] = [self.track.poses[key - 1], self.track.poses[key]];
-        if self.track.is_step || self.track.property != KeyedProperty::Rotation {
+        if self.track.is_step || !self.track.is_rotation() {
             return self.is_near(from, a) && self.is_near(to, b);
         }
         let from = nearer(a, from);
@@ -71,7 +61,7 @@ impl RoundedTrack {
     }
 
     fn is_near(&self, a: KeyValue, b: KeyValue) -> bool {
-        let b = if self.track.property == KeyedProperty::Rotation { nearer(a, b) } else { b };
+        let b = if self.track.is_rotation() { nearer(a, b) } else { b };
         distance(a, b) <= self.tolerance
     }
 }

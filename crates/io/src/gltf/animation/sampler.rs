@@ -1,0 +1,77 @@
+//! Samplers of animations: when their keys are, what is between them, and which property they move.
+
+use serde_json::Value;
+
+use crate::gltf::accessor::Values;
+use crate::gltf::document::Document;
+
+/// How values between two keys are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Interpolation {
+    Linear,
+    Step,
+    /// Hermite splines; each key has a tangent before its value and one after it.
+    CubicSpline,
+}
+
+/// Property of a node that animations move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(in crate::gltf) enum AnimatedProperty {
+    Translation,
+    Rotation,
+    Scale,
+    /// Weights of morph targets.
+    Weights,
+}
+
+impl AnimatedProperty {
+    /// Returns the property of this name; `None` for those of extensions.
+    pub(super) fn named(path: &str) -> Option<Self> {
+        match path {
+            "translation" => Some(Self::Translation),
+            "rotation" => Some(Self::Rotation),
+            "scale" => Some(Self::Scale),
+            "weights" => Some(Self::Weights),
+            _ => None,
+        }
+    }
+}
+
+/// Arrays of a sampler, with a time or more.
+pub(super) struct Sampler {
+    pub(super) interpolation: Interpolation,
+    /// Seconds, strictly rising.
+    pub(super) times: Vec<f32>,
+    /// Values at these times; not yet known to be as many.
+    pub(super) output: Values,
+}
+
+impl Sampler {
+    /// Reads a sampler of an animation.
+    ///
+    /// # Errors
+    /// What is wrong with it: an unknown interpolation, accessors that are missing, times that do not
+    /// rise.
+    pub(super) fn read(document: &Document<'_>, sampler: &Value) -> Result<Self, String> {
+        let interpolation = match sampler.get("interpolation").map(Value::as_str) {
+            None | Some(Some("LINEAR")) => Interpolation::Linear,
+            Some(Some("STEP")) => Interpolation::Step,
+            Some(Some("CUBICSPLINE")) => Interpolation::CubicSpline,
+            Some(other) => {
+                return Err(format!("its interpolation is {:?}", other.unwrap_or_default()));
+            }
+        };
+        let read = |key: &str| {
+            let index = sampler[key].as_u64().ok_or(format!("its {key} is no accessor"))?;
+            document.floats(index as usize).map_err(|error| error.to_string())
+        };
+        let (input, output): (Values, Values) = (read("input")?, read("output")?);
+        if input.width != 1 || input.values.is_empty() {
+            return Err("its input must be one time or more".to_owned());
+        }
+        if let Some(at) = input.values.windows(2).position(|pair| pair[0] >= pair[1]) {
+            return Err(format!("its times do not rise at key {}", at + 1));
+        }
+        Ok(Self { interpolation, times: input.values, output })
+    }
+}
