@@ -165,7 +165,9 @@ impl<'m> Front<'m> {
         for i in 0..self.star.len() {
             let child = if i < run { second } else { first };
             if let Some(wedges) = &wedges {
-                self.triangles.set_wedge(self.star[i].corner, wedges.around(child, &self.star, i));
+                let corner = self.star[i].corner;
+                let wedge = wedges.around(child, &self.star, i, self.triangles.wedge(corner));
+                self.triangles.set_wedge(corner, wedge);
             }
             let Vertex { corner, .. } = &mut self.vertices[child as usize];
             self.triangles.attach(self.star[i].corner, child, corner);

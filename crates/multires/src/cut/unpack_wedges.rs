@@ -70,7 +70,8 @@ impl NodeNumbers<'_> {
         }
         let around = front.last_star().iter().map(|spoke| {
             let corners = self.corners((forest, all), &front.triangles, spoke.triangle());
-            ([spoke.a, spoke.b].map(place), corners[spoke.corner as usize % 3])
+            let wedge = |ahead: usize| corners[(spoke.corner as usize + ahead) % 3];
+            ([spoke.a, spoke.b].map(place), [0, 1, 2].map(wedge))
         });
         let created = (created..front.triangles.slots() as u32).map(|t| {
             let nodes = front.triangles.nodes(t).map(place);

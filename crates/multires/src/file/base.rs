@@ -88,7 +88,6 @@ pub(super) fn read(header: &Header, bytes: &[u8]) -> Result<DecoderState, BaseEr
     }
     if header.has_wedges {
         let mut wedges = wedge_names::read(&mut input)?;
-        wedges.in_pairs = header.wedges_in_pairs;
         wedges.read_base(&state, &mut input)?;
         state.wedges = Some(wedges);
     }

@@ -14,6 +14,7 @@ use super::child_offsets::{ChildOffsets, OffsetStreams};
 use super::decoder_state::DecoderState;
 use super::exact_coding::{self, Deltas};
 use super::header::UNKNOWN_FLAGS;
+use super::stage_coding;
 use super::streams::{Packer, Unpacker};
 use super::wedge_state::WedgeError;
 use crate::forest::{NONE, NonFanSplit, Stage};
@@ -82,7 +83,12 @@ pub(super) fn write(state: &DecoderState, run: Range<usize>) -> io::Result<Vec<u
         exact_coding::write(&pairs.collect::<Vec<_>>(), &mut packer)?;
     }
     if state.has_stages {
-        write_stages(updates, &mut packer)?;
+        let stages: Vec<Stage> = updates.iter().map(|u| u.stage).collect();
+        stage_coding::write(
+            &stages,
+            &errors_above(updates.iter().map(|u| error9(u.error))),
+            &mut packer,
+        )?;
     }
     if let Some(wedges) = &state.wedges {
         wedges.write_run(&state.updates, run, state.root_count(), &sizes, &mut packer)?;
@@ -111,12 +117,10 @@ fn write_errors(updates: &[DetachedUpdate], packer: &mut Packer) -> io::Result<(
     packer.numbers(&above)
 }
 
-/// Encodes stages relative to the least one.
-fn write_stages(updates: &[DetachedUpdate], packer: &mut Packer) -> io::Result<()> {
-    let stages = || updates.iter().map(|u| u32::from(u.stage.number()));
-    let least = stages().min().unwrap_or(0);
-    packer.numbers(&[least])?;
-    packer.numbers(&stages().map(|stage| stage - least).collect::<Vec<_>>())
+/// Returns errors minus the least one.
+fn errors_above(errors: impl Iterator<Item = u32> + Clone) -> Vec<u32> {
+    let least = errors.clone().min().unwrap_or(0);
+    errors.map(|error| error - least).collect()
 }
 
 /// Encodes the positions of children and the radii. Returns the classes of their distances.
@@ -221,9 +225,9 @@ pub(super) fn read(
         read_exact(state, &mut input, start, &flags)?;
     }
     if state.has_stages {
-        for (at, number) in read_stages(&mut input, count)?.into_iter().enumerate() {
-            let bad = ChunkError::Update { update: at, why: "its stage is out of range" };
-            state.updates[start + at].stage = Stage::new(number).ok_or(bad)?;
+        let stages = stage_coding::read(&errors_above(errors.iter().copied()), &mut input)?;
+        for (update, stage) in state.updates[start..].iter_mut().zip(stages) {
+            update.stage = stage;
         }
     }
     if let Some(mut wedges) = state.wedges.take() {
@@ -292,13 +296,6 @@ fn read_errors(input: &mut Unpacker<'_>, count: usize) -> io::Result<(Vec<u32>, 
         *error = error.saturating_add(least);
     }
     Ok((errors, levels))
-}
-
-/// Decodes stages; the caller checks their range.
-fn read_stages(input: &mut Unpacker<'_>, count: usize) -> io::Result<Vec<u32>> {
-    let least = input.numbers::<u32>(1)?[0];
-    let above = input.numbers::<u32>(count)?;
-    Ok(above.into_iter().map(|above| above.saturating_add(least)).collect())
 }
 
 /// Decodes a split whose faces are not separated by wings. Its nodes, in the file's numbering, must

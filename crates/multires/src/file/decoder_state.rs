@@ -112,13 +112,23 @@ impl DecoderState {
 
     /// Builds the model of what has been decoded.
     pub(super) fn assemble(self, about: ModelInfo) -> Result<Implicit, FileError> {
-        let wedges = self.wedges.map(WedgeState::into_detached).transpose();
-        let wedges = wedges.map_err(|why| FileError::Section {
-            section: "the attributes".into(),
-            why: why.into(),
-        })?;
+        // Without a gap before it, each update has all that it depends on.
+        let has_all = self.runs.iter().all(|[in_file, here]| in_file == here);
+        let (wedges, values) = self.wedges.map(WedgeState::detach).unzip();
         let (updates, exact) = (&self.updates, &self.exact);
-        Ok(Implicit::assemble(about, self.base, updates, exact, wedges.as_ref()))
+        let (mut model, nodes) =
+            Implicit::assemble(about, self.base, updates, exact, wedges.as_ref());
+        if let (Some(wedges), Some(values), Some(all)) = (wedges, values, model.wedges().cloned()) {
+            let in_file = nodes.into_iter().flat_map(|node| wedges.of(node));
+            let values = values.restored((&model, &all), in_file, has_all);
+            drop(all);
+            let values = values.map_err(|why| FileError::Section {
+                section: "the attributes".into(),
+                why: why.into(),
+            })?;
+            model.set_values(values);
+        }
+        Ok(model)
     }
 
     /// Returns true if stored positions are finite in model units.

@@ -19,8 +19,6 @@ pub(super) struct Header {
     pub(super) lossless: bool,
     /// True if it has attributes, materials or objects.
     pub(super) has_wedges: bool,
-    /// True if values of wedges are coded by pairs, as they are now where there are wedges.
-    pub(super) wedges_in_pairs: bool,
     /// Bounding-box diagonal of the finest mesh, in model units.
     pub(super) diagonal: f64,
     /// Largest distance that a vertex without an exact position was moved, in model units.
@@ -117,7 +115,7 @@ impl Header {
             (WEDGES, self.has_wedges),
             (RESOURCES, !self.resources.is_empty()),
             (STAGES, self.about.has_stages),
-            (WEDGES_IN_PAIRS, self.wedges_in_pairs),
+            (PREDICTED, self.has_wedges),
         ];
         let flags = flags.iter().filter(|(_, is_so)| *is_so).map(|(flag, _)| flag).sum();
         out.extend([kind_code(kind), flags]);
@@ -195,7 +193,6 @@ impl Header {
             lattice: lattice.ok_or(bad("the cell size of its lattice is out of range"))?,
             lossless: bytes[BODY_AT + 3] & LOSSLESS != 0,
             has_wedges: bytes[BODY_AT + 3] & WEDGES != 0,
-            wedges_in_pairs: bytes[BODY_AT + 3] & WEDGES_IN_PAIRS != 0,
             diagonal: f64_at(bytes, 72),
             rounding: f64_at(bytes, 80),
             roots: u32_at(bytes, 20),
@@ -205,10 +202,13 @@ impl Header {
             resources,
             has_old_resources: index == ResourceIndex::Old,
         };
-        let known = LOSSLESS | WEDGES | OLD_RESOURCES | RESOURCES | STAGES | WEDGES_IN_PAIRS;
-        let is_lone = this.wedges_in_pairs && !this.has_wedges;
-        if bytes[BODY_AT + 3] & !known != 0 || is_lone {
+        let known = LOSSLESS | WEDGES | OLD_RESOURCES | RESOURCES | STAGES | OLD_PAIRS | PREDICTED;
+        let has = |flag: u8| bytes[BODY_AT + 3] & flag != 0;
+        if has(!known) || !this.has_wedges && has(OLD_PAIRS | PREDICTED) {
             return Err(bad(UNKNOWN_FLAGS));
+        }
+        if this.has_wedges && (has(OLD_PAIRS) || !has(PREDICTED)) {
+            return Err(bad(OLD_WEDGES));
         }
         if this.updates() > MAX_UPDATES || this.roots as usize > MAX_UPDATES {
             return Err(bad("it has too many updates"));
@@ -237,8 +237,13 @@ const OLD_RESOURCES: u8 = 4;
 const RESOURCES: u8 = 8;
 /// Flag of a file whose updates have stages.
 const STAGES: u8 = 16;
-/// Flag of a file whose values of wedges are coded by pairs.
-const WEDGES_IN_PAIRS: u8 = 32;
+/// Flag of a file whose values of wedges have the second form that was never released.
+const OLD_PAIRS: u8 = 32;
+/// Flag of a file whose values of wedges are predicted from the faces around; those of the first form
+/// that was never released have neither.
+const PREDICTED: u8 = 64;
+/// Message for a file of these forms.
+const OLD_WEDGES: &str = "its attributes are in a form that was never released; build it again";
 /// Message for any other flag.
 pub(super) const UNKNOWN_FLAGS: &str = "it has flags unknown to this program";
 /// Upper limit on updates and on roots, so that roots and two nodes per update stay below 2³¹.

@@ -32,7 +32,7 @@ impl Leeway {
     /// Returns the steps, an odd number, in which a wedge may be off the place between two children
     /// with this difference.
     pub(super) fn step(self, difference: i32) -> i32 {
-        let part = 1 + (difference.unsigned_abs() / 8).min(i32::MAX as u32 - 1) as i32;
+        let part = 1 + (difference.unsigned_abs() / 4).min(i32::MAX as u32 - 1) as i32;
         2 * part.min(self.0) + 1
     }
 }
@@ -68,7 +68,7 @@ impl LayerCoding {
     /// Returns the leeway of each integer of a wedge.
     pub(super) fn leeways(&self) -> impl Iterator<Item = Leeway> + '_ {
         let leeway = |column: usize| match (self.numbers, self.kind) {
-            (Numbers::Directions(_), _) if column < 2 => Leeway(3),
+            (Numbers::Directions(_), _) if column < 2 => Leeway(6),
             (Numbers::Steps(_), LayerKind::Uv(_) | LayerKind::Color(_)) => Leeway(7),
             // Signs, joints and their weights, exact values, and others of any meaning.
             _ => Leeway(0),

@@ -1,17 +1,7 @@
 //! Models of the residuals of attribute values, each by two contexts.
 
+use super::lineage::Role;
 use super::range_coder::{BitCoder, BitModel};
-
-/// Role of a wedge in the values of an update's children.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Role {
-    /// First of a pair: its parent is off the place between both by so many steps.
-    Parent,
-    /// Second of a pair: the difference of both is off the predicted one.
-    Difference,
-    /// Any other wedge: it is off its prediction.
-    Single,
-}
 
 const ROLES: usize = 3;
 /// Classes of residuals: numbers of bits without the sign.
@@ -23,30 +13,41 @@ const NEAR: usize = 16;
 
 /// Models of all columns of a chunk.
 pub(super) struct ResidualModels {
-    columns: Vec<ColumnModels>,
-    /// Class of the residual coded last.
-    last: usize,
+    models: Vec<ColumnModels>,
+    columns: Vec<Column>,
+}
+
+/// State of a column.
+struct Column {
+    /// Number of its models, which columns share that are alike.
+    models: usize,
+    /// Class of the residual coded last in each role.
+    last: [usize; ROLES],
 }
 
 type ClassModels = [BitModel; CLASSES];
 
-/// Models of the numbers of one column.
+/// Models of numbers that are alike.
 pub(super) struct ColumnModels {
     /// Models of the bits that a class takes in unary, by role and context.
     by_size: Vec<ClassModels>,
     by_near: Vec<ClassModels>,
     /// Signs, and the highest two bits below the first, by role and class.
     below: Vec<[[BitModel; 2]; 4]>,
-    /// Class of the residual coded last in each role.
-    last: [usize; ROLES],
 }
 
 impl ResidualModels {
-    pub(super) fn new(columns: usize) -> Self {
-        Self { columns: (0..columns).map(|_| ColumnModels::new()).collect(), last: 0 }
+    /// Creates the models of columns, given for each the number of those that it takes.
+    pub(super) fn new(columns: impl Iterator<Item = usize>) -> Self {
+        let columns: Vec<_> = columns.map(|models| Column { models, last: [0; ROLES] }).collect();
+        let count = columns.iter().map(|column| column.models + 1).max().unwrap_or(0);
+        Self { models: (0..count).map(|_| ColumnModels::new()).collect(), columns }
     }
 
     /// Codes the residuals of a wedge, a number for each column. A decoder overwrites them.
+    ///
+    /// The difference of a pair comes just before how much its parent is off: both are as large as
+    /// the surface is rough.
     pub(super) fn code(
         &mut self,
         coder: &mut impl BitCoder,
@@ -54,16 +55,24 @@ impl ResidualModels {
         size: u8,
         numbers: &mut [i32],
     ) {
-        self.last = 0;
-        for (at, number) in numbers.iter_mut().enumerate() {
-            let models = &mut self.columns[at];
-            let before = models.last[role as usize];
-            let near = if at == 0 { before } else { (before + 2 * self.last + 1) / 3 };
-            let size = usize::from(size).min(SIZES - 1);
-            *number = models.code(coder, role as usize, [size, near.min(NEAR - 1)], *number);
-            self.last = models.last[role as usize];
+        let (mut beside, size) = (None, usize::from(size).min(SIZES - 1));
+        for (Column { models, last }, number) in self.columns.iter_mut().zip(numbers) {
+            let before = match role {
+                Role::Parent => last[Role::Difference as usize],
+                _ => last[role as usize],
+            };
+            let near = beside.map_or(before, |beside: usize| (before + 2 * beside + 1) / 3);
+            let contexts = [size, near.min(NEAR - 1)];
+            *number = self.models[*models].code(coder, role as usize, contexts, *number);
+            last[role as usize] = class_of(*number);
+            beside = Some(last[role as usize]);
         }
     }
+}
+
+/// Returns the number of bits of a residual without its sign.
+fn class_of(number: i32) -> usize {
+    (u32::BITS - number.unsigned_abs().leading_zeros()) as usize
 }
 
 impl ColumnModels {
@@ -73,7 +82,6 @@ impl ColumnModels {
             by_size: classes(SIZES),
             by_near: classes(NEAR),
             below: vec![[[BitModel::default(); 2]; 4]; ROLES * CLASSES],
-            last: [0; ROLES],
         }
     }
 
@@ -86,7 +94,7 @@ impl ColumnModels {
         number: i32,
     ) -> i32 {
         let magnitude = number.unsigned_abs();
-        let wanted = (u32::BITS - magnitude.leading_zeros()) as usize;
+        let wanted = class_of(number);
         let by_size = &mut self.by_size[role * SIZES + size];
         let by_near = &mut self.by_near[role * NEAR + near];
         let mut class = 0;
@@ -95,7 +103,6 @@ impl ColumnModels {
         {
             class += 1;
         }
-        self.last[role] = class;
         if class == 0 {
             return 0;
         }
@@ -134,13 +141,14 @@ mod tests {
             some.iter().zip(some.iter().rev()).map(|(a, b)| [*a, *b]).collect();
         let roles = [Role::Parent, Role::Difference, Role::Single];
         let context = |i: usize| (roles[i % 3], (i * 37) as u8);
-        let (mut encoder, mut models) = (Encoder::new(), ResidualModels::new(2));
+        let (mut encoder, mut models) = (Encoder::new(), ResidualModels::new([0, 0].into_iter()));
         for (i, row) in rows.iter().enumerate() {
             let (role, size) = context(i);
             models.code(&mut encoder, role, size, &mut row.clone());
         }
         let bytes = encoder.finish();
-        let (mut decoder, mut models) = (Decoder::new(&bytes), ResidualModels::new(2));
+        let (mut decoder, mut models) =
+            (Decoder::new(&bytes), ResidualModels::new([0, 0].into_iter()));
         for (i, row) in rows.iter().enumerate() {
             let (role, size) = context(i);
             let mut read = [0; 2];

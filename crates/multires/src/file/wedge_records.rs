@@ -13,8 +13,8 @@ pub(super) struct RecordShape {
     pub(super) counts: [u32; 2],
 }
 
-/// Number of wedges of the faces that a split mostly creates, at the end of a record.
-const CREATED: usize = 6;
+/// Greatest number of faces that a split creates.
+const CREATED: usize = 2;
 
 /// Encodes records.
 pub(super) fn write<'r>(
@@ -57,7 +57,8 @@ fn code(
     for at in 0..shape.length {
         let part = match at {
             _ if at < parents => 0,
-            _ if at + CREATED < shape.length => 1,
+            _ if shape.length > parents.saturating_add(CREATED) => 1,
+            // Only the faces that these continue.
             _ => 2,
         };
         let [last, other] = before.map(|number| number.min(3));

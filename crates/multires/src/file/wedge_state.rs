@@ -1,38 +1,33 @@
 //! Wedges of the nodes decoded so far, and their coding in the base section and in chunks.
-//!
-//! The values of a wedge are predicted from those of its parent, and of a second child's wedge also
-//! from the first child's, as the parent mostly lies between.
 
 use std::collections::BTreeMap;
 use std::io;
 use std::ops::Range;
 
-use glam::Vec3;
-use meshlod_mesh::{AttributeBounds, WedgeId};
+use meshlod_mesh::{AttributeBounds, LayerKind, WedgeId};
 
+use super::coded_values::{CodedValues, select_rows};
 use super::decoder_state::DecoderState;
-use super::layer_coding::{LayerCoding, Leeway};
+use super::layer_coding::LayerCoding;
+use super::lineage::{Lineage, Role, relate};
+use super::range_coder::{Decoder, Encoder};
+use super::residual_models::ResidualModels;
 use super::streams::{Packer, Unpacker};
 use super::wedge_records::{self, RecordShape};
+use super::wedge_values;
 use crate::forest::NONE;
-use crate::implicit::DetachedUpdate;
-use crate::wedges::{DetachedWedges, LOST, WedgeLabels, WedgeNumbers, Wedges};
+use crate::implicit::{DetachedUpdate, Implicit};
+use crate::wedges::{DetachedWedges, LOST, WedgeLabels, Wedges};
 
 /// Wedges in the file's order of nodes; in part of a file, of the nodes that are loaded.
 pub(super) struct WedgeState {
     pub(super) coding: Vec<LayerCoding>,
-    /// Leeway of each column.
-    pub(super) leeways: Vec<Leeway>,
     /// Names and pairs, with the pairs of wedges.
     pub(super) labels: WedgeLabels,
     /// First wedge of each node, and the end of the last.
     first: Vec<u32>,
-    /// True if values are coded by pairs of children, and not in the form of earlier versions.
-    pub(super) in_pairs: bool,
-    /// Integers of all wedges, a row for each.
-    pub(super) numbers: Vec<i32>,
-    /// Relations of all wedges.
-    pub(super) kin: Vec<Kin>,
+    /// What a file has for each wedge, a row each: residuals, or values of the roots' wedges.
+    pub(super) rows: Vec<i32>,
     /// Records of updates next to seams.
     records: BTreeMap<u32, Vec<u16>>,
     /// Wedges at the corners of the base mesh's faces.
@@ -57,26 +52,22 @@ impl WedgeState {
     /// Creates the state of a file without any wedges yet.
     pub(super) fn new(coding: Vec<LayerCoding>, labels: WedgeLabels) -> Self {
         Self {
-            leeways: coding.iter().flat_map(LayerCoding::leeways).collect(),
             coding,
             labels,
             first: vec![0],
-            in_pairs: true,
-            numbers: Vec::new(),
-            kin: Vec::new(),
+            rows: Vec::new(),
             records: BTreeMap::new(),
             base: Vec::new(),
         }
     }
 
-    /// Encodes the wedges of a model, with its nodes and updates in the order of the file. Values
-    /// are kept within the bounds, or exactly.
+    /// Takes the wedges of a model, for nodes and updates in the order of the file. Values are kept
+    /// within the bounds, or exactly.
     pub(super) fn of_model(
-        all: &Wedges,
+        (mt, all): (&Implicit, &Wedges),
         bounds: Option<&AttributeBounds>,
         nodes: &[u32],
         updates: &[u32],
-        state: &DecoderState,
     ) -> Self {
         let wedges = || nodes.iter().flat_map(|&node| all.of(node));
         let layers = all.values.layers(0..all.wedge_count() as u32);
@@ -86,23 +77,18 @@ impl WedgeState {
             *end += all.count(node);
             Some(*end)
         }));
-        for wedge in wedges() {
+        let mut values = Vec::new();
+        for wedge in 0..all.wedge_count() as u32 {
             for (coding, layer) in this.coding.iter().zip(&layers) {
-                coding.encode(layer.of(WedgeId(wedge)), &mut this.numbers);
+                coding.encode(layer.of(WedgeId(wedge)), &mut values);
             }
         }
+        let rows = wedge_values::residuals(mt, all, &this.coding, values);
+        this.rows = select_rows(&rows, this.columns(), wedges());
         // Roots have the same numbers in both orders.
         this.base = all.base.clone();
         for (at, &update) in (0..).zip(updates) {
             this.records.extend(all.record(update).map(|record| (at, record)));
-        }
-        this.start_kin(state);
-        for (at, update) in state.updates.iter().enumerate() {
-            this.link(&this.lineage(update.parent, at as u32, state.root_count()), state, at);
-        }
-        for (at, update) in state.updates.iter().enumerate().rev() {
-            let lineage = this.lineage(update.parent, at as u32, state.root_count());
-            this.derive_parents(&lineage);
         }
         this
     }
@@ -120,8 +106,8 @@ impl WedgeState {
         self.first[node as usize]..self.first[node as usize + 1]
     }
 
-    pub(super) fn row(&self, wedge: u32) -> &[i32] {
-        &self.numbers[wedge as usize * self.columns()..][..self.columns()]
+    fn row(&self, wedge: u32) -> &[i32] {
+        &self.rows[wedge as usize * self.columns()..][..self.columns()]
     }
 
     /// Encodes the wedges of the roots.
@@ -154,15 +140,14 @@ impl WedgeState {
             return Err(WedgeError::Invalid(OUT_OF_RANGE));
         }
         let columns = self.columns();
-        self.numbers = vec![0; wedges * columns];
+        self.rows = vec![0; wedges * columns];
         for column in 0..columns {
             let mut last = 0i32;
             for (wedge, step) in input.signed(wedges)?.into_iter().enumerate() {
                 last = last.wrapping_add(step);
-                self.numbers[wedge * columns + column] = last;
+                self.rows[wedge * columns + column] = last;
             }
         }
-        self.start_kin(state);
         if self.labels.pairs.len() > 1 {
             self.labels.of_wedges = input.numbers(wedges)?;
             self.check_labels()?;
@@ -187,26 +172,10 @@ impl WedgeState {
         Ok(self.first[self.first.len() - 1])
     }
 
-    /// Adds the relations of the roots' wedges: they have none.
-    fn start_kin(&mut self, state: &DecoderState) {
-        for root in 0..state.root_count() {
-            let kin = Kin { parent: NONE, sibling: NONE, place: state.stored_position(root) };
-            self.kin.extend(self.of(root).map(|_| kin));
-        }
-    }
-
-    /// Adds the relations of the wedges of an update's children.
-    fn link(&mut self, lineage: &[Lineage], state: &DecoderState, update: usize) {
-        let [first, second] =
-            children(state.root_count(), update).map(|c| state.stored_position(c));
-        for of in lineage {
-            let place = if of.is_second { second } else { first };
-            let parent = of.parent.unwrap_or(NONE);
-            self.kin.push(Kin { parent, sibling: of.sibling.unwrap_or(NONE), place });
-            if let Some(sibling) = of.sibling {
-                self.kin[sibling as usize].sibling = of.wedge;
-            }
-        }
+    /// Returns the length of an update's record without lists of wedges.
+    fn least_length(&self, update: &DetachedUpdate, roots: u32, at: usize) -> u32 {
+        let wedges: usize = children(roots, at).map(|child| self.of(child).len()).iter().sum();
+        (wedges + update.created_face_count()) as u32
     }
 
     fn record_shape(&self, roots: u32, update: usize, length: usize) -> RecordShape {
@@ -226,17 +195,29 @@ impl WedgeState {
         let counts = recorded().flat_map(|at| children(roots, at).map(|node| self.of(node).len()));
         packer.numbers(&counts.map(|count| count as u32).collect::<Vec<_>>())?;
         let records = || recorded().map(|at| &self.records[&(at as u32)]);
-        packer.numbers(&records().map(|record| record.len() as u32).collect::<Vec<_>>())?;
+        let more = |(at, record): (usize, &Vec<u16>)| {
+            record.len() as u32 - self.least_length(&updates[at], roots, at)
+        };
+        packer.numbers(&recorded().zip(records()).map(more).collect::<Vec<_>>())?;
         let shape = |at: usize, length| self.record_shape(roots, at, length);
         let shapes = recorded().zip(records()).map(|(at, all)| (shape(at, all.len()), &all[..]));
         wedge_records::write(shapes, packer)?;
-        let lineage: Vec<_> =
-            run.flat_map(|at| self.lineage(updates[at].parent, at as u32, roots)).collect();
+        let mut lineage = Vec::new();
+        let mut values = Vec::new();
+        for (at, &size) in run.zip(sizes) {
+            let start = lineage.len();
+            self.relate(updates[at].parent, at as u32, roots, &mut lineage);
+            values.extend(in_coding_order(&lineage[start..]).map(|of| (of, size)));
+        }
         if self.labels.pairs.len() > 1 {
-            let lost = lineage.iter().filter(|of| of.is_lost);
+            let lost = lineage.iter().filter(|of| of.is_lost());
             packer.numbers(&lost.map(|of| self.labels.of(of.wedge)).collect::<Vec<_>>())?;
         }
-        self.write_values(&lineage, sizes, packer)
+        let (mut models, mut encoder) = (self.models(), Encoder::new());
+        for ((wedge, role), size) in &values {
+            models.code(&mut encoder, *role, *size, &mut self.row(*wedge).to_vec());
+        }
+        packer.encoded(lineage.len() * self.columns(), &encoder.finish())
     }
 
     /// Decodes the wedges of the updates from `start` on, of which some have records.
@@ -255,30 +236,37 @@ impl WedgeState {
             let mut next = || if is_recorded(at) { counts.next().unwrap_or(0) } else { 1 };
             self.extend_first(&[next(), next()])?;
         }
-        let lengths: Vec<u32> = input.numbers(recorded.len())?;
-        let records = if self.in_pairs {
-            let shapes = recorded.iter().zip(&lengths);
-            let shape = |(&at, &length)| self.record_shape(roots, at, length as usize);
-            wedge_records::read(shapes.map(shape), input)?
-        } else {
-            read_plain_records(&lengths, input)?
-        };
+        let mut lengths: Vec<u32> = input.numbers(recorded.len())?;
+        for (length, &at) in lengths.iter_mut().zip(&recorded) {
+            *length = length.saturating_add(self.least_length(&updates[at], roots, at));
+        }
+        let shapes = recorded.iter().zip(&lengths);
+        let shape = |(&at, &length)| self.record_shape(roots, at, length as usize);
+        let records = wedge_records::read(shapes.map(shape), input)?;
         for (&at, record) in recorded.iter().zip(records) {
             let record = record.into_iter().map(u16::try_from).collect::<Result<Vec<u16>, _>>();
             self.records.insert(at as u32, record.map_err(|_| WedgeError::Invalid(OUT_OF_RANGE))?);
         }
-        let mut lineage = Vec::new();
-        for (at, update) in (0..).zip(updates).skip(start) {
-            lineage.extend(self.lineage(update.parent, at, roots));
+        let (mut lineage, mut values) = (Vec::new(), Vec::new());
+        for ((at, update), &size) in (0..).zip(updates).skip(start).zip(sizes) {
+            let start = lineage.len();
+            self.relate(update.parent, at, roots, &mut lineage);
+            values.extend(in_coding_order(&lineage[start..]).map(|of| (of, size)));
         }
         if lineage.iter().any(|of| of.parent.is_none_or(|parent| parent >= of.wedge)) {
             return Err(WedgeError::Invalid(OUT_OF_RANGE));
         }
         self.read_labels(&lineage, input)?;
-        for (i, pair) in (start..).zip(by_update(&lineage)) {
-            self.link(pair, state, i);
+        let columns = self.columns();
+        let bytes = input.encoded(lineage.len() * columns)?;
+        let (mut models, mut decoder) = (self.models(), Decoder::new(&bytes));
+        self.rows.resize(self.rows.len() + lineage.len() * columns, 0);
+        for ((wedge, role), size) in values {
+            let row = &mut self.rows[wedge as usize * columns..][..columns];
+            models.code(&mut decoder, role, size, row);
         }
-        self.read_values(&lineage, sizes, input)
+        let is_all = decoder.is_at_end();
+        is_all.then_some(()).ok_or(WedgeError::Invalid("it has more attribute values than wedges"))
     }
 
     fn read_labels(
@@ -289,135 +277,58 @@ impl WedgeState {
         if self.labels.pairs.len() < 2 {
             return Ok(());
         }
-        let lost = lineage.iter().filter(|of| of.is_lost).count();
+        let lost = lineage.iter().filter(|of| of.is_lost()).count();
         let mut lost = input.numbers::<u32>(lost)?.into_iter();
         for of in lineage {
             let inherited = of.parent.map_or(0, |parent| self.labels.of(parent));
-            let label = if of.is_lost { lost.next().unwrap_or(0) } else { inherited };
+            let label = if of.is_lost() { lost.next().unwrap_or(0) } else { inherited };
             self.labels.of_wedges.push(label);
         }
         self.check_labels()
     }
 
-    /// Returns the wedges of an update's children with those that predict them.
-    fn lineage(&self, node: u32, update: u32, roots: u32) -> Vec<Lineage> {
+    /// Returns the models of all columns. Those of a layer are alike, but for tangents.
+    fn models(&self) -> ResidualModels {
+        let mut next = 0;
+        let columns = self.coding.iter().flat_map(|layer| {
+            let start = next;
+            let own = layer.kind == LayerKind::Tangent;
+            next += if own { layer.columns() } else { 1 };
+            (0..layer.columns()).map(move |column| start + if own { column } else { 0 })
+        });
+        ResidualModels::new(columns)
+    }
+
+    /// Appends the wedges of an update's children.
+    fn relate(&self, node: u32, update: u32, roots: u32, all: &mut Vec<Lineage>) {
+        let above = (node != NONE).then(|| self.of(node));
+        let children = children(roots, update as usize).map(|child| self.of(child));
         let record = self.records.get(&update);
-        let [first, second] = children(roots, update as usize).map(|child| self.of(child));
-        let start = first.start;
-        let mut all: Vec<Lineage> = Vec::with_capacity(2);
-        for wedge in first.clone().chain(second) {
-            let local = record
-                .map_or(0, |record| record.get((wedge - start) as usize).copied().unwrap_or(LOST));
-            let is_lost = local == LOST;
-            // A node that is not loaded has no wedges, and its children are never shown.
-            let above = if node == NONE {
-                Some(0)
-            } else {
-                self.above(node, if is_lost { 0 } else { local })
-            };
-            // In the form of earlier versions, lost wedges have the first one above for a parent.
-            let is_same = |of: &Lineage| match self.in_pairs {
-                true => of.local == local,
-                false => of.parent == above,
-            };
-            let of_first = |of: &&Lineage| !of.is_second && is_same(of) && !is_lost;
-            let sibling = all.iter().find(of_first);
-            let sibling = sibling.map(|of| of.wedge).filter(|_| wedge >= first.end);
-            let is_second = wedge >= first.end;
-            all.push(Lineage {
-                wedge,
-                local,
-                update,
-                parent: above,
-                is_lost,
-                is_second,
-                sibling,
-                partner: None,
-            });
-        }
-        mark_pairs(&mut all);
-        all
+        let local = |wedge: usize| match record {
+            Some(record) => record.get(wedge).copied().filter(|&local| local != LOST),
+            None => Some(0),
+        };
+        relate(above, children, local, all);
     }
 
-    fn above(&self, node: u32, local: u16) -> Option<u32> {
-        let above = self.of(node);
-        Some(above.start + u32::from(local)).filter(|wedge| above.contains(wedge))
-    }
-
-    /// Takes the wedges out, once all values are known to be finite.
-    pub(super) fn into_detached(self) -> Result<DetachedWedges, &'static str> {
+    /// Returns the wedges without values, and what decodes these once the model is assembled.
+    pub(super) fn detach(self) -> (DetachedWedges, CodedValues) {
         let columns = self.columns();
-        let mut values = Vec::new();
-        for row in self.numbers.chunks_exact(columns.max(1)) {
-            let mut start = 0;
-            values.clear();
-            for coding in &self.coding {
-                let end = start + coding.columns();
-                let decoded = coding.decode(&row[start..end], &mut values);
-                decoded.ok_or("an attribute is not finite")?;
-                start = end;
-            }
-        }
-        let Self { first, records, base, labels, coding, numbers, .. } = self;
-        let values = WedgeNumbers { coding, numbers };
-        Ok(DetachedWedges { first, records, base, values, labels })
+        let Self { coding, labels, first, rows, records, base } = self;
+        (DetachedWedges { first, records, base, labels }, CodedValues { coding, columns, rows })
     }
 }
 
-/// A wedge of a child, and those from which its values are predicted.
-pub(super) struct Lineage {
-    pub(super) wedge: u32,
-    pub(super) update: u32,
-    /// Number of the parent among the wedges of the split node, or [`LOST`].
-    local: u16,
-    /// `None` if it is out of range.
-    pub(super) parent: Option<u32>,
-    is_lost: bool,
-    /// True for a wedge of the second child.
-    pub(super) is_second: bool,
-    /// Wedge of the first child that has the same parent, for one of the second child.
-    pub(super) sibling: Option<u32>,
-    /// The other of two wedges, one of each child, that their parent's values are coded with: the
-    /// first of either child that have this parent.
-    pub(super) partner: Option<u32>,
-}
-
-/// Relations of a wedge, and its place.
-#[derive(Clone, Copy)]
-pub(super) struct Kin {
-    pub(super) parent: u32,
-    /// Wedge of the other child that has the same parent, or [`NONE`].
-    pub(super) sibling: u32,
-    pub(super) place: Vec3,
-}
-
-/// Marks for each parent of an update the first wedge of either child that it has.
-fn mark_pairs(all: &mut [Lineage]) {
-    for at in 0..all.len() {
-        let Some(sibling) = all[at].sibling else { continue };
-        // Wedges of an update are numbered one after the other.
-        let first = (sibling - all[0].wedge) as usize;
-        if all[first].partner.is_none() {
-            all[first].partner = Some(all[at].wedge);
-            all[at].partner = Some(sibling);
-        }
-    }
-}
-
-/// Decodes records in the form of earlier versions.
-fn read_plain_records(lengths: &[u32], input: &mut Unpacker<'_>) -> io::Result<Vec<Vec<i32>>> {
-    let length = lengths.iter().fold(0usize, |sum, &length| sum.saturating_add(length as usize));
-    let mut numbers = input.numbers::<u32>(length)?.into_iter();
-    let record = |&length: &u32| {
-        let record = numbers.by_ref().take(length as usize);
-        record.map(u32::cast_signed).collect()
-    };
-    Ok(lengths.iter().map(record).collect())
-}
-
-/// Groups the wedges of a run by update.
-fn by_update(lineage: &[Lineage]) -> impl Iterator<Item = &[Lineage]> {
-    lineage.chunk_by(|a, b| !a.is_second || b.is_second)
+/// Iterates over the wedges of an update in the order in which their residuals are coded: by pairs,
+/// the difference first.
+fn in_coding_order(family: &[Lineage]) -> impl Iterator<Item = (u32, Role)> {
+    let pairs = family.iter().filter(|of| of.role() == Role::Difference);
+    let pairs = pairs.flat_map(|of| {
+        let first = of.partner.map(|first| (first, Role::Parent));
+        std::iter::once((of.wedge, Role::Difference)).chain(first)
+    });
+    let others = family.iter().filter(|of| of.role() == Role::Single);
+    pairs.chain(others.map(|of| (of.wedge, Role::Single)))
 }
 
 /// Returns the two nodes that an update creates.

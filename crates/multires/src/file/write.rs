@@ -34,8 +34,8 @@ pub struct Storage {
     /// keeps them bit for bit.
     ///
     /// The values of a vertex that stands for several may be off by some further steps of the
-    /// rounding: one, and an eighth of the difference between the two vertices that it is split
-    /// into, but at most three for normals and tangents and seven for uvs and colours.
+    /// rounding: one, and a quarter of the difference between the two vertices that it is split
+    /// into, but at most six for normals and tangents and seven for uvs and colours.
     pub attributes: AttributeBounds,
 }
 
@@ -104,7 +104,6 @@ pub(super) fn write(
         lattice,
         lossless: forest.exact.is_lossless(),
         has_wedges: forest.wedges.is_some(),
-        wedges_in_pairs: forest.wedges.is_some(),
         diagonal,
         rounding: forest.frame.model_length(max_displacement),
         roots: mt.root_count() as u32,
@@ -145,7 +144,7 @@ fn encode_sections(
         DetachedUpdate { parent: number(update.parent), non_fan, ..update }
     }));
     let wedges = mt.wedges();
-    state.wedges = wedges.map(|all| WedgeState::of_model(all, bounds, &nodes, &plan.order, &state));
+    state.wedges = wedges.map(|all| WedgeState::of_model((mt, all), bounds, &nodes, &plan.order));
     let write = |chunk: &PlannedChunk| {
         let body = chunk::write(&state, chunk.updates.clone())?;
         let updates = &state.updates[chunk.updates.clone()];

@@ -3,7 +3,7 @@
 use crate::forest::Forest;
 
 /// When a run made an update, counted from its end: 0 for the last contraction, more for earlier
-/// ones, in steps of a thirty-second of an octave.
+/// ones, in steps of an eighth of an octave.
 ///
 /// An update never has a greater stage than one it depends on. So the updates up to any stage are
 /// a cut: the level that the run passed through.
@@ -11,7 +11,7 @@ use crate::forest::Forest;
 pub(crate) struct Stage(u16);
 
 /// Bits of a place below its leading one that a stage keeps.
-const STEP_BITS: u32 = 5;
+const STEP_BITS: u32 = 3;
 
 impl Stage {
     /// Number of stages, which those of 2³¹ contractions do not exceed.
@@ -56,8 +56,8 @@ mod tests {
     #[test]
     fn stages_rise_from_the_last_contraction_to_the_first() {
         let stages: Vec<u16> = (0..5000).map(|after| Stage::before(after).number()).collect();
-        assert!(stages.is_sorted() && stages[0] == 0 && stages[1] == 32 && stages[4999] > 390);
-        assert!(stages.windows(2).skip(64).all(|pair| pair[1] - pair[0] <= 1));
+        assert!(stages.is_sorted() && stages[0] == 0 && stages[1] == 8 && stages[4999] == 97);
+        assert!(stages.windows(2).skip(8).all(|pair| pair[1] - pair[0] <= 1));
         assert!(Stage::before(usize::MAX).number() < Stage::COUNT);
         assert_eq!(Stage::new(Stage::COUNT.into()), None);
     }

@@ -14,7 +14,7 @@ use crate::forest::MAX_RANKED;
 use crate::forest::{MAX_LEVELS, NONE, NonFanSplit, Stage};
 use crate::length16::Length16;
 use crate::pack::{ExactPositions, PackedTable};
-use crate::wedges::DetachedWedges;
+use crate::wedges::{DetachedWedges, WedgeValues};
 
 /// An update taken out of its model. Nodes are numbered roots first, then the children of each
 /// update.
@@ -78,7 +78,8 @@ impl Implicit {
     }
 
     /// Builds a model from detached updates and exact positions, leaving out updates whose node no
-    /// other one creates. Each node may be split only once.
+    /// other one creates. Each node may be split only once. Also returns the given nodes in the order
+    /// of the model.
     ///
     /// Wings need no change: in every set of updates that is closed upwards, nodes keep their
     /// relative order.
@@ -88,7 +89,7 @@ impl Implicit {
         updates: &[DetachedUpdate],
         exact: &ExactPositions,
         wedges: Option<&DetachedWedges>,
-    ) -> Self {
+    ) -> (Self, Vec<u32>) {
         let roots = base.positions.len();
         let nodes = roots + 2 * updates.len();
         let mut update_of = vec![NONE; nodes];
@@ -137,7 +138,7 @@ impl Implicit {
         }
         let staged = if about.has_stages { &order.updates[..] } else { &[] };
         let number = |&u: &u32| i32::from(updates[u as usize].stage.number());
-        Self {
+        let model = Self {
             stages: PackedTable::list(&staged.iter().map(number).collect::<Vec<_>>()),
             frame: about.frame,
             error_kind: about.error_kind,
@@ -150,6 +151,15 @@ impl Implicit {
             wedges: wedges.map(|wedges| Arc::new(wedges.assemble(&order))),
             non_fan_splits: non_fans,
             full_faces,
+        };
+        (model, order.nodes)
+    }
+
+    /// Sets the attribute values of a model that was assembled without, and that shares its wedges
+    /// with nobody.
+    pub(crate) fn set_values(&mut self, values: WedgeValues) {
+        if let Some(all) = self.wedges.as_mut().and_then(Arc::get_mut) {
+            all.values = values;
         }
     }
 }

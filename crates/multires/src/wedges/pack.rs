@@ -1,9 +1,10 @@
 //! Packs the wedges of a forest in the order of a model.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use super::recorded_splits::{LOST, RecordedSplits};
-use super::{ForestWedges, NodeWedges, WedgeLabels, WedgeNumbers, WedgeSplit, Wedges};
+use super::{ForestWedges, NodeWedges, WedgeLabels, WedgeSplit, WedgeValues, Wedges};
 use crate::forest::{BuildError, Forest, NONE};
 use crate::implicit::Order;
 
@@ -54,23 +55,26 @@ pub(crate) struct DetachedWedges {
     pub(crate) records: BTreeMap<u32, Vec<u16>>,
     /// Wedges at the corners of the base mesh's faces.
     pub(crate) base: Vec<[u32; 3]>,
-    pub(crate) values: WedgeNumbers,
     pub(crate) labels: WedgeLabels,
 }
 
 impl DetachedWedges {
-    /// Packs the wedges in the order of a model. Records need no change: in every set of updates
-    /// that is closed upwards, nodes keep their relative order.
+    /// Returns the wedges of a node.
+    pub(crate) fn of(&self, node: u32) -> Range<u32> {
+        self.first[node as usize]..self.first[node as usize + 1]
+    }
+
+    /// Packs the wedges in the order of a model, still without values. Records need no change: in
+    /// every set of updates that is closed upwards, nodes keep their relative order.
     pub(crate) fn assemble(&self, order: &Order) -> Wedges {
-        let of = |node: u32| self.first[node as usize]..self.first[node as usize + 1];
-        let numbers = || order.nodes.iter().flat_map(|&node| of(node));
+        let numbers = || order.nodes.iter().flat_map(|&node| self.of(node));
         let updates = (0..).zip(&order.updates);
         let records = updates.filter_map(|(at, u)| Some((at, self.records.get(u)?.clone())));
         Wedges {
-            of_nodes: NodeWedges::new(order.nodes.iter().map(|&node| of(node).len() as u32)),
+            of_nodes: NodeWedges::new(order.nodes.iter().map(|&node| self.of(node).len() as u32)),
             base: self.base.clone(),
             splits: RecordedSplits::new(records),
-            values: self.values.packed(numbers()),
+            values: WedgeValues::default(),
             labels: self.labels.packed(numbers()),
         }
     }
@@ -111,25 +115,65 @@ impl RecordPacker<'_> {
                 parent => self.number(node, parent)?,
             });
         }
+        if let Some(sides) = self.sides(split) {
+            record.extend(sides);
+            return Ok(record);
+        }
         let place = |n: u32| order.index_of_node[n as usize];
         let mut around: Vec<_> =
-            split.around.iter().map(|&(ends, wedge)| (ends.map(place), wedge)).collect();
+            split.around.iter().map(|&(ends, [own, ..])| (ends.map(place), own)).collect();
         around.sort_unstable();
         for (_, wedge) in around {
-            let child = children.into_iter().find(|&child| all.of(child).contains(&wedge));
-            record.push(self.number(child.unwrap_or(children[0]), wedge)?);
+            record.push(self.number(self.child_with(wedge), wedge)?);
         }
         for nodes in self.created() {
-            let corners = split.created.iter().find_map(|(face, wedges)| {
-                let turn = (0..3).find(|&turn| rotated(*face, turn) == nodes)?;
-                Some(rotated(*wedges, turn))
-            });
-            let corners = corners.unwrap_or_else(|| nodes.map(|node| all.first[node as usize]));
-            for (node, wedge) in nodes.into_iter().zip(corners) {
+            for (node, wedge) in nodes.into_iter().zip(self.corners(split, nodes)) {
                 record.push(self.number(node, wedge)?);
             }
         }
         Ok(record)
+    }
+
+    /// Returns for each face that the split creates which of the faces next to it it continues, if
+    /// all wedges follow from that and from the parents.
+    fn sides(&self, split: &WedgeSplit) -> Option<Vec<u16>> {
+        let all = self.all;
+        if self.forest.non_fan_splits.contains_key(&(self.update as u32)) {
+            return None;
+        }
+        let below = |child: u32, parent: u32| {
+            all.of(child).find(|&wedge| all.parents[wedge as usize] == parent)
+        };
+        let parent = |wedge: u32| Some(all.parents[wedge as usize]).filter(|&up| up != NONE);
+        let follows = |own: u32| below(self.child_with(own), parent(own)?).filter(|&is| is == own);
+        split.around.iter().try_for_each(|(_, [own, ..])| follows(*own).map(|_| ()))?;
+        let side = |[first, wing, second]: [u32; 3]| {
+            let continues = |side: &usize| {
+                let mut next = split.around.iter().filter(|(ends, _)| ends[*side] == wing);
+                let (Some((_, wedges)), None) = (next.next(), next.next()) else { return false };
+                let Some(parent) = parent(wedges[0]) else { return false };
+                let corners = [below(first, parent), Some(wedges[1 + side]), below(second, parent)];
+                corners == self.corners(split, [first, wing, second]).map(Some)
+            };
+            (0..2).find(continues).map(|side| side as u16)
+        };
+        self.created().into_iter().map(side).collect()
+    }
+
+    /// Returns the child that a wedge belongs to.
+    fn child_with(&self, wedge: u32) -> u32 {
+        let children = self.forest.updates[self.update].children;
+        let child = children.into_iter().find(|&child| self.all.of(child).contains(&wedge));
+        child.unwrap_or(children[0])
+    }
+
+    /// Returns the wedges at the corners of a face that the split creates.
+    fn corners(&self, split: &WedgeSplit, nodes: [u32; 3]) -> [u32; 3] {
+        let corners = split.created.iter().find_map(|(face, wedges)| {
+            let turn = (0..3).find(|&turn| rotated(*face, turn) == nodes)?;
+            Some(rotated(*wedges, turn))
+        });
+        corners.unwrap_or_else(|| nodes.map(|node| self.all.first[node as usize]))
     }
 
     /// Returns the faces that the split creates, in the order in which a model creates them.

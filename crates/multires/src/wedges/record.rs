@@ -30,8 +30,9 @@ pub(crate) struct ForestWedges {
 /// Faces of an update next to a seam, with the wedges that they have after the split.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct WedgeSplit {
-    /// Faces around the node by their two other nodes in order, with the wedge of the child.
-    pub(crate) around: Vec<([u32; 2], u32)>,
+    /// Faces around the node by their two other nodes in order, with the wedge of the child and those
+    /// of the two nodes.
+    pub(crate) around: Vec<([u32; 2], [u32; 3])>,
     /// Faces that the split creates, with the wedges at their corners.
     pub(crate) created: Vec<([u32; 3], [u32; 3])>,
 }
@@ -155,9 +156,11 @@ impl WedgeRecorder {
         before.clear();
         before.extend(hood.spokes().iter().map(wedge));
         split.around.clear();
-        split.around.extend(hood.spokes().iter().zip(&*before).map(|(spoke, wedge)| {
+        split.around.extend(hood.spokes().iter().map(|spoke| {
             let ends = [spoke.a, spoke.b].map(|at| node(hood.ring()[at as usize].id));
-            (ends, live[wedge.index()])
+            let wedges = wedges_of(surface, spoke.face);
+            let wedge = |ahead: usize| live[wedges[(spoke.corner() + ahead) % 3].index()];
+            (ends, [0, 1, 2].map(wedge))
         }));
         split.created.clear();
         split.created.extend(hood.removed_faces().iter().map(|removed| {

@@ -18,15 +18,22 @@ const LOST_NUMBER: i32 = -1;
 
 /// Record of an update next to a seam, in local numbers.
 ///
-/// It has the parents of the wedges of the first child, then of the second; then the wedge that each
-/// face around the node has after the split, in the order of its other two nodes; and then the wedges
-/// at the corners of the faces that the split creates.
+/// It has the parents of the wedges of the first child, then of the second, and then what faces get,
+/// in one of two forms:
+/// - **continued**: each face around the node gets the first wedge of its child that has the face's
+///   wedge for a parent, and each face that the split creates continues one of the two next to it at
+///   its wing. The record has a number for each created face: 0 if it continues the one that its wing
+///   precedes, 1 if the one that it follows.
+/// - **listed**: the wedge that each face around the node has after the split, in the order of its
+///   other two nodes, and then the wedges at the corners of the faces that the split creates.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SplitRecord<'w> {
     numbers: &'w PackedTable,
     start: u32,
     /// Start of the wedges of faces around, of those of created ones, and the end.
     ends: [u32; 3],
+    /// Numbers of a created face: 1 if faces are continued, 3 if they are listed.
+    per_created: u32,
 }
 
 impl RecordedSplits {
@@ -66,9 +73,10 @@ impl RecordedSplits {
     ) -> Option<SplitRecord<'_>> {
         let [start, end] = self.ends(update)?;
         let around = start.saturating_add(wedges()).min(end);
-        let faces = (end - around).saturating_sub(3 * created() as u32);
-        let ends = [around, around + faces, end];
-        Some(SplitRecord { numbers: &self.numbers, start, ends })
+        let (left, created) = (end - around, created() as u32);
+        let per_created = if left == created { 1 } else { 3 };
+        let ends = [around, around + left.saturating_sub(per_created * created), end];
+        Some(SplitRecord { numbers: &self.numbers, start, ends, per_created })
     }
 
     #[inline]
@@ -96,22 +104,35 @@ impl SplitRecord<'_> {
         self.at(self.start, self.ends[0], wedge).filter(|&parent| parent != LOST)
     }
 
-    /// Returns the wedge of a face around the node after the split.
+    /// Returns true if the wedges of faces follow from those of the faces before the split.
+    #[inline]
+    pub(crate) fn is_continued(&self) -> bool {
+        self.per_created == 1
+    }
+
+    /// Returns true if a created face continues the face that its wing follows, and not the one that
+    /// it precedes.
+    pub(crate) fn follows(&self, face: usize) -> bool {
+        self.at(self.ends[1], self.ends[2], face) == Some(1)
+    }
+
+    /// Returns the wedge that a listed face around the node has after the split.
     #[inline]
     pub(crate) fn around(&self, face: usize) -> Option<u16> {
         self.at(self.ends[0], self.ends[1], face)
     }
 
-    /// Returns the wedges at the corners of a face that the split creates.
+    /// Returns the wedges at the corners of a listed face that the split creates.
     pub(crate) fn created(&self, face: usize) -> Option<[u16; 3]> {
         let corner = |k| self.at(self.ends[1], self.ends[2], 3 * face + k);
         Some([corner(0)?, corner(1)?, corner(2)?])
     }
 
-    /// Returns the numbers of wedges with a parent, of faces around and of created faces.
+    /// Returns the numbers of wedges with a parent, of listed faces around and of created faces.
     pub(crate) fn lengths(&self) -> [usize; 3] {
         let [around, created, end] = self.ends;
-        [around - self.start, created - around, (end - created) / 3].map(|length| length as usize)
+        let faces = (end - created) / self.per_created;
+        [around - self.start, created - around, faces].map(|length| length as usize)
     }
 
     #[inline]
@@ -135,9 +156,18 @@ mod tests {
         assert_eq!([0, 1, 2, 3].map(|at| record.parent(at)), [Some(0), None, Some(2), None]);
         assert_eq!([0, 2, 3].map(|at| record.around(at)), [Some(5), Some(3), None]);
         assert_eq!([record.created(0), record.created(1)], [Some([4, 0, 7]), None]);
-        assert_eq!(record.lengths(), [3, 3, 1]);
+        assert_eq!((record.lengths(), record.is_continued()), ([3, 3, 1], false));
         let short = all.get(70, || 2, || 2).unwrap();
         assert_eq!((short.parent(0), short.parent(1), short.around(0)), (Some(1), None, None));
         assert!(all.get(4, || 1, || 1).is_none());
+    }
+
+    #[test]
+    fn as_many_numbers_as_created_faces_say_which_these_continue() {
+        let all = RecordedSplits::new([(0, vec![0, 1, LOST, 1, 0])].into_iter());
+        let record = all.get(0, || 3, || 2).unwrap();
+        assert_eq!((record.lengths(), record.is_continued()), ([3, 0, 2], true));
+        assert_eq!([0, 1, 2].map(|face| record.follows(face)), [true, false, false]);
+        assert!(!all.get(0, || 2, || 1).unwrap().is_continued());
     }
 }

@@ -84,6 +84,22 @@ fn flags_that_are_not_known_are_refused() {
 }
 
 #[test]
+fn forms_of_attributes_that_were_never_released_are_refused() {
+    let bytes = written(&lossy(&fixtures::charted(&samples::torus(100))));
+    let with_flags = |flags: u8| {
+        let mut bytes = bytes.clone();
+        bytes[19] = bytes[19] & !96 | flags;
+        Archive::rewrite_checksums(&mut bytes);
+        bytes
+    };
+    assert!(Archive::open(with_flags(64)).unwrap().read().is_ok());
+    for flags in [0, 32, 96] {
+        let why = refusal(with_flags(flags));
+        assert!(why.ends_with("was never released; build it again"), "{flags}: {why}");
+    }
+}
+
+#[test]
 fn every_vertex_of_the_finest_mesh_has_its_position() {
     for without in [0, 57] {
         let mut forest = lossless(&samples::torus(200));
