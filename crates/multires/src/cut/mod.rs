@@ -27,7 +27,7 @@ use std::time::Duration;
 use self::front::Front;
 pub(crate) use self::meter::Meter;
 pub(crate) use self::schedule::{Schedule, ScheduleEntry, Span};
-pub(crate) use self::split_stars::{StarFace, each_split_star};
+pub(crate) use self::split_stars::{SplitStars, StarFace, each_split_star};
 use crate::implicit::Implicit;
 use crate::level::Level;
 use crate::query::{Ball, Criterion};

@@ -16,6 +16,36 @@ pub(crate) struct StarFace {
     pub(crate) others: [u32; 2],
 }
 
+/// The faces around each vertex when it is split, in the order in which updates are applied.
+#[derive(Default)]
+pub(crate) struct SplitStars {
+    /// Each update, with the end of its faces.
+    ends: Vec<(u32, usize)>,
+    faces: Vec<StarFace>,
+}
+
+impl SplitStars {
+    /// Collects the faces around all vertices of a model that are split.
+    pub(crate) fn of(mt: &Implicit) -> Self {
+        let mut all = Self::default();
+        each_split_star(mt, |update, star| {
+            all.faces.extend_from_slice(star);
+            all.ends.push((update, all.faces.len()));
+        });
+        all
+    }
+
+    /// Iterates over updates with the faces around the vertex that they split.
+    pub(crate) fn iter(&self) -> impl DoubleEndedIterator<Item = (u32, &[StarFace])> {
+        let star = |at: usize| {
+            let (update, end) = self.ends[at];
+            let start = if at == 0 { 0 } else { self.ends[at - 1].1 };
+            (update, &self.faces[start..end])
+        };
+        (0..self.ends.len()).map(star)
+    }
+}
+
 /// Applies all updates, highest levels first, and visits each with the faces around its vertex just
 /// before, sorted so that sums over them do not depend on the cut.
 ///

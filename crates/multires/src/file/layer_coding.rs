@@ -66,10 +66,15 @@ impl LayerCoding {
     }
 
     /// Returns the leeway of each integer of a wedge.
+    ///
+    /// Of texture coordinates a step is seen first: with 7, 3, 2, 1 and 0, fish-bream takes 28.4, 28.5,
+    /// 28.6, 28.8 and 29.5 kB, and the FLIP of its cuts at a quarter of the faces is .0499, .0494, .0486,
+    /// .0480 and .0474; flight-helmet with 7, 3 and 1 takes 719, 721 and 724 kB for .0214, .0214 and
+    /// .0211. Of directions, 3 in place of 6 takes 1.5 % more of flight-helmet for .0209.
     pub(super) fn leeways(&self) -> impl Iterator<Item = Leeway> + '_ {
         let leeway = |column: usize| match (self.numbers, self.kind) {
             (Numbers::Directions(_), _) if column < 2 => Leeway(6),
-            (Numbers::Steps(_), LayerKind::Uv(_) | LayerKind::Color(_)) => Leeway(7),
+            (Numbers::Steps(_), LayerKind::Uv(_) | LayerKind::Color(_)) => Leeway(1),
             // Signs, joints and their weights, exact values, and others of any meaning.
             _ => Leeway(0),
         };

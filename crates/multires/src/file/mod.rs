@@ -22,6 +22,7 @@ mod layout;
 mod lineage;
 mod normal_predictor;
 mod octahedral_plane;
+mod pair_values;
 mod quantize;
 mod range_coder;
 mod residual_models;
