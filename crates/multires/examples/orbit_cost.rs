@@ -90,7 +90,7 @@ impl Staging {
         self.numbers.clear();
     }
 
-    /// Writes both ends of a vertex's motion and when it set out, or what it is where it does not move.
+    /// Writes both ends of a vertex's motion and when it set out, or what it is where the model has it.
     fn write_motion(&mut self, morph: &Geomorph<'_>, node: u32) {
         let Some(motion) = morph.motion(node) else {
             return if morph.shows(node) {

@@ -40,17 +40,18 @@ pub struct Geomorph<'m> {
     /// Vertices of the shown cut that are not where their node is.
     motions: Motions,
     blend: Blend,
-    /// Vertices whose motion the last call has begun or ended, some of them more than once.
+    /// Vertices that the last call has sent elsewhere, or that have come or gone, some of them more than
+    /// once, and those that have arrived.
     turned: Vec<u32>,
+    arrived: Vec<u32>,
     /// True if the last call may have moved every vertex that is under way.
     has_time_passed: bool,
     /// Scratch memory: updates of the shown cut that it may be time to undo, steps of the goal, the
-    /// vertices that they brought, those that have arrived, those below one that are still to be sent,
-    /// states of vertices, and updates that a split waits for.
+    /// vertices that they brought, those below one that are still to be sent, states of vertices, and
+    /// updates that a split waits for.
     ending: Vec<u32>,
     steps: Vec<SplitOrMerge>,
     new_goals: Vec<u32>,
-    arrived: Vec<u32>,
     stack: Vec<(u32, VertexValues)>,
     spare: Vec<VertexValues>,
     first: Vec<u32>,
@@ -72,11 +73,11 @@ impl<'m> Geomorph<'m> {
             motions: Motions::new(duration),
             blend: Blend::new(mt.layers()),
             turned: Vec::new(),
+            arrived: Vec::new(),
             has_time_passed: false,
             ending: Vec::new(),
             steps: Vec::new(),
             new_goals: Vec::new(),
-            arrived: Vec::new(),
             stack: Vec::new(),
             spare: Vec::new(),
             first: Vec::new(),
@@ -118,7 +119,7 @@ impl<'m> Geomorph<'m> {
         self.has_time_passed = true;
         let mut arrived = std::mem::take(&mut self.arrived);
         self.motions.advance(elapsed, &mut arrived);
-        arrived.drain(..).for_each(|node| self.arrive(node));
+        arrived.iter().for_each(|&node| self.arrive(node));
         self.arrived = arrived;
         self.end_merges();
         !self.motions.is_empty()
@@ -185,13 +186,13 @@ impl<'m> Geomorph<'m> {
         self.shown.triangles.touched()
     }
 
-    /// Iterates over the vertices whose [`motion`](Self::motion) the last call of
-    /// [`update`](Self::update) or [`advance`](Self::advance) has begun or ended, in no particular order
-    /// and some more than once.
+    /// Iterates over the vertices that the last call of [`update`](Self::update) or
+    /// [`advance`](Self::advance) has sent elsewhere, and those that have come or gone, in no particular
+    /// order and some more than once; [`motion`](Self::motion) tells where each goes.
     ///
     /// That is all a renderer has to hear that blends vertices itself, by the [`clock`](Self::clock):
-    /// it costs what has changed, however many vertices are on their way. Those that have left the cut
-    /// are among them, and have no motion any more.
+    /// it costs what has turned, however many vertices are on their way. One that arrives is not
+    /// listed: by the clock it is there.
     pub fn turned(&self) -> impl Iterator<Item = u32> + '_ {
         self.turned.iter().copied()
     }
@@ -210,7 +211,7 @@ impl<'m> Geomorph<'m> {
     /// where the model has them. Some that are listed may have left the cut again.
     pub fn moved(&self) -> impl Iterator<Item = u32> + '_ {
         let under_way = self.has_time_passed.then(|| self.motions.nodes());
-        self.turned().chain(under_way.into_iter().flatten())
+        self.turned.iter().chain(&self.arrived).copied().chain(under_way.into_iter().flatten())
     }
 
     /// Sets `to` to what a vertex is now, and reuses its memory. Blended normals are not unit vectors.

@@ -9,6 +9,7 @@ impl Geomorph<'_> {
     pub(super) fn begin(&mut self) {
         self.shown.triangles.mark();
         self.turned.clear();
+        self.arrived.clear();
         self.has_time_passed = false;
     }
 
@@ -99,16 +100,15 @@ impl Geomorph<'_> {
     /// undo the update that brought it.
     pub(super) fn arrive(&mut self, node: u32) {
         match self.goal.front.is_active(node) {
-            true => self.forget(node),
+            true => _ = self.motions.remove(node),
             false => self.ending.extend(self.shown.mt.creator(node)),
         }
     }
 
-    /// Forgets the motion of a vertex that is at home, or has left the cut.
+    /// Forgets a vertex that leaves the cut.
     fn forget(&mut self, node: u32) {
-        if self.motions.remove(node) {
-            self.turned.push(node);
-        }
+        self.motions.remove(node);
+        self.turned.push(node);
     }
 
     /// Undoes the updates whose children have all arrived at the node that replaces them: those that
@@ -143,6 +143,11 @@ impl Geomorph<'_> {
     /// Makes the node of an update look like the children that it has replaced.
     fn join(&mut self, mt: &Implicit, update: u32) {
         let (node, children) = (mt.parent(update), mt.children(update));
+        self.turned.push(node);
+        if self.goal.front.is_active(node) {
+            // They have arrived where it is at home.
+            return children.into_iter().for_each(|child| self.forget(child));
+        }
         let mut shown = [self.spare(), self.spare()];
         for (child, shown) in children.into_iter().zip(&mut shown) {
             self.values(child, shown);
@@ -152,7 +157,6 @@ impl Geomorph<'_> {
         let [first, second] = &shown;
         joined.set_to_parent(mt, update, [(children[0], first), (children[1], second)]);
         self.motions.rest(node, &joined);
-        self.turned.push(node);
         self.arrive(node);
         self.spare.extend(shown);
         self.spare.push(joined);
