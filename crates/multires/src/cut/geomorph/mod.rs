@@ -88,7 +88,7 @@ impl<'m> Geomorph<'m> {
     /// [`Cut::update`] does. The shown surface stays as it is; vertices whose goal has changed set
     /// out for it from where they are.
     ///
-    /// Cost: that of [`Cut::update`], and O(n log n), n = vertices whose goal has changed.
+    /// Cost: that of [`Cut::update`], and linear in the vertices whose goal has changed.
     /// # Errors
     /// The query is invalid; nothing has changed.
     pub fn update(

@@ -39,23 +39,24 @@ impl Geomorph<'_> {
         self.forget(node);
         for child in mt.children(update) {
             below.set_to_child(mt, &above, update, child);
+            // Where it goes is still to be seen.
             self.motions.rest(child, &below);
-            self.turned.push(child);
         }
         self.spare.extend([above, below]);
     }
 
-    /// Lists the goal's vertices that steps brought, in rising order.
+    /// Lists the goal's vertices that steps brought, some of them more than once.
     pub(super) fn list_new_goals(&mut self, steps: &[SplitOrMerge]) {
         let (mt, goal) = (self.shown.mt, &self.goal.front);
-        let nodes = steps.iter().flat_map(|&step| match step {
-            SplitOrMerge::Merge(update) => [mt.parent(update); 2],
-            SplitOrMerge::Split(update) => mt.children(update),
+        let nodes = steps.iter().flat_map(|&step| {
+            let (merged, split) = match step {
+                SplitOrMerge::Merge(update) => (Some(mt.parent(update)), None),
+                SplitOrMerge::Split(update) => (None, Some(mt.children(update))),
+            };
+            merged.into_iter().chain(split.into_iter().flatten())
         });
         self.new_goals.clear();
         self.new_goals.extend(nodes.filter(|&node| goal.is_active(node)));
-        self.new_goals.sort_unstable();
-        self.new_goals.dedup();
     }
 
     /// Sends all that the shown cut has below a vertex of the goal to that vertex.
@@ -82,15 +83,16 @@ impl Geomorph<'_> {
         self.stack = stack;
     }
 
-    /// Sends a vertex from where it is to somewhere, unless it is on the way there or at home.
+    /// Sends a vertex from where it is to somewhere, unless it is on the way there.
     fn send(&mut self, node: u32, to: &VertexValues) {
-        if !self.motions.leads_to(node, to) {
-            let mut from = self.spare();
-            self.values(node, &mut from);
-            self.motions.send(node, [&from, to]);
-            self.turned.push(node);
-            self.spare.push(from);
+        if self.motions.is_under_way(node) && self.motions.leads_to(node, to) {
+            return;
         }
+        let mut from = self.spare();
+        self.values(node, &mut from);
+        self.motions.send(node, [&from, to]);
+        self.turned.push(node);
+        self.spare.push(from);
         if !self.motions.is_under_way(node) {
             self.arrive(node);
         }
@@ -116,7 +118,10 @@ impl Geomorph<'_> {
     pub(super) fn end_merges(&mut self) {
         let mt = self.shown.mt;
         while let Some(update) = self.ending.pop() {
-            // Fused updates are undone with the outer one.
+            // Fused updates are undone with the outer one; the goal has both or none.
+            if self.goal.front.state(mt.parent(update)) == VertexState::Split {
+                continue;
+            }
             let update = outer(mt, update);
             if !self.ends(update) {
                 continue;
