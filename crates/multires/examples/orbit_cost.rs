@@ -1,4 +1,6 @@
 //! Measures what an orbit costs the processor: a cut that changes at once, and one whose vertices move.
+//! Of the latter either what has turned is written for the GPU, which blends by the time, or the values
+//! of everything that moves.
 //!
 //! `cargo run --release -p meshlod-multires --example orbit_cost -- MODEL.mlod [PIXELS]`; without a file
 //! the fish sample with normals and texture coordinates, as it comes back from a file. The camera turns
@@ -46,9 +48,22 @@ fn main() -> Result<(), Failure> {
         Ok(cut.touched_slots().count() as f32)
     })?;
     print("at once", cut.face_count(), frames, 0);
-    let (mut morph, mut now) = (Geomorph::new(&mt, BLEND)?, VertexValues::default());
+    let mut staging = Staging::default();
+    let mut morph = Geomorph::new(&mt, BLEND)?;
+    let frames = orbit.follow(|query, elapsed| {
+        staging.clear();
+        morph.advance(elapsed);
+        morph.turned().for_each(|node| staging.write_motion(&morph, node));
+        morph.update(query, &UpdateLimits::default())?;
+        morph.turned().for_each(|node| staging.write_motion(&morph, node));
+        Ok(staging.numbers.len() as f32)
+    })?;
+    morph.advance(Duration::ZERO);
+    print("moving: motions", morph.face_count(), frames, morph.moved().count());
+    let mut morph = Geomorph::new(&mt, BLEND)?;
     let mut moved: Vec<u32> = Vec::new();
     let frames = orbit.follow(|query, elapsed| {
+        staging.clear();
         moved.clear();
         morph.advance(elapsed);
         moved.extend(morph.moved());
@@ -56,14 +71,47 @@ fn main() -> Result<(), Failure> {
         moved.extend(morph.moved());
         moved.sort_unstable();
         moved.dedup();
-        let mut value = |&node: &u32| {
-            morph.values(node, &mut now);
-            now.values.first().copied().unwrap_or(0.0)
-        };
-        Ok(moved.iter().map(&mut value).sum())
+        moved.iter().for_each(|&node| staging.write_values(&morph, node));
+        Ok(staging.numbers.len() as f32)
     })?;
-    print("moving", morph.face_count(), frames, moved.len());
+    print("moving: values", morph.face_count(), frames, moved.len());
     Ok(())
+}
+
+/// What a frame sends to the GPU, in numbers of 32 bits.
+#[derive(Default)]
+struct Staging {
+    numbers: Vec<f32>,
+    now: VertexValues,
+}
+
+impl Staging {
+    fn clear(&mut self) {
+        self.numbers.clear();
+    }
+
+    /// Writes both ends of a vertex's motion and when it set out, or what it is where the model has it.
+    fn write_motion(&mut self, morph: &Geomorph<'_>, node: u32) {
+        let Some(motion) = morph.motion(node) else {
+            return if morph.shows(node) {
+                self.write_values(morph, node)
+            };
+        };
+        let begun = motion.begun.map_or(-1.0, |begun| begun.as_secs_f32());
+        self.numbers.extend([f32::from_bits(node), begun]);
+        for (place, values) in motion.positions.into_iter().zip(motion.values) {
+            self.numbers.extend(place.map(|x| x as f32));
+            self.numbers.extend_from_slice(values);
+        }
+    }
+
+    /// Writes what a vertex is now.
+    fn write_values(&mut self, morph: &Geomorph<'_>, node: u32) {
+        morph.values(node, &mut self.now);
+        self.numbers.push(f32::from_bits(node));
+        self.numbers.extend(self.now.position.map(|x| x as f32));
+        self.numbers.extend_from_slice(&self.now.values);
+    }
 }
 
 /// Orbit around a model, at a tolerance in pixels.

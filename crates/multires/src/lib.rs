@@ -89,8 +89,8 @@ mod tests;
 
 pub use bounds::ErrorKind;
 pub use cut::{
-    Certificate, CertifyError, Cut, CutChange, Flaw, Geomorph, Located, Patch, UpdateLimits,
-    VertexValues,
+    Certificate, CertifyError, Cut, CutChange, Flaw, Geomorph, Located, Motion, Patch,
+    UpdateLimits, VertexValues,
 };
 pub use explicit::{Explicit, ExplicitCut};
 pub use file::{

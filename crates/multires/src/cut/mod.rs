@@ -18,7 +18,7 @@ mod triangles;
 mod unpack_wedges;
 
 pub use certificate::{Certificate, CertifyError, Flaw};
-pub use geomorph::{Geomorph, VertexValues};
+pub use geomorph::{Geomorph, Motion, VertexValues};
 pub use locate::Located;
 
 use std::collections::VecDeque;

@@ -85,6 +85,6 @@ impl Cut<'_> {
 }
 
 /// Returns the first of two fused updates, or the update itself.
-fn outer(mt: &Implicit, update: u32) -> u32 {
+pub(super) fn outer(mt: &Implicit, update: u32) -> u32 {
     if mt.is_fused_with_parent(update) { update - 1 } else { update }
 }

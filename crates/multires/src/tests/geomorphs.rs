@@ -1,6 +1,6 @@
 //! Cuts that change smoothly: no step makes the surface jump, and each ends at the cut.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
 use meshlod_mesh::{Layer, LayerKind, Mesh};
@@ -8,7 +8,7 @@ use meshlod_simplify::{Method, Options};
 
 use super::attributes;
 use super::walks::{Dice, each, query};
-use crate::{Cut, Forest, Geomorph, Implicit, Query, UpdateLimits, VertexValues};
+use crate::{Cut, Forest, Geomorph, Implicit, Motion, Query, UpdateLimits, VertexValues};
 
 const DURATION: Duration = Duration::from_millis(100);
 const STILL: Duration = Duration::ZERO;
@@ -125,6 +125,80 @@ fn patches_and_moved_vertices_keep_a_copy_up_to_date() {
         let copy = Mesh::new(places.clone(), faces.collect());
         assert!(surface(&copy) == surface(&morph.mesh()), "step {i}");
     }
+}
+
+/// What a renderer knows of a vertex that it blends itself.
+struct Known {
+    begun: Option<Duration>,
+    ends: [VertexValues; 2],
+}
+
+impl Known {
+    fn of(motion: Motion<'_>) -> Self {
+        let end = |k: usize| VertexValues {
+            position: motion.positions[k],
+            values: motion.values[k].to_vec(),
+        };
+        Self { begun: motion.begun, ends: [end(0), end(1)] }
+    }
+
+    /// Returns the position and values by the clock, as far as `f32` tells.
+    fn at(&self, clock: Duration) -> Vec<f32> {
+        let passed = self.begun.map_or(DURATION, |begun| (clock - begun).min(DURATION));
+        let weight = passed.as_secs_f64() / DURATION.as_secs_f64();
+        let [from, to] = [0, 1].map(|k| numbers(&self.ends[k]));
+        from.zip(to).map(|(a, b)| (a * (1.0 - weight) + b * weight) as f32).collect()
+    }
+}
+
+fn numbers(state: &VertexValues) -> impl Iterator<Item = f64> {
+    state.position.into_iter().chain(state.values.iter().map(|&value| f64::from(value)))
+}
+
+#[test]
+fn turned_vertices_and_the_clock_tell_where_all_are() {
+    let mesh = meshlod_fixtures::charted(&meshlod_samples::torus(900));
+    let mt = Implicit::new(&Forest::lossless(&mesh, &Options::default()).unwrap()).unwrap();
+    let mut morph = Geomorph::new(&mt, DURATION).unwrap();
+    let (mut known, mut dice) = (BTreeMap::new(), Dice(8));
+    let (mut under_way, mut turned) = (0, 0);
+    let mut state = VertexValues::default();
+    for step in 0..80 {
+        if step % 4 == 0 {
+            let query = query(&mut dice, &mesh);
+            morph.update(&query, &UpdateLimits::default()).unwrap();
+        } else {
+            morph.advance(DURATION.mul_f64(0.4 * dice.roll()));
+            turned += morph.turned().count();
+        }
+        for node in morph.turned() {
+            match morph.motion(node) {
+                Some(motion) => known.insert(node, Known::of(motion)),
+                None => known.remove(&node),
+            };
+        }
+        let shown: BTreeSet<u32> = morph.triangles().flat_map(|(_, nodes)| nodes).collect();
+        assert!(known.keys().all(|node| shown.contains(node)), "step {step}");
+        for node in shown {
+            morph.values(node, &mut state);
+            let now: Vec<f32> = numbers(&state).map(|x| x as f32).collect();
+            let Some(known) = known.get(&node) else {
+                assert_eq!(state.position, mt.position(node), "step {step}: {node} is at home");
+                continue;
+            };
+            assert_eq!(now, known.at(morph.clock()), "step {step}: {node}");
+            // It goes to the vertex above it, or to itself, in the goal.
+            let above = std::iter::successors(Some(node), |&node| parent(&mt, node));
+            let goal = above.into_iter().find(|&node| morph.goal().shows(node)).unwrap();
+            assert_eq!(known.ends[1].position, mt.position(goal), "step {step}: {node}");
+            under_way += usize::from(known.begun.is_some());
+        }
+    }
+    assert!(under_way > turned && turned > 100, "{under_way} under way, {turned} turned");
+}
+
+fn parent(mt: &Implicit, node: u32) -> Option<u32> {
+    mt.creator(node).map(|update| mt.parent(update))
 }
 
 #[test]

@@ -15,6 +15,7 @@ use std::time::Duration;
 
 use meshlod_mesh::{Layer, Mesh};
 
+pub use self::motions::Motion;
 use self::motions::Motions;
 use self::vertex_values::Blend;
 pub use self::vertex_values::VertexValues;
@@ -36,17 +37,19 @@ use crate::query::{Query, QueryError};
 pub struct Geomorph<'m> {
     goal: Cut<'m>,
     shown: Front<'m>,
-    /// Updates of the shown cut that are not in the goal, by their levels, and some that are.
-    ending: Vec<(u16, u32)>,
-    is_ending_sorted: bool,
     /// Vertices of the shown cut that are not where their node is.
     motions: Motions,
     blend: Blend,
-    /// Vertices that the last call may have changed, some of them more than once.
-    moved: Vec<u32>,
-    duration: Duration,
-    /// Scratch memory: steps of the goal, the vertices that they brought, those below one that are
-    /// still to be sent, states of vertices, and updates that a split waits for.
+    /// Vertices that the last call has sent elsewhere, or that have come or gone, some of them more than
+    /// once, and those that have arrived.
+    turned: Vec<u32>,
+    arrived: Vec<u32>,
+    /// True if the last call may have moved every vertex that is under way.
+    has_time_passed: bool,
+    /// Scratch memory: updates of the shown cut that it may be time to undo, steps of the goal, the
+    /// vertices that they brought, those below one that are still to be sent, states of vertices, and
+    /// updates that a split waits for.
+    ending: Vec<u32>,
     steps: Vec<SplitOrMerge>,
     new_goals: Vec<u32>,
     stack: Vec<(u32, VertexValues)>,
@@ -67,12 +70,12 @@ impl<'m> Geomorph<'m> {
         Ok(Self {
             goal,
             shown: Front::new(mt),
-            ending: Vec::new(),
-            is_ending_sorted: true,
-            motions: Motions::default(),
+            motions: Motions::new(duration),
             blend: Blend::new(mt.layers()),
-            moved: Vec::new(),
-            duration,
+            turned: Vec::new(),
+            arrived: Vec::new(),
+            has_time_passed: false,
+            ending: Vec::new(),
             steps: Vec::new(),
             new_goals: Vec::new(),
             stack: Vec::new(),
@@ -85,8 +88,7 @@ impl<'m> Geomorph<'m> {
     /// [`Cut::update`] does. The shown surface stays as it is; vertices whose goal has changed set
     /// out for it from where they are.
     ///
-    /// Cost: that of [`Cut::update`], and O(n log n), n = vertices whose goal has changed and
-    /// updates that wait to be undone.
+    /// Cost: that of [`Cut::update`], and linear in the vertices whose goal has changed.
     /// # Errors
     /// The query is invalid; nothing has changed.
     pub fn update(
@@ -110,13 +112,28 @@ impl<'m> Geomorph<'m> {
     }
 
     /// Moves vertices by the time that has passed, and returns whether any is still moving.
+    ///
+    /// Cost: linear in the vertices that arrive, whatever is on its way.
     pub fn advance(&mut self, elapsed: Duration) -> bool {
         self.begin();
-        let Self { motions, goal, moved, duration, .. } = self;
-        moved.extend(motions.nodes());
-        motions.advance(elapsed, *duration, |node| goal.front.is_active(node));
+        self.has_time_passed = true;
+        let mut arrived = std::mem::take(&mut self.arrived);
+        self.motions.advance(elapsed, &mut arrived);
+        arrived.iter().for_each(|&node| self.arrive(node));
+        self.arrived = arrived;
         self.end_merges();
         !self.motions.is_empty()
+    }
+
+    /// Returns the time that has passed in all, where each call of [`advance`](Self::advance) counts
+    /// for no more than [`duration`](Self::duration).
+    pub fn clock(&self) -> Duration {
+        self.motions.clock()
+    }
+
+    /// Returns the time that a vertex moves.
+    pub fn duration(&self) -> Duration {
+        self.motions.duration()
     }
 
     /// Returns the cut that is moved towards: the answer to the last query.
@@ -149,6 +166,11 @@ impl<'m> Geomorph<'m> {
         self.triangle(slot).and_then(|_| self.shown.triangles.wedges(slot))
     }
 
+    /// Returns true if a node of the model is a vertex of the mesh that is shown.
+    pub fn shows(&self, node: u32) -> bool {
+        self.shown.is_active(node)
+    }
+
     /// Iterates over the triangle slots that the last call of [`update`](Self::update) or
     /// [`advance`](Self::advance) changed, in no particular order.
     pub fn patches(&self) -> impl Iterator<Item = Patch> + '_ {
@@ -164,6 +186,23 @@ impl<'m> Geomorph<'m> {
         self.shown.triangles.touched()
     }
 
+    /// Iterates over the vertices that the last call of [`update`](Self::update) or
+    /// [`advance`](Self::advance) has sent elsewhere, and those that have come or gone, in no particular
+    /// order and some more than once; [`motion`](Self::motion) tells where each goes.
+    ///
+    /// That is all a renderer has to hear that blends vertices itself, by the [`clock`](Self::clock):
+    /// it costs what has turned, however many vertices are on their way. One that arrives is not
+    /// listed: by the clock it is there.
+    pub fn turned(&self) -> impl Iterator<Item = u32> + '_ {
+        self.turned.iter().copied()
+    }
+
+    /// Returns where a vertex comes from and goes to; `None` if it is where the model has it, or not in
+    /// the cut.
+    pub fn motion(&self, node: u32) -> Option<Motion<'_>> {
+        self.motions.get(node)
+    }
+
     /// Iterates over the vertices whose position or values the last call of
     /// [`update`](Self::update) or [`advance`](Self::advance) may have changed, in no particular order
     /// and some more than once; [`values`](Self::values) tells what they are.
@@ -171,7 +210,8 @@ impl<'m> Geomorph<'m> {
     /// Time moves all that are on their way. An update moves none, but vertices that it brings are not
     /// where the model has them. Some that are listed may have left the cut again.
     pub fn moved(&self) -> impl Iterator<Item = u32> + '_ {
-        self.moved.iter().copied()
+        let under_way = self.has_time_passed.then(|| self.motions.nodes());
+        self.turned.iter().chain(&self.arrived).copied().chain(under_way.into_iter().flatten())
     }
 
     /// Sets `to` to what a vertex is now, and reuses its memory. Blended normals are not unit vectors.
@@ -179,7 +219,7 @@ impl<'m> Geomorph<'m> {
     /// # Panics
     /// `node` is not below [`Implicit::node_count`].
     pub fn values(&self, node: u32, to: &mut VertexValues) {
-        if !self.motions.now(node, self.duration, &self.blend, to) {
+        if !self.motions.now(node, &self.blend, to) {
             to.set_to(self.shown.mt, node);
         }
     }

@@ -1,31 +1,25 @@
 //! Splits and merges of the shown cut, and where its vertices go.
 
-use std::time::Duration;
-
 use super::{Geomorph, SplitOrMerge, VertexState, VertexValues};
+use crate::cut::refine::outer;
 use crate::implicit::Implicit;
 
 impl Geomorph<'_> {
     /// Starts a new record of what changes.
     pub(super) fn begin(&mut self) {
         self.shown.triangles.mark();
-        self.moved.clear();
+        self.turned.clear();
+        self.arrived.clear();
+        self.has_time_passed = false;
     }
 
-    /// Does what the goal did: a split at once, a merge when its time has come.
+    /// Splits what the goal has split. What it has merged waits until vertices have arrived.
     pub(super) fn follow(&mut self, step: SplitOrMerge) {
-        let mt = self.shown.mt;
-        match step {
-            SplitOrMerge::Merge(update) => {
-                self.ending.push((mt.level(update), update));
-                self.is_ending_sorted = false;
-            }
-            // One that has not been undone yet stays.
-            SplitOrMerge::Split(update) => {
-                if self.shown.state(mt.parent(update)) != VertexState::Split {
-                    self.split(update);
-                }
-            }
+        // One that has not been undone yet stays.
+        if let SplitOrMerge::Split(update) = step
+            && self.shown.state(self.shown.mt.parent(update)) != VertexState::Split
+        {
+            self.split(update);
         }
     }
 
@@ -42,26 +36,27 @@ impl Geomorph<'_> {
         }
         let (mut above, mut below) = (self.spare(), self.spare());
         self.values(node, &mut above);
-        self.motions.remove(node);
+        self.forget(node);
         for child in mt.children(update) {
             below.set_to_child(mt, &above, update, child);
-            self.motions.send(child, [&below, &below], Duration::MAX);
-            self.moved.push(child);
+            // Where it goes is still to be seen.
+            self.motions.rest(child, &below);
         }
         self.spare.extend([above, below]);
     }
 
-    /// Lists the goal's vertices that steps brought, in rising order.
+    /// Lists the goal's vertices that steps brought, some of them more than once.
     pub(super) fn list_new_goals(&mut self, steps: &[SplitOrMerge]) {
         let (mt, goal) = (self.shown.mt, &self.goal.front);
-        let nodes = steps.iter().flat_map(|&step| match step {
-            SplitOrMerge::Merge(update) => [mt.parent(update); 2],
-            SplitOrMerge::Split(update) => mt.children(update),
+        let nodes = steps.iter().flat_map(|&step| {
+            let (merged, split) = match step {
+                SplitOrMerge::Merge(update) => (Some(mt.parent(update)), None),
+                SplitOrMerge::Split(update) => (None, Some(mt.children(update))),
+            };
+            merged.into_iter().chain(split.into_iter().flatten())
         });
         self.new_goals.clear();
         self.new_goals.extend(nodes.filter(|&node| goal.is_active(node)));
-        self.new_goals.sort_unstable();
-        self.new_goals.dedup();
     }
 
     /// Sends all that the shown cut has below a vertex of the goal to that vertex.
@@ -88,84 +83,86 @@ impl Geomorph<'_> {
         self.stack = stack;
     }
 
-    /// Sends a vertex from where it is to somewhere, unless it is on the way there or at home.
+    /// Sends a vertex from where it is to somewhere, unless it is on the way there.
     fn send(&mut self, node: u32, to: &VertexValues) {
-        if !self.motions.leads_to(node, to) {
-            let mut from = self.spare();
-            self.values(node, &mut from);
-            let elapsed = if from == *to { Duration::MAX } else { Duration::ZERO };
-            self.motions.send(node, [&from, to], elapsed);
-            self.spare.push(from);
-            // It is there at once if vertices take no time.
-            if self.motions.is_over(node, self.duration) {
-                self.moved.push(node);
-            }
+        if self.motions.is_under_way(node) && self.motions.leads_to(node, to) {
+            return;
         }
-        self.drop_if_home(node);
-    }
-
-    /// Ends the motion of a vertex that has arrived where the goal has it.
-    fn drop_if_home(&mut self, node: u32) {
-        if self.motions.is_over(node, self.duration) && self.goal.front.is_active(node) {
-            self.motions.remove(node);
-            self.moved.push(node);
+        let mut from = self.spare();
+        self.values(node, &mut from);
+        self.motions.send(node, [&from, to]);
+        self.turned.push(node);
+        self.spare.push(from);
+        if !self.motions.is_under_way(node) {
+            self.arrive(node);
         }
     }
 
-    /// Undoes the updates whose children have all arrived at the node that replaces them.
+    /// Ends the motion of a vertex that has arrived where the goal has it; elsewhere it may be time to
+    /// undo the update that brought it.
+    pub(super) fn arrive(&mut self, node: u32) {
+        match self.goal.front.is_active(node) {
+            true => _ = self.motions.remove(node),
+            false => self.ending.extend(self.shown.mt.creator(node)),
+        }
+    }
+
+    /// Forgets a vertex that leaves the cut.
+    fn forget(&mut self, node: u32) {
+        self.motions.remove(node);
+        self.turned.push(node);
+    }
+
+    /// Undoes the updates whose children have all arrived at the node that replaces them: those that
+    /// were noted, and then those that become free.
     pub(super) fn end_merges(&mut self) {
-        if !std::mem::replace(&mut self.is_ending_sorted, true) {
-            self.ending.sort_unstable();
-            self.ending.dedup();
-        }
-        // Dependents have lower levels and come first.
-        let mut ending = std::mem::take(&mut self.ending);
-        ending.retain(|&(_, update)| !self.ends(update));
-        self.ending = ending;
-    }
-
-    /// Undoes an update if its time has come. Returns true if it is not to be undone any more.
-    fn ends(&mut self, update: u32) -> bool {
         let mt = self.shown.mt;
-        if mt.children(update).iter().any(|&child| self.is_under_way(child)) {
-            return false;
+        while let Some(update) = self.ending.pop() {
+            // Fused updates are undone with the outer one; the goal has both or none.
+            if self.goal.front.state(mt.parent(update)) == VertexState::Split {
+                continue;
+            }
+            let update = outer(mt, update);
+            if !self.ends(update) {
+                continue;
+            }
+            let inner = mt.is_fused_with_child(update).then_some(update + 1);
+            inner.into_iter().chain([update]).for_each(|part| self.join(mt, part));
+            let around = self.shown.around(mt.parent(update)).iter();
+            self.ending.extend(around.filter_map(|&node| mt.creator(node)));
         }
-        let node = mt.parent(update);
-        let is_split = |state: VertexState| state == VertexState::Split;
-        if !is_split(self.shown.state(node)) || is_split(self.goal.front.state(node)) {
-            return true;
-        }
-        // Fused updates are undone with the outer one.
-        let inner = mt.is_fused_with_child(update).then(|| update + 1);
-        let mut inner_children = inner.into_iter().flat_map(|part| mt.children(part));
-        if mt.is_fused_with_parent(update)
-            || inner_children.any(|child| self.is_under_way(child))
-            || !self.shown.merge(update)
-        {
-            return false;
-        }
-        inner.into_iter().chain([update]).for_each(|part| self.join(mt, part));
-        true
     }
 
-    fn is_under_way(&self, node: u32) -> bool {
-        self.motions.is_under_way(node, self.duration)
+    /// Undoes an update and returns true, if its time has come.
+    fn ends(&mut self, update: u32) -> bool {
+        let (mt, is_split) = (self.shown.mt, |state| state == VertexState::Split);
+        let node = mt.parent(update);
+        if is_split(self.goal.front.state(node)) || !is_split(self.shown.state(node)) {
+            return false;
+        }
+        let inner = mt.is_fused_with_child(update).then(|| mt.children(update + 1));
+        let mut children = mt.children(update).into_iter().chain(inner.into_iter().flatten());
+        !children.any(|child| self.motions.is_under_way(child)) && self.shown.merge(update)
     }
 
     /// Makes the node of an update look like the children that it has replaced.
     fn join(&mut self, mt: &Implicit, update: u32) {
         let (node, children) = (mt.parent(update), mt.children(update));
+        self.turned.push(node);
+        if self.goal.front.is_active(node) {
+            // They have arrived where it is at home.
+            return children.into_iter().for_each(|child| self.forget(child));
+        }
         let mut shown = [self.spare(), self.spare()];
         for (child, shown) in children.into_iter().zip(&mut shown) {
             self.values(child, shown);
-            self.motions.remove(child);
+            self.forget(child);
         }
         let mut joined = self.spare();
         let [first, second] = &shown;
         joined.set_to_parent(mt, update, [(children[0], first), (children[1], second)]);
-        self.motions.send(node, [&joined, &joined], Duration::MAX);
-        self.moved.push(node);
-        self.drop_if_home(node);
+        self.motions.rest(node, &joined);
+        self.arrive(node);
         self.spare.extend(shown);
         self.spare.push(joined);
     }

@@ -36,9 +36,7 @@ impl VertexValues {
     pub(super) fn set_to_child(&mut self, mt: &Implicit, above: &Self, update: u32, child: u32) {
         let node = mt.parent(update);
         self.position = above.position;
-        if mt.wedges().is_some_and(|all| all.count(child) == 1 && all.count(node) == 1)
-            && wedge_pairs(mt, update, child).next().is_some()
-        {
+        if is_continued(mt, update, node, child) {
             // Most have one wedge each.
             self.values.clone_from(&above.values);
             return;
@@ -58,8 +56,13 @@ impl VertexValues {
         children: [(u32, &Self); 2],
     ) {
         let node = mt.parent(update);
-        self.set_values_to(mt, node);
         self.position = children[0].1.position;
+        let (last, shown) = children[1];
+        if is_continued(mt, update, node, last) {
+            self.values.clone_from(&shown.values);
+            return;
+        }
+        self.set_values_to(mt, node);
         for (child, shown) in children {
             for (wedge, above) in wedge_pairs(mt, update, child) {
                 let (to, from) = (values_at(mt, node, above), values_at(mt, child, wedge));
@@ -114,6 +117,12 @@ impl Blend {
             *value = old;
         }
     }
+}
+
+/// Returns true if a child and the node of an update have one wedge each, of which one becomes the other.
+fn is_continued(mt: &Implicit, update: u32, node: u32, child: u32) -> bool {
+    mt.wedges().is_some_and(|all| all.count(child) == 1 && all.count(node) == 1)
+        && wedge_pairs(mt, update, child).next().is_some()
 }
 
 /// Iterates over the wedges of a child, each with the one that it becomes at the update's node.
