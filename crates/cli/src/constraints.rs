@@ -51,7 +51,7 @@ impl ConstraintArgs {
         reading: &ReadArgs,
         session: &Session,
     ) -> Result<(Scene, Option<FuseReport>), Failure> {
-        let mut scene = files::read(path, reading, session)?;
+        let mut scene = files::read_surface(path, reading, session)?;
         let fused = self.fuse.apply(&mut scene, session);
         Ok((scene, fused))
     }

@@ -22,6 +22,11 @@ pub fn name(path: &Path) -> String {
     if is_pipe(path) { "-".into() } else { path.display().to_string() }
 }
 
+/// Returns the file name without its suffix, by which a mesh that has no name is called.
+pub fn stem(path: &Path) -> String {
+    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
+
 /// Reads a scene from a file or standard input; of our own formats, the finest level.
 pub fn read(path: &Path, reading: &ReadArgs, session: &Session) -> Result<Scene, Failure> {
     session.progress.stage(&format!("reading {}", name(path)));
@@ -39,6 +44,16 @@ pub fn read(path: &Path, reading: &ReadArgs, session: &Session) -> Result<Scene,
     };
     session.note(path, &scene.notes)?;
     Ok(scene)
+}
+
+/// Reads a scene like [`read`], for verbs that need faces.
+pub fn read_surface(path: &Path, reading: &ReadArgs, session: &Session) -> Result<Scene, Failure> {
+    let scene = read(path, reading, session)?;
+    let has_faces = |mesh: usize| !scene.meshes[mesh].mesh.faces.is_empty();
+    match scene.instances().iter().any(|shown| has_faces(shown.mesh)) {
+        true => Ok(scene),
+        false => Err(Failure::at(path, "the mesh has no faces")),
+    }
 }
 
 /// Reads all bytes of a file or standard input.

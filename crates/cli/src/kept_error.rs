@@ -9,6 +9,8 @@ use crate::numbers::{count, percent, plural, value};
 /// Error that was asked for.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Asked {
+    /// The finest mesh in the file.
+    Finest,
     /// Length in model units.
     Length(f64),
     Pixels(f64),
@@ -19,6 +21,7 @@ pub enum Asked {
 impl Asked {
     pub fn of(tolerance: &Tolerance<'_>) -> Self {
         match *tolerance {
+            _ if tolerance.is_finest() => Self::Finest,
             Tolerance::Uniform(most) => Self::Length(most),
             Tolerance::Pixels { pixels, .. } => Self::Pixels(pixels),
             Tolerance::Field(_) => Self::Faces,
@@ -57,8 +60,14 @@ impl KeptError {
     fn proved(&self) -> Option<f64> {
         match (self.known, self.asked) {
             _ if !self.is_whole => None,
-            (Known::Verified(proof), Asked::Length(asked)) => {
-                Some(if proof.holds { asked } else { proof.rounding } + self.moved)
+            (Known::Verified(_), Asked::Length(asked)) if self.is_kept() == Some(true) => {
+                Some(asked)
+            }
+            (Known::Verified(proof), Asked::Length(asked)) if proof.holds => {
+                Some(asked + self.moved)
+            }
+            (Known::Verified(proof), Asked::Length(_) | Asked::Finest) => {
+                Some(proof.rounding + self.moved)
             }
             (Known::Measured(error), _) => error.map(|error| error + self.moved),
             _ => None,
@@ -67,10 +76,8 @@ impl KeptError {
 
     /// Returns the proven error in pixels; `None` if it is a length or unknown.
     fn proved_px(&self) -> Option<f64> {
-        match (self.known, self.asked) {
-            (Known::Verified(proof), Asked::Pixels(asked)) => {
-                (proof.holds && self.is_whole && self.moved == 0.0).then_some(asked)
-            }
+        match self.asked {
+            Asked::Pixels(asked) => (self.is_kept() == Some(true)).then_some(asked),
             _ => None,
         }
     }
@@ -79,11 +86,17 @@ impl KeptError {
     /// rounding of the file at most, and within what the proof leaves for it.
     pub fn spare(&self, rounding: f64) -> f64 {
         match (self.known, self.asked) {
-            (Known::Verified(_), Asked::Length(asked)) if asked > 0.0 => {
-                rounding.min(asked / 2000.0)
+            // A point moves by at most the square root of three times as much.
+            (Known::Verified(proof), Asked::Length(_) | Asked::Pixels(_)) => {
+                rounding.min(0.5 * proof.spare)
             }
             _ => rounding,
         }
+    }
+
+    /// Notes that writing the mesh changes coordinates by up to this length, in model units.
+    pub fn note_rounding(&mut self, of_coordinates: f64) {
+        self.moved += 3f64.sqrt() * of_coordinates;
     }
 
     /// Returns a warning if less was asked for than the file can give.
@@ -92,7 +105,7 @@ impl KeptError {
             return None;
         };
         let (asked, part) = match self.asked {
-            Asked::Length(0.0) | Asked::Faces => return None,
+            Asked::Finest | Asked::Faces => return None,
             Asked::Length(asked) => (value(asked), "it"),
             Asked::Pixels(asked) => (format!("{}px", value(asked)), "parts of it"),
         };
@@ -107,14 +120,16 @@ impl KeptError {
     /// was asked for.
     pub fn is_kept(&self) -> Option<bool> {
         match (self.known, self.asked) {
-            (_, Asked::Length(0.0)) => None,
-            (Known::Verified(proof), _) if self.is_whole => Some(proof.holds && self.moved == 0.0),
+            (Known::Verified(proof), Asked::Length(_) | Asked::Pixels(_)) if self.is_whole => {
+                Some(proof.holds && self.moved <= proof.spare)
+            }
             _ => None,
         }
     }
 
     pub fn to_json(self) -> Value {
         let [asked, asked_px] = match self.asked {
+            Asked::Finest => [Some(0.0), None],
             Asked::Length(asked) => [Some(asked), None],
             Asked::Pixels(asked) => [None, Some(asked)],
             Asked::Faces => [None; 2],
@@ -136,23 +151,41 @@ impl KeptError {
     }
 
     pub fn to_text(self) -> String {
-        let length = |length: f64| {
-            format!("{} ({})", value(length), percent(100.0 * length / self.diagonal))
-        };
-        let proved = match (self.proved(), self.proved_px()) {
-            (Some(proved), _) => length(proved),
-            (_, Some(pixels)) => format!("{}px", value(pixels)),
-            (None, None) => "unknown".into(),
-        };
+        let place = if self.is_local { " in the focus" } else { "" };
         match self.known {
             Known::Stored => "error: by what the file says, not verified\n".into(),
             _ if !self.is_whole => "error: unknown, as the file is truncated\n".into(),
-            Known::Measured(_) => format!("error: at most {proved}, measured\n"),
+            Known::Measured(None) => "error: unknown, as it could not be measured\n".into(),
+            Known::Measured(Some(_)) => format!("error: at most {}, measured\n", self.bound()),
+            Known::Verified(_) if self.asked == Asked::Finest => {
+                format!("error: at most {}{place}: the finest mesh of the file\n", self.bound())
+            }
             Known::Verified(Verification { added, .. }) => {
                 let more = format!("{} update{} added", count(added), plural(added));
-                let place = if self.is_local { " in the focus" } else { "" };
-                format!("error: at most {proved}{place}, verified; {more}\n")
+                format!("error: at most {}{place}, verified; {more}\n", self.bound())
             }
+        }
+    }
+
+    /// Describes the proven error.
+    fn bound(&self) -> String {
+        let length = |length: f64| {
+            format!("{} ({})", value(length), percent(100.0 * length / self.diagonal))
+        };
+        match (self.proved(), self.known, self.asked) {
+            (Some(proved), ..) => length(proved),
+            (None, Known::Verified(proof), Asked::Pixels(pixels)) => {
+                // Where pixels are smaller than the rounding, the mesh is as fine as the file.
+                let mut text = format!("{}px", value(pixels));
+                if !proof.holds {
+                    text += &format!(" or {}, whichever is more", length(proof.rounding));
+                }
+                if self.moved > proof.spare {
+                    text += &format!(" plus {} by which vertices were moved", length(self.moved));
+                }
+                text
+            }
+            _ => "unknown".into(),
         }
     }
 }

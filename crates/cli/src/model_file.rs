@@ -33,6 +33,19 @@ pub fn check_output(path: &Path) -> Result<(), Failure> {
 
 /// Opens a multiresolution file, with a note of how far it goes if it is truncated.
 pub fn open(path: &Path, session: &Session) -> Result<ModelFile<File>, Failure> {
+    let model = open_again(path, session)?;
+    let [there, all] = pieces(&model);
+    if there < all {
+        let one = piece_name(&model);
+        let many = format!("{one}s");
+        let goes = format!(": the file is truncated, and {there} of its {all} {many} are present");
+        session.note(path, &[Note::left_out(all - there, one, &many).detailed(&goes)])?;
+    }
+    Ok(model)
+}
+
+/// Opens a multiresolution file, without a note, since it has been opened before.
+pub fn open_again(path: &Path, session: &Session) -> Result<ModelFile<File>, Failure> {
     if files::is_pipe(path) {
         return Err(Failure::usage(
             "-: a multiresolution file is read in parts and cannot be a pipe; name a file",
@@ -40,17 +53,7 @@ pub fn open(path: &Path, session: &Session) -> Result<ModelFile<File>, Failure> 
     }
     session.progress.stage(&format!("reading {}", files::name(path)));
     let file = File::open(path).map_err(|error| Failure::at(path, error))?;
-    let model = ModelFile::open(file).map_err(|error| Failure::at(path, error))?;
-    let [there, all] = pieces(&model);
-    if there < all {
-        let (one, many) = match &model {
-            ModelFile::Contractions(_) => ("chunk", "chunks"),
-            ModelFile::HeightField(..) => ("part", "parts"),
-        };
-        let goes = format!(": the file is truncated, and {there} of its {all} {many} are present");
-        session.note(path, &[Note::left_out(all - there, one, many).detailed(&goes)])?;
-    }
-    Ok(model)
+    ModelFile::open(file).map_err(|error| Failure::at(path, error))
 }
 
 pub fn certificate_json(certificate: &Certificate) -> Value {
@@ -87,6 +90,14 @@ pub fn pieces(file: &ModelFile<File>) -> [usize; 2] {
     match file {
         ModelFile::Contractions(archive) => [archive.complete_chunks(), archive.chunk_count()],
         ModelFile::HeightField(_, parts) => [parts.complete, parts.all].map(|parts| parts as usize),
+    }
+}
+
+/// Returns the word for a piece of a file: a chunk, or a part of a height field.
+pub fn piece_name(file: &ModelFile<File>) -> &'static str {
+    match file {
+        ModelFile::Contractions(_) => "chunk",
+        ModelFile::HeightField(..) => "part",
     }
 }
 

@@ -1,6 +1,7 @@
 //! Options of verbs that take a cut out of a multiresolution file, and its extraction.
 
 use std::fs::File;
+use std::path::Path;
 
 use clap::{Args, ValueEnum};
 use meshlod::multires::{Extract, FileError, ModelFile, Query, ViewCamera};
@@ -9,6 +10,7 @@ use meshlod::{VerifiedExtract, extract_verified, measure_extract};
 use crate::failure::Failure;
 use crate::kept_error::{Asked, KeptError, Known};
 use crate::model_file;
+use crate::numbers::faces;
 use crate::parse::{self, Bound};
 use crate::query_args::{self, ErrorLimit, FocusArg, QueryRequest};
 use crate::session::Session;
@@ -136,6 +138,18 @@ impl QueryArgs {
                 Ok((taken, Known::Measured(error)))
             }
         }
+    }
+
+    /// Returns true if a cut has no more faces than asked for; warns if it has more, since nothing is
+    /// coarser. `done` says what is done with it.
+    pub fn reaches(&self, input: &Path, found: usize, done: &str, session: &Session) -> bool {
+        let Some(most) = self.target.faces.filter(|&most| found > most) else { return true };
+        let found = faces(found);
+        let reason = format_args!(
+            "--faces {most} is out of reach: the coarsest level has {found}, and that is what was {done}"
+        );
+        session.warn(Failure::at(input, reason));
+        false
     }
 
     /// Returns what is known about the error of the mesh that a query gave.

@@ -110,6 +110,16 @@ pub fn read(path: &Path, file: &ModelFile<File>, session: &Session) -> Result<Mo
     Ok(model)
 }
 
+/// Lists the parts of a scene that a truncated file lacks, for programs.
+pub fn missing_json(missing: &MissingParts) -> Value {
+    json!({
+        "scene": missing.scene,
+        "previews": missing.previews,
+        "images": missing.images,
+        "animations": missing.animations,
+    })
+}
+
 /// Returns a scene of the level in `flat`, as the format can hold it: glTF has the nodes of the
 /// scene, and other formats get a copy for each instance of a mesh.
 pub fn restored(

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use meshlod::codec::{Compressed, TransportFile};
 use meshlod::io::Weld;
-use meshlod::multires::{Focus, ModelFile, Query, Tolerance};
+use meshlod::multires::{ModelFile, Query};
 use meshlod::{ReadOptions, Scene, decompress_model};
 use serde_json::{Value, json};
 
@@ -55,13 +55,12 @@ pub fn read(
         }
         OwnFormat::Levels => {
             let file = model_file::open(path, session)?;
-            let finest = Query { focus: Focus::Everything, tolerance: Tolerance::Uniform(0.0) };
-            let taken = file.extract(&finest).map_err(|error| Failure::at(path, error))?;
+            let taken = file.extract(&Query::finest());
+            let taken = taken.map_err(|error| Failure::at(path, error))?;
             (taken.level.mesh(), model_scene::read(path, &file, session)?)
         }
     };
-    let name = path.file_stem().unwrap_or_default().to_string_lossy();
-    model.into_scene(name, mesh).map_err(|error| Failure::at(path, error))
+    model.into_scene(files::stem(path), mesh).map_err(|error| Failure::at(path, error))
 }
 
 /// Facts about how a file of our own stores its mesh: for programs, and as lines for people.
@@ -70,12 +69,12 @@ pub struct StoredForm {
     pub rows: Vec<[String; 2]>,
 }
 
-/// Reads how a file of our own stores its mesh.
+/// Reads how a file of our own, of which the mesh has been read, stores it.
 pub fn stored(path: &Path, format: OwnFormat, session: &Session) -> Result<StoredForm, Failure> {
     let wrong = |error| Failure::at(path, error);
     match format {
         OwnFormat::Levels => {
-            stored_levels(&model_file::open(path, session)?).map_err(|e| Failure::at(path, e))
+            stored_levels(&model_file::open_again(path, session)?).map_err(|e| Failure::at(path, e))
         }
         OwnFormat::Resident | OwnFormat::Sent => {
             let bytes = files::read_all(path)?;

@@ -56,7 +56,14 @@ impl Scene {
     /// back, in the units of its meshes; infinite for a coordinate that cannot be written.
     pub fn rounding(&self, format: Format, precision: Precision) -> f64 {
         let precision = precision.of(self.meshes.iter().map(|mesh| &mesh.mesh));
-        let of_mesh = |mesh: &Mesh| match (format, precision) {
+        let of_mesh = |mesh: &Mesh| self.mesh_rounding(mesh, format, precision);
+        self.meshes.iter().map(|mesh| of_mesh(&mesh.mesh)).fold(0.0, f64::max)
+    }
+
+    /// Returns the largest change of a coordinate of one mesh of the scene in a format that has the
+    /// bits of `precision`, as [`Scene::rounding`] does for all.
+    pub fn mesh_rounding(&self, mesh: &Mesh, format: Format, precision: Precision) -> f64 {
+        match (format, precision) {
             (Format::Gltf | Format::Glb, _) => self.gltf_rounding(mesh),
             (Format::Stl, _) | (Format::Ply, Precision::F32) => rounding(mesh),
             (_, Precision::F64) => 0.0,
@@ -66,8 +73,7 @@ impl Scene {
                 let coordinates = mesh.positions.as_flattened().iter();
                 coordinates.map(|&x: &f64| (read(x) - x).abs()).fold(0.0, f64::max)
             }
-        };
-        self.meshes.iter().map(|mesh| of_mesh(&mesh.mesh)).fold(0.0, f64::max)
+        }
     }
 
     fn gltf_rounding(&self, mesh: &Mesh) -> f64 {

@@ -84,7 +84,7 @@ pub fn conserve_cut_volume<S: Source>(
     if there < all {
         return Err(CutVolumeError::Truncated { there, all });
     }
-    let finest = file.extract(&Query::uniform(0.0))?.level.mesh();
+    let finest = file.extract(&Query::finest())?.level.mesh();
     Ok(conserve_volume(cut, &finest, digits, &Locks::default())?)
 }
 

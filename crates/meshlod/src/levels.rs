@@ -85,7 +85,7 @@ pub struct ExtractOptions<'f> {
 impl Default for ExtractOptions<'static> {
     fn default() -> Self {
         Self {
-            query: Query::uniform(0.0),
+            query: Query::finest(),
             max_faces: None,
             verify: true,
             crop: false,

@@ -277,7 +277,7 @@ pub use model_scene::{
     LevelInstance, MissingParts, ModelScene, ModelSceneError, PackedScene, PlaceError, PlacedScene,
     SceneCounts, SceneLayout, measured_poses, model_limits, place_scene,
 };
-pub use place::{moved_at_most, rounding_of_level, world_bounds};
+pub use place::{moved_at_most, rounding_of_level, shown_rounding, world_bounds};
 pub use posed::{PoseCounts, ScenePoses, posed_mesh};
 pub use repair::repair_scene;
 pub use scene::{SceneError, SceneSimplifier, simplify_scene};

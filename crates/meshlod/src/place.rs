@@ -1,7 +1,7 @@
 //! Bounding box of a scene in world space, and scale of its instances.
 
 use glam::{DMat3, DMat4, DVec3};
-use meshlod_io::{MeshInstance, Scene};
+use meshlod_io::{Format, MeshInstance, Precision, Scene};
 use meshlod_mesh::{Bounds, Mesh};
 use meshlod_simplify::Digits;
 
@@ -43,6 +43,20 @@ pub fn rounding_of_level(scene: &Scene, digits: Digits) -> f64 {
     let local = scene.instances().iter().map(own).fold(0.0, f64::max);
     let half_ulp = 0.5 * f64::from(f32::EPSILON);
     BEYOND * 3f64.sqrt() * half_ulp * local.max(reach(&world_bounds(scene)))
+}
+
+/// Returns the largest change of a coordinate, in world units, when a scene is written in a format and
+/// read back, over all instances of its meshes: that along an axis of the mesh, as long as nodes make
+/// it. Infinite for a coordinate that cannot be written.
+pub fn shown_rounding(scene: &Scene, format: Format, precision: Precision) -> f64 {
+    let precision = precision.of(scene.meshes.iter().map(|mesh| &mesh.mesh));
+    let own: Vec<f64> = scene
+        .meshes
+        .iter()
+        .map(|mesh| scene.mesh_rounding(&mesh.mesh, format, precision))
+        .collect();
+    let shown = scene.instances().into_iter().filter(|place| own[place.mesh] > 0.0);
+    shown.map(|place| length_scale(&place.transform) * own[place.mesh]).fold(0.0, f64::max)
 }
 
 /// Returns the largest distance, in world units, by which a vertex differs between two levels of a

@@ -11,6 +11,7 @@ use meshlod_mesh::Mesh;
 use meshlod_multires::{
     Archive, Cut, ErrorKind, Extract, FileError, Focus, ModelFile, Query, Source, Tolerance,
 };
+use meshlod_spatial::closest_point;
 
 use self::check::{Check, CutSurface, RESERVE};
 use crate::measured_poses;
@@ -48,6 +49,10 @@ pub struct Verification {
     /// Greatest distance between the finest mesh in the file and the original, by rounding, in model
     /// units. If the file is truncated, the finest mesh that is there takes the original's place.
     pub rounding: f64,
+    /// Distance by which points may be moved afterwards, as when coordinates are rounded to `f32`,
+    /// without breaking what [`holds`](Self::holds) says, in model units; infinite if no triangle
+    /// meets the focus.
+    pub spare: f64,
     /// Number of updates applied because the check demanded them, with what they depend on.
     pub added: usize,
     /// Number of times that the mesh was refined and checked again.
@@ -87,8 +92,10 @@ pub fn extract_verified<S: Source>(
     match file {
         ModelFile::Contractions(archive) if !is_proven => refine(archive, query, rounding),
         _ => {
-            let verification = Verification { holds: true, rounding, added: 0, rounds: 0 };
-            Ok(VerifiedExtract { extract: file.extract(query)?, verification })
+            let extract = file.extract(&scaled(query, 1.0 - RESERVE))?;
+            let spare = RESERVE * least_tolerance(query, &extract.level.mesh());
+            let verification = Verification { holds: true, rounding, spare, added: 0, rounds: 0 };
+            Ok(VerifiedExtract { extract, verification })
         }
     }
 }
@@ -102,14 +109,19 @@ fn refine<S: Source>(
     let mut finest = Cut::new(&near.model);
     finest.refine_all_around(&near.limits);
     let surface = CutSurface::of(&finest);
-    let holds = surface.may_be_within(&near.limits, rounding);
-    let mut verification = Verification { holds, rounding, added: 0, rounds: 0 };
-    if matches!(query.tolerance, Tolerance::Uniform(most) if most * (1.0 - RESERVE) <= rounding) {
+    let least = surface.least_limit(&near.limits);
+    let holds = (1.0 - RESERVE) * least >= rounding;
+    let mut verification =
+        Verification { holds, rounding, spare: RESERVE * least, added: 0, rounds: 0 };
+    let is_below_rounding = |most: f64| most * (1.0 - RESERVE) <= rounding;
+    if query.tolerance.is_finest()
+        || matches!(query.tolerance, Tolerance::Uniform(most) if is_below_rounding(most))
+    {
         // Nothing in the file is finer.
         return Ok(VerifiedExtract { extract: near.extract(&finest)?, verification });
     }
     let part = if measured_poses(archive)?.is_some() { POSED_START } else { START };
-    let mut cut = Cut::at(&near.model, &start(query, part))?;
+    let mut cut = Cut::at(&near.model, &scaled(query, part))?;
     let mut check = Check::new(&surface, &near, rounding);
     loop {
         let splits = match &mut check {
@@ -124,8 +136,22 @@ fn refine<S: Source>(
     }
 }
 
-/// Returns the query that the stored errors answer first: this part of the tolerance asked for.
-fn start<'f>(query: &Query<'f>, part: f64) -> Query<'f> {
+/// Returns the least distance that a query allows anywhere on a mesh, in model units.
+fn least_tolerance(query: &Query<'_>, mesh: &Mesh) -> f64 {
+    match query.tolerance {
+        Tolerance::Uniform(most) => most,
+        Tolerance::Pixels { camera, pixels } => {
+            let eye = camera.eye.into();
+            let away = |face| closest_point(eye, &mesh.triangle(face)).distance(eye);
+            let allowed = mesh.faces.iter().map(|&face| pixels * camera.pixel() * away(face));
+            allowed.fold(f64::INFINITY, f64::min)
+        }
+        Tolerance::Field(_) => 0.0,
+    }
+}
+
+/// Returns a query for this part of a tolerance.
+fn scaled<'f>(query: &Query<'f>, part: f64) -> Query<'f> {
     let tolerance = match query.tolerance {
         Tolerance::Uniform(most) => Tolerance::Uniform(part * most),
         Tolerance::Pixels { camera, pixels } => Tolerance::Pixels { camera, pixels: part * pixels },
@@ -160,12 +186,12 @@ pub fn measure_extract<S: Source>(
 ) -> Result<Option<f64>, FileError> {
     let finest = match file {
         ModelFile::Contractions(archive) => {
-            let near = archive.around(&Query::uniform(0.0))?;
+            let near = archive.around(&Query::finest())?;
             let mut finest = Cut::new(&near.model);
             finest.refine_all_around(&near.limits);
             finest.level().mesh()
         }
-        ModelFile::HeightField(..) => file.extract(&Query::uniform(0.0))?.level.mesh(),
+        ModelFile::HeightField(..) => file.extract(&Query::finest())?.level.mesh(),
     };
     let apart = certified_distance(&finest, mesh, &CertifiedOptions::default());
     Ok(apart.ok().map(|apart| apart.symmetric().upper + rounding(file)))

@@ -11,19 +11,22 @@ use crate::answer::Answer;
 use crate::failure::Failure;
 use crate::files;
 use crate::model_file;
+use crate::model_scene;
 use crate::numbers::{count, faces, plural};
 use crate::session::Session;
 
 /// Proves that no mesh extracted from a multiresolution file has a crack, or fails with the reason.
 pub fn prove(path: &Path, session: &Session) -> Result<Answer, Failure> {
-    match model_file::open(path, session)? {
-        ModelFile::Contractions(archive) => prove_contractions(path, &archive, session),
-        ModelFile::HeightField(field, _) => prove_field(path, &field, session),
+    let file = model_file::open(path, session)?;
+    match &file {
+        ModelFile::Contractions(archive) => prove_contractions(path, &file, archive, session),
+        ModelFile::HeightField(field, _) => prove_field(path, &file, field, session),
     }
 }
 
 fn prove_contractions(
     path: &Path,
+    file: &ModelFile<File>,
     archive: &Archive<File>,
     session: &Session,
 ) -> Result<Answer, Failure> {
@@ -36,6 +39,8 @@ fn prove_contractions(
     let [there, chunks] = [archive.complete_chunks(), archive.chunk_count()];
     let kind = model_file::error_kind(archive);
     let poses = measured_poses(archive).map_err(|error| Failure::at(path, error))?;
+    // The images of a scene have checksums of their own.
+    let scene = model_scene::read(path, file, session)?;
     let json = json!({
         "file": files::name(path),
         "model": "contractions",
@@ -49,9 +54,10 @@ fn prove_contractions(
         "base_faces": model.base_faces(),
         "faces": model.full_faces(),
         "certificate": model_file::certificate_json(&certificate),
+        "scene_missing": model_scene::missing_json(&scene.missing),
     });
     let text = format!(
-        "{}: {} to {}, {there} of {chunks} chunk{}, {}; {}\n{}\n",
+        "{}: {} to {}, {there} of {chunks} chunk{}, {}; {}\n{}{}\n",
         files::name(path),
         count(model.base_faces()),
         faces(model.full_faces()),
@@ -59,31 +65,57 @@ fn prove_contractions(
         model_file::errors_text(kind, poses),
         model_file::rounding_text(archive),
         model_file::certificate_text(&certificate),
+        unproved_text(file),
     );
     Ok(Answer::new(json, text))
 }
 
-fn prove_field(path: &Path, field: &HeightField, session: &Session) -> Result<Answer, Failure> {
+fn prove_field(
+    path: &Path,
+    file: &ModelFile<File>,
+    field: &HeightField,
+    session: &Session,
+) -> Result<Answer, Failure> {
     session.progress.stage("proving");
     let model = Rtin::new(field);
     let sound = model.certify().map_err(|error| Failure::found(path, error))?;
     let [columns, rows] = field.size();
+    let [there, parts] = model_file::pieces(file);
     let json = json!({
         "file": files::name(path),
         "model": "right-triangles",
         "error_kind": "bound",
         "grid": [columns, rows],
         "fit": model_file::fit_json(&field.fit()),
+        "parts": parts,
+        "parts_there": there,
         "faces": model.full_faces(),
         "certificate": { "sound": sound },
     });
     let text = format!(
         "{}: right triangles of {columns} x {rows} heights, up to {}; {}\nproved: no cut of {} updates \
-         has a crack\n",
+         has a crack{}\n",
         files::name(path),
         faces(model.full_faces()),
         model_file::fit_text(&field.fit()),
         count(sound),
+        unproved_text(file),
     );
     Ok(Answer::new(json, text))
+}
+
+/// Describes the part of a truncated file of which nothing is proved; empty if it is whole.
+fn unproved_text(file: &ModelFile<File>) -> String {
+    let [there, all] = model_file::pieces(file);
+    let piece = model_file::piece_name(file);
+    match all - there {
+        0 => String::new(),
+        missing => format!(
+            ", of those in the {} {piece}{} that are present; nothing is proved of the {} that {} missing",
+            count(there),
+            plural(there),
+            count(missing),
+            if missing == 1 { "is" } else { "are" },
+        ),
+    }
 }

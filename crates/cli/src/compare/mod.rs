@@ -120,7 +120,7 @@ impl Compare {
     }
 
     fn read(&self, session: &Session) -> Result<(Subject, Output, Option<FuseReport>), Failure> {
-        let mut scene = files::read(&self.input, &self.reading, session)?;
+        let mut scene = files::read_surface(&self.input, &self.reading, session)?;
         let fused = self.constraints.fuse.apply(&mut scene, session);
         let output = Output::new(&self.out, &self.input, &scene, session);
         let materials = style::materials(&scene, &self.input, session);

@@ -110,11 +110,10 @@ fn check_axes(forward: SignedAxis, up: SignedAxis) -> Result<(), Failure> {
 
 /// Reads a scene as one mesh with its materials.
 fn read(path: &Path, reading: &ReadArgs, session: &Session) -> Result<(Mesh, Look), Failure> {
-    let scene = files::read(path, reading, session)?;
+    let scene = files::read_surface(path, reading, session)?;
     let paint = OwnedPaint::of(&scene, style::materials(&scene, path, session));
     let mesh = scene.into_mesh();
     match mesh.faces.len() {
-        0 => Err(Failure::at(path, "the mesh has no faces")),
         faces if faces > MAX_FACES => Err(Failure::at(
             path,
             format_args!(

@@ -114,7 +114,7 @@ impl Compress {
         let kind = self.check_output(&output)?;
         self.apply_locks(kind)?;
         files::check_apart(&output, &[&self.input])?;
-        let mut scene = files::read(&self.input, &self.reading, session)?;
+        let mut scene = files::read_surface(&self.input, &self.reading, session)?;
         self.check_scene(kind, &scene)?;
         let fused = self.constraints.fuse.apply(&mut scene, session);
         session.progress.stage("compressing");
@@ -149,10 +149,10 @@ impl Compress {
             return Err(Failure::usage("--sweep needs --scheme parts"));
         }
         if self.sweep.contains(&0) {
-            return Err(Failure::usage("--sweep: a mesh has at least 1 part"));
+            return Err(Failure::usage("--sweep: a number of parts must be at least 1, not 0"));
         }
         self.apply_locks(Kind::Resident)?;
-        let mut scene = files::read(&self.input, &self.reading, session)?;
+        let mut scene = files::read_surface(&self.input, &self.reading, session)?;
         let fused = self.constraints.fuse.apply(&mut scene, session);
         let Placed { mesh, .. } = self.place(scene, session)?;
         let (mut json, text) = self.sweep(&mesh, session)?;

@@ -36,11 +36,10 @@ impl Decompress {
         session.progress.stage(&format!("reading {}", files::name(&self.input)));
         let bytes = files::read_all(&self.input)?;
         let start = Instant::now();
-        let name = self.input.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy());
         let decoded = decompress_model(&bytes);
         let (mesh, model) = decoded.map_err(|error| Failure::at(&self.input, error))?;
         let counts = [mesh.positions.len(), mesh.faces.len()];
-        let flat = model.flat_scene(name, mesh);
+        let flat = model.flat_scene(files::stem(&self.input), mesh);
         let scene = model_scene::restored(&self.input, model, flat, format)?;
         let time = start.elapsed();
         let shown = model_scene::shown_faces(&scene);

@@ -9,16 +9,18 @@ use std::time::Instant;
 use clap::Args;
 use meshlod::multires::{FileError, Level, ModelFile, Query};
 use meshlod::simplify::{Digits, VolumeResidual};
-use meshlod::{CutVolumeError, Format, Mesh, ModelScene, conserve_cut_volume, digits_of};
+use meshlod::{
+    CutVolumeError, Format, Mesh, ModelScene, conserve_cut_volume, digits_of, shown_rounding,
+};
 
-use crate::answer::Answer;
+use crate::answer::{Answer, Outcome};
 use crate::args::WriteArgs;
 use crate::failure::Failure;
 use crate::files;
 use crate::model_file;
 use crate::model_query::QueryArgs;
 use crate::model_scene;
-use crate::numbers::{faces, value};
+use crate::numbers::value;
 use crate::scene_files;
 use crate::session::Session;
 use crate::verbs::extract::report::{Extracted, volume_text};
@@ -66,49 +68,51 @@ impl Extract {
             return Err(Failure::at(&self.input, "no face intersects the focus"));
         }
         let counts = [mesh.positions.len(), mesh.faces.len()];
-        if !taken.reaches(self.query.target.faces) {
-            let coarsest = faces(taken.whole_faces);
-            let reason = format_args!(
-                "--faces {} is out of reach: the coarsest level has {coarsest}, and that is what was extracted",
-                self.query.target.faces.unwrap_or_default(),
-            );
-            session.warn(Failure::at(&self.input, reason));
-        }
+        let reached = self.query.reaches(&self.input, taken.whole_faces, "extracted", session);
         let model = model_scene::read(&self.input, &file, session)?;
         self.warn_of_instances(&model, format, session);
-        let mut scene = model.flat_scene(name(&self.input), mesh);
+        let mut scene = model.flat_scene(files::stem(&self.input), mesh);
         let spare = taken.error.spare(taken.rounding);
         let writing = self.writing.within(spare, &scene, format).of(&scene);
-        let moves = scene.rounding(format, writing.options().precision);
-        if moves > spare {
-            let moved = format_args!("rounding to f32 moved coordinates by up to {}", value(moves));
-            session.warn(Failure::at(&self.output, moved));
-            taken.error.moved += 3f64.sqrt() * moves;
-        }
+        let precision = writing.options().precision;
+        let is_taken_back = model_scene::is_gltf(format) && !model.is_unmoved();
+        let mut moves = scene.rounding(format, precision);
         let mut restored = None;
         if self.exact_volume {
             let start = Instant::now();
-            let digits = digits_of(format, writing.options().precision);
+            let digits = digits_of(format, precision);
             restored = self.restore_volume(&mut scene.meshes[0].mesh, &file, digits, session)?;
             taken.error.moved += restored.map_or(0.0, |restored| restored.farthest);
             time += start.elapsed();
         }
+        let scene = model_scene::restored(&self.input, model, scene, format)?;
+        if is_taken_back {
+            moves = shown_rounding(&scene, format, precision);
+        }
+        taken.error.note_rounding(moves);
+        if moves > spare {
+            let moved = format_args!("rounding to f32 moved coordinates by up to {}", value(moves));
+            session.warn(Failure::at(&self.output, moved));
+        }
         if let Some(warning) = taken.error.warning() {
             session.warn(Failure::at(&self.input, warning));
         }
-        let asked =
-            report::Request { output: &self.output, max_faces: self.query.target.faces, time };
+        let reached = reached && taken.error.is_kept() != Some(false);
+        let asked = report::Request { output: &self.output, reached, time };
         let mut json = taken.to_json(&asked, counts);
         json["volume_residual"] = restored.map(|restored| restored.after.abs()).into();
         json["volume_moved"] = restored.map(|restored| restored.farthest).into();
+        json["shown_faces"] = model_scene::shown_faces(&scene).into();
         let mut text = taken.to_text(&asked, counts);
         if let Some(restored) = &restored {
             text += &volume_text(restored, taken.lossless);
         }
-        let scene = model_scene::restored(&self.input, model, scene, format)?;
-        json["shown_faces"] = model_scene::shown_faces(&scene).into();
         scene_files::write(&self.output, &scene, &writing, session)?;
-        Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
+        Ok(Answer {
+            file_on_stdout: files::is_pipe(&self.output),
+            outcome: Outcome::Missed.when(session.strict && !reached),
+            ..Answer::new(json, text)
+        })
     }
 
     fn take(&self, file: &ModelFile<File>, session: &Session) -> Result<Extracted, Failure> {
@@ -194,9 +198,4 @@ impl Extract {
             None => level.within(&query.focus).map_err(Failure::usage),
         }
     }
-}
-
-/// Returns the file name without its suffix.
-fn name(path: &std::path::Path) -> String {
-    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }

@@ -5,16 +5,16 @@ mod contents;
 use std::path::PathBuf;
 
 use clap::Args;
-use meshlod::Mesh;
 use meshlod::measure::{area, volume};
 use meshlod::mesh::{Connectivity, face_components};
+use meshlod::{Mesh, Scene};
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
 use crate::args::ReadArgs;
 use crate::failure::Failure;
 use crate::files;
-use crate::numbers::{count, value};
+use crate::numbers::{count, faces, value};
 use crate::own_files::{self, OwnFormat};
 use crate::session::Session;
 use crate::table::aligned;
@@ -41,6 +41,7 @@ impl Info {
         let own = OwnFormat::of_path(&self.input);
         let stored = own.map(|own| own_files::stored(&self.input, own, session)).transpose()?;
         let contents = Contents::of(&scene, file_bytes, own.is_some());
+        let faces_once = faces_of_meshes(&scene);
         let mesh = scene.into_mesh();
         let facts = Facts::of(&mesh);
         let mut json = facts.json();
@@ -50,12 +51,24 @@ impl Info {
         let mut text = format!("{}\n{}{}", files::name(&self.input), facts.text(), contents.text());
         if let Some(stored) = stored {
             json["stored"] = stored.json;
-            text += "stored as\n";
+            json["stored"]["faces"] = faces_once.into();
+            text += &match faces_once == mesh.faces.len() {
+                true => "stored as\n".to_owned(),
+                false => format!("stored as {}, each mesh once\n", faces(faces_once)),
+            };
             let rows = stored.rows.into_iter().map(|[name, of]| [format!("  {name}"), of]);
             text += &aligned(&rows.collect::<Vec<_>>());
         }
         Ok(Answer::new(json, text))
     }
+}
+
+/// Returns the number of faces of the meshes that a scene shows, each once.
+fn faces_of_meshes(scene: &Scene) -> usize {
+    let mut is_shown = vec![false; scene.meshes.len()];
+    scene.instances().iter().for_each(|instance| is_shown[instance.mesh] = true);
+    let shown = scene.meshes.iter().zip(is_shown).filter(|(_, is_shown)| *is_shown);
+    shown.map(|(mesh, _)| mesh.mesh.faces.len()).sum()
 }
 
 /// Counts and measurements of a flattened scene.

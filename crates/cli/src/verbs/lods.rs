@@ -93,7 +93,7 @@ impl Lods {
                 .try_for_each(|i| files::check_place(&self.file_of(i, layout)))?;
         }
         files::check_place(&self.guide_file())?;
-        let mut scene = files::read(&self.input, &self.reading, session)?;
+        let mut scene = files::read_surface(&self.input, &self.reading, session)?;
         let fused = self.method.constraints.fuse.apply(&mut scene, session);
         let input = InputScene { scene: &scene, path: &self.input, reading: &self.reading };
         let options = self.method.options(&input, session)?;
@@ -202,7 +202,7 @@ impl Lods {
         if layout != ChainLayout::Files {
             return self.output.clone();
         }
-        let stem = self.output.file_stem().unwrap_or_default().to_string_lossy();
+        let stem = files::stem(&self.output);
         let suffix = self.output.extension().unwrap_or_default().to_string_lossy();
         self.output.with_file_name(format!("{stem}_LOD{level}.{suffix}"))
     }

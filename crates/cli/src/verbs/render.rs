@@ -79,13 +79,10 @@ impl Render {
         if self.gpu && still::is_stored(&self.input) {
             return self.draw_stored(session);
         }
-        let scene = files::read(&self.input, &self.reading, session)?;
+        let scene = files::read_surface(&self.input, &self.reading, session)?;
         let paint = OwnedPaint::of(&scene, style::materials(&scene, &self.input, session));
         let single_sided = single_sided_materials(&scene);
         let mesh = scene.into_mesh();
-        if mesh.faces.is_empty() {
-            return Err(Failure::at(&self.input, "the mesh has no faces"));
-        }
         let heat = self.heat(&mesh, session)?;
         session.progress.stage("drawing");
         let style =
@@ -153,7 +150,7 @@ impl Render {
 
     fn heat(&self, mesh: &Mesh, session: &Session) -> Result<Option<Heat>, Failure> {
         let Some(path) = &self.heat_against else { return Ok(None) };
-        let against = files::read(path, &self.reading, session)?.into_mesh();
+        let against = files::read_surface(path, &self.reading, session)?.into_mesh();
         session.progress.stage("measuring");
         let against = distance::ready(&against, path)?;
         let errors = vertex_errors(mesh, &against);

@@ -117,7 +117,6 @@ impl Replay {
             sequence::put_into(&mut scene, sequence, path)?;
             return Ok(scene);
         }
-        let name = self.input.file_stem().map(|stem| stem.to_string_lossy().into_owned());
-        Ok(Scene::from_mesh(name.unwrap_or_default(), sequence.level()))
+        Ok(Scene::from_mesh(files::stem(&self.input), sequence.level()))
     }
 }

@@ -180,7 +180,7 @@ impl Simplify {
             self.method.constraints.topology.keep(reason)?;
             sequence::check(path, &self.input, &self.output)?;
         }
-        let mut scene = files::read(&self.input, &self.reading, session)?;
+        let mut scene = files::read_surface(&self.input, &self.reading, session)?;
         if let Some(path) = &self.sequence {
             sequence::check_scene(path, &scene, &self.input, session)?;
         }

@@ -11,11 +11,11 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum};
-use meshlod::Options;
 use meshlod::mesh::{Connectivity, VertexId};
 use meshlod::strip::{
     self, Difference, Filter, MergeTree, SkipStrip, StripOptions, StripStatistics, Strips,
 };
+use meshlod::{Options, SimplifyError};
 use serde_json::{Value, json};
 
 use crate::answer::{Answer, Outcome};
@@ -66,8 +66,8 @@ pub struct Strip {
     /// by MSFT_lod; .json for lists of vertices
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Compare the triangles drawn and their attributes with those of an independently simplified
-    /// level; exit with 3 if they differ
+    /// Compare the triangles drawn, and without --follow their attributes and materials, with those of
+    /// the level, which is simplified a second time for that, or of the cut; exit with 3 if they differ
     #[arg(long)]
     verify: bool,
     #[command(flatten)]
@@ -163,6 +163,10 @@ impl Strip {
     /// Records the contractions down to the coarsest level, and strips the whole mesh for a filter.
     fn prepare(&self, input: FlatInput, session: &Session) -> Result<StripSource, Failure> {
         let whole = MergeTree::new(&input.mesh);
+        if whole.faces().is_empty() {
+            let none = SimplifyError::AllDegenerate(input.mesh.faces.len());
+            return Err(Failure::at(&self.input, none));
+        }
         let coarsest = self.levels.iter().map(|&size| faces_of(size, &input)).min();
         let is_coarser = coarsest.is_some_and(|faces| faces < whole.faces().len());
         let (tree, simplify_time) = if is_coarser {

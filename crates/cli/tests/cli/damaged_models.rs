@@ -94,7 +94,12 @@ fn what_is_there_of_a_file_is_a_mesh() {
             (&done.json()["faces"], &done.json()["chunks_there"]),
             (&faces.into(), &whole_chunks.into())
         );
+        let missing = last - 1 - whole_chunks;
+        let proof = run.run(&["check", "part.mlod"]);
+        let unproved = format!("nothing is proved of the {missing} that ");
+        assert!(proof.text().contains(&unproved), "{proof:?}");
     }
+    assert!(!run.run(&["check", "torus.mlod"]).text().contains("nothing is proved"));
     assert!(faces < TORUS);
     write(&run, "longer.mlod", &[&whole[..], b"!"].concat());
     let lines = refused_by_all(&run, "longer.mlod");

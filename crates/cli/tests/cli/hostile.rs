@@ -4,6 +4,7 @@ use std::path::Path;
 
 use meshlod_fixtures::shared_broken;
 
+use crate::models::refused;
 use crate::run::{Done, Run};
 
 /// Runs a verb that writes `out`, and checks that it either succeeded or failed with one line and
@@ -25,6 +26,41 @@ fn check(run: &Run, arguments: &[&str], input: &Path, out: &str) -> Done {
         code => panic!("{name}: exit code {code}: {done:?}"),
     }
     done
+}
+
+#[test]
+fn a_scene_without_faces_has_one_answer() {
+    let run = Run::new();
+    let empty = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{}]}"#;
+    std::fs::write(run.path("none.gltf"), empty).unwrap();
+    let verbs: [&[&str]; 11] = [
+        &["simplify", "none.gltf", "out.ply", "--ratio", "50%"],
+        &["lods", "none.gltf", "out.glb", "--levels", "50%"],
+        &["build", "none.gltf", "out.mlod"],
+        &["strip", "none.gltf"],
+        &["strip", "none.gltf", "--out", "out.glb"],
+        &["compress", "none.gltf", "out.mlq", "--bits", "12"],
+        &["compress", "none.gltf", "out.mlz", "--bits", "12"],
+        &["compress", "none.gltf", "out.glb"],
+        &["render", "none.gltf", "out.png"],
+        &["measure", "none.gltf", "none.gltf"],
+        &["compare", "none.gltf", "--ratio", "50%", "--out", "out"],
+    ];
+    for verb in verbs {
+        let done = refused(&run, verb, 1);
+        assert_eq!(done.only_line(), "meshlod: none.gltf: the mesh has no faces", "{verb:?}");
+    }
+    std::fs::write(run.path("flat.obj"), "v 0 0 0\nv 1 0 0\nf 1 2 2\n").unwrap();
+    let verbs: [&[&str]; 4] = [
+        &["strip", "flat.obj"],
+        &["strip", "flat.obj", "--filter", "dtff", "--verify", "--out", "out.gltf"],
+        &["build", "flat.obj", "out.mlod"],
+        &["simplify", "flat.obj", "out.ply", "--ratio", "50%"],
+    ];
+    for verb in verbs {
+        let line = "meshlod: flat.obj: none of the 1 faces has three different vertices";
+        assert_eq!(refused(&run, verb, 1).only_line(), line, "{verb:?}");
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::models::{CAMERA, bytes, extract, number, pieces, torus, write};
+use crate::models::{CAMERA, bytes, extract, number, pieces, terrain, torus, write};
 use crate::run::Run;
 
 /// Builds a knot, and returns the length of its diagonal.
@@ -81,11 +81,80 @@ fn less_than_the_rounding_is_warned_of() {
     assert!(proved > 1e-5 * diagonal && farthest(&run, "knot.ply", "cut.ply") <= proved);
     // 0 asks for the finest level, and that is what comes.
     let done = run.run(&[&ask[..], &["0"]].concat());
-    assert_eq!((done.err.as_str(), &done.json()["error"]["proved"]), ("", &error["proved"]));
+    let finest = &done.json()["error"];
+    assert_eq!(
+        (done.err.as_str(), &finest["asked"], &finest["kept"]),
+        ("", &0.0.into(), &Value::Null)
+    );
+    // It may be written as f32s, which counts.
+    let more = length(&finest["proved"]) - proved;
+    assert!((0.0..1e-6 * diagonal).contains(&more), "{finest}");
     knot(&run, &["--lossless"]);
     let done = run.run(&[&ask[..], &["0.001%"]].concat());
     assert_eq!((done.err.as_str(), &done.json()["error"]["kept"]), ("", &true.into()));
     assert!(farthest(&run, "knot.ply", "cut.ply") <= 1e-5 * diagonal);
+}
+
+#[test]
+fn a_target_that_is_missed_fails_if_strict_and_is_written() {
+    let run = Run::new();
+    knot(&run, &["--rounding", "0.1%"]);
+    let ways: [&[&str]; 3] =
+        [&["--faces", "1"], &["--error", "0.001%"], &["--error", "0.001px", "--camera", CAMERA]];
+    for way in ways {
+        let out = ["extract", "knot.mlod", "cut.ply", "--json"];
+        let loose = run.run(&[&out[..], way].concat());
+        let strict = run.run(&[&out[..], way, &["--strict"]].concat());
+        assert_eq!((loose.code, strict.code), (0, 1), "{way:?}: {strict:?}");
+        assert_eq!((&strict.json()["reached"], &loose.err), (&false.into(), &strict.err));
+        assert!(!strict.only_line().is_empty() && run.path("cut.ply").exists());
+        std::fs::remove_file(run.path("cut.ply")).unwrap();
+    }
+    let met = run.run(&["extract", "knot.mlod", "cut.ply", "--error", "1%", "--strict"]);
+    assert_eq!(met.code, 0, "{met:?}");
+}
+
+#[test]
+fn rounding_to_f32_breaks_no_error_that_leaves_room_for_it() {
+    let run = Run::new();
+    knot(&run, &["--lossless"]);
+    let pixels = ["--error", "1px", "--camera", CAMERA];
+    for ask in [&["--error", "0.1%"][..], &pixels] {
+        let kept = |out: &str| {
+            let json = run.run(&[&["extract", "knot.mlod", out, "--json"], ask].concat()).json();
+            json["error"].clone()
+        };
+        let [exact, short] = ["cut.ply", "cut.glb"].map(kept);
+        assert_eq!(exact["kept"], true, "{ask:?}");
+        assert_eq!(exact, short, "{ask:?}");
+    }
+    // Bounds in the file, which no check follows, leave as much.
+    terrain(&run, 2_000);
+    run.json(&["build", "knot.ply", "knot.mlod", "--bounds"]);
+    for (file, ask) in
+        [("terrain.mlod", &pixels[..]), ("knot.mlod", &pixels), ("knot.mlod", &["--error", "1%"])]
+    {
+        let json = extract(&run, file, "cut.glb", ask);
+        assert_eq!(json["error"]["kept"], true, "{file} {ask:?}: {json}");
+    }
+    // Decimals are no f32s, and 1e-9 is less than an f32 can tell.
+    run.json(&["convert", "knot.ply", "knot.obj"]);
+    run.json(&["build", "knot.obj", "knot.mlod", "--lossless"]);
+    let ask = ["extract", "knot.mlod", "cut.glb", "--json", "--error", "1e-9"];
+    let done = run.run(&ask);
+    let error = &done.json()["error"];
+    assert!(error["kept"] == false && length(&error["proved"]) > 1e-9, "{error}");
+    assert!(done.only_line().contains("rounding to f32 moved coordinates"), "{done:?}");
+}
+
+#[test]
+fn pixels_below_the_rounding_are_said_to_hold_elsewhere() {
+    let run = Run::new();
+    knot(&run, &["--rounding", "0.1%"]);
+    let ask = ["extract", "knot.mlod", "cut.ply", "--error", "0.001px", "--camera", CAMERA];
+    let done = run.run(&ask);
+    assert!(done.text().contains("error: at most 0.001px or 0.00"), "{done:?}");
+    assert!(done.text().contains("whichever is more"), "{done:?}");
 }
 
 #[test]

@@ -11,6 +11,7 @@ mod damaged_models;
 mod demo;
 mod documents;
 mod error_bound;
+mod finest;
 mod flock;
 mod hostile;
 mod info;

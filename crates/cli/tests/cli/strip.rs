@@ -240,21 +240,6 @@ fn odd_faces_are_counted_and_the_rest_is_drawn() {
 }
 
 #[test]
-fn of_nothing_come_no_strips() {
-    let run = Run::new();
-    std::fs::write(run.path("in.off"), "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 1 1 1\n").unwrap();
-    for filter in [&[][..], &["--filter", "dtff"]] {
-        let strip = ["strip", "in.off", "--level", "50%", "--verify", "--out", "out.gltf"];
-        let report = run.json(&[&strip, filter].concat());
-        let level = &report["levels"][0];
-        for field in FIELDS.iter().filter(|field| **field != "seconds") {
-            assert_eq!(number(level, field), 0.0, "{field}");
-        }
-        assert!(run.path("out.gltf").exists());
-    }
-}
-
-#[test]
 fn damaged_files_are_stripped_or_named() {
     for input in shared_broken() {
         let (run, path) = (Run::new(), input.to_str().unwrap());

@@ -51,7 +51,7 @@ pub struct Part {
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum PartsError {
     /// The mesh has no face with three different corners.
-    #[error("the mesh has no faces to partition")]
+    #[error("the mesh has no faces")]
     Empty,
     /// A coordinate is infinite, NaN, or too large for `f32`.
     #[error("{0} has a coordinate that is not finite or is too large for f32")]

@@ -15,7 +15,7 @@ pub enum CompressError {
     #[error(transparent)]
     Mesh(#[from] MeshError),
     /// The mesh has no face with three different corners.
-    #[error("the mesh has no faces to compress")]
+    #[error("the mesh has no faces")]
     Empty,
     /// An attribute value is infinite or NaN.
     #[error("layer \"{layer}\" has a value that is not finite at wedge {wedge}")]

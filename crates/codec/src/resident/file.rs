@@ -139,7 +139,7 @@ impl Compressed {
             0 => None,
             _ => {
                 let sum = (reader.u64()?, reader.u32()?);
-                Some(section(&mut reader, "materials", sum)?)
+                Some(section(&mut reader, "materials and nodes", sum)?)
             }
         };
         reader.finish()?;

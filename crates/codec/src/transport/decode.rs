@@ -5,11 +5,12 @@ use glam::{BVec4A, Vec4};
 use super::border::{Border, NODES, Step};
 use super::gate::{CONTEXTS, Gate, NEARBY, NEARBY_BITS, NODE_BITS, context, node_at_offset};
 use super::header::{OpenHeader, max_values};
+use super::lanes::LANES;
 use super::layers::{
     BlockGeometry, BlockLayers, LayerTables, LayersFormat, SymbolReader, code_block,
 };
 use super::models::{Models, STEP_BITS};
-use super::predict::{CellVec, LANES, MAX_CELLS, Prediction, SpreadScales};
+use super::predict::{CellVec, MAX_CELLS, Prediction, SpreadScales};
 use super::rans::Symbols;
 use super::read::{any_number, number, residual};
 use super::weld_blocks::checksum;

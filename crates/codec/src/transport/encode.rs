@@ -4,8 +4,9 @@ use glam::{BVec4A, Vec4};
 
 use super::border::Step;
 use super::gate::{Gate, NEARBY, NEARBY_BITS, NODE_BITS};
+use super::lanes::LANES;
 use super::models::{ESCAPE, MAX_RESIDUAL, Models, ResidualTable};
-use super::predict::{CellVec, LANES, Prediction, SpreadScales};
+use super::predict::{CellVec, Prediction, SpreadScales};
 use super::rans::Symbol;
 use super::walk::BlockWalk;
 

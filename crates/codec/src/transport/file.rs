@@ -5,8 +5,9 @@ use meshlod_mesh::{Mesh, VertexId};
 use super::decode::{BlockBytes, Decoder, Lane};
 use super::gather::{LayersBuilder, VertexNumbers};
 use super::header::{BlockSpan, OpenHeader, SUMS_END, read_version};
+use super::lanes::LANES;
 use super::layers::BlockLayers;
-use super::predict::{CellVec, LANES};
+use super::predict::CellVec;
 use crate::bytes::{Malformed, Reader};
 
 /// Open `.mlz` file, whose blocks are decoded on request.

@@ -233,6 +233,31 @@ fn wedges_with_equal_values_become_one() {
 }
 
 #[test]
+fn directions_that_are_all_the_same_cost_next_to_nothing() {
+    let mut mesh = samples::knot(4000);
+    let mut own = attributes(&mesh, smooth(&mesh), None);
+    own.layers.retain(|layer| matches!(layer.kind, LayerKind::Uv(0)));
+    let constant = |kind, value: &[f32]| Layer {
+        kind,
+        name: String::new(),
+        width: value.len(),
+        values: value.repeat(own.wedge_count),
+    };
+    let layers = [
+        constant(LayerKind::Normal, &[0.0, 0.6, 0.8]),
+        constant(LayerKind::Tangent, &[1.0, 0.0, 0.0, -1.0]),
+    ];
+    own.layers.extend(layers);
+    mesh.attributes = Some(own);
+    let encoded = Transport::encode(&mesh, &options(256)).unwrap();
+    let bytes: Vec<usize> = encoded.layers.iter().map(|layer| layer.bytes).collect();
+    assert!(bytes[1].max(bytes[2]) < mesh.positions.len() / 50, "{bytes:?}");
+    let decoded = TransportFile::open(&encoded.bytes).unwrap().decode().unwrap();
+    let tangents = &decoded.attributes.unwrap().layers[2].values;
+    assert!(tangents.chunks(4).all(|t| t[0] > 0.9999 && t[3] == -1.0));
+}
+
+#[test]
 fn blocks_decoded_alone_have_the_attributes_of_the_mesh() {
     let mut mesh = samples::knot(3000);
     mesh.attributes = Some(attributes(&mesh, torn(&mesh, 2, 7), Some(3)));

@@ -13,6 +13,7 @@ mod grid;
 mod header;
 #[cfg(test)]
 mod hostile_layer_tests;
+mod lanes;
 #[cfg(test)]
 mod layer_tests;
 mod layers;
@@ -102,7 +103,7 @@ impl Default for TransportOptions {
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum TransportError {
     /// The mesh has no faces.
-    #[error("the mesh has no faces to encode")]
+    #[error("the mesh has no faces")]
     Empty,
     /// The mesh has more faces than the format can number.
     #[error("the mesh has {0} faces, too many for one file: split the mesh")]

@@ -9,6 +9,7 @@
 use glam::{BVec4A, Mat4, Vec3A, Vec4};
 
 use super::gate::Gate;
+use super::lanes::{LANES, LastAxis, Vec3x4, least, most};
 use super::models::{CLASSES, Models};
 
 /// Point or vector, in cells.
@@ -20,8 +21,6 @@ pub(super) const MAX_CELLS: i32 = 1 << 21;
 pub(super) const FEATURES: usize = 5;
 /// Number of kinds of gates.
 pub(super) const GATES: usize = 5 * 4;
-/// Number of blocks processed at a time.
-pub(super) const LANES: usize = 4;
 
 impl Gate {
     /// Returns the kind of the gate, by the numbers of known faces at its ends.
@@ -39,90 +38,6 @@ const FLOOR: f32 = 0.15;
 /// Weight of a new vertex in the spread scale: .08 and .125 take as much, .18 and .06 some
 /// thousandths more.
 const GAIN: f32 = 0.1;
-
-/// Point or vector of each lane.
-#[derive(Clone, Copy, Debug)]
-struct Vec3x4 {
-    x: Vec4,
-    y: Vec4,
-    z: Vec4,
-}
-
-impl Vec3x4 {
-    /// Transposes points, dropping their fourth components.
-    #[inline(always)]
-    fn new(places: [Vec4; LANES]) -> Self {
-        let [a, b, c, d] = places;
-        let Mat4 { x_axis, y_axis, z_axis, .. } = Mat4::from_cols(a, b, c, d).transpose();
-        Self { x: x_axis, y: y_axis, z: z_axis }
-    }
-
-    #[inline(always)]
-    fn dot(self, other: Self) -> Vec4 {
-        self.x * other.x + self.y * other.y + self.z * other.z
-    }
-
-    #[inline(always)]
-    fn cross(self, other: Self) -> Self {
-        Self {
-            x: self.y * other.z - self.z * other.y,
-            y: self.z * other.x - self.x * other.z,
-            z: self.x * other.y - self.y * other.x,
-        }
-    }
-
-    #[inline(always)]
-    fn each(self, by: impl Fn(Vec4) -> Vec4) -> Self {
-        Self { x: by(self.x), y: by(self.y), z: by(self.z) }
-    }
-
-    /// Returns the coordinates in coding order: cyclic, with the axis of the normal's greatest
-    /// component last.
-    #[inline(always)]
-    fn turned(self, last: &LastAxis) -> [Vec4; 3] {
-        let Self { x, y, z } = self;
-        [last.select(y, z, x), last.select(z, x, y), last.select(x, y, z)]
-    }
-}
-
-impl std::ops::Add for Vec3x4 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        Self { x: self.x + other.x, y: self.y + other.y, z: self.z + other.z }
-    }
-}
-
-impl std::ops::Sub for Vec3x4 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        Self { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
-    }
-}
-
-/// Axis that is coded last.
-#[derive(Clone, Copy, Debug)]
-struct LastAxis {
-    is_x: BVec4A,
-    is_y: BVec4A,
-}
-
-impl LastAxis {
-    #[inline(always)]
-    fn of(normal: Vec3x4) -> Self {
-        let Vec3x4 { x, y, z } = normal.each(Vec4::abs);
-        let is_y = y.cmpgt(x.max(z));
-        Self { is_x: x.cmpgt(z) & !is_y, is_y }
-    }
-
-    #[inline(always)]
-    fn select(&self, x: Vec4, y: Vec4, z: Vec4) -> Vec4 {
-        Vec4::select(self.is_x, x, Vec4::select(self.is_y, y, z))
-    }
-}
 
 /// Geometry around the gates of all lanes.
 struct GateGeometry {
@@ -392,14 +307,4 @@ fn nearest(x: f32) -> i32 {
     let x = if x > 0.0 { x } else { 0.0 };
     let x = if x < MAX_CELLS as f32 { x } else { MAX_CELLS as f32 };
     (x + WHOLE).to_bits() as i32 - WHOLE.to_bits() as i32
-}
-
-#[inline(always)]
-fn least(a: Vec4, b: Vec4) -> Vec4 {
-    Vec4::select(a.cmplt(b), a, b)
-}
-
-#[inline(always)]
-fn most(a: Vec4, b: Vec4) -> Vec4 {
-    Vec4::select(a.cmpgt(b), a, b)
 }

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::compress::QuantizationGrid;
 use super::nodes::{self, MSFT_LOD};
-use super::primitives::Replacer;
+use super::primitives::{Replacer, is_surface};
 use crate::Unsupported;
 
 /// Coarser level of detail of a whole scene, to be written to a glTF file.
@@ -46,7 +46,8 @@ impl<'a> From<&'a [Level]> for Levels<'a> {
     }
 }
 
-/// Adds the levels of all meshes, and the nodes that show them.
+/// Adds the levels of all meshes that have triangles, and the nodes that show them. Others stay as
+/// they are.
 ///
 /// `templates` are the meshes of the document before their geometry was replaced, `grids` the
 /// quantization grids of their positions.
@@ -58,9 +59,9 @@ pub(super) fn add(
     replacer: &mut Replacer<'_>,
 ) -> Result<(), Unsupported> {
     check(levels, templates.len())?;
-    let first = add_meshes(json, templates, grids, levels, replacer)?;
+    let of_mesh = add_meshes(json, templates, grids, levels, replacer)?;
     let coverage: Vec<f64> = levels.iter().map(|level| level.screen_coverage).collect();
-    let ids = |mesh| (0..levels.len()).map(|k| first + k * templates.len() + mesh).collect();
+    let ids = |mesh: usize| of_mesh.get(mesh).cloned().unwrap_or_default();
     match layout {
         LodLayout::Linked => link_nodes(json, ids, Some(&coverage)),
         LodLayout::Siblings => show_all(json, ids),
@@ -100,6 +101,10 @@ fn show_all(json: &mut Value, ids_of: impl Fn(usize) -> Vec<usize>) {
     let hidden = nodes::levels(json, count);
     for node in (0..count).filter(|&node| !hidden[node]) {
         let Some(mesh) = json["nodes"][node].get("mesh").and_then(Value::as_u64) else { continue };
+        let coarser = ids_of(mesh as usize);
+        if coarser.is_empty() {
+            continue;
+        }
         let name = base_name(json, node, mesh as usize);
         let extensions = json["nodes"][node].get_mut("extensions");
         if let Some(extensions) = extensions.and_then(Value::as_object_mut) {
@@ -107,7 +112,7 @@ fn show_all(json: &mut Value, ids_of: impl Fn(usize) -> Vec<usize>) {
         }
         let finest = give_to_child(json, node);
         json["nodes"][finest]["name"] = format!("{name}_LOD0").into();
-        let coarser = add_coarser(json, finest, &name, &ids_of(mesh as usize));
+        let coarser = add_coarser(json, finest, &name, &coarser);
         let coarser = coarser.into_iter().map(Value::from).collect();
         extend(&mut json["nodes"][node], "children", coarser);
     }
@@ -130,29 +135,40 @@ fn check(levels: &[Level], meshes: usize) -> Result<(), Unsupported> {
     Ok(())
 }
 
-/// Adds the meshes, level after level, and returns the index of the first.
+/// Adds the meshes that have triangles, level after level, and returns the indices of the levels of
+/// each mesh.
 fn add_meshes(
     json: &mut Value,
     templates: &[Value],
     grids: &[Option<QuantizationGrid>],
     levels: &[Level],
     replacer: &mut Replacer<'_>,
-) -> Result<usize, Unsupported> {
+) -> Result<Vec<Vec<usize>>, Unsupported> {
+    let first = json["meshes"].as_array().map_or(0, Vec::len);
+    let mut of_mesh = vec![Vec::new(); templates.len()];
     let mut new = Vec::new();
     for (k, level) in levels.iter().enumerate() {
-        for ((template, mesh), grid) in templates.iter().zip(&level.meshes).zip(grids) {
+        let meshes = templates.iter().zip(&level.meshes).zip(grids).zip(&mut of_mesh);
+        for (((template, mesh), grid), ids) in meshes.filter(|(((t, _), _), _)| has_surface(t)) {
             let mut coarse = template.clone();
             replacer.replace(&mut coarse, mesh, grid.as_ref())?;
             if let Some(name) = template.get("name").and_then(Value::as_str) {
                 coarse["name"] = format!("{name}_LOD{}", k + 1).into();
             }
+            ids.push(first + new.len());
             new.push(coarse);
         }
     }
-    if new.is_empty() {
-        return Ok(0);
+    if !new.is_empty() {
+        extend(json, "meshes", new);
     }
-    Ok(extend(json, "meshes", new))
+    Ok(of_mesh)
+}
+
+/// Returns true if a mesh has triangles.
+fn has_surface(mesh: &Value) -> bool {
+    let primitives = mesh.get("primitives").and_then(Value::as_array);
+    primitives.is_some_and(|primitives| primitives.iter().any(is_surface))
 }
 
 /// Appends to an array of the document, creating it if needed; returns the index of the first

@@ -35,8 +35,8 @@ pub struct StripMesh {
 ///
 /// `strips` are those of the scene's [instances](Scene::instances), in their order and in the space
 /// of their meshes. A mesh that several nodes show is written once for each. A primitive has the
-/// same vertices at all levels. Levels are linked by `MSFT_lod`; everything else is written as by
-/// [`write_glb`](super::write_glb).
+/// same vertices at all levels. Levels of what draws triangles are linked by `MSFT_lod`; everything
+/// else is written as by [`write_glb`](super::write_glb).
 ///
 /// # Errors
 /// If the strips do not fit the scene, and those of [`write_glb`](super::write_glb).
@@ -104,7 +104,9 @@ fn finish(
         if let Some(finest) = levels.next() {
             json["meshes"][index] = finest;
         }
-        let levels: Vec<Value> = levels.collect();
+        // What draws nothing at any level has none.
+        let is_drawn = strips.levels.iter().flatten().any(|strip| !strip.is_empty());
+        let levels: Vec<Value> = levels.filter(|_| is_drawn).collect();
         let number = levels.len();
         if number > 0 {
             let first = lod::extend(&mut json, "meshes", levels);

@@ -19,6 +19,7 @@ mod restore;
 mod selector;
 mod slots;
 mod split;
+mod take_back;
 #[cfg(test)]
 mod tests;
 mod weights;

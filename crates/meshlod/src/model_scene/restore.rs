@@ -18,7 +18,7 @@ pub struct ModelScene {
     pub(super) head: Head,
     /// The scene, whose meshes of the levels are empty.
     pub(super) scene: Scene,
-    /// True if attributes have been rounded.
+    /// True if positions and attributes have been rounded.
     is_rounded: bool,
     /// Parts that a truncated file lacks.
     pub missing: MissingParts,

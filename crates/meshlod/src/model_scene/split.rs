@@ -2,17 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use glam::DMat4;
-use meshlod_io::{Scene, transform};
+use meshlod_io::Scene;
 use meshlod_mesh::{Labels, Mesh};
 
 use super::head::{MeshEntry, Slot};
 use super::selector::Selector;
 use super::slots::slots_of_labels;
+use super::take_back::take_back;
 use super::weights::mend_weights;
 
 /// Puts the faces of a level into the empty meshes of its scene; `None` if they do not fit. `rounded`
-/// tells that attributes have been rounded.
+/// tells that positions and attributes have been rounded.
 ///
 /// Cost: linear.
 pub(super) fn split(
@@ -42,7 +42,7 @@ pub(super) fn split(
         let of_face = labels_of(level, faces, slots, &into.materials)?;
         mesh.materials = Some(Labels { names, of_face });
         mesh.objects = objects_of(level, faces, firsts[index], entry.objects);
-        move_back(&mut mesh, entry.placement)?;
+        take_back(&mut mesh, entry.placement, !rounded)?;
         if rounded {
             mend_weights(&mut mesh);
         }
@@ -73,17 +73,6 @@ fn objects_of(level: &Mesh, faces: &[u32], first: u32, count: Option<u32>) -> Op
     let names = objects.names[first as usize..(first + count) as usize].to_vec();
     let of_face = faces.iter().map(|&face| objects.of(face as usize) - first);
     Some(Labels { names, of_face: of_face.collect() })
-}
-
-/// Moves a mesh from where it was placed into its own space; `None` if there is no way back.
-fn move_back(mesh: &mut Mesh, placement: [[f64; 4]; 4]) -> Option<()> {
-    let placement = DMat4::from_cols_array_2d(&placement);
-    let back = placement.inverse();
-    if placement != DMat4::IDENTITY {
-        transform(mesh, &back.to_cols_array_2d());
-    }
-    let is_finite = back.is_finite() && mesh.positions.as_flattened().iter().all(|x| x.is_finite());
-    is_finite.then_some(())
 }
 
 /// Returns the mesh of each object of a level, and the first object of each mesh; `None` if there

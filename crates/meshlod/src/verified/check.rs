@@ -28,13 +28,12 @@ impl CutSurface {
         Self { mesh: Mesh { attributes: None, ..cut.level().mesh() }, nodes, slots }
     }
 
-    /// Returns false if less than the rounding is allowed anywhere.
-    pub(super) fn may_be_within(&self, limits: &Limits, rounding: f64) -> bool {
+    /// Returns the least distance that is allowed in any triangle, in model units; infinite if none
+    /// meets the focus.
+    pub(super) fn least_limit(&self, limits: &Limits) -> f64 {
         let at = |face: &[VertexId; 3]| face.map(|v| self.mesh.positions[v.index()]);
-        self.mesh
-            .faces
-            .iter()
-            .all(|face| (1.0 - RESERVE) * limits.in_triangle(at(face)) >= rounding)
+        let allowed = self.mesh.faces.iter().map(|face| limits.in_triangle(at(face)));
+        allowed.fold(f64::INFINITY, f64::min)
     }
 }
 

@@ -45,7 +45,8 @@ impl Extractor<'_> {
     /// Returns the finest mesh of at most `faces` faces that answers the query with its tolerance
     /// scaled by one factor everywhere.
     ///
-    /// Outside the focus the mesh stays as coarse as possible, and exact updates are never applied.
+    /// Outside the focus the mesh stays as coarse as possible, and exact updates
+    /// are applied last.
     /// The base mesh is returned even if it exceeds the budget.
     ///
     /// Cost: linear in the updates for choosing, whatever the budget, plus extraction.
@@ -151,10 +152,10 @@ impl<'m> Priorities<'m> {
     }
 }
 
-/// Returns the priority of an update by its stage: latest contractions first. Exact updates have 0.
+/// Returns the priority of an update by its stage: latest contractions first, exact ones last.
 fn by_stage(stage: Stage, error: Length16) -> u32 {
     let later = u32::from(Stage::COUNT - stage.number());
-    if error == Length16::default() { 0 } else { later << LOW_BITS | u32::from(error.0) }
+    if error == Length16::default() { 1 } else { later << LOW_BITS | u32::from(error.0) }
 }
 
 fn bucket(priority: u32) -> usize {

@@ -4,7 +4,7 @@ use glam::DVec3;
 use meshlod_mesh::Bounds;
 
 use crate::level::Level;
-use crate::query::{Focus, Query, QueryError, Tolerance};
+use crate::query::{Focus, Query, QueryError};
 
 /// Radius of the first query, as a fraction of the diagonal. It grows fourfold each time.
 const FIRST: f64 = 1e-4;
@@ -38,7 +38,7 @@ pub(crate) fn closest_point<E: From<QueryError>>(
             return Ok(None);
         }
         let focus = Focus::Sphere { center: point, radius };
-        let query = Query { focus, tolerance: Tolerance::Uniform(0.0) };
+        let query = Query { focus, ..Query::finest() };
         let near = extract(&query)?.within(&query.focus)?;
         if let Some(closest) = near.closest_point(point) {
             return Ok(Some(closest));

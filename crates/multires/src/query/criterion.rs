@@ -62,7 +62,7 @@ impl PackedBall {
 /// A query in stored units.
 ///
 /// The criterion is monotone: if it requires a ball, it requires every ball that contains it with at
-/// least its error.
+/// least its error. Where the tolerance is 0 it requires every ball, whatever its error.
 pub(crate) struct Criterion<'f> {
     region: Region,
     tolerance: StoredTolerance<'f>,
@@ -118,8 +118,8 @@ impl<'f> Criterion<'f> {
         self.exceeds(ball) && self.meets(ball)
     }
 
-    /// Returns the priority of each ball: its error over the least tolerance in it, or 0 if it
-    /// misses the focus or is exact. Priorities are monotone like the criterion.
+    /// Returns the priority of each ball: its error over the least tolerance in it, next to nothing
+    /// if it is exact, and 0 if it misses the focus. Priorities are monotone like the criterion.
     pub(crate) fn priorities(&self, balls: impl Iterator<Item = Ball>) -> Vec<f32> {
         match (&self.region, &self.tolerance) {
             // The common cases, without a branch in the loop.
@@ -158,7 +158,8 @@ impl<'f> Criterion<'f> {
         let squared = |from: DVec3| from.distance_squared(from.clamp(min, max));
         let exceeds = match &self.tolerance {
             StoredTolerance::Perspective(viewpoint) => {
-                viewpoint.slope * viewpoint.slope * squared(viewpoint.at) < error * error
+                let slope = viewpoint.slope;
+                slope == 0.0 || slope * slope * squared(viewpoint.at) < error * error
             }
             StoredTolerance::Uniform(_) | StoredTolerance::Field { .. } => self.exceeds(&ball),
         };
@@ -176,9 +177,9 @@ impl<'f> Criterion<'f> {
     #[inline]
     fn exceeds(&self, ball: &Ball) -> bool {
         match &self.tolerance {
-            StoredTolerance::Uniform(most) => ball.error > *most,
+            StoredTolerance::Uniform(most) => is_exceeded(*most, ball),
             StoredTolerance::Perspective(viewpoint) => viewpoint.exceeded_by(ball),
-            StoredTolerance::Field { .. } => ball.error > self.least(ball),
+            StoredTolerance::Field { .. } => is_exceeded(self.least(ball), ball),
         }
     }
 
@@ -233,7 +234,7 @@ impl Viewpoint {
         // Compared at the point of the ball closest to the viewpoint.
         let reach = ball.error + self.slope * ball.radius;
         let squared = self.slope * self.slope * self.at.distance_squared(ball.center);
-        ball.error > 0.0 && (squared < reach * reach || self.slope == 0.0)
+        self.slope == 0.0 || ball.error > 0.0 && squared < reach * reach
     }
 
     /// Returns the distance below which the viewpoint requires an update, or `None` if that never
@@ -244,12 +245,19 @@ impl Viewpoint {
     }
 }
 
-/// Returns an error in multiples of a tolerance. With a tolerance of 0 priorities are in the order
-/// of the errors.
+/// Returns true if a ball's error is more than allowed. Nothing is fine enough for a tolerance of 0.
+#[inline]
+fn is_exceeded(most: f64, ball: &Ball) -> bool {
+    ball.error > most || most == 0.0
+}
+
+/// Returns an error in multiples of a tolerance, and the least positive number if that is 0. With a
+/// tolerance of 0 priorities are in the order of the errors.
 #[inline]
 fn times(error: f64, most: f64) -> f32 {
     let least = f64::from(f32::MIN_POSITIVE);
-    (error / if most > least { most } else { least }).min(f32::MAX.into()) as f32
+    let times = (error / if most > least { most } else { least }).min(f32::MAX.into()) as f32;
+    times.max(f32::from_bits(1))
 }
 
 #[cfg(test)]
@@ -333,9 +341,31 @@ mod tests {
             let field = |_: [f64; 3], _: f64| none;
             let criterion = criterion(Focus::Everything, Tolerance::Field(&field));
             assert!(criterion.requires(&ball([0.0; 3], 0.1, 1e-6)), "{none}");
-            assert!(!criterion.requires(&ball([0.0; 3], 0.1, 0.0)), "what is exact is fine enough");
+            assert!(criterion.requires(&ball([0.0; 3], 0.1, 0.0)), "nothing is fine enough");
             let priorities = criterion.priorities([ball([0.0; 3], 0.1, 1e-6)].into_iter());
             assert!(priorities[0] > 1e20, "{none}: {priorities:?}");
+        }
+    }
+
+    #[test]
+    fn a_tolerance_of_zero_requires_what_is_exact_too() {
+        let pixels = |pixels| Tolerance::Pixels { camera: camera(), pixels };
+        let exact = ball([0.0; 3], 0.1, 0.0);
+        let unit = exact.radius;
+        let area = Area { min: DVec3::splat(-unit), max: DVec3::splat(unit), error: 0.0 };
+        for (tolerance, is_finest) in [
+            (Tolerance::Uniform(0.0), true),
+            (Tolerance::Uniform(1e-300), false),
+            (pixels(0.0), true),
+            (pixels(1e-300), false),
+        ] {
+            assert_eq!(tolerance.is_finest(), is_finest);
+            let all = criterion(Focus::Everything, tolerance.clone());
+            let elsewhere = criterion(Focus::Point([3.0; 3]), tolerance);
+            assert_eq!([&all, &elsewhere].map(|c| c.requires(&exact)), [is_finest, false]);
+            assert_eq!([&all, &elsewhere].map(|c| c.may_require_in(&area)), [is_finest, false]);
+            let first = |c: &Criterion<'_>| c.priorities([exact].into_iter())[0];
+            assert!(first(&all) > 0.0 && first(&elsewhere) == 0.0);
         }
     }
 

@@ -51,6 +51,9 @@ pub enum Focus {
 }
 
 /// Largest deviation from the surface that a query allows for a triangle.
+///
+/// A tolerance of 0 asks for the finest mesh that there is: it applies every update in the focus, also
+/// those that do not move the surface but refine its faces and attributes.
 #[derive(Clone)]
 pub enum Tolerance<'f> {
     /// One tolerance everywhere, in model units.
@@ -129,7 +132,23 @@ pub enum QueryError {
     Blind(&'static str),
 }
 
+impl Tolerance<'_> {
+    /// Returns true if the tolerance is 0 everywhere, which asks for the finest mesh.
+    pub fn is_finest(&self) -> bool {
+        match *self {
+            Self::Uniform(most) => most == 0.0,
+            Self::Pixels { pixels, .. } => pixels == 0.0,
+            Self::Field(_) => false,
+        }
+    }
+}
+
 impl Query<'static> {
+    /// Creates a query for the whole surface, at the finest level.
+    pub fn finest() -> Self {
+        Self::uniform(0.0)
+    }
+
     /// Creates a query for the whole surface with the same tolerance everywhere, in model units.
     pub fn uniform(tolerance: f64) -> Self {
         Self { focus: Focus::Everything, tolerance: Tolerance::Uniform(tolerance) }

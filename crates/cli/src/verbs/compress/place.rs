@@ -4,6 +4,7 @@ use meshlod::{Constraints, Mesh, Options, PackedScene, Scene, SceneCounts, place
 
 use super::Compress;
 use crate::failure::Failure;
+use crate::files;
 use crate::session::Session;
 
 /// Scene that is ready to be compressed.
@@ -24,8 +25,7 @@ impl Compress {
                           with all copies; materials keep their base colour and its texture, and \
                           nodes, skins and animations are left out";
             session.warn(Failure::at(&self.input, reason));
-            let stem = self.input.file_stem().unwrap_or_default().to_string_lossy();
-            scene = flattened(scene, &stem);
+            scene = flattened(scene, &files::stem(&self.input));
         }
         let placed = place_scene(scene, &Constraints::default(), Options::default());
         let placed = placed.map_err(|error| self.failed(error))?;

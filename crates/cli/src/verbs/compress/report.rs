@@ -77,13 +77,16 @@ impl CompressedFile {
         let [positions, connectivity, attributes] = self.sizes.map(count);
         let mut text = format!(
             "{}: {} in {} bytes, {:.2} per triangle; {} {what}\n\
-             bytes: positions {positions} ({} less than f32), faces {connectivity}, attributes {attributes}\n",
+             bytes: positions {positions} ({} than f32), faces {connectivity}, attributes {attributes}\n",
             files::name(output),
             faces(self.faces),
             count(self.bytes.len()),
             self.surface() as f64 / self.faces as f64,
             count(pieces),
-            percent(100.0 * self.reduction()),
+            match 100.0 * self.reduction() {
+                saved if saved < 0.0 => format!("{} more", percent(-saved)),
+                saved => format!("{} less", percent(saved)),
+            },
         );
         if let Some(StripCounts { strips, indices, parts_with_byte_indices }) = self.strips {
             text += &format!(

@@ -11,10 +11,11 @@ use crate::files;
 use crate::kept_error::KeptError;
 use crate::numbers::{count, faces, plural, value};
 
-/// Output and target that the user asked for, with the time that it took.
+/// Output that the user asked for, whether its target was met, and the time that it took.
 pub struct Request<'a> {
     pub output: &'a Path,
-    pub max_faces: Option<usize>,
+    /// True if the level is as close or as coarse as asked.
+    pub reached: bool,
     pub time: Duration,
 }
 
@@ -35,17 +36,12 @@ pub struct Extracted {
 }
 
 impl Extracted {
-    /// Returns true if the level has no more than the number of faces asked for.
-    pub fn reaches(&self, max_faces: Option<usize>) -> bool {
-        max_faces.is_none_or(|most| self.whole_faces <= most)
-    }
-
     pub fn to_json(&self, asked: &Request<'_>, [vertices, faces]: [usize; 2]) -> Value {
         json!({
             "file": files::name(asked.output),
             "vertices": vertices,
             "faces": faces,
-            "reached": self.reaches(asked.max_faces) && self.error.is_kept() != Some(false),
+            "reached": asked.reached,
             "error_kind": self.error_kind,
             "error": self.error.to_json(),
             "lossless": self.lossless,

@@ -11,6 +11,7 @@ use crate::answer::{Answer, Outcome};
 use crate::failure::Failure;
 use crate::files;
 use crate::model_file;
+use crate::model_scene;
 use crate::numbers::count;
 use crate::query_args::ErrorLimit;
 use crate::session::Session;
@@ -19,15 +20,20 @@ use crate::table::aligned;
 /// Strips of a cut, and what it took to get there from the one before.
 struct FollowedCut {
     error: ErrorLimit,
-    triangles: usize,
     /// Triangles that were added, removed or changed; all of the first cut.
     changed: usize,
+    figures: CutFigures,
+    time: Duration,
+    difference: Option<Difference>,
+}
+
+/// Sizes of a cut and of its strips.
+struct CutFigures {
+    triangles: usize,
     sent: StripStatistics,
     /// Entries of the index buffers, with restarts and unused places, and those written.
     entries: usize,
     written: usize,
-    time: Duration,
-    difference: Option<Difference>,
 }
 
 impl Strip {
@@ -40,6 +46,7 @@ impl Strip {
                 "--follow: strips do not follow the right triangles of a height field; use --error",
             ));
         };
+        let scene = model_scene::read(&self.input, &file, session)?;
         let (model, _) = archive.read().map_err(|error| model_file::failure(&self.input, error))?;
         let mut cut = Cut::new(&model);
         let mut strips = None;
@@ -56,8 +63,8 @@ impl Strip {
             let time = start.elapsed();
             if let Some((strips, indices)) = &strips {
                 let difference = self.verify.then(|| strips.difference(&model, &cut));
-                let followed_cut = FollowedCut::new(&cut, strips, indices);
-                followed.push(FollowedCut { error, changed, time, difference, ..followed_cut });
+                let figures = CutFigures::of(&cut, strips, indices);
+                followed.push(FollowedCut { error, changed, figures, time, difference });
             }
         }
         let wrong = followed.iter().any(FollowedCut::is_wrong);
@@ -70,11 +77,16 @@ impl Strip {
         let json = json!({
             "file": files::name(&self.input),
             "effort": self.effort_name(),
+            "each_mesh_once": !scene.is_flat(),
             "cuts": followed.iter().map(FollowedCut::json).collect::<Vec<_>>(),
             "verified": self.verify.then_some(!wrong),
         });
+        let mut text = self.follow_text(&followed);
+        if !scene.is_flat() {
+            text += "counts are of each mesh once, however many nodes show it\n";
+        }
         let outcome = Outcome::Found.when(wrong);
-        Ok(Answer { outcome, ..Answer::new(json, self.follow_text(&followed)) })
+        Ok(Answer { outcome, ..Answer::new(json, text) })
     }
 
     /// Brings strips and index buffers up to date, and returns how many triangles have changed.
@@ -126,41 +138,40 @@ impl Strip {
     }
 }
 
-impl FollowedCut {
-    fn new(cut: &Cut<'_>, strips: &CutStrips, indices: &StripIndices) -> Self {
+impl CutFigures {
+    fn of(cut: &Cut<'_>, strips: &CutStrips, indices: &StripIndices) -> Self {
         let sets = 0..indices.sets();
         let changed = sets.clone().flat_map(|set| indices.changed(set));
         Self {
-            error: ErrorLimit::Pixels(0.0),
             triangles: cut.face_count(),
-            changed: 0,
             sent: StripStatistics::new(&strips.strips()),
             entries: sets.map(|set| indices.indices(set).len()).sum(),
             written: changed.map(ExactSizeIterator::len).sum(),
-            time: Duration::ZERO,
-            difference: None,
         }
-    }
-
-    fn is_wrong(&self) -> bool {
-        self.difference.is_some_and(|difference| difference != Difference::default())
     }
 
     fn per_triangle(&self, number: usize) -> f64 {
         number as f64 / self.triangles.max(1) as f64
     }
+}
+
+impl FollowedCut {
+    fn is_wrong(&self) -> bool {
+        self.difference.is_some_and(|difference| difference != Difference::default())
+    }
 
     fn json(&self) -> Value {
-        let Self { sent, difference, .. } = self;
+        let Self { figures, difference, .. } = self;
+        let CutFigures { triangles, sent, entries, written } = figures;
         json!({
             "error": self.error.to_string(),
-            "triangles": self.triangles,
+            "triangles": triangles,
             "changed": self.changed,
             "vertices_sent": sent.vertices_sent,
             "indices_with_restart": sent.indices_with_restart,
-            "entries": self.entries,
-            "entries_per_triangle": self.per_triangle(self.entries),
-            "entries_written": self.written,
+            "entries": entries,
+            "entries_per_triangle": figures.per_triangle(*entries),
+            "entries_written": written,
             "strips": sent.strips,
             "seconds": self.time.as_secs_f64(),
             "missing": difference.map(|difference| difference.missing),
@@ -169,17 +180,18 @@ impl FollowedCut {
     }
 
     fn row(&self) -> [String; 11] {
+        let CutFigures { triangles, sent, entries, written } = &self.figures;
         [
             self.error.to_string(),
-            count(self.triangles),
+            count(*triangles),
             count(self.changed),
-            count(self.sent.vertices_sent),
-            format!("{:.3}", self.per_triangle(self.sent.vertices_sent)),
-            count(self.sent.indices_with_restart),
-            count(self.entries),
-            format!("{:.3}", self.per_triangle(self.entries)),
-            count(self.written),
-            count(self.sent.strips),
+            count(sent.vertices_sent),
+            format!("{:.3}", self.figures.per_triangle(sent.vertices_sent)),
+            count(sent.indices_with_restart),
+            count(*entries),
+            format!("{:.3}", self.figures.per_triangle(*entries)),
+            count(*written),
+            count(sent.strips),
             format!("{:.1}", self.time.as_secs_f64() * 1e3),
         ]
     }

@@ -1,15 +1,15 @@
 //! `strip` of multiresolution files: the scene of one cut.
 
+use meshlod::io::Precision;
 use meshlod::multires::FileError;
-use meshlod::{Format, Scene};
+use meshlod::{Format, Scene, shown_rounding};
 
-use super::Strip;
+use super::{Strip, output};
 use crate::failure::Failure;
 use crate::files;
 use crate::kept_error::KeptError;
 use crate::model_file;
 use crate::model_scene;
-use crate::numbers::faces;
 use crate::session::Session;
 
 /// Scene of a cut.
@@ -55,25 +55,20 @@ impl Strip {
         // The distance of the best mesh of some number of faces is a question for `extract`.
         let answer = self.query.answer(&file, &query, most.is_some(), session);
         let (taken, known) = answer.map_err(failed)?;
-        let error = self.query.kept_error(&file, &query, known);
+        let mut error = self.query.kept_error(&file, &query, known);
         error.warning().into_iter().for_each(|text| session.warn(Failure::at(&self.input, text)));
         let found = taken.level.faces.len();
-        if let Some(most) = most.filter(|&most| found > most) {
-            let reason = format_args!(
-                "--faces {most} is out of reach: the coarsest level has {}, and that is what was \
-                 stripped",
-                faces(found)
-            );
-            session.warn(Failure::at(&self.input, reason));
-        }
+        let reached = self.query.reaches(&self.input, found, "stripped", session);
         let model = model_scene::read(&self.input, &file, session)?;
         if self.query.is_local() {
             model_scene::warn_of_instances(&self.input, &model, session);
         }
-        let name = self.input.file_stem().unwrap_or_default().to_string_lossy();
-        let flat = model.flat_scene(name, taken.level.mesh());
+        let flat = model.flat_scene(files::stem(&self.input), taken.level.mesh());
         let scene = model_scene::restored(&self.input, model, flat, Format::Glb)?;
-        let reached = most.is_none_or(|most| found <= most) && error.is_kept() != Some(false);
+        if self.out.as_deref().is_some_and(output::holds_scene) {
+            error.note_rounding(shown_rounding(&scene, Format::Glb, Precision::F32));
+        }
+        let reached = reached && error.is_kept() != Some(false);
         Ok(CutScene { scene, error, reached })
     }
 }

@@ -37,7 +37,8 @@ pub(super) fn check(out: &Path, input: &Path) -> Result<(), Failure> {
     files::check_apart(out, &[input])
 }
 
-fn holds_scene(out: &Path) -> bool {
+/// Returns true if the output is a scene, and not lists of vertices.
+pub(super) fn holds_scene(out: &Path) -> bool {
     has_suffix(out, "gltf") || has_suffix(out, "glb") || has_suffix(out, "vrm")
 }
 

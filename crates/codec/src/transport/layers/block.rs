@@ -4,7 +4,7 @@ use glam::DVec2;
 use meshlod_mesh::octahedral::unfold;
 
 use super::coder::{BlockPart, Coder};
-use super::directions::{Expected, code_directions};
+use super::directions::{BY_NEIGHBOURS, Expected, by_neighbours, code_directions};
 use super::entries::{ENTRY_BITS, LayerEntries};
 use super::format::{LayerContexts, LayerFormat, LayersFormat, Predictor};
 use super::geometry::BlockGeometry;
@@ -123,6 +123,9 @@ impl BlockCoding<'_> {
         match layer.predictor() {
             Predictor::Uvs => code_uvs(job, coder, out),
             Predictor::Values => code_values(job, coder, out),
+            Predictor::Normals if mode == BY_NEIGHBOURS => {
+                code_directions(job, &by_neighbours(), coder, out);
+            }
             Predictor::Normals => {
                 let weight = FaceWeight::ALL[usize::from(mode % 3)];
                 let guess = |entry| normal_of(entry, entries, geometry, weight);
@@ -131,9 +134,13 @@ impl BlockCoding<'_> {
             }
             Predictor::Tangents => {
                 let frame = self.tangent_frame();
-                let guess = |entry| frame.tangent_of(entry, entries);
-                let trust = f64::from(mode) / 8.0;
-                code_directions(job, &Expected { guess, trust }, coder, out);
+                if mode == BY_NEIGHBOURS {
+                    code_directions(job, &by_neighbours(), coder, out);
+                } else {
+                    let guess = |entry| frame.tangent_of(entry, entries);
+                    let trust = f64::from(mode) / 8.0;
+                    code_directions(job, &Expected { guess, trust }, coder, out);
+                }
                 frame.code_signs(job, coder, out);
             }
         }

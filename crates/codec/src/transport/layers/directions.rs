@@ -15,10 +15,14 @@ use super::octahedron::{fold_in, shortest};
 pub(super) const DIRECTION_RESIDUALS: usize = BENDS * 2 * LEVELS * 2;
 const BENDS: usize = 3;
 
+/// Mode of a layer of directions that the geometry tells nothing of, such as a constant: each is
+/// expected to be the mean of its neighbours.
+pub(super) const BY_NEIGHBOURS: u8 = 0x80;
+
 /// Direction to expect.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Guess {
-    /// Unit direction; `None` if the geometry has none.
+    /// Unit direction, or zero if the geometry is not asked; `None` if it has none.
     pub(super) direction: Option<DVec3>,
     /// Distance of the faces around from a plane: 0 to 2.
     pub(super) bend: usize,
@@ -33,6 +37,12 @@ pub(super) struct Expected<G> {
     pub(super) guess: G,
     /// Part of the neighbours' differences from their guesses that is expected again.
     pub(super) trust: f64,
+}
+
+/// Returns what is expected in the mode [`BY_NEIGHBOURS`]: all of what the neighbours differ from
+/// nothing.
+pub(super) fn by_neighbours() -> Expected<impl Fn(usize) -> Guess> {
+    Expected { guess: |_| Guess { direction: Some(DVec3::ZERO), ..Guess::default() }, trust: 1.0 }
 }
 
 /// Codes the directions of all entries.
@@ -61,7 +71,8 @@ pub(super) fn code_directions(
         }
         let direction = guess.direction.unwrap_or(last);
         let whole = direction + difference * (expected.trust / f64::from(known.max(1)));
-        let whole = if whole.length_squared() > 0.0 { whole } else { DVec3::Z };
+        let without = if direction == DVec3::ZERO { last } else { DVec3::Z };
+        let whole = if whole.length_squared() > 0.0 { whole } else { without };
         let at = project(whole, bits).map(|x| (x + 0.5).floor() as i32);
         let way = job.wanted(entry).map(|wanted| shortest(at, [wanted[0], wanted[1]], bits));
         let surroundings = guess.bend * 2 + usize::from(guess.is_open);

@@ -1,12 +1,11 @@
 //! Choice of how each layer is predicted, and fitting of the tables.
 
 use super::block::{BlockCoding, BlockLayer, code_block};
-use super::format::{LayerContexts, LayerFormat, LayersFormat, Predictor};
+use super::format::{LayerContexts, LayersFormat};
 use super::geometry::BlockGeometry;
 use super::models::TableCodes;
 use super::source::BlockSource;
 use super::statistics::Statistics;
-use super::values::VALUE_MODES;
 use super::wedges::{BlockWedges, WEDGE_BITS, code_wedges};
 
 /// Chooses the predictions of all layers and fits tables, given the blocks of a mesh.
@@ -49,7 +48,7 @@ fn choose_modes(format: &mut LayersFormat, blocks: &[(BlockGeometry, BlockSource
         .collect();
     for at in format.order() {
         let mut best = f64::INFINITY;
-        let modes = modes(&format.layers[at]);
+        let modes = format.layers[at].modes();
         let mut best_mode = modes[0];
         for &mode in &modes {
             format.layers[at].mode = mode;
@@ -60,18 +59,6 @@ fn choose_modes(format: &mut LayersFormat, blocks: &[(BlockGeometry, BlockSource
         }
         format.layers[at].mode = best_mode;
         code_layer(format, at, &mut samples);
-    }
-}
-
-/// Returns the ways in which a layer may be predicted.
-fn modes(layer: &LayerFormat) -> Vec<u8> {
-    match layer.predictor() {
-        Predictor::Uvs => vec![0, 2, 4, 6, 8],
-        Predictor::Normals => {
-            (0..3).flat_map(|weight| [0, 4, 8].map(|trust| 3 * trust + weight)).collect()
-        }
-        Predictor::Tangents => vec![0, 4, 8],
-        Predictor::Values => (0..VALUE_MODES).collect(),
     }
 }
 

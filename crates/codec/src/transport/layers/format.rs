@@ -3,13 +3,13 @@
 use meshlod_mesh::LayerKind;
 
 use super::super::MAX_LAYER_VALUES;
-use super::directions::DIRECTION_RESIDUALS;
+use super::directions::{BY_NEIGHBOURS, DIRECTION_RESIDUALS};
 use super::entries::ENTRY_BITS;
 use super::labels::LABEL_BITS;
 use super::models::{LayerTables, TableCodes};
 use super::tangents::TANGENT_BITS;
 use super::uv::UV_RESIDUALS;
-use super::values::{VALUE_BITS, VALUE_RESIDUALS};
+use super::values::{VALUE_BITS, VALUE_MODES, VALUE_RESIDUALS};
 use super::wedges::WEDGE_BITS;
 use crate::attributes::LayerCoding;
 use crate::bytes::{Malformed, Reader};
@@ -62,6 +62,20 @@ impl LayerFormat {
         }
     }
 
+    /// Returns the ways in which the layer may be predicted. What the surface expects comes first: it
+    /// is taken where others are no better.
+    pub(super) fn modes(&self) -> Vec<u8> {
+        match self.predictor() {
+            Predictor::Uvs => vec![0, 2, 4, 6, 8],
+            Predictor::Normals => {
+                let modes = (0..3).flat_map(|weight| [0, 4, 8].map(|trust| 3 * trust + weight));
+                modes.chain([BY_NEIGHBOURS]).collect()
+            }
+            Predictor::Tangents => vec![0, 4, 8, BY_NEIGHBOURS],
+            Predictor::Values => (0..VALUE_MODES).collect(),
+        }
+    }
+
     /// Returns how many contexts the layer has.
     pub(super) fn contexts(&self) -> LayerContexts {
         let (bits, residuals) = match self.predictor() {
@@ -91,7 +105,11 @@ impl LayerFormat {
         if most.iter().any(|&most| most > MAX_NUMBER) {
             return Err(reader.wrong("a layer has integers of more than 26 bits"));
         }
-        Ok(Self { coding, mode, most })
+        let this = Self { coding, mode, most };
+        match this.modes().contains(&mode) {
+            true => Ok(this),
+            false => Err(reader.wrong("a layer is predicted in a way that is unknown here")),
+        }
     }
 }
 

@@ -1,9 +1,13 @@
 //! Levels of detail: what is written, and what is shown.
 
+use meshlod_mesh::{Mesh, WedgeId};
 use serde_json::json;
 
 use super::{assert_valid, json_of, read_alone, read_parts, square};
-use crate::gltf::{Level, LodLayout, write, write_glb, write_lods_glb};
+
+use crate::gltf::{
+    Level, LodLayout, StripMesh, write, write_glb, write_lods_glb, write_strips_glb,
+};
 use crate::{Node, Scene};
 
 /// Levels that each keep the first faces of the one before.
@@ -90,6 +94,41 @@ fn levels_side_by_side_are_children_of_the_node_that_had_the_mesh() {
     let shown = again.instances();
     assert!(shown.iter().all(|instance| instance.transform[3] == [1.0, 2.0, 3.0, 1.0]));
     assert_eq!(shown.len(), 3);
+}
+
+#[test]
+fn what_has_no_triangles_has_no_levels() {
+    let (mut json, buffer) = square();
+    let mut lines = json["meshes"][0].clone();
+    for primitive in lines["primitives"].as_array_mut().unwrap() {
+        primitive["mode"] = 1.into();
+        primitive.as_object_mut().unwrap().remove("indices");
+    }
+    json["meshes"].as_array_mut().unwrap().push(lines);
+    json["nodes"].as_array_mut().unwrap().push(json!({ "name": "wire", "mesh": 1 }));
+    json["scenes"] = json!([{ "nodes": [0, 1] }]);
+    let scene = read_parts(&json, &buffer).unwrap();
+    assert!(scene.meshes[1].mesh.faces.is_empty() && !scene.meshes[0].mesh.faces.is_empty());
+    let strip = |scene: &Scene| {
+        let mesh = &scene.meshes[0].mesh;
+        let [a, b, c] = mesh.faces[0];
+        let corners = mesh.attributes.as_ref().map_or([WedgeId(0); 3], |own| own.corners[0]);
+        let strip = vec![(a, corners[0]), (b, corners[1]), (c, corners[2])];
+        StripMesh { mesh: mesh.clone(), levels: vec![vec![strip]; 2] }
+    };
+    let bare = StripMesh {
+        mesh: Mesh { positions: scene.meshes[1].mesh.positions.clone(), ..Mesh::default() },
+        levels: vec![Vec::new(); 2],
+    };
+    let linked = write_lods_glb(&scene, &levels(&scene), LodLayout::Linked).unwrap();
+    let shown = write_lods_glb(&scene, &levels(&scene), LodLayout::Siblings).unwrap();
+    let strips = write_strips_glb(&scene, &[strip(&scene), bare]).unwrap();
+    for (glb, meshes) in [(linked, 4), (shown, 4), (strips, 3)] {
+        assert_valid(&glb);
+        let new = json_of(&glb);
+        assert_eq!(new["nodes"][1], json["nodes"][1], "{new}");
+        assert_eq!(new["meshes"].as_array().unwrap().len(), meshes, "{new}");
+    }
 }
 
 #[test]
