@@ -16,6 +16,8 @@
 //! ```
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "draco")]
+mod contained;
 mod error;
 mod files;
 mod flatten;

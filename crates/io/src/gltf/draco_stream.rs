@@ -1,11 +1,17 @@
 //! Arrays of a Draco stream, in the types that glTF declares for them.
 
 use draco_core::{
-    DataType, DecodeLimits, DecoderBuffer, Mesh, MeshDecoder, PointAttribute, PointIndex,
+    DataType, DecodeLimits, DecoderBuffer, ErrorKind, Mesh, MeshDecoder, PointAttribute, PointIndex,
 };
 
 use super::accessor::{component, component_size, width};
+use super::draco_header;
 use super::schema::Accessor;
+use crate::contained::contained;
+
+/// Reason for refusing a stream beyond its [`Ceiling`].
+pub(super) const TOO_LARGE: &str =
+    "decompresses to far more than the file has data for; export it without Draco";
 
 /// Decoded array, each element of which begins at a multiple of four bytes unless it is an index.
 pub(super) struct Array {
@@ -50,21 +56,33 @@ impl Decoded {
     /// Decodes a stream of triangles.
     ///
     /// # Errors
-    /// The reason, without the place.
+    /// The reason, without the place: that of the decoder, or that it panicked.
     pub fn from_stream(stream: &[u8], ceiling: Ceiling) -> Result<Self, String> {
-        // Indices take 12 bytes a face.
-        let faces = ceiling.faces.min(ceiling.bytes / 12);
+        draco_header::check(stream, &ceiling)?;
         let limits = DecodeLimits::default()
-            .with_max_faces(faces as u64)
+            .with_max_faces(ceiling.faces as u64)
             .with_max_points(ceiling.bytes as u64)
             .with_max_decoded_bytes(ceiling.bytes as u64);
-        let mut buffer = DecoderBuffer::new(stream).with_limits(limits);
-        let mut mesh = Mesh::new();
-        let decoded = MeshDecoder::new().decode(&mut buffer, &mut mesh);
-        decoded.map_err(|error| {
-            let error = error.to_string().replace(char::is_control, " ");
-            format!("its Draco stream cannot be decoded ({error}); export the file again")
-        })?;
+        let decoded = contained(|| {
+            let mut buffer = DecoderBuffer::new(stream).with_limits(limits);
+            let mut mesh = Mesh::new();
+            MeshDecoder::new().decode(&mut buffer, &mut mesh).map(|()| mesh)
+        });
+        let mesh = match decoded {
+            Some(Ok(mesh)) => mesh,
+            Some(Err(error)) if error.kind() == ErrorKind::LimitExceeded => {
+                return Err(TOO_LARGE.to_owned());
+            }
+            Some(Err(error)) => {
+                let error = error.to_string().replace(char::is_control, " ");
+                return Err(format!(
+                    "its Draco stream cannot be decoded ({error}); export the file again"
+                ));
+            }
+            None => {
+                return Err("its Draco stream is damaged; export the file again".to_owned());
+            }
+        };
         if u32::try_from(mesh.num_points()).is_err() {
             return Err("its Draco stream has more points than 32 bits can number".to_owned());
         }

@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 
 use super::document::{Buffers, missing};
 use super::draco::{Compressed, DRACO, Extension, Place};
-use super::draco_stream::{Array, Ceiling, Decoded};
+use super::draco_stream::{Array, Ceiling, Decoded, TOO_LARGE};
 use super::schema::{self, Accessor, BufferView};
 use crate::ParseError;
 
@@ -107,8 +107,7 @@ impl Unpacker<'_> {
     }
 
     fn spend(&mut self, place: Place, bytes: usize) -> Result<(), ParseError> {
-        let reason = "decompresses to far more than the file has data for";
-        self.room = self.room.checked_sub(bytes).ok_or_else(|| place.wrong(reason))?;
+        self.room = self.room.checked_sub(bytes).ok_or_else(|| place.wrong(TOO_LARGE))?;
         Ok(())
     }
 

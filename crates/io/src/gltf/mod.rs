@@ -12,6 +12,8 @@ mod dequantize_skins;
 mod document;
 mod draco;
 #[cfg(feature = "draco")]
+mod draco_header;
+#[cfg(feature = "draco")]
 mod draco_stream;
 #[cfg(feature = "draco")]
 mod draco_unpack;

@@ -172,7 +172,7 @@ fn faults_are_told_with_their_place() {
     type Change = fn(&mut Value);
     let faults: [(&str, &str, Change); 12] = [
         ("accessor 0", "declares 300 elements", |j| j["accessors"][0]["count"] = 300.into()),
-        ("mesh 0, primitive 0", "ceiling", |j| j["accessors"][0]["count"] = 3.into()),
+        ("mesh 0, primitive 0", "room for 1", |j| j["accessors"][0]["count"] = 3.into()),
         ("accessor 1", "declares 7 elements", |j| j["accessors"][1]["count"] = 7.into()),
         ("mesh 0, primitive 0", "VEC2", |j| j["accessors"][1]["type"] = "VEC2".into()),
         ("mesh 0, primitive 0", "cannot hold", |j| {

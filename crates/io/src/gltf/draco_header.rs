@@ -1,0 +1,148 @@
+//! Counts at the front of a Draco stream, checked before anything is decoded.
+//!
+//! The decoder sizes tables by these counts, some of which no byte of the stream stands for: a
+//! stream of 100 bytes can name millions of faces and 255 tables of their corners.
+
+use super::draco_stream::Ceiling;
+
+/// Oldest version of the bitstream that is decoded: the one that glTF names.
+const VERSION: [u8; 2] = [2, 2];
+
+/// Bit of the flags that says that metadata follow the header.
+const HAS_METADATA: u16 = 0x8000;
+
+/// Deepest nesting of metadata, which the decoder reads recursively.
+const MAX_DEPTH: usize = 16;
+
+/// Bytes of a face's corners in one table.
+const CORNERS: u64 = 12;
+
+/// Checks that the faces which a stream names, and a table of corners for each attribute with
+/// seams of its own, stay within a ceiling.
+///
+/// # Errors
+/// The reason, without the place.
+/// # References
+/// [ZSG17]; the layout is that of the bitstream's specification, version 2.2.
+pub(super) fn check(stream: &[u8], ceiling: &Ceiling) -> Result<(), String> {
+    let mut front = Front(stream);
+    let counts = front.counts()?.ok_or("its Draco stream ends in its header; export it again")?;
+    if counts.faces > ceiling.faces as u64 {
+        let (found, declared) = (counts.faces, ceiling.faces);
+        return Err(format!(
+            "its Draco stream has {found} faces, but its accessors have room for {declared}; \
+             export it again"
+        ));
+    }
+    let bytes = counts.faces.saturating_mul(CORNERS * (1 + counts.tables));
+    if bytes > ceiling.bytes as u64 {
+        return Err(super::draco_stream::TOO_LARGE.to_owned());
+    }
+    Ok(())
+}
+
+struct Counts {
+    faces: u64,
+    /// Attributes with connectivity of their own.
+    tables: u64,
+}
+
+/// Rest of a stream.
+struct Front<'a>(&'a [u8]);
+
+impl Front<'_> {
+    /// Reads up to the counts; `None` if the stream ends before them.
+    fn counts(&mut self) -> Result<Option<Counts>, String> {
+        let Some((&[d, r, a, c, o, major, minor, kind, method, low, high], rest)) =
+            self.0.split_first_chunk()
+        else {
+            return Ok(None);
+        };
+        self.0 = rest;
+        if &[d, r, a, c, o] != b"DRACO" || kind != 1 {
+            return Err("its stream is not a mesh compressed by Draco; export it again".to_owned());
+        }
+        if [major, minor] != VERSION {
+            return Err(format!(
+                "its Draco stream is of version {major}.{minor}; export it again by a program that \
+                 writes 2.2"
+            ));
+        }
+        if u16::from_le_bytes([low, high]) & HAS_METADATA != 0 && self.skip_metadata()?.is_none() {
+            return Ok(None);
+        }
+        Ok(if method == 1 { self.edgebreaker() } else { self.sequential() })
+    }
+
+    fn edgebreaker(&mut self) -> Option<Counts> {
+        let _traversal = self.byte()?;
+        let _vertices = self.varint()?;
+        Some(Counts { faces: self.varint()?, tables: self.byte()?.into() })
+    }
+
+    fn sequential(&mut self) -> Option<Counts> {
+        Some(Counts { faces: self.varint()?, tables: 0 })
+    }
+
+    /// Skips the metadata of all attributes, then those of the mesh.
+    fn skip_metadata(&mut self) -> Result<Option<()>, String> {
+        let Some(attributes) = self.varint() else { return Ok(None) };
+        for _ in 0..attributes {
+            if self.varint().is_none() || self.skip_entries(0)?.is_none() {
+                return Ok(None);
+            }
+        }
+        self.skip_entries(0)
+    }
+
+    fn skip_entries(&mut self, depth: usize) -> Result<Option<()>, String> {
+        if depth > MAX_DEPTH {
+            return Err(format!(
+                "its Draco stream has metadata nested deeper than {MAX_DEPTH}; export it without"
+            ));
+        }
+        let Some(entries) = self.varint() else { return Ok(None) };
+        for _ in 0..entries {
+            let value = self.skip_name().and_then(|()| self.varint());
+            if value.and_then(|length| self.skip(length)).is_none() {
+                return Ok(None);
+            }
+        }
+        let Some(parts) = self.varint() else { return Ok(None) };
+        for _ in 0..parts {
+            if self.skip_name().is_none() || self.skip_entries(depth + 1)?.is_none() {
+                return Ok(None);
+            }
+        }
+        Ok(Some(()))
+    }
+
+    fn skip_name(&mut self) -> Option<()> {
+        let length = self.byte()?;
+        self.skip(length.into())
+    }
+
+    fn skip(&mut self, length: u64) -> Option<()> {
+        self.0 = self.0.get(usize::try_from(length).ok()?..)?;
+        Some(())
+    }
+
+    fn byte(&mut self) -> Option<u8> {
+        let (&first, rest) = self.0.split_first()?;
+        self.0 = rest;
+        Some(first)
+    }
+
+    /// Reads a number in groups of seven bits, the lowest first.
+    fn varint(&mut self) -> Option<u64> {
+        let mut number = 0;
+        for shift in (0..64).step_by(7) {
+            let byte = self.byte()?;
+            number |= u64::from(byte & 0x7f) << shift;
+            if byte & 0x80 == 0 {
+                return Some(number);
+            }
+        }
+        None
+    }
+}
