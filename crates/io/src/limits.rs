@@ -78,14 +78,16 @@ impl Scene {
         let merged = if instances.len() > 1 { instances.len() } else { 0 };
         let count = |array| self.source.as_ref().map_or(0, |source| source.count(array));
         let lights = self.source.as_ref().map_or(0, |source| source.lights());
-        vec![
+        let mut notes = vec![
             Note::changed(merged, "", "instances of meshes merged into one mesh"),
             Note::left_out(hidden, "mesh that no node shows", "meshes that no node shows"),
             Note::left_out(count("skins"), "skin", "skins"),
             Note::left_out(count("animations"), "animation", "animations"),
             Note::left_out(count("cameras"), "camera", "cameras"),
             Note::left_out(lights, "light", "lights"),
-        ]
+        ];
+        notes.extend(self.source.iter().flat_map(|source| source.unheld_parts()));
+        notes
     }
 
     fn mtl_limits(&self) -> Vec<Note> {

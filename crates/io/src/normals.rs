@@ -19,8 +19,10 @@ pub(crate) fn make_unit(scene: &mut Scene) {
     let quantized = scene.source.as_ref().is_some_and(|source| source.is_quantized());
     let rounding = if quantized { ROUNDING_OF_BYTES } else { ROUNDING };
     let (mut scaled, mut computed) = (0, 0);
-    for mesh in &mut scene.meshes {
-        let counts = make_mesh_unit(&mut mesh.mesh, rounding);
+    let source = scene.source.as_ref();
+    for (index, mesh) in scene.meshes.iter_mut().enumerate() {
+        let bare = source.map_or_else(Vec::new, |source| source.lacks_normals(index));
+        let counts = make_mesh_unit(&mut mesh.mesh, rounding, &bare);
         scaled += counts.scaled;
         computed += counts.computed;
     }
@@ -41,7 +43,9 @@ struct Counts {
     computed: usize,
 }
 
-fn make_mesh_unit(mesh: &mut Mesh, rounding: f64) -> Counts {
+/// Makes the normals of a mesh unit and counts them. Those of faces whose material label is marked
+/// in `bare` are not from the file, and do not count.
+fn make_mesh_unit(mesh: &mut Mesh, rounding: f64, bare: &[bool]) -> Counts {
     let Some(mut attributes) = mesh.attributes.take() else { return Counts::default() };
     let mut counts = Counts::default();
     for layer in attributes.layers.iter_mut().filter(|layer| layer.kind == LayerKind::Normal) {
@@ -63,13 +67,31 @@ fn make_mesh_unit(mesh: &mut Mesh, rounding: f64) -> Counts {
         if missing.is_empty() {
             continue;
         }
+        let is_of_file = wedges_of_file(mesh, &attributes.corners, attributes.wedge_count, bare);
         for (wedge, normal) in face_normals(mesh, &attributes.corners, &missing) {
             layer.of_mut(wedge).copy_from_slice(&normal.to_array().map(|x| x as f32));
-            counts.computed += 1;
+            counts.computed += usize::from(is_of_file[wedge.index()]);
         }
     }
     mesh.attributes = Some(attributes);
     counts
+}
+
+/// Marks the wedges that faces use whose material label is not marked in `bare`.
+fn wedges_of_file(
+    mesh: &Mesh,
+    corners: &[[WedgeId; 3]],
+    wedge_count: usize,
+    bare: &[bool],
+) -> Vec<bool> {
+    let mut marks = vec![false; wedge_count];
+    for (face, wedges) in corners.iter().enumerate() {
+        let label = mesh.materials.as_ref().and_then(|labels| labels.of_face.get(face));
+        if label.and_then(|&label| bare.get(label as usize)) != Some(&true) {
+            wedges.iter().for_each(|wedge| marks[wedge.index()] = true);
+        }
+    }
+    marks
 }
 
 /// Returns the mean normal of the faces at each of these wedges that is in use, weighted by area:

@@ -343,7 +343,8 @@ fn drop_last(values: &mut Vec<Value>, free: &mut Vec<usize>) {
     }
 }
 
-/// Computes one flag per buffer view: true if free accessors use it and nothing else does.
+/// Computes one flag per buffer view: true if free accessors use it and nothing else does, or if
+/// it has no bytes, as no valid view, and nothing uses it.
 fn free_views(document: &Document<'_>, accessors: &[Value], free_accessors: &[bool]) -> Vec<bool> {
     let count = document.views.len();
     let (mut by_free, mut by_others) = (vec![false; count], vec![false; count]);
@@ -354,7 +355,8 @@ fn free_views(document: &Document<'_>, accessors: &[Value], free_accessors: &[bo
     for (_, value) in rest.filter(|(key, _)| *key != "accessors") {
         mark_views(value, &mut by_others);
     }
-    by_free.iter().zip(by_others).map(|(&by_free, by_others)| by_free && !by_others).collect()
+    let is_free = |view: usize| by_free[view] || document.views[view].byte_length == 0;
+    (0..count).map(|view| is_free(view) && !by_others[view]).collect()
 }
 
 /// Marks every number under a key `bufferView`; the JSON parser bounds the depth.

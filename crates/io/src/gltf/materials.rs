@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use super::document::{Document, missing};
+use super::new_document::WEBP;
 use super::schema::{self, Texture, TextureUse};
 use super::uri::{self, Uri};
 use crate::image_file::mime_type;
@@ -71,6 +72,7 @@ fn shading(
 /// `material 3`.
 pub(super) fn richer_materials(json: &Value) -> Vec<String> {
     let materials = json.get("materials").and_then(Value::as_array);
+    let is_richer = |own: &Value| is_richer(own) || has_other_image(json, own);
     let richer = materials.into_iter().flatten().enumerate().filter(|(_, own)| is_richer(own));
     let name = |(i, material): (usize, &Value)| match material["name"].as_str() {
         Some(name) if !name.is_empty() => name.to_owned(),
@@ -121,11 +123,29 @@ fn is_richer(material: &Value) -> bool {
         || textures.into_iter().flatten().any(is_moved)
 }
 
+/// Reports whether a texture of a material has an image that only an extension names, and one that
+/// [`materials`] does not read.
+fn has_other_image(json: &Value, material: &Value) -> bool {
+    let pbr = &material["pbrMetallicRoughness"];
+    let textures = [
+        &material["normalTexture"],
+        &material["emissiveTexture"],
+        &pbr["baseColorTexture"],
+        &pbr["metallicRoughnessTexture"],
+    ];
+    textures.iter().filter_map(|texture| texture["index"].as_u64()).any(|index| {
+        let texture = &json["textures"][index as usize];
+        let extensions = texture["extensions"].as_object();
+        texture.get("source").is_none()
+            && extensions.is_some_and(|all| !all.is_empty() && !all.contains_key(WEBP))
+    })
+}
+
 impl Texture {
     /// Returns the image that `EXT_texture_webp` gives the texture; its source, if it has one, is
     /// the same picture for programs that do not know WebP.
     fn webp_source(&self) -> Option<usize> {
-        let extension = self.extensions.get("EXT_texture_webp")?;
+        let extension = self.extensions.get(WEBP)?;
         extension.get("source")?.as_u64().map(|source| source as usize)
     }
 }
@@ -159,10 +179,14 @@ pub(super) fn images(
 /// Makes a file name for an embedded image, as other formats write images to files.
 fn file_name(name: Option<String>, index: usize, bytes: &[u8]) -> String {
     let name = name.filter(|name| !name.is_empty()).unwrap_or_else(|| format!("image{index}"));
+    // The name is no path, and some systems refuse these characters in one.
+    let is_refused = |c: char| c.is_control() || r#"/\:*?"<>|"#.contains(c);
+    let name = name.replace(is_refused, "_");
     let suffix = match mime_type(bytes) {
         Some("image/png") => ".png",
         Some("image/jpeg") => ".jpg",
         Some("image/webp") => ".webp",
+        Some("image/ktx2") => ".ktx2",
         _ => "",
     };
     if name.to_ascii_lowercase().ends_with(suffix) { name } else { format!("{name}{suffix}") }

@@ -41,6 +41,7 @@ mod skeleton_images;
 mod strips;
 #[cfg(test)]
 mod tests;
+mod unheld;
 mod uri;
 mod vertex_cache;
 mod write;

@@ -6,8 +6,8 @@ use serde_json::Value;
 
 use super::document::{self, Buffers, Document};
 use super::facts::{AnimationFacts, FileFacts};
-use super::{container, decompress, draco, facts, materials, mesh, nodes};
-use crate::{ParseError, Resolve, Scene, SceneMesh, Weld};
+use super::{container, decompress, draco, facts, materials, mesh, nodes, unheld};
+use crate::{Note, ParseError, Resolve, Scene, SceneMesh, Weld};
 
 /// glTF document that a scene was read from; when the scene is written, all but the geometry is
 /// copied from it.
@@ -52,6 +52,18 @@ impl SourceDocument {
     /// as `material 3`.
     pub(crate) fn richer_materials(&self) -> Vec<String> {
         materials::richer_materials(&self.0.json)
+    }
+
+    /// Lists what the document holds beside all that a scene's fields and notes account for.
+    pub(crate) fn unheld_parts(&self) -> Vec<Note> {
+        unheld::unheld_parts(&self.0.json)
+    }
+
+    /// Reports for each primitive of a mesh whether it has no normals.
+    pub(crate) fn lacks_normals(&self, mesh: usize) -> Vec<bool> {
+        let primitives = self.0.json["meshes"][mesh]["primitives"].as_array();
+        let lacks = |primitive: &Value| primitive["attributes"].get("NORMAL").is_none();
+        primitives.into_iter().flatten().map(lacks).collect()
     }
 }
 

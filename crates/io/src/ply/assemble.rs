@@ -18,6 +18,8 @@ pub(super) struct Body {
     pub vertices: Vertices,
     pub faces: Vec<[VertexId; 3]>,
     pub values: FaceValues,
+    /// Bytes behind the last row of the last element.
+    pub bytes_left: usize,
 }
 
 /// Most distinct colours of faces that keep their borders. Each border is a seam, so that colours
@@ -26,8 +28,8 @@ const MOST_FACE_COLORS: usize = 256;
 
 /// Builds the scene: one mesh under one node, and a material for each texture.
 pub(super) fn scene(header: Header, body: Body, resolve: Resolve<'_>) -> Scene {
-    let Body { vertices, faces, mut values } = body;
-    let mut notes = notes(&header, &vertices, &values);
+    let Body { vertices, faces, mut values, bytes_left } = body;
+    let mut notes = notes(&header, &vertices, &values, bytes_left);
     let mut types = vertices.types;
     if let Some(kind) = values.color_kind.filter(|&kind| kind != Scalar::U8) {
         types.extend(["red", "green", "blue", "alpha"].map(|c| (format!("face {c}"), kind)));
@@ -53,7 +55,12 @@ pub(super) fn scene(header: Header, body: Body, resolve: Resolve<'_>) -> Scene {
 }
 
 /// Notes what the file holds and the scene does not.
-fn notes(header: &Header, vertices: &Vertices, values: &FaceValues) -> Vec<Note> {
+fn notes(
+    header: &Header,
+    vertices: &Vertices,
+    values: &FaceValues,
+    bytes_left: usize,
+) -> Vec<Note> {
     let skipped = |e: &&Element| e.name != "vertex" && !e.holds_faces() && e.count > 0;
     let skipped = || header.elements.iter().filter(skipped);
     let rows = skipped().map(|element| usize::try_from(element.count).unwrap_or(usize::MAX));
@@ -76,6 +83,7 @@ fn notes(header: &Header, vertices: &Vertices, values: &FaceValues) -> Vec<Note>
             "list of texture coordinates that does not match its face",
             "lists of texture coordinates that do not match their faces",
         ),
+        Note::left_out(bytes_left, "byte behind the last row", "bytes behind the last row"),
         Note::changed(
             values.not_finite,
             "value of a face that is not finite read as 0",

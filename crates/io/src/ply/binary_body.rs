@@ -86,6 +86,10 @@ impl<const BIG: bool> BodyReader for BinaryBody<'_, BIG> {
         self.rest.len() / element.least_row_size().max(1)
     }
 
+    fn bytes_left(&self) -> usize {
+        self.rest.trim_ascii().len()
+    }
+
     fn wrong(&self, reason: String) -> ParseError {
         ParseError::byte(self.row_at, reason)
     }

@@ -132,6 +132,7 @@ fn read_body<B: BodyReader>(header: &Header, mut body: B) -> Result<Body, ParseE
         }
     }
     let vertices = vertices.unwrap_or_default();
+    let bytes_left = body.bytes_left();
     for (mut body, element) in waiting {
         faces.read(&mut body, element, &vertices.positions)?;
     }
@@ -144,5 +145,5 @@ fn read_body<B: BodyReader>(header: &Header, mut body: B) -> Result<Body, ParseE
             "more than 4,294,967,295 triangles are not supported",
         ));
     }
-    Ok(Body { vertices, faces: faces.triangles, values: faces.values })
+    Ok(Body { vertices, faces: faces.triangles, values: faces.values, bytes_left })
 }

@@ -469,3 +469,18 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn bytes_behind_the_last_row_are_counted_and_white_space_is_not() {
+    let notes = |bytes: &[u8]| -> Vec<String> {
+        let scene = super::read_scene(bytes, &mut |_| None).unwrap();
+        scene.notes.iter().map(ToString::to_string).collect()
+    };
+    let text = format!("{HEAD}{SQUARE}3 0 1 2\n\n");
+    assert_eq!(notes(text.as_bytes()), [""; 0]);
+    let behind = ["9 bytes behind the last row"];
+    assert_eq!(notes(format!("{text}5 6\n7 8 9\n").as_bytes()), behind);
+    let mesh = tetrahedron();
+    assert_eq!(notes(&[&written(&mesh, Precision::F32)[..], b"\r\n"].concat()), [""; 0]);
+    assert_eq!(notes(&[&written(&mesh, Precision::F32)[..], b"not a row"].concat()), behind);
+}

@@ -84,6 +84,10 @@ impl BodyReader for TextBody<'_> {
         self.rest.len().div_ceil(2 * element.properties.len().max(1))
     }
 
+    fn bytes_left(&self) -> usize {
+        self.rest.trim_ascii().len()
+    }
+
     fn wrong(&self, reason: String) -> ParseError {
         ParseError::line(self.line, reason)
     }

@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::{json_of, read_parts, round_trip, square};
 use crate::gltf::write_glb;
-use crate::{Image, Material, Scene};
+use crate::{Format, Image, Material, Note, Scene};
 
 /// A square with morph target, bytes as colours, points beside it, an animation, and things that
 /// nobody here knows.
@@ -207,4 +207,75 @@ fn layers_of_any_name_and_kind_come_back() {
         layers
     };
     assert_eq!(layers(&again.meshes[0].mesh), layers(&mesh));
+}
+
+#[test]
+fn what_only_gltf_holds_is_noted_for_other_formats() {
+    let scene = rich();
+    assert!(scene.limits_of(Format::Glb).is_empty());
+    for format in [Format::Obj, Format::Ply, Format::Stl, Format::Off, Format::Smf] {
+        let notes: Vec<String> = scene.limits_of(format).iter().map(Note::to_string).collect();
+        for lost in [
+            "1 primitive of points or lines (rich)",
+            "1 extension of glTF (VENDOR_thing)",
+            "1 entry with extras (meshes 0)",
+        ] {
+            assert!(notes.iter().any(|note| note == lost), "{format:?}: {notes:?}");
+        }
+    }
+}
+
+#[test]
+fn textures_that_only_an_unknown_extension_has_are_noted() {
+    let (mut json, buffer) = square();
+    json["materials"] = json!([{ "name": "wood",
+        "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }]);
+    json["textures"] = json!([{ "extensions": { "KHR_texture_basisu": { "source": 0 } } }]);
+    json["images"] = json!([{ "uri": "wood.ktx2" }]);
+    json["meshes"][0]["primitives"][0]["material"] = 0.into();
+    let lost = |json: &serde_json::Value| {
+        let notes = read_parts(json, &buffer).unwrap().limits_of(Format::Obj);
+        notes.iter().any(|note| note.to_string() == "1 material's properties that MTL lacks (wood)")
+    };
+    assert!(lost(&json));
+    json["textures"][0]["source"] = 0.into();
+    assert!(!lost(&json));
+}
+
+#[test]
+fn normals_that_a_primitive_never_had_are_no_change() {
+    let (mut json, mut buffer) = square();
+    let start = buffer.len();
+    buffer.extend([0.0f32, 0.0, 1.0].repeat(4).iter().flat_map(|x| x.to_le_bytes()));
+    json["buffers"][0]["byteLength"] = buffer.len().into();
+    let view = json["bufferViews"].as_array().unwrap().len();
+    let new_view = json!({ "buffer": 0, "byteOffset": start, "byteLength": 48 });
+    json["bufferViews"].as_array_mut().unwrap().push(new_view);
+    let normals = json["accessors"].as_array().unwrap().len();
+    let accessor =
+        json!({ "bufferView": view, "componentType": 5126, "count": 4, "type": "VEC3" });
+    json["accessors"].as_array_mut().unwrap().push(accessor);
+    let bare = json["meshes"][0]["primitives"][0].clone();
+    let mut with = bare.clone();
+    with["attributes"]["NORMAL"] = normals.into();
+    json["meshes"][0]["primitives"] = json!([with, bare]);
+    let notes = |buffer: &[u8]| -> Vec<String> {
+        let mut scene = read_parts(&json, buffer).unwrap();
+        crate::normals::make_unit(&mut scene);
+        scene.notes.iter().map(Note::to_string).collect()
+    };
+    assert_eq!(notes(&buffer), [""; 0]);
+    buffer[start..start + 12].fill(0);
+    let one = "1 normal without a length computed from the faces around it";
+    assert_eq!(notes(&buffer), [one]);
+}
+
+#[test]
+fn names_of_embedded_images_are_names_of_files() {
+    let (mut json, buffer) = square();
+    let png = "data:image/png;base64,iVBORw0KGgo=";
+    json["images"] = json!([{ "uri": png, "name": "../a\\b:c?" }, { "uri": png, "name": "" }]);
+    let scene = read_parts(&json, &buffer).unwrap();
+    let names: Vec<&str> = scene.images.iter().map(|image| &*image.name).collect();
+    assert_eq!(names, [".._a_b_c_.png", "image1.png"]);
 }

@@ -98,6 +98,33 @@ fn what_nobody_here_knows_comes_back() {
 }
 
 #[test]
+fn views_of_sparse_targets_do_not_come_back_empty() {
+    let (mut json, mut buffer) = square();
+    let start = buffer.len();
+    buffer.extend([1, 0, 0, 0]);
+    buffer.extend([0.0f32, 0.0, 1.0].iter().flat_map(|x| x.to_le_bytes()));
+    json["buffers"][0]["byteLength"] = buffer.len().into();
+    let views = json["bufferViews"].as_array_mut().unwrap();
+    let first = views.len();
+    views.push(json!({ "buffer": 0, "byteOffset": start, "byteLength": 2 }));
+    views.push(json!({ "buffer": 0, "byteOffset": start + 4, "byteLength": 12 }));
+    let accessors = json["accessors"].as_array_mut().unwrap();
+    let target = accessors.len();
+    accessors.push(json!({
+        "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [0, 0, 1],
+        "sparse": {
+            "count": 1, "values": { "bufferView": first + 1 },
+            "indices": { "bufferView": first, "componentType": 5123 },
+        },
+    }));
+    json["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": target }]);
+    let glb = write_glb(&again(&read_parts(&json, &buffer).unwrap()), &[]).unwrap();
+    assert_valid(&glb);
+    let views = json_of(&glb)["bufferViews"].as_array().cloned().unwrap();
+    assert!(views.iter().all(|view| view["byteLength"].as_u64() > Some(0)), "{views:?}");
+}
+
+#[test]
 fn a_skeleton_has_no_geometry_and_key_frames_apart() {
     let Some(path) = shared_mesh("fox.glb") else { return };
     let scene = crate::read(&path, &ReadOptions::default()).unwrap();
