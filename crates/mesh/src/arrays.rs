@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::{Attributes, Layer, LayerKind, Mesh, MeshError, VertexId, WedgeId, weld};
+use crate::{Attributes, Layer, LayerKind, Mesh, MeshError, VertexId, WedgeId, first_near, weld};
 
 /// Plain arrays of a mesh, as numpy and GPUs have them: one row of every array for each point.
 ///
@@ -102,6 +102,27 @@ impl MeshArrays {
         self
     }
 
+    /// Returns the vertex that [`Mesh::from_arrays`] makes of each point.
+    ///
+    /// Cost: O(n), n = points.
+    pub fn vertex_of_points(&self) -> Vec<VertexId> {
+        if self.layers.is_empty() {
+            return (0..self.positions.len()).map(VertexId::new).collect();
+        }
+        let mut vertices: Vec<VertexId> = Vec::with_capacity(self.positions.len());
+        let mut count = 0;
+        for (point, first) in first_near(&self.positions, 0.0).into_iter().enumerate() {
+            let vertex = if first as usize == point {
+                count += 1;
+                VertexId::new(count - 1)
+            } else {
+                vertices[first as usize]
+            };
+            vertices.push(vertex);
+        }
+        vertices
+    }
+
     fn validate(&self) -> Result<(), ArraysError> {
         let count = self.positions.len();
         if u32::try_from(count).is_err() {
@@ -196,6 +217,22 @@ impl Mesh {
         split(&positions, &faces, attributes)
     }
 
+    /// Returns the vertex of each point of [`to_arrays`](Self::to_arrays).
+    ///
+    /// Cost: O(n), n = wedges.
+    /// # Panics
+    /// The mesh is invalid.
+    pub fn vertex_of_points(&self) -> Vec<VertexId> {
+        match &self.attributes {
+            Some(attributes) if !self.is_per_vertex() => {
+                let mut attributes = attributes.clone();
+                attributes.compact();
+                points_of(self.positions.len(), &self.faces, &attributes)
+            }
+            _ => (0..self.positions.len()).map(VertexId::new).collect(),
+        }
+    }
+
     /// Returns true if every vertex has one set of attributes, with its index, or there are none:
     /// then positions, faces and attributes are plain arrays already.
     pub fn is_per_vertex(&self) -> bool {
@@ -212,13 +249,7 @@ fn split(
     mut attributes: Attributes,
 ) -> MeshArrays {
     attributes.compact();
-    let mut vertex_of = vec![VertexId(0); attributes.wedge_count];
-    let mut is_unused = vec![true; positions.len()];
-    for (&v, w) in faces.as_flattened().iter().zip(attributes.corners.as_flattened()) {
-        vertex_of[w.index()] = v;
-        is_unused[v.index()] = false;
-    }
-    vertex_of.extend((0..positions.len()).filter(|&v| is_unused[v]).map(VertexId::new));
+    let vertex_of = points_of(positions.len(), faces, &attributes);
     let mut layers = attributes.layers;
     layers.iter_mut().for_each(|layer| layer.values.resize(vertex_of.len() * layer.width, 0.0));
     MeshArrays {
@@ -226,6 +257,18 @@ fn split(
         faces: attributes.corners.iter().map(|corners| corners.map(|w| w.0)).collect(),
         layers,
     }
+}
+
+/// Returns the vertex of each wedge, all of which are used, and then the unused vertices.
+fn points_of(vertices: usize, faces: &[[VertexId; 3]], attributes: &Attributes) -> Vec<VertexId> {
+    let mut vertex_of = vec![VertexId(0); attributes.wedge_count];
+    let mut is_unused = vec![true; vertices];
+    for (&v, w) in faces.as_flattened().iter().zip(attributes.corners.as_flattened()) {
+        vertex_of[w.index()] = v;
+        is_unused[v.index()] = false;
+    }
+    vertex_of.extend((0..vertices).filter(|&v| is_unused[v]).map(VertexId::new));
+    vertex_of
 }
 
 #[cfg(test)]
@@ -253,8 +296,11 @@ mod tests {
         arrays.positions.extend([[1.0, -0.0, 0.0], [9.0; 3]]);
         arrays.faces[1] = [2, 3, 4];
         let arrays = arrays.with(LayerKind::Color(0), [0.5_f32; 18].to_vec());
+        let vertices = arrays.vertex_of_points();
+        assert_eq!(vertices, [0, 1, 2, 3, 1, 4].map(VertexId));
         let mesh = Mesh::from_arrays(arrays).unwrap();
         assert_eq!(mesh.validate(), Ok(()));
+        assert_eq!(mesh.vertex_of_points(), [0, 1, 2, 3, 4].map(VertexId));
         assert_eq!(mesh.positions.len(), 5);
         assert!(!mesh.is_per_vertex(), "the unused vertex has no wedge");
         let back = mesh.to_arrays();
