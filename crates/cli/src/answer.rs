@@ -1,7 +1,6 @@
 //! Result of a command: text for people, JSON for programs, and the exit code.
 
 use std::io::{self, ErrorKind, Write};
-use std::process::ExitCode;
 
 use serde_json::Value;
 
@@ -25,12 +24,12 @@ impl Outcome {
         if condition { self } else { Self::Done }
     }
 
-    fn exit_code(self) -> ExitCode {
-        ExitCode::from(match self {
+    fn exit_code(self) -> u8 {
+        match self {
             Self::Done => 0,
             Self::Missed => 1,
             Self::Found => 3,
-        })
+        }
     }
 }
 
@@ -55,7 +54,7 @@ impl Answer {
     /// Prints the answer and returns the exit code.
     ///
     /// A closed pipe counts as success: its reader has seen enough.
-    pub fn print(&self, json: bool) -> Result<ExitCode, Failure> {
+    pub fn print(&self, json: bool) -> Result<u8, Failure> {
         let written = if json {
             write_all(&mut io::stdout(), &format!("{:#}\n", self.json))
         } else if self.file_on_stdout {

@@ -2,7 +2,6 @@
 
 use std::fmt;
 use std::path::Path;
-use std::process::ExitCode;
 
 use meshlod::IoError;
 
@@ -35,8 +34,8 @@ impl Failure {
         Self { exit_code: 3, ..Self::at(path, error) }
     }
 
-    pub fn exit_code(&self) -> ExitCode {
-        self.exit_code.into()
+    pub fn exit_code(&self) -> u8 {
+        self.exit_code
     }
 }
 

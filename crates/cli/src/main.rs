@@ -1,82 +1,9 @@
-//! The command `meshlod`: level of detail for triangle meshes, one verb at a time.
-//!
-//! A verb takes its arguments and the [`Session`] and returns an [`Answer`] or a [`Failure`]; only
-//! this file prints answers and sets exit codes: 0 for success, 1 for failure, 2 for wrong usage, 3 for findings.
+//! The program `meshlod`: the command of `meshlod_cli` in a process of its own.
 #![forbid(unsafe_code)]
 
-mod answer;
-mod args;
-mod check;
-mod command;
-mod compare;
-mod constraints;
-mod demo;
-mod distance;
-mod error_bound;
-mod failure;
-mod files;
-mod flock;
-mod fuse;
-mod kept_error;
-mod locks;
-mod model_file;
-mod model_query;
-mod model_scene;
-mod numbers;
-mod own_files;
-mod page;
-mod parse;
-mod poses;
-mod progress;
-mod query_args;
-mod scene_files;
-mod sequence;
-mod session;
-mod simplify_report;
-mod simplify_run;
-mod table;
-mod topology;
-mod verbs;
-mod view;
-mod volume;
-
-use std::process::{ExitCode, exit};
-
-use clap::Parser;
-use serde_json::Value;
-
-use crate::answer::Answer;
-use crate::command::{Cli, Verb};
-use crate::failure::Failure;
-use crate::session::Session;
-
-/// Exit code that shells report for Ctrl-C; also used for SIGTERM and SIGHUP.
-const INTERRUPTED: i32 = 130;
+use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
-    // Without a handler, signals still end the program but may leave a temporary file.
-    let _ = ctrlc::set_handler(|| {
-        meshlod::io::abandon_files();
-        exit(INTERRUPTED);
-    });
-    let session = Session::new(cli.global);
-    let done = answer(cli.verb, &session);
-    session.progress.clear();
-    match done.and_then(|answer| answer.print(session.json)) {
-        Ok(code) => code,
-        Err(failure) => {
-            session.complain(&failure);
-            failure.exit_code()
-        }
-    }
-}
-
-fn answer(verb: Verb, session: &Session) -> Result<Answer, Failure> {
-    session.start_threads()?;
-    let mut answer = verb.run(session)?;
-    if let Value::Object(json) = &mut answer.json {
-        json.insert("notes".into(), session.take_notes().into());
-    }
-    Ok(answer)
+    meshlod_cli::end_at_signals();
+    meshlod_cli::run(std::env::args_os()).into()
 }

@@ -12,6 +12,7 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod arrays;
 mod attributes;
 mod bounds;
 mod buckets;
@@ -30,6 +31,7 @@ mod strip_triangles;
 mod union_find;
 mod weld;
 
+pub use arrays::{ArraysError, MeshArrays};
 pub use attributes::{AttributeBounds, Attributes, Layer, LayerKind};
 pub use bounds::Bounds;
 pub use buckets::Buckets;

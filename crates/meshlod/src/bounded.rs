@@ -88,7 +88,7 @@ pub(crate) fn run_within<'m>(
             let proved = distance_at_most(&input, &level);
             return Ok(with_proof(report, [error, proved], rounds));
         }
-        report = simplifier.run(Target::Error(bound), &mut ())?;
+        report = simplifier.run(Target::Error(bound), observer)?;
     }
 }
 

@@ -7,7 +7,9 @@ use meshlod_mesh::{
     Borders, ConditionOptions, Conditioned, Conditioning, Locks, Mesh, NearBorders, Search,
     condition, near_borders,
 };
-use meshlod_simplify::{Options, Report, Simplifier, SimplifyError, Target, Topology, VolumeLoss};
+use meshlod_simplify::{
+    Observe, Options, Report, Simplifier, SimplifyError, Target, Topology, VolumeLoss,
+};
 
 use crate::bounded::run_within;
 use crate::locks;
@@ -213,6 +215,22 @@ pub fn simplify(
     target: Target,
     options: &Options,
 ) -> Result<(Mesh, Report), SimplifyError> {
+    simplify_observed(mesh, target, options, &mut ())
+}
+
+/// Simplifies a mesh as [`simplify`] does, watched by an observer.
+///
+/// Observers see the ids of the conditioned mesh. With an observer that
+/// [wants to see contractions](Observe::needs_surface) an error is not proved.
+///
+/// # Errors
+/// The mesh, the target or an option is invalid, see [`SimplifyError`].
+pub fn simplify_observed(
+    mesh: &Mesh,
+    target: Target,
+    options: &Options,
+    observer: &mut dyn Observe,
+) -> Result<(Mesh, Report), SimplifyError> {
     let ready = ConditionedMesh::new(mesh, options.clone(), Some(Borders::Stitch));
     let own = match target.valid()? {
         Target::Ratio(_) => Target::Faces(target.faces_of(mesh.faces.len())),
@@ -222,9 +240,9 @@ pub fn simplify(
     let report = match own {
         Target::Error(error) => {
             let again = Some((&ready, options.vanish_below));
-            run_within(again, &mut simplifier, error, &mut ())?
+            run_within(again, &mut simplifier, error, observer)?
         }
-        own => simplifier.run(own, &mut ())?,
+        own => simplifier.run(own, observer)?,
     };
     let duplicate_faces = report.duplicate_faces + ready.counts().duplicate_faces;
     let mut report = Report { input_faces: mesh.faces.len(), duplicate_faces, ..report };

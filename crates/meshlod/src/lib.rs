@@ -259,7 +259,7 @@ pub use compressed::{
     CompressOptions, CompressReport, CompressedFileError, compress, compress_scene,
 };
 pub use compressed_strips::compressed_strips;
-pub use conditioned::{ConditionedScene, simplify};
+pub use conditioned::{ConditionedScene, simplify, simplify_observed};
 pub use constraints::{Constraints, VertexLocking};
 pub use contacts::scene_locks;
 pub use decompressed::{decompress, decompress_bytes, decompress_model, decompress_scene};

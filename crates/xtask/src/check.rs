@@ -31,7 +31,8 @@ pub fn run(project: &Project) -> Result<()> {
     }
     let mut errors = [lengths.errors, circles.errors].concat();
     errors.extend(references::check(&files, &pages));
-    errors.extend(arrows::check(&project.files("crates", "Cargo.toml")?, &pages)?);
+    let manifests = [project.files("crates", "Cargo.toml")?, project.files("py", "Cargo.toml")?];
+    errors.extend(arrows::check(&manifests.concat(), &pages)?);
     errors.extend(prose::check(&sources));
     errors.extend(type_names::check_crates(&crates));
     errors.extend(type_names::check_facade(&crates, FACADE));

@@ -19,7 +19,7 @@ pub struct Text {
 }
 
 /// Folders without hand-written files.
-const GENERATED: [&str; 4] = ["target", "corpus", "artifacts", "out"];
+const GENERATED: [&str; 5] = ["target", "corpus", "artifacts", "out", "v"];
 
 impl Project {
     /// Returns the project that this program was compiled from.

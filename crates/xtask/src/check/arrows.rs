@@ -81,9 +81,9 @@ fn arrows_down(map: &[MapRow<'_>]) -> Vec<String> {
     errors
 }
 
-/// Returns `NAME` of `crates/NAME/Cargo.toml`.
+/// Returns `NAME` of `crates/NAME/Cargo.toml`, or of `NAME/Cargo.toml` for a workspace of its own.
 fn folder(path: &str) -> Option<&str> {
-    path.strip_prefix("crates/")?.strip_suffix("/Cargo.toml")
+    path.strip_suffix("/Cargo.toml").map(|folder| folder.strip_prefix("crates/").unwrap_or(folder))
 }
 
 /// Lists the folders of the workspace crates among a manifest's dependencies.
@@ -138,6 +138,18 @@ mod tests {
         let dependencies = "[dependencies]\nmeshlod-mesh.workspace = true\nglam = '1'";
         assert_eq!(errors(MAP, "spatial", dependencies), [""; 0]);
         assert_eq!(errors(MAP, "house", &dependencies.replace("mesh.", "spatial.")), [""; 0]);
+    }
+
+    #[test]
+    fn a_workspace_of_its_own_has_a_row_too() {
+        let map = MAP.replace("`house` | all above", "`py` | spatial");
+        let manifests = |used: &str| {
+            let py = text("py/Cargo.toml", &format!("[dependencies]\nmeshlod-{used} = '1'"));
+            [manifest("mesh", ""), manifest("spatial", ""), py]
+        };
+        let errors = |used| check(&manifests(used), &[text(PAGE, &map)]).expect("TOML");
+        assert_eq!(errors("spatial"), [""; 0]);
+        assert_eq!(errors("mesh"), ["py/Cargo.toml: `py` may not use `mesh`"]);
     }
 
     #[test]

@@ -1,0 +1,102 @@
+//! The command `meshlod`: level of detail for triangle meshes, one verb at a time.
+//!
+//! A verb takes its arguments and the [`Session`] and returns an [`Answer`] or a [`Failure`]; only
+//! this file prints answers and sets exit codes: 0 for success, 1 for failure, 2 for wrong usage, 3
+//! for findings. Programs and the Python package call [`run`].
+#![forbid(unsafe_code)]
+
+mod answer;
+mod args;
+mod check;
+mod command;
+mod compare;
+mod constraints;
+mod demo;
+mod distance;
+mod error_bound;
+mod failure;
+mod files;
+mod flock;
+mod fuse;
+mod kept_error;
+mod locks;
+mod model_file;
+mod model_query;
+mod model_scene;
+mod numbers;
+mod own_files;
+mod page;
+mod parse;
+mod poses;
+mod progress;
+mod query_args;
+mod scene_files;
+mod sequence;
+mod session;
+mod simplify_report;
+mod simplify_run;
+mod table;
+mod topology;
+mod verbs;
+mod view;
+mod volume;
+
+use std::ffi::OsString;
+use std::process::exit;
+
+use clap::Parser;
+use serde_json::Value;
+
+use crate::answer::Answer;
+use crate::command::{Cli, Verb};
+use crate::failure::Failure;
+use crate::session::Session;
+
+/// Exit code that shells report for Ctrl-C; also used for SIGTERM and SIGHUP.
+const INTERRUPTED: i32 = 130;
+
+/// Runs the command with these arguments, the first of which is the name of the program, and returns
+/// the exit code.
+///
+/// Output goes to the standard streams of the process. Wrong usage and `--help` print their text and
+/// are returned as exit codes, too. Signals are left alone; see [`end_at_signals`].
+pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> u8 {
+    let cli = match Cli::try_parse_from(arguments) {
+        Ok(cli) => cli,
+        Err(usage) => {
+            // If the stream is closed, nobody is left to tell.
+            let _ = usage.print();
+            return u8::try_from(usage.exit_code()).unwrap_or(2);
+        }
+    };
+    let session = Session::new(cli.global);
+    let done = answer(cli.verb, &session);
+    session.progress.clear();
+    match done.and_then(|answer| answer.print(session.json)) {
+        Ok(code) => code,
+        Err(failure) => {
+            session.complain(&failure);
+            failure.exit_code()
+        }
+    }
+}
+
+/// Makes Ctrl-C, SIGTERM and SIGHUP end the process with exit code 130, without temporary files.
+///
+/// For processes that do nothing else: no destructor runs. Where a handler is set already, it stays.
+pub fn end_at_signals() {
+    // Without a handler, signals still end the program but may leave a temporary file.
+    let _ = ctrlc::set_handler(|| {
+        meshlod::io::abandon_files();
+        exit(INTERRUPTED);
+    });
+}
+
+fn answer(verb: Verb, session: &Session) -> Result<Answer, Failure> {
+    session.start_threads()?;
+    let mut answer = verb.run(session)?;
+    if let Value::Object(json) = &mut answer.json {
+        json.insert("notes".into(), session.take_notes().into());
+    }
+    Ok(answer)
+}

@@ -1,0 +1,37 @@
+"""Level of detail for triangle meshes: read, simplify, measure, draw and write them.
+
+>>> import meshlod, numpy as np
+>>> points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
+>>> mesh = meshlod.Mesh(points, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+>>> mesh
+Mesh(4 vertices, 4 faces)
+>>> round(mesh.volume, 6)
+0.166667
+"""
+
+from . import convert
+from ._errors import MeshlodError, MeshlodWarning
+from ._files import load, save
+from ._mesh import Mesh
+from ._model import Camera, Model
+from ._reports import CheckReport, Distance, OneSidedDistance, Report
+from ._scene import Scene
+from ._simplify import simplify
+
+__all__ = [
+    "Camera",
+    "CheckReport",
+    "Distance",
+    "Mesh",
+    "MeshlodError",
+    "MeshlodWarning",
+    "Model",
+    "OneSidedDistance",
+    "Report",
+    "Scene",
+    "load",
+    "save",
+    "convert",
+    "simplify",
+]
+__version__ = "0.1.0"

@@ -1,0 +1,82 @@
+"""What a simplification is asked for, checked and put into words of the native part."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._errors import MeshlodError
+
+if TYPE_CHECKING:
+    from ._native import Asked
+
+
+def target(
+    target_reduction: float | None, target_count: int | None, max_error: float | None
+) -> tuple[str, float]:
+    """Returns the kind and the value of the only target that is given."""
+    given = {
+        "target_reduction": target_reduction,
+        "target_count": target_count,
+        "max_error": max_error,
+    }
+    names = [name for name, value in given.items() if value is not None]
+    if len(names) != 1:
+        what = " and ".join(names) or "none"
+        raise MeshlodError(f"give one of target_reduction, target_count and max_error, not {what}")
+    if target_count is not None:
+        return "count", _count(target_count)
+    value = _number(names[0], given[names[0]])
+    if target_reduction is not None:
+        if not 0 <= value <= 1:
+            raise MeshlodError(f"target_reduction must be between 0 and 1, not {value}")
+        return "ratio", 1 - value
+    if not value >= 0:
+        raise MeshlodError(f"max_error must be at least 0, not {value}")
+    return "error", value
+
+
+def asked(
+    kind: str,
+    value: float,
+    *,
+    method: str,
+    topology: str,
+    lock_boundary: bool,
+    locks: NDArray[Any] | None = None,
+    weights: tuple[float, float, float] | None = None,
+    progress: Callable[[float], object] | None = None,
+) -> Asked:
+    """Returns the argument of the native functions."""
+    locked = [] if locks is None else np.unique(locks).tolist()
+    return {
+        "kind": kind,
+        "value": value,
+        "method": method,
+        "topology": topology,
+        "lock_boundary": bool(lock_boundary),
+        "locks": locked,
+        "weights": weights,
+        "progress": progress,
+    }
+
+
+def _count(value: object) -> int:
+    try:
+        count = operator.index(value)  # type: ignore[arg-type]
+    except TypeError:
+        raise MeshlodError(f"target_count must be a whole number, not {value!r}") from None
+    if isinstance(value, (bool, np.bool_)) or not 0 <= count < 2**53:
+        raise MeshlodError(f"target_count must be a number of faces, not {value!r}")
+    return count
+
+
+def _number(name: str, value: Any) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise MeshlodError(f"{name} must be a number, not {value!r}") from None

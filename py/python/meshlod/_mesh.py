@@ -1,0 +1,282 @@
+"""Triangle meshes, with what can be done to them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _asked, _native
+from ._arrays import as_attributes, as_faces, as_points, as_vertices
+from ._errors import MeshlodError, warn
+from ._progress import ProgressLike, callback
+from ._reports import CheckReport, Distance, OneSidedDistance, Report
+
+if TYPE_CHECKING:
+    from ._model import Model
+
+Path = str | os.PathLike[str]
+
+#: Size of pictures in notebooks, in pixels.
+PICTURE = (512, 512)
+
+
+class Mesh:
+    """A triangle mesh that never changes: all methods return new ones.
+
+    ``vertices``, ``faces`` and the attributes are read-only views of its memory. They have one row
+    for each set of attributes: vertices at a seam of the texture come several times, and are one
+    vertex to the methods all the same.
+
+    ``vertices`` are rows of three coordinates, ``faces`` rows of three indices of them,
+    counter-clockwise seen from outside. ``normals``, ``uvs``, ``colors`` (0 to 1, or ``uint8``) and
+    further ``attributes`` have a row for each vertex.
+    """
+
+    __slots__ = ("__weakref__", "_native")
+
+    def __init__(
+        self,
+        vertices: ArrayLike,
+        faces: ArrayLike,
+        *,
+        normals: ArrayLike | None = None,
+        uvs: ArrayLike | None = None,
+        colors: ArrayLike | None = None,
+        attributes: Mapping[str, ArrayLike] | None = None,
+    ) -> None:
+        points = as_points(vertices, "vertices")
+        layers = as_attributes(len(points), normals, uvs, colors, attributes)
+        self._native, _ = _native.from_arrays(points, as_faces(faces), layers)
+
+    @classmethod
+    def _of(cls, native: _native.NativeMesh) -> Mesh:
+        mesh = cls.__new__(cls)
+        mesh._native = native
+        return mesh
+
+    @property
+    def vertices(self) -> NDArray[np.float64]:
+        """Position of each vertex: a read-only view of shape (n, 3)."""
+        return self._native.vertices
+
+    @property
+    def faces(self) -> NDArray[np.int32]:
+        """Vertices of each face: a read-only view of shape (m, 3)."""
+        return self._native.faces
+
+    @property
+    def attributes(self) -> dict[str, NDArray[np.float32]]:
+        """Attributes of the vertices by name, as read-only views."""
+        named: dict[str, NDArray[np.float32]] = {}
+        for name, values in self._native.attributes():
+            known, number = name, 1
+            while name in named:
+                name, number = f"{known}-{number + 1}", number + 1
+            named[name] = values
+        return named
+
+    @property
+    def normals(self) -> NDArray[np.float32] | None:
+        """Normals of the vertices, if there are any."""
+        return self.attributes.get("normals")
+
+    @property
+    def uvs(self) -> NDArray[np.float32] | None:
+        """First texture coordinates of the vertices, if there are any."""
+        return self.attributes.get("uvs")
+
+    @property
+    def colors(self) -> NDArray[np.float32] | None:
+        """First colours of the vertices, from 0 to 1, if there are any."""
+        return self.attributes.get("colors")
+
+    @property
+    def materials(self) -> tuple[list[str], NDArray[np.uint32]] | None:
+        """Names of the materials, and the material of each face, if there are any."""
+        return self._native.materials()
+
+    @property
+    def objects(self) -> tuple[list[str], NDArray[np.uint32]] | None:
+        """Names of the objects, and the object of each face, if there are any."""
+        return self._native.objects()
+
+    @property
+    def bounds(self) -> NDArray[np.float64]:
+        """Least and greatest coordinates of what faces use; NaN if there are no faces."""
+        found = self._native.bounds()
+        return np.full((2, 3), np.nan) if found is None else np.array(found)
+
+    @property
+    def area(self) -> float:
+        """Area of the surface."""
+        return _native.sizes(self._native)[0]
+
+    @property
+    def volume(self) -> float:
+        """Volume that the surface encloses, with a sign; it means little if it is not closed."""
+        return _native.sizes(self._native)[1]
+
+    def simplify(
+        self,
+        target_reduction: float | None = None,
+        target_count: int | None = None,
+        *,
+        max_error: float | None = None,
+        method: str = "lindstrom-turk",
+        topology: str = "free",
+        locks: ArrayLike | None = None,
+        lock_boundary: bool = False,
+        weights: tuple[float, float, float] | None = None,
+        progress: ProgressLike = None,
+        return_report: bool = False,
+    ) -> Any:
+        """Returns a coarser mesh, or ``(mesh, report)``; see :func:`meshlod.simplify`."""
+        kind, value = _asked.target(target_reduction, target_count, max_error)
+        options = {
+            "method": method,
+            "topology": topology,
+            "lock_boundary": lock_boundary,
+            "weights": weights,
+            "progress": callback(progress, "simplifying"),
+        }
+        level, report = self._simplified(kind, value, locks, options)
+        if not report.reached:
+            warn(report.why_not_reached())
+        return (level, report) if return_report else level
+
+    def lods(
+        self,
+        ratios: Sequence[float] = (0.5, 0.25, 0.125),
+        *,
+        method: str = "lindstrom-turk",
+        topology: str = "free",
+        lock_boundary: bool = False,
+        progress: ProgressLike = None,
+    ) -> list[Mesh]:
+        """Returns coarser and coarser meshes, with these ratios of the faces, from one run."""
+        ratios = [float(ratio) for ratio in ratios]
+        if any(not 0 <= ratio <= 1 for ratio in ratios) or ratios != sorted(ratios, reverse=True):
+            raise MeshlodError(f"ratios must fall, and be between 0 and 1, not {ratios}")
+        if not ratios:
+            return []
+        bar = callback(progress, "simplifying")
+        options = {"method": method, "topology": topology, "lock_boundary": lock_boundary}
+        asked = _asked.asked("ratio", ratios[-1], progress=bar, **options)
+        done = _native.levels(self._native, ratios, asked)
+        reports = [Report(**fields) for _, fields in done]
+        missed = [report for report in reports if not report.reached]
+        if missed:
+            warn(missed[0].why_not_reached())
+        return [Mesh._of(level) for level, _ in done]
+
+    def measure(self, other: Mesh, *, samples: int = 500_000, seed: int = 0) -> Distance:
+        """Measures the distance from another mesh, in both directions."""
+        if not isinstance(other, Mesh):
+            raise MeshlodError(f"other must be a Mesh, not {type(other).__name__}")
+        if not 0 <= samples < 2**32:
+            raise MeshlodError(f"samples must be at least 1 and less than 2**32, not {samples}")
+        found: Any = _native.measure(self._native, other._native, samples, seed)
+        for side in ("forward", "backward"):
+            fields = found[side]
+            for place in ("max_from", "max_to"):
+                fields[place] = tuple(fields[place])
+            found[side] = OneSidedDistance(**fields)
+        return Distance(**found)
+
+    def check(self) -> CheckReport:
+        """Counts what is wrong with the mesh, by kind."""
+        found = _native.check(self._native)
+        errors = {kind: count for kind, count, is_error in found if is_error}
+        warnings = {kind: count for kind, count, is_error in found if not is_error}
+        return CheckReport(errors=errors, warnings=warnings)
+
+    def repair(
+        self,
+        *,
+        weld: float | None = None,
+        stitch: float | None = 0.0,
+        fill_holes: int | None = None,
+        return_report: bool = False,
+    ) -> Any:
+        """Returns a mesh without errors, or ``(mesh, counts)`` with the changes by kind.
+
+        ``weld`` and ``stitch`` are distances within which vertices are merged, and boundary edges
+        sewn together. ``fill_holes`` is the greatest number of edges of holes to fill.
+        """
+        repaired, counts = _native.repair(self._native, weld, stitch, fill_holes)
+        mesh = Mesh._of(repaired)
+        return (mesh, dict(counts)) if return_report else mesh
+
+    def strip(self, *, quality: str = "quick") -> NDArray[np.uint32]:
+        """Returns triangle strips of the faces: rows of vertices, with 2**32 - 1 between strips."""
+        return _native.strip(self._native, quality)
+
+    def compress(self, path: Path, *, bits: int = 11, max_error: float | None = None) -> int:
+        """Writes a compressed file, ``.mlz`` or ``.mlq``, and returns its size in bytes.
+
+        ``bits`` are those of a coordinate; ``max_error`` is a mean distance in their place.
+        """
+        size, reached = _native.compress(self._native, os.fspath(path), bits, max_error)
+        if not reached:
+            warn(f"{os.fspath(path)}: the target was not met")
+        return size
+
+    def build(self, path: Path, *, lossless: bool = False, errors: str = "measured") -> Model:
+        """Writes all levels to a ``.mlod`` file, and opens it.
+
+        ``errors`` are ``"estimate"``, ``"measured"``, or ``"bound"``, which are proved.
+        """
+        from ._model import Model
+
+        _native.build(self._native, os.fspath(path), lossless, errors)
+        return Model(path)
+
+    def render(
+        self,
+        size: tuple[int, int] = PICTURE,
+        *,
+        wireframe: bool = False,
+        up: str = "y",
+        direction: tuple[float, float, float] | None = None,
+    ) -> NDArray[np.uint8]:
+        """Returns a picture of shape (height, width, 4), the same on every machine.
+
+        ``direction`` is that in which the camera looks.
+        """
+        width, height = size
+        pixels = _native.render(self._native, [width, height], wireframe, up, direction, False)
+        return np.frombuffer(pixels, dtype=np.uint8).reshape(height, width, 4)
+
+    def save(self, path: Path) -> None:
+        """Writes a file in the format of its suffix, whole or not at all."""
+        for note in _native.save(_native.NativeScene.of("", self._native), os.fspath(path)):
+            warn(f"{os.fspath(path)}: {note}")
+
+    def to_arrays(self) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+        """Returns vertices and faces as arrays of their own, which may be changed."""
+        points, faces, _ = self._native.to_arrays()
+        return points, faces
+
+    def _simplified(
+        self, kind: str, value: float, locks: ArrayLike | None, options: dict[str, Any]
+    ) -> tuple[Mesh, Report]:
+        locked = None
+        if locks is not None:
+            vertices = self._native.vertex_of_points()
+            locked = vertices[as_vertices(locks, len(vertices))]
+        asked = _asked.asked(kind, value, locks=locked, **options)
+        level, fields = _native.simplify(self._native, asked)
+        return Mesh._of(level), Report(**fields)
+
+    def _repr_png_(self) -> bytes | None:
+        if len(self.faces) == 0:
+            return None
+        return _native.render(self._native, list(PICTURE), False, "y", None, True)
+
+    def __repr__(self) -> str:
+        parts = [f"{len(self.vertices)} vertices", f"{len(self.faces)} faces", *self.attributes]
+        return f"Mesh({', '.join(parts)})"

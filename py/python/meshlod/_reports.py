@@ -1,0 +1,100 @@
+"""What was done and what was found, as plain classes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class Report:
+    """Report of a simplification. Lengths are in model units."""
+
+    #: Method that ran.
+    method: str
+    #: Number of faces before.
+    input_faces: int
+    #: Number of faces after.
+    output_faces: int
+    #: True if the target was reached.
+    reached: bool
+    #: Estimate of the method; no bound.
+    error_estimate: float
+    #: Proved bound of the distance, if an error was asked for.
+    error_proved: float | None
+    #: Number of edges and faces contracted.
+    contractions: int
+    #: Number of connected components that were removed as a whole.
+    vanished: int
+    #: Number of faces left out because they repeat a vertex.
+    degenerate_faces: int
+    #: Number of faces left out because they repeat another one.
+    duplicate_faces: int
+    #: Number of vertices kept in place.
+    locked: int
+    #: Volume before minus volume after, in cubic model units, as the method counts it.
+    volume_lost: float
+    #: Number of refused contractions, by reason.
+    refusals: Mapping[str, int] = field(default_factory=dict)
+
+    def why_not_reached(self) -> str:
+        """Says why the target was missed."""
+        counts = ", ".join(f"{name} {count}" for name, count in self.refusals.items())
+        faces = "face" if self.output_faces == 1 else "faces"
+        return (
+            f"target not reached: no further contraction is possible at {self.output_faces} "
+            f"{faces} (refused: {counts or 'none'})"
+        )
+
+
+@dataclass(frozen=True)
+class OneSidedDistance:
+    """Distance from points on one surface to the other, in model units."""
+
+    #: Mean over the samples.
+    mean: float
+    #: Root mean square over the samples.
+    rms: float
+    #: Maximum over samples and vertices, a lower bound of the true one.
+    max: float
+    #: Point at which the maximum was found.
+    max_from: tuple[float, float, float]
+    #: Point of the other surface that is closest to it.
+    max_to: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Distance:
+    """Distance between two surfaces, measured in both directions, in model units."""
+
+    #: Mean of both directions.
+    mean: float
+    #: Root mean square of both directions.
+    rms: float
+    #: Maximum of both directions, a lower bound of the true one.
+    max: float
+    #: Diagonal of the bounding box of the first mesh.
+    diagonal: float
+    #: From the first mesh to the second.
+    forward: OneSidedDistance
+    #: From the second mesh to the first.
+    backward: OneSidedDistance
+
+
+@dataclass(frozen=True)
+class CheckReport:
+    """Numbers of findings of a check, by kind."""
+
+    #: Findings that are errors.
+    errors: Mapping[str, int]
+    #: Findings that are no errors.
+    warnings: Mapping[str, int]
+
+    @property
+    def is_clean(self) -> bool:
+        """True if nothing was found."""
+        return not self.errors and not self.warnings
+
+    def __str__(self) -> str:
+        found = {**self.errors, **self.warnings}
+        return "\n".join(f"{kind}: {count}" for kind, count in found.items()) or "clean"

@@ -1,0 +1,109 @@
+"""Scenes: all that a file holds."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _asked, _native
+from ._errors import warn
+from ._mesh import Mesh, Path
+from ._progress import ProgressLike, callback
+from ._reports import Report
+
+
+class Scene:
+    """All that a file holds: meshes, nodes, materials, textures, skins and animations.
+
+    It never changes. Saved in the format that it was read from, it keeps everything but the
+    geometry that was simplified.
+    """
+
+    __slots__ = ("_native",)
+
+    def __init__(self, mesh: Mesh, name: str = "") -> None:
+        self._native = _native.NativeScene.of(name, mesh._native)
+
+    @classmethod
+    def _of(cls, native: _native.NativeScene) -> Scene:
+        scene = cls.__new__(cls)
+        scene._native = native
+        return scene
+
+    @classmethod
+    def load(cls, path: Path) -> Scene:
+        """Reads a file of any format."""
+        native, notes = _native.load(os.fspath(path))
+        for note in notes:
+            warn(f"{os.fspath(path)}: {note}")
+        return cls._of(native)
+
+    @property
+    def meshes(self) -> list[tuple[str, Mesh]]:
+        """Name of each mesh, and the mesh in its own space."""
+        return [(name, Mesh._of(mesh)) for name, mesh in self._native.meshes()]
+
+    @property
+    def instances(self) -> list[tuple[int, NDArray[np.float64]]]:
+        """Placed meshes: the index of the mesh, and the matrix from its space to the world."""
+        return [(mesh, np.array(columns).T) for mesh, columns in self._native.instances()]
+
+    @property
+    def materials(self) -> list[str]:
+        """Names of the materials."""
+        return self._native.materials()
+
+    @property
+    def face_count(self) -> int:
+        """Number of faces that are shown, counting every placed mesh."""
+        return self._native.face_count()
+
+    def flatten(self) -> Mesh:
+        """Merges all placed meshes into one, in world space."""
+        return Mesh._of(self._native.flatten())
+
+    def simplify(
+        self,
+        target_reduction: float | None = None,
+        target_count: int | None = None,
+        *,
+        max_error: float | None = None,
+        method: str = "lindstrom-turk",
+        topology: str = "free",
+        lock_boundary: bool = False,
+        weights: tuple[float, float, float] | None = None,
+        progress: ProgressLike = None,
+        return_report: bool = False,
+    ) -> Any:
+        """Returns a coarser scene, or ``(scene, report)``; see :func:`meshlod.simplify`.
+
+        All meshes share the target, so that detail stays where the scene shows it.
+        """
+        kind, value = _asked.target(target_reduction, target_count, max_error)
+        asked = _asked.asked(
+            kind,
+            value,
+            method=method,
+            topology=topology,
+            lock_boundary=lock_boundary,
+            weights=weights,
+            progress=callback(progress, "simplifying"),
+        )
+        level, fields = _native.simplify_scene(self._native, asked)
+        report = Report(**fields)
+        if not report.reached:
+            warn(report.why_not_reached())
+        scene = Scene._of(level)
+        return (scene, report) if return_report else scene
+
+    def save(self, path: Path) -> None:
+        """Writes a file in the format of its suffix, whole or not at all."""
+        for note in _native.save(self._native, os.fspath(path)):
+            warn(f"{os.fspath(path)}: {note}")
+
+    def __repr__(self) -> str:
+        meshes = len(self._native.meshes())
+        return f"Scene({meshes} {'mesh' if meshes == 1 else 'meshes'}, {self.face_count} faces)"

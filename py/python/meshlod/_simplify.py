@@ -1,0 +1,127 @@
+"""Simplification of arrays, as other packages offer it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from . import _asked, _native
+from ._arrays import as_attributes, as_faces, as_points, as_vertices, returned
+from ._errors import MeshlodError, warn
+from ._mesh import Mesh
+from ._progress import ProgressLike, callback
+from ._reports import Report
+
+
+def simplify(
+    points: Any,
+    faces: ArrayLike | None = None,
+    target_reduction: float | None = None,
+    target_count: int | None = None,
+    *,
+    max_error: float | None = None,
+    normals: ArrayLike | None = None,
+    uvs: ArrayLike | None = None,
+    colors: ArrayLike | None = None,
+    attributes: Mapping[str, ArrayLike] | None = None,
+    method: str = "lindstrom-turk",
+    topology: str = "free",
+    locks: ArrayLike | None = None,
+    lock_boundary: bool = False,
+    weights: tuple[float, float, float] | None = None,
+    progress: ProgressLike = None,
+    return_report: bool = False,
+    triangles: ArrayLike | None = None,
+    preserve_border: bool | None = None,
+    agg: float | None = None,
+    verbose: bool = False,
+    return_collapses: bool = False,
+    lossless: bool = False,
+) -> Any:
+    """Returns a coarser mesh: ``(points, faces)``.
+
+    Exactly one of ``target_reduction`` (part of the faces to remove, 0 to 1), ``target_count``
+    (number of faces to keep) and ``max_error`` (distance in the unit of the points, which is then
+    proved for every point of both surfaces) says how coarse. If the target is out of reach, a
+    :class:`MeshlodWarning` says so.
+
+    ``points`` are rows of three coordinates, ``faces`` rows of three indices of them. The points
+    that come back are double precision, the faces 32-bit integers, both new arrays.
+
+    ``normals``, ``uvs``, ``colors`` (0 to 1, or ``uint8``) and further ``attributes`` have a row for
+    each point. They are kept, and come third, as a dictionary with the same names: whole numbers
+    are taken from a neighbour, all others interpolated. Points at equal positions may differ in
+    them; such a seam does not tear the surface.
+
+    ``locks`` is a mask, or rows, of points that stay where they are; ``lock_boundary`` locks those
+    on the boundary. ``topology="keep"`` keeps closed surfaces closed and every component.
+    ``weights`` are those of normals, uvs and colours against distances. ``progress`` is a function
+    of the part that is done, or ``True`` for a bar on a terminal. With ``return_report`` a
+    :class:`Report` comes last.
+
+    In place of arrays ``points`` may be a mesh of this package, trimesh, pyvista, open3d or meshio:
+    then a mesh of that package comes back.
+
+    ``triangles``, ``preserve_border``, ``agg``, ``verbose``, ``return_collapses`` and ``lossless``
+    are those of ``fast_simplification.simplify``, so that changing the import is enough. ``agg``
+    has no effect; collapses are not recorded.
+
+    :raises MeshlodError: an array, a target or an option that is not what it should be.
+    """
+    if return_collapses or lossless:
+        name = "return_collapses" if return_collapses else "lossless"
+        advice = "leave it out" if return_collapses else "use max_error=0"
+        raise MeshlodError(f"{name} is not supported: {advice}")
+    if agg is not None:
+        warn("agg has no effect: there is one quality")
+    if triangles is not None:
+        if faces is not None:
+            raise MeshlodError("give faces or triangles, not both")
+        faces = triangles
+    lock_boundary = lock_boundary or bool(preserve_border)
+    kind, value = _asked.target(target_reduction, target_count, max_error)
+    given = {"normals": normals, "uvs": uvs, "colors": colors, **(attributes or {})}
+    bar = callback(progress, "simplifying")
+    options = {
+        "method": method,
+        "topology": topology,
+        "lock_boundary": lock_boundary,
+        "weights": weights,
+        "progress": bar,
+    }
+    if faces is None:
+        if any(values is not None for values in given.values()):
+            raise MeshlodError("a mesh brings its attributes along: give points and faces instead")
+        return _of_mesh(points, kind, value, locks, options, return_report)
+    rows = as_points(points)
+    layers = as_attributes(len(rows), normals, uvs, colors, attributes)
+    mesh, vertices = _native.from_arrays(rows, as_faces(faces), layers)
+    locked = None if locks is None else as_vertices(locks, len(rows))
+    if locked is not None and vertices is not None:
+        locked = vertices[locked]
+    level, fields = _native.simplify(mesh, _asked.asked(kind, value, locks=locked, **options))
+    out: tuple[Any, ...] = level.to_arrays()
+    out = (*out[:2], returned(out[2], given)) if layers else out[:2]
+    report = Report(**fields)
+    if not report.reached:
+        warn(report.why_not_reached())
+    return (*out, report) if return_report else out
+
+
+def _of_mesh(
+    mesh: Any,
+    kind: str,
+    value: float,
+    locks: ArrayLike | None,
+    options: dict[str, Any],
+    return_report: bool,
+) -> Any:
+    from . import convert
+
+    own, back = (mesh, None) if isinstance(mesh, Mesh) else convert.adopted(mesh)
+    level, report = own._simplified(kind, value, locks, options)
+    out = level if back is None else back(level)
+    return (out, report) if return_report else out
+

@@ -1,0 +1,56 @@
+//! Files: what they hold, and the notes on what was left out or changed on the way.
+
+use std::path::{Path, PathBuf};
+
+use meshlod::io::{Format, Note};
+use meshlod::{IoError, ReadOptions, Scene, WriteOptions, decompress_scene, read, write};
+use pyo3::prelude::*;
+
+use crate::errors::{raised, raised_by_file};
+use crate::scene::NativeScene;
+use crate::work::run;
+
+/// Reads a mesh file or a compressed file, and returns its scene with notes on what was left out.
+///
+/// # Errors
+/// A file that is missing, damaged or of another format.
+#[pyfunction]
+pub fn load(py: Python<'_>, path: PathBuf) -> PyResult<(NativeScene, Vec<String>)> {
+    let scene = run(py, None, move |_| match is_compressed(&path) {
+        true => compressed(&path),
+        false => read(&path, &ReadOptions::default()).map_err(raised_by_file),
+    })??;
+    let notes = texts(&scene.notes);
+    Ok((NativeScene::new(scene), notes))
+}
+
+/// Writes a scene, in the format of the suffix, and returns notes on what the format cannot hold.
+///
+/// # Errors
+/// An unknown suffix, a scene that the format cannot hold, and errors of the file system.
+#[pyfunction]
+pub fn save(py: Python<'_>, scene: &NativeScene, path: PathBuf) -> PyResult<Vec<String>> {
+    let format = Format::of_path(&path).map_err(raised_by_file)?;
+    let scene = scene.shared();
+    let notes = scene.limits_of(format);
+    run(py, None, move |_| write(&path, &scene, &WriteOptions::default()))?
+        .map_err(raised_by_file)?;
+    Ok(texts(&notes))
+}
+
+fn is_compressed(path: &Path) -> bool {
+    let suffix = path.extension().map(|suffix| suffix.to_ascii_lowercase());
+    suffix.is_some_and(|suffix| suffix == "mlz" || suffix == "mlq")
+}
+
+fn compressed(path: &Path) -> PyResult<Scene> {
+    let bytes = std::fs::read(path).map_err(|error| IoError::system(path, error));
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    decompress_scene(&bytes.map_err(raised_by_file)?, name)
+        .map_err(|error| raised(format_args!("{}: {error}", path.display())))
+}
+
+fn texts(notes: &[Note]) -> Vec<String> {
+    let notes = notes.iter().filter(|note| note.count > 0);
+    notes.map(|note| format!("{}: {note}", note.kind.word())).collect()
+}

@@ -1,0 +1,41 @@
+//! Native part of the Python package `meshlod`: meshes that live in Rust, and what is done to them.
+//!
+//! The package in `python/meshlod` calls it with arrays that are contiguous and of the right type;
+//! what is left to check is their contents. Work runs on threads of its own ([`work`]), without the
+//! GIL, while the calling thread looks after Ctrl-C and progress.
+
+mod arrays;
+mod command;
+mod errors;
+mod files;
+mod mesh;
+mod model;
+mod numpy_views;
+mod report;
+mod scene;
+mod simplify;
+mod verbs;
+mod work;
+
+use pyo3::prelude::*;
+
+/// Functions and classes behind the package `meshlod`.
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use super::command::run_command;
+    #[pymodule_export]
+    use super::errors::MeshlodError;
+    #[pymodule_export]
+    use super::files::{load, save};
+    #[pymodule_export]
+    use super::mesh::{NativeMesh, from_arrays};
+    #[pymodule_export]
+    use super::model::{NativeModel, build};
+    #[pymodule_export]
+    use super::scene::NativeScene;
+    #[pymodule_export]
+    use super::simplify::{levels, simplify, simplify_scene};
+    #[pymodule_export]
+    use super::verbs::{check, compress, measure, render, repair, sizes, strip};
+}

@@ -1,0 +1,147 @@
+//! Work without the GIL that Ctrl-C stops and that reports its progress.
+//!
+//! The work runs on a pool of threads. The calling thread waits for it without the GIL, and wakes up
+//! now and then to let Python handle signals and to call the progress callback. If either raises, the
+//! exception is passed on at once, and the work ends at its next contraction, or else by itself: it
+//! owns all that it uses.
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::process;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use meshlod::simplify::Observe;
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+/// Time between two looks at signals and progress. Finished work is noticed at once.
+const TICK: Duration = Duration::from_millis(50);
+
+/// Callback that is told the part of the work that is done, from 0 to 1.
+pub struct Progress {
+    /// Callback in Python.
+    pub callback: Py<PyAny>,
+    /// Number of faces to remove; `None` if it is not known.
+    pub faces: Option<usize>,
+}
+
+/// What the work and the thread that waits for it share.
+#[derive(Default)]
+struct Shared {
+    is_cancelled: AtomicBool,
+    /// Number of faces removed so far.
+    gone: AtomicUsize,
+}
+
+/// Observer that counts removed faces and ends the work if nobody waits for it any more.
+pub struct Watch(Arc<Shared>);
+
+/// Payload with which cancelled work unwinds.
+struct Cancelled;
+
+impl Observe for Watch {
+    fn needs_surface(&self) -> bool {
+        false
+    }
+
+    fn gone(&mut self, faces: usize) {
+        self.0.gone.fetch_add(faces, Ordering::Relaxed);
+        self.check();
+    }
+}
+
+impl Watch {
+    /// Ends the work if it has been cancelled, by unwinding to where it was started.
+    pub fn check(&self) {
+        if self.0.is_cancelled.load(Ordering::Relaxed) {
+            // No panic: nothing is printed.
+            resume_unwind(Box::new(Cancelled));
+        }
+    }
+}
+
+/// Runs `work` on the pool, without the GIL, and returns its result.
+///
+/// # Errors
+/// The exception of a signal handler or of the callback; a panic of the work, which is a defect here.
+pub fn run<T: Send + 'static>(
+    py: Python<'_>,
+    progress: Option<Progress>,
+    work: impl FnOnce(&mut Watch) -> T + Send + 'static,
+) -> PyResult<T> {
+    let shared = Arc::new(Shared::default());
+    let mut watch = Watch(Arc::clone(&shared));
+    let (sender, mut receiver) = channel();
+    pool()?.spawn(move || {
+        let result = catch_unwind(AssertUnwindSafe(|| work(&mut watch)));
+        // Nobody waits for cancelled work.
+        let _ = sender.send(result);
+    });
+    loop {
+        let (result, back) = py.detach(move || (receiver.recv_timeout(TICK), receiver));
+        receiver = back;
+        let seen = match result {
+            Ok(Ok(value)) => {
+                if let Some(progress) = &progress {
+                    progress.callback.call1(py, (1.0,))?;
+                }
+                return Ok(value);
+            }
+            Ok(Err(payload)) => return Err(defect(&*payload)),
+            Err(RecvTimeoutError::Disconnected) => return Err(defect(&())),
+            Err(RecvTimeoutError::Timeout) => look(py, progress.as_ref(), &shared),
+        };
+        if let Err(raised) = seen {
+            shared.is_cancelled.store(true, Ordering::Relaxed);
+            return Err(raised);
+        }
+    }
+}
+
+/// Lets Python handle signals, and reports progress.
+fn look(py: Python<'_>, progress: Option<&Progress>, shared: &Shared) -> PyResult<()> {
+    py.check_signals()?;
+    if let Some(Progress { callback, faces: Some(faces) }) = progress {
+        let gone = shared.gone.load(Ordering::Relaxed);
+        let done = gone as f64 / (*faces).max(1) as f64;
+        // 1 is said once, at the end.
+        callback.call1(py, (done.min(0.999),))?;
+    }
+    Ok(())
+}
+
+fn defect(payload: &(dyn Any + Send)) -> PyErr {
+    let text = payload.downcast_ref::<String>().map(String::as_str);
+    let text = text.or(payload.downcast_ref::<&str>().copied()).unwrap_or("no message");
+    PyRuntimeError::new_err(format!(
+        "meshlod has a defect: {}; please report it with the input",
+        text.replace(['\n', '\r'], " ")
+    ))
+}
+
+/// Returns the pool of this process. A child made by `fork` has none of its parent's threads, and
+/// gets a pool of its own.
+///
+/// Only threads that hold the GIL come here, as the one that forks does: no child is born with the
+/// lock taken.
+fn pool() -> PyResult<Arc<ThreadPool>> {
+    static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
+    let mut known = POOL.lock().unwrap_or_else(PoisonError::into_inner);
+    let process = process::id();
+    if let Some((owner, pool)) = &*known
+        && *owner == process
+    {
+        return Ok(Arc::clone(pool));
+    }
+    let pool = ThreadPoolBuilder::new().build().map_err(|error| {
+        PyRuntimeError::new_err(format!("cannot start threads: {error}; set RAYON_NUM_THREADS"))
+    })?;
+    let pool = Arc::new(pool);
+    // The pool of the parent cannot be shut down without its threads.
+    std::mem::forget(known.replace((process, Arc::clone(&pool))));
+    Ok(pool)
+}

@@ -1,0 +1,165 @@
+"""Files, scenes, models and the command line."""
+
+import json
+import os
+import subprocess
+import sys
+
+import meshlod
+import numpy as np
+import pytest
+from shapes import torus, unrolled
+
+#: A triangle in a glTF file with a material and two nodes.
+GLTF = {
+    "asset": {"version": "2.0"},
+    "scene": 0,
+    "scenes": [{"nodes": [0, 1]}],
+    "nodes": [{"mesh": 0}, {"mesh": 0, "translation": [5, 0, 0], "name": "second"}],
+    "materials": [{"name": "red"}],
+    "meshes": [
+        {
+            "name": "torus",
+            "primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}],
+        }
+    ],
+    "buffers": [{"uri": "torus.bin"}],
+}
+
+
+def write_gltf(folder):
+    points, faces = torus(24, 12)
+    points, faces = points.astype("<f4"), faces.astype("<u4")
+    low, high = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+    document = {
+        **GLTF,
+        "bufferViews": [
+            {"buffer": 0, "byteLength": points.nbytes},
+            {"buffer": 0, "byteOffset": points.nbytes, "byteLength": faces.nbytes},
+        ],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": len(points), "type": "VEC3",
+             "min": low, "max": high},
+            {"bufferView": 1, "componentType": 5125, "count": faces.size, "type": "SCALAR"},
+        ],
+    }
+    document["buffers"][0]["byteLength"] = points.nbytes + faces.nbytes
+    (folder / "torus.bin").write_bytes(points.tobytes() + faces.tobytes())
+    (folder / "torus.gltf").write_text(json.dumps(document))
+    return folder / "torus.gltf"
+
+
+@pytest.mark.parametrize("suffix", ["ply", "obj", "stl", "off", "smf", "gltf", "glb"])
+def test_every_format_is_written_and_read(tmp_path, suffix):
+    points, faces = torus()
+    points = points.astype(np.float32)
+    path = tmp_path / f"torus.{suffix}"
+    meshlod.save(path, meshlod.Mesh(points, faces))
+    mesh = meshlod.load(path)
+    assert len(mesh.faces) == len(faces) and len(mesh.vertices) == len(points)
+    order = [np.lexsort(at.T) for at in (points, mesh.vertices)]
+    assert np.allclose(points[order[0]], mesh.vertices[order[1]], atol=1e-6)
+
+
+def test_textures_stay_and_what_does_not_is_said(tmp_path):
+    points, faces, uvs = unrolled()
+    mesh = meshlod.Mesh(points, faces, uvs=uvs)
+    mesh.save(tmp_path / "a.obj")
+    assert len(np.unique(meshlod.load(tmp_path / "a.obj").uvs, axis=0)) == len(uvs)
+    with pytest.warns(meshlod.MeshlodWarning, match="left out: .*texture coordinates"):
+        mesh.save(tmp_path / "a.stl")
+
+
+def test_bad_files_raise(tmp_path):
+    missing = tmp_path / "missing.ply"
+    with pytest.raises(FileNotFoundError) as raised:
+        meshlod.load(missing)
+    assert raised.value.filename == str(missing)
+    broken = tmp_path / "broken.ply"
+    broken.write_bytes(b"ply\nformat ascii 1.0\nelement vertex 3\n")
+    with pytest.raises(meshlod.MeshlodError, match="broken.ply"):
+        meshlod.load(broken)
+    with pytest.raises(meshlod.MeshlodError, match="unknown suffix"):
+        meshlod.load(tmp_path / "a.txt")
+    with pytest.raises(meshlod.MeshlodError, match="open it with meshlod.Model"):
+        meshlod.load(tmp_path / "a.mlod")
+    with pytest.raises(meshlod.MeshlodError, match="broken.ply"):
+        meshlod.Model(broken)
+    for suffix in "mlz", "mlq":
+        path = tmp_path / f"broken.{suffix}"
+        path.write_bytes(broken.read_bytes())
+        with pytest.raises(meshlod.MeshlodError, match=path.name):
+            meshlod.load(path)
+    with pytest.raises(OSError):
+        meshlod.Mesh(*torus()).save(tmp_path / "no folder" / "a.ply")
+
+
+@pytest.mark.parametrize("suffix", ["mlz", "mlq"])
+def test_compressed_files(tmp_path, suffix):
+    mesh = meshlod.Mesh(*torus())
+    path = tmp_path / f"torus.{suffix}"
+    size = mesh.compress(path, bits=12)
+    assert size == os.path.getsize(path) < 8 * len(mesh.faces)
+    found = meshlod.load(path)
+    assert len(found.faces) == len(mesh.faces)
+    assert found.measure(mesh, samples=10_000).max < 0.005
+
+
+def test_scenes_keep_their_nodes_and_materials(tmp_path):
+    path = write_gltf(tmp_path)
+    with pytest.warns(meshlod.MeshlodWarning, match="2 placed meshes are merged"):
+        flat = meshlod.load(path)
+    assert len(flat.faces) == 2 * 576 and flat.bounds[1, 0] > 7
+    assert flat.materials[0][0] == "red"
+    scene = meshlod.Scene.load(path)
+    assert scene.face_count == 2 * 576 and repr(scene) == "Scene(1 mesh, 1152 faces)"
+    assert scene.instances[1][1][:3, 3].tolist() == [5, 0, 0]
+    level, report = scene.simplify(0.5, return_report=True)
+    assert report.reached and level.face_count <= 576 < scene.face_count
+    level.save(tmp_path / "level.glb")
+    again = meshlod.Scene.load(tmp_path / "level.glb")
+    assert again.materials == ["red"] and len(again.instances) == 2
+    assert [name for name, _ in again.meshes] == ["torus"]
+    assert len(again.meshes[0][1].faces) == len(level.meshes[0][1].faces)
+
+
+def test_models_have_all_levels(tmp_path):
+    mesh = meshlod.Mesh(*torus())
+    model = mesh.build(tmp_path / "torus.mlod", lossless=True)
+    assert len(model.extract().faces) == len(mesh.faces)
+    assert len(model.extract(faces=300).faces) <= 300
+    within = model.extract(error=0.02)
+    assert len(within.faces) < len(mesh.faces)
+    assert within.measure(mesh, samples=10_000).max <= 0.02
+    camera = meshlod.Camera(eye=(0, 0, 40), look=(0, 0, 0))
+    assert len(model.extract(camera=camera).faces) < len(mesh.faces)
+    ball = model.extract(error=0.0, focus=((2.7, 0, 0), 0.3), verify=False)
+    assert len(ball.faces) < len(mesh.faces) / 2
+    corners = ((2, -1, -1), (3, 1, 1))
+    cropped = model.extract(focus=corners, crop=True, verify=False)
+    assert 0 < len(cropped.faces) < len(mesh.faces) / 2
+    for wrong in 3, (1, 2), ((1, 2), 3):
+        with pytest.raises((meshlod.MeshlodError, ValueError), match="focus|size|length|tuple"):
+            model.extract(focus=wrong)
+    with pytest.raises(meshlod.MeshlodError, match="at least 0"):
+        model.extract(error=-1)
+    with pytest.raises(meshlod.MeshlodError, match="errors must be"):
+        mesh.build(tmp_path / "other.mlod", errors="none")
+    assert not (tmp_path / "other.mlod").exists()
+
+
+def command(*arguments):
+    line = [sys.executable, "-m", "meshlod", *map(str, arguments)]
+    return subprocess.run(line, capture_output=True, text=True)
+
+
+def test_the_command_line_is_there(tmp_path):
+    path = tmp_path / "torus.ply"
+    meshlod.Mesh(*torus()).save(path)
+    done = command("--json", "simplify", path, tmp_path / "out.ply", "--faces", "300")
+    assert done.returncode == 0 and json.loads(done.stdout)["output_faces"] <= 300
+    assert len(meshlod.load(tmp_path / "out.ply").faces) <= 300
+    assert command("--version").stdout.startswith("meshlod ")
+    missing = command("info", tmp_path / "missing.ply")
+    assert missing.returncode == 1 and missing.stderr.count("\n") == 1
+    assert command("simplify").returncode == 2
