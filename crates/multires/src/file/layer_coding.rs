@@ -74,7 +74,8 @@ impl LayerCoding {
     pub(super) fn leeways(&self) -> impl Iterator<Item = Leeway> + '_ {
         let leeway = |column: usize| match (self.numbers, self.kind) {
             (Numbers::Directions(_), _) if column < 2 => Leeway(6),
-            (Numbers::Steps(_), LayerKind::Uv(_) | LayerKind::Color(_)) => Leeway(1),
+            (Numbers::Steps(_), LayerKind::Uv(_)) => Leeway(1),
+            (Numbers::Steps(_), LayerKind::Color(_)) => Leeway(7),
             // Signs, joints and their weights, exact values, and others of any meaning.
             _ => Leeway(0),
         };
