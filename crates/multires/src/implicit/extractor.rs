@@ -55,9 +55,11 @@ impl<'m> Extractor<'m> {
         Query::uniform(tolerance).validate()?;
         let mt = self.model.implicit();
         let most = mt.frame().local_length(tolerance);
-        // The greatest code within the tolerance: codes are in the order of lengths.
+        // The greatest code within the tolerance: codes are in the order of lengths. Nothing is within
+        // a tolerance of 0.
         let within = Length16::up(most);
-        let within = if within.get() > most { within.0.checked_sub(1) } else { Some(within.0) };
+        let is_beyond = within.get() > most || most == 0.0;
+        let within = if is_beyond { within.0.checked_sub(1) } else { Some(within.0) };
         Ok(self.write(|update, _| Some(mt.error(update).0) > within))
     }
 
