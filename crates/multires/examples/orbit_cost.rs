@@ -78,7 +78,7 @@ fn main() -> Result<(), Failure> {
     Ok(())
 }
 
-/// What a frame sends to the GPU, in numbers of 32 bits.
+/// Numbers of 32 bits that a frame sends to the GPU.
 #[derive(Default)]
 struct Staging {
     numbers: Vec<f32>,

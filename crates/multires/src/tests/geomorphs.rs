@@ -127,7 +127,7 @@ fn patches_and_moved_vertices_keep_a_copy_up_to_date() {
     }
 }
 
-/// What a renderer knows of a vertex that it blends itself.
+/// Motion of a vertex as a renderer keeps it that blends by itself.
 struct Known {
     begun: Option<Duration>,
     ends: [VertexValues; 2],
