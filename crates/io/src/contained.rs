@@ -9,7 +9,7 @@ thread_local! {
     static IS_CONTAINED: Cell<bool> = const { Cell::new(false) };
 }
 
-type Hook = Box<dyn Fn(&PanicHookInfo) + Sync + Send>;
+type PanicHook = Box<dyn Fn(&PanicHookInfo) + Sync + Send>;
 
 /// Runs code that is not ours and may panic on hostile bytes; returns `None` if it did.
 ///
@@ -26,7 +26,7 @@ pub(crate) fn contained<T>(work: impl FnOnce() -> T) -> Option<T> {
 }
 
 /// Returns a hook that asks `other` for panics outside of [`contained`] alone.
-fn silent_inside(other: Hook) -> Hook {
+fn silent_inside(other: PanicHook) -> PanicHook {
     Box::new(move |info| {
         if !IS_CONTAINED.get() {
             other(info);
@@ -47,7 +47,7 @@ mod tests {
         let heard = Arc::new(AtomicUsize::new(0));
         assert_eq!(contained(|| 7), Some(7));
         let (counter, before) = (heard.clone(), panic::take_hook());
-        let counting: Hook = Box::new(move |info| match info.payload().downcast_ref() {
+        let counting: PanicHook = Box::new(move |info| match info.payload().downcast_ref() {
             Some(&"counted") => drop(counter.fetch_add(1, Ordering::SeqCst)),
             _ => before(info),
         });

@@ -143,8 +143,8 @@ fn compresses(name: &str) -> bool {
 pub(super) fn compressed(part: &str, extension: &str) -> ParseError {
     let reason = match extension {
         DRACO => format!(
-            "compressed with {DRACO}, which needs a build with the feature `draco`; use one, or \
-             decompress the file first"
+            "compressed with {DRACO}, which needs a build with the feature `draco`; build with \
+             `--features draco`, or export the file without Draco"
         ),
         _ => format!("compressed with {extension}, which is not supported; decompress it first"),
     };

@@ -12,7 +12,7 @@ use super::document::Buffers;
 #[cfg(feature = "draco")]
 use super::draco_unpack::unpack;
 use super::schema::{self, Accessor};
-use crate::ParseError;
+use crate::{Note, ParseError};
 
 /// Name of the extension.
 pub(super) const DRACO: &str = "KHR_draco_mesh_compression";
@@ -52,27 +52,38 @@ impl Place {
 /// from the document.
 ///
 /// A primitive that the file holds uncompressed, too, is read from there, as nothing is rounded in
-/// it. Strips become triangles. Accessors get the bounds of what was decoded.
+/// it. Strips become triangles. Accessors get the bounds of what was decoded. Returns a note on
+/// the primitives that were decoded.
 ///
 /// # Errors
 /// The primitive or accessor, and what is wrong with it or its stream. In builds without the
 /// feature `draco`, every primitive that is only there compressed.
 /// # References
 /// [ZSG17]
-pub(super) fn decompress(json: &mut Value, buffers: &mut Buffers) -> Result<(), ParseError> {
+pub(super) fn decompress(json: &mut Value, buffers: &mut Buffers) -> Result<Note, ParseError> {
     let compressed = take_extensions(json)?;
     let required: Vec<String> = schema::array(json, "extensionsRequired", "extensionsRequired")?;
     let is_required = required.iter().any(|name| name == DRACO);
     forget_names(json, &[DRACO]);
     if compressed.is_empty() {
-        return Ok(());
+        return Ok(decoded(0));
     }
     let accessors: Vec<Accessor> = schema::array(json, "accessors", "accessor")?;
     let (plain, compressed): (Vec<_>, Vec<_>) = compressed
         .into_iter()
         .partition(|c| !is_required && has_fallback(c.place.of(json), &accessors));
     shorten_streams(json, &plain, &compressed);
-    unpack(json, buffers, accessors, &compressed)
+    unpack(json, buffers, accessors, &compressed)?;
+    Ok(decoded(compressed.len()))
+}
+
+/// Notes that primitives come out of Draco and do not go back.
+fn decoded(count: usize) -> Note {
+    Note::changed(
+        count,
+        "primitive decompressed from Draco, which is not written (compress makes a small file)",
+        "primitives decompressed from Draco, which is not written (compress makes a small file)",
+    )
 }
 
 /// Takes the extension out of all primitives that have it.

@@ -1,4 +1,4 @@
-//! Counts at the front of a Draco stream, checked before anything is decoded.
+//! StreamCounts at the front of a Draco stream, checked before anything is decoded.
 //!
 //! The decoder sizes tables by these counts, some of which no byte of the stream stands for: a
 //! stream of 100 bytes can name millions of faces and 255 tables of their corners.
@@ -41,7 +41,7 @@ pub(super) fn check(stream: &[u8], ceiling: &Ceiling) -> Result<(), String> {
     Ok(())
 }
 
-struct Counts {
+struct StreamCounts {
     faces: u64,
     /// Attributes with connectivity of their own.
     tables: u64,
@@ -52,7 +52,7 @@ struct Front<'a>(&'a [u8]);
 
 impl Front<'_> {
     /// Reads up to the counts; `None` if the stream ends before them.
-    fn counts(&mut self) -> Result<Option<Counts>, String> {
+    fn counts(&mut self) -> Result<Option<StreamCounts>, String> {
         let Some((&[d, r, a, c, o, major, minor, kind, method, low, high], rest)) =
             self.0.split_first_chunk()
         else {
@@ -74,14 +74,14 @@ impl Front<'_> {
         Ok(if method == 1 { self.edgebreaker() } else { self.sequential() })
     }
 
-    fn edgebreaker(&mut self) -> Option<Counts> {
+    fn edgebreaker(&mut self) -> Option<StreamCounts> {
         let _traversal = self.byte()?;
         let _vertices = self.varint()?;
-        Some(Counts { faces: self.varint()?, tables: self.byte()?.into() })
+        Some(StreamCounts { faces: self.varint()?, tables: self.byte()?.into() })
     }
 
-    fn sequential(&mut self) -> Option<Counts> {
-        Some(Counts { faces: self.varint()?, tables: 0 })
+    fn sequential(&mut self) -> Option<StreamCounts> {
+        Some(StreamCounts { faces: self.varint()?, tables: 0 })
     }
 
     /// Skips the metadata of all attributes, then those of the mesh.
@@ -144,5 +144,62 @@ impl Front<'_> {
             }
         }
         None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Version 2.2 of a mesh by this method, with metadata or not, then `rest`.
+    fn stream(method: u8, flags: u16, rest: &[u8]) -> Vec<u8> {
+        [b"DRACO\x02\x02\x01", &[method][..], &flags.to_le_bytes(), rest].concat()
+    }
+
+    fn check_within(stream: &[u8], faces: usize, bytes: usize) -> Result<(), String> {
+        check(stream, &Ceiling { faces, bytes })
+    }
+
+    #[test]
+    fn faces_and_tables_are_bounded() {
+        // 4 vertices, 300 faces, 2 tables.
+        let edgebreaker = stream(1, 0, &[0, 4, 0xac, 0x02, 2]);
+        assert_eq!(check_within(&edgebreaker, 300, 3 * 300 * 12), Ok(()));
+        let error = check_within(&edgebreaker, 300, 3 * 300 * 12 - 1).unwrap_err();
+        assert_eq!(error, crate::gltf::draco_stream::TOO_LARGE);
+        let error = check_within(&edgebreaker, 299, usize::MAX).unwrap_err();
+        assert!(error.contains("300 faces") && error.contains("room for 299"), "{error}");
+        let sequential = stream(0, 0, &[0xac, 0x02]);
+        assert_eq!(check_within(&sequential, 300, 300 * 12), Ok(()));
+        assert!(check_within(&sequential, 300, 300 * 12 - 1).is_err());
+    }
+
+    #[test]
+    fn metadata_are_skipped_as_deep_as_they_may_be() {
+        // One attribute, 7, with an entry "a" of two bytes; then parts "p" in each other.
+        let nested = |depth: usize| {
+            let mut rest = vec![1, 7, 1, 1, b'a', 2, 9, 9, 0];
+            rest.extend([0, 1, 1, b'p'].repeat(depth));
+            rest.extend([0, 0, 5]);
+            stream(0, HAS_METADATA, &rest)
+        };
+        assert_eq!(check_within(&nested(MAX_DEPTH), 5, 60), Ok(()));
+        assert!(check_within(&nested(MAX_DEPTH), 4, 60).is_err());
+        let error = check_within(&nested(MAX_DEPTH + 1), 5, 60).unwrap_err();
+        assert!(error.contains("nested deeper"), "{error}");
+        let whole = nested(2);
+        for end in 0..whole.len() {
+            assert!(check_within(&whole[..end], 5, 60).is_err(), "{end} bytes");
+        }
+    }
+
+    #[test]
+    fn other_streams_are_refused_by_what_they_are() {
+        let cloud = b"DRACO\x02\x02\0\0\0\0\x05";
+        assert!(check_within(cloud, 9, 999).unwrap_err().contains("not a mesh"));
+        let old = b"DRACO\x01\x01\x01\0\0\0\x05";
+        assert!(check_within(old, 9, 999).unwrap_err().contains("version 1.1"));
+        let endless = stream(0, 0, &[0xff; 12]);
+        assert!(check_within(&endless, 9, 999).unwrap_err().contains("ends in its header"));
     }
 }

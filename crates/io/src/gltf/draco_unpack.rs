@@ -9,7 +9,11 @@ use super::draco_stream::{Array, Ceiling, Decoded, TOO_LARGE};
 use super::schema::{self, Accessor, BufferView};
 use crate::ParseError;
 
-/// Largest ratio of decompressed to stored bytes of a file.
+/// Bytes that any file may decompress to. A regular terrain takes a bit a face or less, so the
+/// size of its file says little; at the limit the decoder was seen to hold 720 MiB in all.
+const LEAST_ROOM: usize = 1 << 28;
+
+/// Largest ratio of decompressed to stored bytes of a file, beyond those.
 const MAX_EXPANSION: usize = 64;
 
 /// Decodes the streams of primitives into a new buffer and points their accessors there.
@@ -25,7 +29,7 @@ pub(super) fn unpack(
     let mut unpacker = Unpacker {
         views: schema::array(json, "bufferViews", "bufferView")?,
         accessors,
-        room: (1 << 26) + buffers.stored.saturating_mul(MAX_EXPANSION),
+        room: LEAST_ROOM.saturating_add(buffers.stored.saturating_mul(MAX_EXPANSION)),
         buffers,
         filled: FxHashMap::default(),
         taken: FxHashSet::default(),

@@ -106,8 +106,9 @@ pub fn read(bytes: &[u8], resolve: Resolve<'_>, weld: Weld) -> Result<Scene, Par
     let mut buffers = document::buffers(&json, chunk, resolve)?;
     let facts = FileFacts::of(&json);
     decompress::decompress(&mut json, &mut buffers)?;
-    draco::decompress(&mut json, &mut buffers)?;
+    let decoded = draco::decompress(&mut json, &mut buffers)?;
     let mut scene = Scene::default();
+    scene.notes.extend((decoded.count > 0).then_some(decoded));
     let document = Document::new(&json, &buffers)?;
     scene.images = materials::images(&document, resolve)?;
     scene.materials = materials::materials(&json, scene.images.len())?;

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use super::{assert_valid, json_of, read_alone, read_parts};
 use crate::gltf::{container, read, write_glb};
-use crate::{Scene, Weld};
+use crate::{NoteKind, Scene, Weld};
 
 const DRACO: &str = "KHR_draco_mesh_compression";
 const FILES: [&str; 3] = ["edgebreaker.glb", "sequential.glb", "unquantized.glb"];
@@ -126,6 +126,8 @@ fn what_is_written_is_plain() {
     for name in FILES {
         let (_, stream) = parts_of(name);
         let scene = read_alone(&bytes_of(name)).unwrap();
+        let note = scene.notes.iter().find(|note| note.what.contains("Draco")).unwrap();
+        assert_eq!((note.kind, note.count), (NoteKind::Changed, 1), "{name}");
         let glb = write_glb(&scene, &[]).unwrap();
         assert_valid(&glb);
         let written = json_of(&glb);
