@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
-use meshlod::io::{read_bytes, write_file};
+use meshlod::io::{IoError, read_bytes, write_file};
 use meshlod::{Format, Scene};
 
 use crate::args::ReadArgs;
@@ -34,7 +34,10 @@ pub fn read(path: &Path, reading: &ReadArgs, session: &Session) -> Result<Scene,
         return own_files::read(path, format, &reading.options(), session);
     }
     let scene = match is_pipe(path) {
-        false => meshlod::read(path, &reading.options())?,
+        false => {
+            Format::of_path(path).map_err(|error| unknown_input(path, &error))?;
+            meshlod::read(path, &reading.options())?
+        }
         true => {
             let format = pipe_format(session)?;
             // Files referenced by a piped mesh are not available.
@@ -70,7 +73,7 @@ pub fn read_all(path: &Path) -> Result<Vec<u8>, Failure> {
 /// format.
 pub fn check_output(path: &Path, session: &Session) -> Result<Format, Failure> {
     if !is_pipe(path) {
-        let format = Format::of_path(path).map_err(Failure::usage)?;
+        let format = Format::of_path(path).map_err(|error| unknown_output(path, &error))?;
         return check_place(path).map(|()| format);
     }
     check_stdout(session)?;
@@ -80,6 +83,25 @@ pub fn check_output(path: &Path, session: &Session) -> Result<Format, Failure> {
         }
         format => Ok(format),
     }
+}
+
+/// Makes the failure of a mesh whose suffix is unknown.
+fn unknown_input(path: &Path, error: &IoError) -> Failure {
+    match path.is_dir() {
+        true => Failure::at(path, "is a folder; name a file to read"),
+        false => Failure::new(format_args!("{error} .mlod .mlq .mlz")),
+    }
+}
+
+/// Makes the failure of an output whose suffix is not that of a mesh: says which verb writes it.
+fn unknown_output(path: &Path, error: &IoError) -> Failure {
+    let verb = match OwnFormat::of_path(path) {
+        _ if path.is_dir() => return Failure::at(path, "is a folder; name a file to write"),
+        Some(OwnFormat::Levels) => "build",
+        Some(OwnFormat::Resident | OwnFormat::Sent) => "compress",
+        None => return Failure::usage(error),
+    };
+    Failure::usage(format_args!("{}: only `meshlod {verb}` writes such files", name(path)))
 }
 
 /// Fails if a picture cannot be written to a path, before any work is done.

@@ -129,6 +129,8 @@ pub fn restored(
     format: Format,
 ) -> Result<Scene, Failure> {
     if model.is_flat() && !is_gltf(format) {
+        // So that what the format lacks of the document is noted.
+        flat.source = model.source().cloned();
         return Ok(flat);
     }
     let level = std::mem::take(&mut flat.meshes[0]);

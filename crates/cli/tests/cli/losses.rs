@@ -195,3 +195,25 @@ fn what_stl_and_off_have_beside_their_surface_is_named() {
         assert_eq!(run.run(&["convert", file, "out.ply", "--strict"]).code, 1);
     }
 }
+
+#[test]
+fn what_a_document_has_beside_its_surface_is_named_when_it_comes_back_without() {
+    let run = Run::new();
+    std::fs::write(run.path("in.glb"), meshlod_fixtures::folding_strip(8)).unwrap();
+    run.json(&["build", "in.glb", "in.mlod"]);
+    run.json(&["compress", "in.glb", "in.mlq"]);
+    let before = run.files();
+    for way in [
+        &["extract", "in.mlod", "out.obj", "--error", "0.1%"][..],
+        &["decompress", "in.mlq", "out.obj"],
+        &["convert", "in.mlq", "out.obj"],
+        &["convert", "in.glb", "out.obj"],
+    ] {
+        let strict = run.run(&[way, &["--strict"]].concat());
+        assert!(
+            strict.err.contains("out.obj: left out: 1 skin, 1 animation"),
+            "{way:?}: {strict:?}"
+        );
+        assert_eq!((strict.code, run.files()), (1, before.clone()), "{way:?}");
+    }
+}

@@ -111,3 +111,27 @@ fn what_could_not_be_done_is_1_and_one_line() {
     }
     assert_eq!(run.files(), ["folder.glb", "folder.ply", "in.ply", "l_LOD2.off"]);
 }
+
+#[test]
+fn an_output_of_another_verb_is_told_which() {
+    let run = Run::new();
+    run.sample("sphere", 100, "in.ply");
+    for (out, verb) in [("out.mlod", "build"), ("out.MLQ", "compress"), ("out.mlz", "compress")] {
+        let done = run.run(&["convert", "in.ply", out]);
+        let line = format!("meshlod: {out}: only `meshlod {verb}` writes such files");
+        assert_eq!((done.code, done.only_line()), (2, &*line));
+    }
+    assert_eq!(run.files(), ["in.ply"]);
+}
+
+#[test]
+fn an_input_of_no_known_kind_is_told_all_kinds() {
+    let run = Run::new();
+    std::fs::create_dir(run.path("folder")).unwrap();
+    let done = run.run(&["info", "in.fbx"]);
+    for suffix in [".ply", ".glb", ".mlod", ".mlq", ".mlz"] {
+        assert!(done.only_line().contains(suffix), "{done:?}");
+    }
+    let folder = run.run(&["info", "folder"]);
+    assert_eq!(folder.only_line(), "meshlod: folder: is a folder; name a file to read");
+}

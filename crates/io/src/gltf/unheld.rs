@@ -42,14 +42,8 @@ fn points_and_lines(json: &Value) -> Vec<String> {
 
 /// Lists the extensions that the scene, or a note of its own kind, does not account for.
 fn extensions(json: &Value) -> Vec<String> {
-    const ELSEWHERE: [&str; 6] = [
-        "KHR_mesh_quantization",
-        "KHR_lights_punctual",
-        INSTANCING,
-        MESHOPT[0],
-        MESHOPT[1],
-        DRACO,
-    ];
+    const ELSEWHERE: [&str; 6] =
+        ["KHR_mesh_quantization", "KHR_lights_punctual", INSTANCING, MESHOPT[0], MESHOPT[1], DRACO];
     // Those of materials and textures are noted with the materials.
     const OF_MATERIALS: [&str; 4] =
         ["KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_"];

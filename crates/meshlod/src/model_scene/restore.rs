@@ -1,6 +1,6 @@
 //! Scenes that come out of a file of one mesh, multiresolution or compressed.
 
-use meshlod_io::gltf::SkeletonImage;
+use meshlod_io::gltf::{SkeletonImage, SourceDocument};
 use meshlod_io::{ParseError, Scene};
 use meshlod_mesh::Mesh;
 use meshlod_multires::{Archive, FileError, Source};
@@ -108,6 +108,12 @@ impl ModelScene {
     /// only the pose of the file.
     pub fn poses(&self) -> Option<PoseCounts> {
         self.head.poses
+    }
+
+    /// Returns the glTF document that the scene was read from, without geometry; `None` for other
+    /// formats.
+    pub fn source(&self) -> Option<&SourceDocument> {
+        self.scene.source.as_ref()
     }
 
     /// Returns true if a level is what the scene shows: if it has each mesh where it is, and only

@@ -252,8 +252,7 @@ fn normals_that_a_primitive_never_had_are_no_change() {
     let new_view = json!({ "buffer": 0, "byteOffset": start, "byteLength": 48 });
     json["bufferViews"].as_array_mut().unwrap().push(new_view);
     let normals = json["accessors"].as_array().unwrap().len();
-    let accessor =
-        json!({ "bufferView": view, "componentType": 5126, "count": 4, "type": "VEC3" });
+    let accessor = json!({ "bufferView": view, "componentType": 5126, "count": 4, "type": "VEC3" });
     json["accessors"].as_array_mut().unwrap().push(accessor);
     let bare = json["meshes"][0]["primitives"][0].clone();
     let mut with = bare.clone();
