@@ -4,9 +4,9 @@
     RAYON_NUM_THREADS=1 python bench.py ../../shared/meshes/bunny.ply …
 
 Times are CPU seconds of the process, arrays in and out included, so that other load counts little;
-medians of alternating runs, as ratios to fast_simplification's. Distances are mean distances in both
-directions in % of the diagonal, measured by meshlod with 500,000 samples each. A package that is not
-there is left out, and named.
+medians of alternating runs, as ratios to fast_simplification's. Distances are mean distances in
+both directions in % of the diagonal, measured by meshlod with 500,000 samples each. A package that
+is not there is left out, and named.
 """
 
 import argparse
@@ -50,7 +50,8 @@ def trimesh(points, faces, reduction):
     return np.array(level.vertices), np.array(level.faces)
 
 
-PEERS = {"meshlod": ours, **{f.__name__: f for f in (fast_simplification, pyvista, open3d, trimesh)}}
+OTHERS = (fast_simplification, pyvista, open3d, trimesh)
+PEERS = {"meshlod": ours, **{simplify.__name__: simplify for simplify in OTHERS}}
 
 
 def compare(path, reduction, peers, rounds):
@@ -71,8 +72,8 @@ def compare(path, reduction, peers, rounds):
         ratio = statistics.median(seconds[name]) / base
         left = 100 * (1 - reduction)
         stem = path.rsplit("/", 1)[-1]
-        row = f"| {stem}, {left:.0f} % | {name} | {len(triangles)} | {mean:.5f} | {most:.3f} | {ratio:.2f} |"
-        print(row, flush=True)
+        figures = f"{len(triangles)} | {mean:.5f} | {most:.3f} | {ratio:.2f}"
+        print(f"| {stem}, {left:.0f} % | {name} | {figures} |", flush=True)
 
 
 def main():

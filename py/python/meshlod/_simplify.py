@@ -50,9 +50,9 @@ def simplify(
     ``points`` are rows of three coordinates, ``faces`` rows of three indices of them. The points
     that come back are double precision, the faces 32-bit integers, both new arrays.
 
-    ``normals``, ``uvs``, ``colors`` (0 to 1, or ``uint8``) and further ``attributes`` have a row for
-    each point. They are kept, and come third, as a dictionary with the same names: whole numbers
-    are taken from a neighbour, all others interpolated. Points at equal positions may differ in
+    ``normals``, ``uvs``, ``colors`` (0 to 1, or ``uint8``) and further ``attributes`` have a row
+    for each point. They are kept, and come third, as a dictionary with the same names: whole
+    numbers are taken from a neighbour, all others interpolated. Points at equal positions may differ in
     them; such a seam does not tear the surface.
 
     ``locks`` is a mask, or rows, of points that stay where they are; ``lock_boundary`` locks those
