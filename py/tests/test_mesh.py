@@ -56,7 +56,7 @@ def test_the_distance_is_symmetric_and_has_its_places():
     assert np.linalg.norm(apart) == pytest.approx(distance.forward.max)
     with pytest.raises(meshlod.MeshlodError, match="samples"):
         a.measure(b, samples=0)
-    with pytest.raises(meshlod.MeshlodError, match="area"):
+    with pytest.raises(meshlod.MeshlodError, match="the second mesh: the mesh has no faces"):
         a.measure(meshlod.Mesh([], []))
 
 
