@@ -1,7 +1,7 @@
 """Compares meshlod.simplify with other packages: distance, and CPU time of alternating runs.
 
     pip install fast-simplification pyvista open3d trimesh
-    RAYON_NUM_THREADS=1 python bench.py ../../shared/meshes/bunny.ply …
+    RAYON_NUM_THREADS=1 python bench.py --rounds 5 MESH …
 
 Times are CPU seconds of the process, arrays in and out included, so that other load counts little;
 medians of alternating runs, as ratios to fast_simplification's. Distances are mean distances in
@@ -80,10 +80,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("meshes", nargs="+", metavar="MESH")
     parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--packages", nargs="*", default=list(PEERS), metavar="NAME")
     options = parser.parse_args()
     warnings.simplefilter("ignore", meshlod.MeshlodWarning)
     peers = {}
     for name, simplify in PEERS.items():
+        if name not in options.packages:
+            continue
         try:
             importlib.import_module(name)
             peers[name] = simplify
