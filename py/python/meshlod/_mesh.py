@@ -136,7 +136,7 @@ class Mesh:
     ) -> Any:
         """Returns a coarser mesh, or ``(mesh, report)``; see :func:`meshlod.simplify`."""
         kind, value = _asked.target(target_reduction, target_count, max_error)
-        options = {
+        options: dict[str, Any] = {
             "method": method,
             "topology": topology,
             "lock_boundary": lock_boundary,
@@ -164,7 +164,11 @@ class Mesh:
         if not ratios:
             return []
         bar = callback(progress, "simplifying")
-        options = {"method": method, "topology": topology, "lock_boundary": lock_boundary}
+        options: dict[str, Any] = {
+            "method": method,
+            "topology": topology,
+            "lock_boundary": lock_boundary,
+        }
         asked = _asked.asked("ratio", ratios[-1], progress=bar, **options)
         done = _native.levels(self._native, ratios, asked)
         reports = [Report(**fields) for _, fields in done]

@@ -84,7 +84,7 @@ def simplify(
     kind, value = _asked.target(target_reduction, target_count, max_error)
     given = {"normals": normals, "uvs": uvs, "colors": colors, **(attributes or {})}
     bar = callback(progress, "simplifying")
-    options = {
+    options: dict[str, Any] = {
         "method": method,
         "topology": topology,
         "lock_boundary": lock_boundary,
@@ -98,7 +98,7 @@ def simplify(
     rows = as_points(points)
     layers = as_attributes(len(rows), normals, uvs, colors, attributes)
     mesh, vertices = _native.from_arrays(rows, as_faces(faces), layers)
-    locked = None if locks is None else as_vertices(locks, len(rows))
+    locked: Any = None if locks is None else as_vertices(locks, len(rows))
     if locked is not None and vertices is not None:
         locked = vertices[locked]
     level, fields = _native.simplify(mesh, _asked.asked(kind, value, locks=locked, **options))
