@@ -1,12 +1,12 @@
 """Compares meshlod.simplify with other packages: distance, and CPU time of alternating runs.
 
     pip install fast-simplification pyvista open3d trimesh
-    RAYON_NUM_THREADS=1 python bench.py ../../shared/meshes/bunny.ply …
+    RAYON_NUM_THREADS=1 python bench.py --rounds 5 MESH …
 
 Times are CPU seconds of the process, arrays in and out included, so that other load counts little;
-medians of alternating runs, as ratios to fast_simplification's. Distances are mean distances in both
-directions in % of the diagonal, measured by meshlod with 500,000 samples each. A package that is not
-there is left out, and named.
+medians of alternating runs, as ratios to fast_simplification's. Distances are mean distances in
+both directions in % of the diagonal, measured by meshlod with 500,000 samples each. A package that
+is not there is left out, and named.
 """
 
 import argparse
@@ -50,7 +50,8 @@ def trimesh(points, faces, reduction):
     return np.array(level.vertices), np.array(level.faces)
 
 
-PEERS = {"meshlod": ours, **{f.__name__: f for f in (fast_simplification, pyvista, open3d, trimesh)}}
+OTHERS = (fast_simplification, pyvista, open3d, trimesh)
+PEERS = {"meshlod": ours, **{simplify.__name__: simplify for simplify in OTHERS}}
 
 
 def compare(path, reduction, peers, rounds):
@@ -71,18 +72,21 @@ def compare(path, reduction, peers, rounds):
         ratio = statistics.median(seconds[name]) / base
         left = 100 * (1 - reduction)
         stem = path.rsplit("/", 1)[-1]
-        row = f"| {stem}, {left:.0f} % | {name} | {len(triangles)} | {mean:.5f} | {most:.3f} | {ratio:.2f} |"
-        print(row, flush=True)
+        figures = f"{len(triangles)} | {mean:.5f} | {most:.3f} | {ratio:.2f}"
+        print(f"| {stem}, {left:.0f} % | {name} | {figures} |", flush=True)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("meshes", nargs="+", metavar="MESH")
     parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--packages", nargs="*", default=list(PEERS), metavar="NAME")
     options = parser.parse_args()
     warnings.simplefilter("ignore", meshlod.MeshlodWarning)
     peers = {}
     for name, simplify in PEERS.items():
+        if name not in options.packages:
+            continue
         try:
             importlib.import_module(name)
             peers[name] = simplify

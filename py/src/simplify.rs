@@ -14,7 +14,7 @@ use crate::report;
 use crate::scene::NativeScene;
 use crate::work::{Progress, run};
 
-/// What a simplification is asked for, as keyword arguments of Python.
+/// Target and options of a simplification, by the names that Python gives them.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Asked {

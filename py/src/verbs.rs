@@ -1,4 +1,4 @@
-//! What the package does with a mesh besides simplifying it.
+//! Functions for all that is done with a mesh besides simplifying it.
 
 use std::path::PathBuf;
 

@@ -29,7 +29,7 @@ pub struct Progress {
     pub faces: Option<usize>,
 }
 
-/// What the work and the thread that waits for it share.
+/// State that the work shares with the thread that waits for it.
 #[derive(Default)]
 struct Shared {
     is_cancelled: AtomicBool,

@@ -12,7 +12,7 @@ def test_trimesh():
     points, faces, uvs = unrolled()
     visual = trimesh.visual.TextureVisuals(uv=uvs)
     mesh = trimesh.Trimesh(points, faces, visual=visual, process=False, metadata={"id": 3})
-    level = meshlod.simplify(mesh, 0.8)
+    level = meshlod.simplify(mesh, target_reduction=0.8)
     assert isinstance(level, trimesh.Trimesh) and 0 < len(level.faces) <= 720
     assert level.visual.uv.shape == (len(level.vertices), 2)
     assert level.metadata["id"] == 3
@@ -23,9 +23,9 @@ def test_trimesh():
     assert (level.visual.vertex_colors == [200, 100, 50, 255]).all()
     colored.visual.face_colors = [1, 2, 3, 255]
     with pytest.warns(meshlod.MeshlodWarning, match="colours of faces"):
-        meshlod.simplify(colored, 0.5)
+        meshlod.simplify(colored, target_reduction=0.5)
     with pytest.raises(meshlod.MeshlodError, match="a Scene is no single mesh"):
-        meshlod.simplify(trimesh.Scene(colored), 0.5)
+        meshlod.simplify(trimesh.Scene(colored), target_reduction=0.5)
 
 
 def test_pyvista():
@@ -33,14 +33,14 @@ def test_pyvista():
     sphere = pyvista.Sphere(theta_resolution=60, phi_resolution=60)
     sphere.point_data["height"] = sphere.points[:, 2].astype(np.float64)
     sphere.point_data["class"] = np.full(sphere.n_points, 5)
-    level = meshlod.simplify(sphere, 0.9)
+    level = meshlod.simplify(sphere, target_reduction=0.9)
     assert isinstance(level, pyvista.PolyData) and level.is_all_triangles
     assert 0 < level.n_cells <= sphere.n_cells // 10 and level.n_open_edges == 0
     assert np.abs(level.point_data["height"] - level.points[:, 2]).max() < 0.05
     assert (level.point_data["class"] == 5).all()
     assert level.point_data.active_normals.shape == (level.n_points, 3)
     plane = pyvista.Plane(i_resolution=30, j_resolution=30)
-    level = meshlod.simplify(plane, 0.9)
+    level = meshlod.simplify(plane, target_reduction=0.9)
     assert np.abs(level.active_texture_coordinates - (level.points[:, :2] + 0.5)).max() < 1e-3
     sphere.cell_data["area"] = np.ones(sphere.n_cells)
     with pytest.warns(meshlod.MeshlodWarning, match=r"arrays of cells \(area\)"):
@@ -51,21 +51,21 @@ def test_open3d():
     open3d = pytest.importorskip("open3d")
     mesh = convert.to_open3d(meshlod.Mesh(*torus()))
     mesh.compute_vertex_normals()
-    level = meshlod.simplify(mesh, 0.9)
+    level = meshlod.simplify(mesh, target_reduction=0.9)
     assert isinstance(level, open3d.geometry.TriangleMesh) and level.is_watertight()
     assert 0 < len(level.triangles) <= 360 and level.has_vertex_normals()
     points, faces, uvs = unrolled()
     textured = convert.to_open3d(meshlod.Mesh(points, faces, uvs=uvs))
     back = convert.from_open3d(textured)
     assert len(back.vertices) == len(points) and back.check().is_clean
-    assert meshlod.simplify(textured, 0.5).has_triangle_uvs()
+    assert meshlod.simplify(textured, target_reduction=0.5).has_triangle_uvs()
 
 
 def test_meshio(tmp_path):
     meshio = pytest.importorskip("meshio")
     points, faces = torus()
     mesh = meshio.Mesh(points, [("triangle", faces)], point_data={"heat": points[:, 2]})
-    level = meshlod.simplify(mesh, 0.9)
+    level = meshlod.simplify(mesh, target_reduction=0.9)
     assert isinstance(level, meshio.Mesh)
     triangles = level.cells_dict["triangle"]
     assert 0 < len(triangles) <= 360 and (edges(triangles) == 2).all()

@@ -141,6 +141,8 @@ def test_models_have_all_levels(tmp_path):
     for wrong in 3, (1, 2), ((1, 2), 3):
         with pytest.raises((meshlod.MeshlodError, ValueError), match="focus|size|length|tuple"):
             model.extract(focus=wrong)
+    with pytest.raises(meshlod.MeshlodError, match="faces must be between 0"):
+        model.extract(faces=-1)
     with pytest.raises(meshlod.MeshlodError, match="at least 0"):
         model.extract(error=-1)
     with pytest.raises(meshlod.MeshlodError, match="errors must be"):

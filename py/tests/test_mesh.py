@@ -56,7 +56,7 @@ def test_the_distance_is_symmetric_and_has_its_places():
     assert np.linalg.norm(apart) == pytest.approx(distance.forward.max)
     with pytest.raises(meshlod.MeshlodError, match="samples"):
         a.measure(b, samples=0)
-    with pytest.raises(meshlod.MeshlodError, match="area"):
+    with pytest.raises(meshlod.MeshlodError, match="the second mesh: the mesh has no faces"):
         a.measure(meshlod.Mesh([], []))
 
 
@@ -104,7 +104,7 @@ def test_pictures_show_the_mesh():
     assert mesh._repr_png_().startswith(b"\x89PNG")
     assert meshlod.Mesh([], [])._repr_png_() is None
     for size in (0, 10), (10**6, 10**6), (-1, 5):
-        with pytest.raises((meshlod.MeshlodError, OverflowError)):
+        with pytest.raises(meshlod.MeshlodError):
             mesh.render(size)
     with pytest.raises(meshlod.MeshlodError, match="no faces"):
         meshlod.Mesh([], []).render()

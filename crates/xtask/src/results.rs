@@ -46,6 +46,9 @@ const SECTIONS: [(&str, Section); 15] = [
     ("Reading and measuring", reading::section),
 ];
 
+/// Section that `py/bench.py` makes, as it needs other packages of Python. It is kept as it is.
+const OF_PYTHON: &str = "\n## Python\n\n";
+
 /// Makes all tables of measurements, and writes docs/RESULTS.md and a dated copy in docs/records.
 ///
 /// Takes some minutes. Tables whose meshes are missing say so. With `names`, only the sections
@@ -57,7 +60,9 @@ pub fn run(project: &Project, names: &[String]) -> Result<()> {
     check_names(names)?;
     let machine = machine::describe();
     let results = project.root().join("docs/RESULTS.md");
-    let old = if names.is_empty() { String::new() } else { std::fs::read_to_string(&results)? };
+    let all = std::fs::read_to_string(&results);
+    let of_python = all.as_ref().map_or("", |all| section_of(all, OF_PYTHON)).to_owned();
+    let old = if names.is_empty() { String::new() } else { all? };
     let mut page = match old.split_once("\n## ") {
         Some((head, _)) => head.to_owned(),
         None => format!(
@@ -80,6 +85,7 @@ pub fn run(project: &Project, names: &[String]) -> Result<()> {
         }
         page.push_str(&section(project)?);
     }
+    page.push_str(&of_python);
     let record = project.root().join(format!("docs/records/{}.md", machine.date));
     for path in [results, record] {
         std::fs::create_dir_all(path.parent().context("a file has a folder")?)?;

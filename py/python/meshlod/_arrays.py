@@ -72,7 +72,7 @@ def as_attributes(
             raise MeshlodError(f"attributes: {name} has a parameter of its own")
         array = _array(values, name)
         is_label = array.dtype.kind in "iub"
-        if is_label and array.size and max(abs(int(array.max())), abs(int(array.min()))) > MOST_LABEL:
+        if is_label and array.size and not -MOST_LABEL <= array.min() <= array.max() <= MOST_LABEL:
             raise MeshlodError(f"{name}: whole numbers must be at most {MOST_LABEL}")
         attributes.append((name, "label" if is_label else "other", _floats(array, name, count)))
     return attributes

@@ -29,7 +29,7 @@ def target(
         what = " and ".join(names) or "none"
         raise MeshlodError(f"give one of target_reduction, target_count and max_error, not {what}")
     if target_count is not None:
-        return "count", _count(target_count)
+        return "count", whole("target_count", target_count, 0, 2**53)
     value = _number(names[0], given[names[0]])
     if target_reduction is not None:
         if not 0 <= value <= 1:
@@ -65,14 +65,15 @@ def asked(
     }
 
 
-def _count(value: object) -> int:
+def whole(name: str, value: Any, least: int, most: int) -> int:
+    """Returns a whole number within limits."""
     try:
-        count = operator.index(value)  # type: ignore[arg-type]
+        number = operator.index(value)
     except TypeError:
-        raise MeshlodError(f"target_count must be a whole number, not {value!r}") from None
-    if isinstance(value, (bool, np.bool_)) or not 0 <= count < 2**53:
-        raise MeshlodError(f"target_count must be a number of faces, not {value!r}")
-    return count
+        raise MeshlodError(f"{name} must be a whole number, not {value!r}") from None
+    if isinstance(value, (bool, np.bool_)) or not least <= number <= most:
+        raise MeshlodError(f"{name} must be between {least} and {most}, not {value!r}")
+    return number
 
 
 def _number(name: str, value: Any) -> float:

@@ -136,7 +136,7 @@ class Mesh:
     ) -> Any:
         """Returns a coarser mesh, or ``(mesh, report)``; see :func:`meshlod.simplify`."""
         kind, value = _asked.target(target_reduction, target_count, max_error)
-        options = {
+        options: dict[str, Any] = {
             "method": method,
             "topology": topology,
             "lock_boundary": lock_boundary,
@@ -164,7 +164,11 @@ class Mesh:
         if not ratios:
             return []
         bar = callback(progress, "simplifying")
-        options = {"method": method, "topology": topology, "lock_boundary": lock_boundary}
+        options: dict[str, Any] = {
+            "method": method,
+            "topology": topology,
+            "lock_boundary": lock_boundary,
+        }
         asked = _asked.asked("ratio", ratios[-1], progress=bar, **options)
         done = _native.levels(self._native, ratios, asked)
         reports = [Report(**fields) for _, fields in done]
@@ -177,8 +181,8 @@ class Mesh:
         """Measures the distance from another mesh, in both directions."""
         if not isinstance(other, Mesh):
             raise MeshlodError(f"other must be a Mesh, not {type(other).__name__}")
-        if not 0 <= samples < 2**32:
-            raise MeshlodError(f"samples must be at least 1 and less than 2**32, not {samples}")
+        samples = _asked.whole("samples", samples, 1, 2**32)
+        seed = _asked.whole("seed", seed, 0, 2**64 - 1)
         found: Any = _native.measure(self._native, other._native, samples, seed)
         for side in ("forward", "backward"):
             fields = found[side]
@@ -207,6 +211,8 @@ class Mesh:
         ``weld`` and ``stitch`` are distances within which vertices are merged, and boundary edges
         sewn together. ``fill_holes`` is the greatest number of edges of holes to fill.
         """
+        if fill_holes is not None:
+            fill_holes = _asked.whole("fill_holes", fill_holes, 0, 2**53)
         repaired, counts = _native.repair(self._native, weld, stitch, fill_holes)
         mesh = Mesh._of(repaired)
         return (mesh, dict(counts)) if return_report else mesh
@@ -220,6 +226,7 @@ class Mesh:
 
         ``bits`` are those of a coordinate; ``max_error`` is a mean distance in their place.
         """
+        bits = _asked.whole("bits", bits, 2, 24)
         size, reached = _native.compress(self._native, os.fspath(path), bits, max_error)
         if not reached:
             warn(f"{os.fspath(path)}: the target was not met")
@@ -247,7 +254,7 @@ class Mesh:
 
         ``direction`` is that in which the camera looks.
         """
-        width, height = size
+        width, height = (_asked.whole("size", side, 1, 2**32 - 1) for side in size)
         pixels = _native.render(self._native, [width, height], wireframe, up, direction, False)
         return np.frombuffer(pixels, dtype=np.uint8).reshape(height, width, 4)
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from . import _native
+from ._asked import whole
 from ._errors import MeshlodError
 from ._mesh import Mesh, Path
 
@@ -62,6 +63,8 @@ class Model:
         """
         if error is None:
             error = 0.0 if camera is None else 1.0
+        if faces is not None:
+            faces = whole("faces", faces, 0, 2**53)
         sphere, corners = None, None
         if focus is not None:
             try:

@@ -50,9 +50,9 @@ def simplify(
     ``points`` are rows of three coordinates, ``faces`` rows of three indices of them. The points
     that come back are double precision, the faces 32-bit integers, both new arrays.
 
-    ``normals``, ``uvs``, ``colors`` (0 to 1, or ``uint8``) and further ``attributes`` have a row for
-    each point. They are kept, and come third, as a dictionary with the same names: whole numbers
-    are taken from a neighbour, all others interpolated. Points at equal positions may differ in
+    ``normals``, ``uvs``, ``colors`` (0 to 1, or ``uint8``) and further ``attributes`` have a row
+    for each point. They are kept, and come third, as a dictionary with the same names: whole
+    numbers are taken from a neighbour, all others interpolated. Points at equal positions may differ in
     them; such a seam does not tear the surface.
 
     ``locks`` is a mask, or rows, of points that stay where they are; ``lock_boundary`` locks those
@@ -84,7 +84,7 @@ def simplify(
     kind, value = _asked.target(target_reduction, target_count, max_error)
     given = {"normals": normals, "uvs": uvs, "colors": colors, **(attributes or {})}
     bar = callback(progress, "simplifying")
-    options = {
+    options: dict[str, Any] = {
         "method": method,
         "topology": topology,
         "lock_boundary": lock_boundary,
@@ -98,7 +98,7 @@ def simplify(
     rows = as_points(points)
     layers = as_attributes(len(rows), normals, uvs, colors, attributes)
     mesh, vertices = _native.from_arrays(rows, as_faces(faces), layers)
-    locked = None if locks is None else as_vertices(locks, len(rows))
+    locked: Any = None if locks is None else as_vertices(locks, len(rows))
     if locked is not None and vertices is not None:
         locked = vertices[locked]
     level, fields = _native.simplify(mesh, _asked.asked(kind, value, locks=locked, **options))

@@ -51,7 +51,7 @@ def to_trimesh(mesh: Mesh, *, like: Any = None) -> Any:
     import trimesh
 
     points, faces = mesh.to_arrays()
-    visual = None
+    visual: Any = None
     if mesh.uvs is not None:
         material = getattr(getattr(like, "visual", None), "material", None)
         visual = trimesh.visual.TextureVisuals(uv=np.array(mesh.uvs), material=material)
