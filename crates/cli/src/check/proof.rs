@@ -39,8 +39,11 @@ fn prove_contractions(
     let [there, chunks] = [archive.complete_chunks(), archive.chunk_count()];
     let kind = model_file::error_kind(archive);
     let poses = measured_poses(archive).map_err(|error| Failure::at(path, error))?;
-    // The images of a scene have checksums of their own.
     let scene = model_scene::read(path, file, session)?;
+    // Also what the scene does not need, such as a small image beside the whole one, is to be sound.
+    let mut parts = 0..archive.resource_count();
+    let read = parts.try_for_each(|at| archive.resource(at).map(drop));
+    read.map_err(|error| Failure::at(path, error))?;
     let json = json!({
         "file": files::name(path),
         "model": "contractions",

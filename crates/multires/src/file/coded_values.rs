@@ -5,7 +5,7 @@ use super::wedge_values;
 use crate::implicit::Implicit;
 use crate::wedges::{WedgeNumbers, WedgeValues, Wedges};
 
-/// What a file has for each wedge, in the file's order.
+/// Rows of a file, one for each wedge, in the order of the file.
 pub(super) struct CodedValues {
     pub(super) coding: Vec<LayerCoding>,
     pub(super) columns: usize,

@@ -14,11 +14,11 @@ const NEAR: usize = 16;
 /// Models of all columns of a chunk.
 pub(super) struct ResidualModels {
     models: Vec<ColumnModels>,
-    columns: Vec<Column>,
+    columns: Vec<ColumnState>,
 }
 
 /// State of a column.
-struct Column {
+struct ColumnState {
     /// Number of its models, which columns share that are alike.
     models: usize,
     /// Class of the residual coded last in each role.
@@ -39,7 +39,8 @@ pub(super) struct ColumnModels {
 impl ResidualModels {
     /// Creates the models of columns, given for each the number of those that it takes.
     pub(super) fn new(columns: impl Iterator<Item = usize>) -> Self {
-        let columns: Vec<_> = columns.map(|models| Column { models, last: [0; ROLES] }).collect();
+        let columns: Vec<_> =
+            columns.map(|models| ColumnState { models, last: [0; ROLES] }).collect();
         let count = columns.iter().map(|column| column.models + 1).max().unwrap_or(0);
         Self { models: (0..count).map(|_| ColumnModels::new()).collect(), columns }
     }
@@ -56,7 +57,7 @@ impl ResidualModels {
         numbers: &mut [i32],
     ) {
         let (mut beside, size) = (None, usize::from(size).min(SIZES - 1));
-        for (Column { models, last }, number) in self.columns.iter_mut().zip(numbers) {
+        for (ColumnState { models, last }, number) in self.columns.iter_mut().zip(numbers) {
             let before = match role {
                 Role::Parent => last[Role::Difference as usize],
                 _ => last[role as usize],

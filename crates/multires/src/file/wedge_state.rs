@@ -26,7 +26,7 @@ pub(super) struct WedgeState {
     pub(super) labels: WedgeLabels,
     /// First wedge of each node, and the end of the last.
     first: Vec<u32>,
-    /// What a file has for each wedge, a row each: residuals, or values of the roots' wedges.
+    /// Rows of the file, one for each wedge: residuals, or values of the roots' wedges.
     pub(super) rows: Vec<i32>,
     /// Records of updates next to seams.
     records: BTreeMap<u32, Vec<u16>>,
