@@ -56,8 +56,18 @@ pub(super) fn relate(
     all: &mut Vec<Lineage>,
 ) {
     let from = all.len();
+    let local_of = |wedge: u32| parent_of((wedge - first.start) as usize);
+    // The first wedge of the first child below each of the split node's. A hub has thousands.
+    let below = |wedge| local_of(wedge).map(|local| (local, wedge));
+    let mut siblings: Vec<(u16, u32)> = first.clone().filter_map(below).collect();
+    siblings.sort_unstable();
+    siblings.dedup_by_key(|&mut (local, _)| local);
+    let sibling_of = |local: u16| {
+        let found = siblings.binary_search_by_key(&local, |&(local, _)| local);
+        found.ok().map(|at| siblings[at].1)
+    };
     for wedge in first.start..second.end {
-        let local = parent_of((wedge - first.start) as usize);
+        let local = local_of(wedge);
         let parent = match &above {
             Some(above) => Some(above.start + u32::from(local.unwrap_or(0)))
                 .filter(|wedge| above.contains(wedge)),
@@ -65,9 +75,7 @@ pub(super) fn relate(
             None => Some(0),
         };
         let is_second = wedge >= first.end;
-        let is_sibling = |of: &&Lineage| !of.is_second && of.local == local && local.is_some();
-        let sibling = all[from..].iter().find(is_sibling).map(|of| of.wedge);
-        let sibling = sibling.filter(|_| is_second);
+        let sibling = local.filter(|_| is_second).and_then(sibling_of);
         all.push(Lineage { wedge, local, parent, is_second, sibling, partner: None });
     }
     mark_pairs(&mut all[from..]);

@@ -1,7 +1,7 @@
 //! Directions in the plane of the unfolded octahedron, without its fold.
 //!
-//! Beyond an edge of the square lies what is within, turned by half about the middle of the edge. So
-//! each code is at several places, and of two directions that are close some places are.
+//! Crossing an edge of the square re-enters it, rotated by 180° about the edge's midpoint. So a code
+//! has several places in the plane, and close directions have places that are close.
 
 /// A place in the plane, in codes.
 pub(super) type Place = [i32; 2];
@@ -37,12 +37,14 @@ impl OctahedralPlane {
     /// Returns the place of a code that is nearest to another place.
     pub(super) fn near(self, code: Place, to: Place) -> Place {
         let away = |at: &Place| {
-            let [dx, dy] = [0, 1].map(|k| i64::from(at[k]) - i64::from(to[k]));
+            // A hostile file can put the other place anywhere: only unsigned squares have room.
+            let [dx, dy] = [0, 1].map(|k| i64::from(at[k]).abs_diff(i64::from(to[k])));
             dx * dx + dy * dy
         };
         let places = self.places(code);
         // Mostly it is the code itself: all others are across an edge.
-        if away(&places[0]) <= i64::from(self.last / 4).pow(2) && self.is_inside(to) {
+        let quarter = u64::from(self.last.unsigned_abs() / 4);
+        if away(&places[0]) <= quarter * quarter && self.is_inside(to) {
             return code;
         }
         places.into_iter().min_by_key(away).expect("there are nine")
@@ -105,6 +107,15 @@ mod tests {
                 assert!(a.angle_between(b) < 0.2, "{place:?} {code:?}");
             }
         }
+    }
+
+    #[test]
+    fn the_nearest_to_a_place_that_is_as_far_as_can_be_is_found() {
+        let plane = OctahedralPlane::new(16);
+        let far = [i32::MIN, i32::MIN + 1];
+        let nearest =
+            plane.places([9, 5]).into_iter().min_by_key(|[x, y]| i64::from(*x) + i64::from(*y));
+        assert_eq!(Some(plane.near([9, 5], far)), nearest);
     }
 
     #[test]
