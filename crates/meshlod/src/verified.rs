@@ -9,7 +9,7 @@ mod check;
 use meshlod_measure::{CertifiedOptions, certified_distance};
 use meshlod_mesh::Mesh;
 use meshlod_multires::{
-    Archive, Cut, ErrorKind, Extract, FileError, Focus, ModelFile, Query, Source, Tolerance,
+    Archive, Cut, ErrorKind, Extract, FileError, Fit, Focus, ModelFile, Query, Source, Tolerance,
 };
 use meshlod_spatial::closest_point;
 
@@ -59,6 +59,15 @@ pub struct Verification {
     pub rounds: usize,
 }
 
+impl Verification {
+    /// Returns the proof of a mesh by the least distance that a query allows anywhere, and the distance
+    /// that no refinement takes away.
+    fn within(least: f64, rounding: f64) -> Self {
+        let holds = (1.0 - RESERVE) * least >= rounding;
+        Self { holds, rounding, spare: RESERVE * least, added: 0, rounds: 0 }
+    }
+}
+
 /// Extracts the mesh that satisfies a query, and proves that it does.
 ///
 /// In the focus **every point of the mesh is as close to the original mesh as the query asks, and
@@ -91,13 +100,28 @@ pub fn extract_verified<S: Source>(
     };
     match file {
         ModelFile::Contractions(archive) if !is_proven => refine(archive, query, rounding),
-        _ => {
-            let extract = file.extract(&scaled(query, 1.0 - RESERVE))?;
-            let spare = RESERVE * least_tolerance(query, &extract.level.mesh());
-            let verification = Verification { holds: true, rounding, spare, added: 0, rounds: 0 };
-            Ok(VerifiedExtract { extract, verification })
-        }
+        _ => by_proven_errors(file, query, rounding),
     }
+}
+
+/// Extracts by the errors that a file stores, which are proven.
+fn by_proven_errors<S: Source>(
+    file: &ModelFile<S>,
+    query: &Query<'_>,
+    rounding: f64,
+) -> Result<VerifiedExtract, FileError> {
+    let mut extract = file.extract(&scaled(query, 1.0 - RESERVE))?;
+    let mut least = least_tolerance(query, &extract.level.mesh());
+    let mut verification = Verification::within(least, rounding);
+    if matches!(file, ModelFile::HeightField(..)) && rounding > 0.0 {
+        // Its errors are those of the rounded heights: what rounding takes is not left to them.
+        let part = (1.0 - 2.0 * RESERVE - rounding / least).max(0.0);
+        extract = file.extract(&scaled(query, part))?;
+        least = least_tolerance(query, &extract.level.mesh());
+        verification = Verification::within(least, part * least + rounding);
+        verification.rounding = rounding;
+    }
+    Ok(VerifiedExtract { extract, verification })
 }
 
 fn refine<S: Source>(
@@ -110,9 +134,7 @@ fn refine<S: Source>(
     finest.refine_all_around(&near.limits);
     let surface = CutSurface::of(&finest);
     let least = surface.least_limit(&near.limits);
-    let holds = (1.0 - RESERVE) * least >= rounding;
-    let mut verification =
-        Verification { holds, rounding, spare: RESERVE * least, added: 0, rounds: 0 };
+    let mut verification = Verification::within(least, rounding);
     let is_below_rounding = |most: f64| most * (1.0 - RESERVE) <= rounding;
     if query.tolerance.is_finest()
         || matches!(query.tolerance, Tolerance::Uniform(most) if is_below_rounding(most))
@@ -166,7 +188,10 @@ fn rounding<S: Source>(file: &ModelFile<S>) -> f64 {
     match file {
         ModelFile::Contractions(archive) if archive.is_lossless() => 0.0,
         ModelFile::Contractions(archive) => archive.rounding(),
-        ModelFile::HeightField(field, _) => field.fit().rounded,
+        ModelFile::HeightField(field, _) => {
+            let Fit { moved, turned, rounded } = field.fit();
+            moved + turned + rounded
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use meshlod_fixtures::{
 };
 use meshlod_measure::{CertifiedOptions, PreparedSurface, certified_distance, faces_beyond};
 use meshlod_mesh::Mesh;
-use meshlod_multires::{Forest, QueryError, Storage, ViewCamera};
+use meshlod_multires::{Forest, HeightField, HeightPrecision, QueryError, Storage, ViewCamera};
 use meshlod_samples as samples;
 use meshlod_simplify::Options;
 
@@ -53,6 +53,31 @@ fn the_error_asked_for_is_kept() {
             added += proof.added;
         }
         assert!(added > 100);
+    }
+}
+
+#[test]
+fn proven_errors_hold_where_rounding_allows_it_and_only_there() {
+    let knot = samples::knot(3000);
+    let mut forest = Forest::new(&knot, &Options::default()).unwrap();
+    forest.measure_bounds();
+    let coarse = Some(1e-3 * knot.bounds().diagonal());
+    let bounds = written(&forest, &Storage { rounding: coarse, ..Storage::default() });
+    let terrain = samples::terrain(3000);
+    let field = HeightField::from_mesh(&terrain).unwrap();
+    let precision = HeightPrecision::Within(1e-3 * terrain.bounds().diagonal());
+    let field = ModelFile::open(field.to_file(precision).unwrap()).unwrap();
+    for (mesh, file) in [(&knot, &bounds), (&terrain, &field)] {
+        let mut kept = [0; 2];
+        for part in [1e-7, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2] {
+            let tolerance = part * mesh.bounds().diagonal();
+            let (cut, proof) = extract(file, &Query::uniform(tolerance));
+            let apart = certified_distance(mesh, &cut, &CertifiedOptions::default()).unwrap();
+            let most = if proof.holds { tolerance } else { proof.rounding };
+            assert!(apart.symmetric().lower <= most, "{part}: {proof:?} {apart:?}");
+            kept[usize::from(proof.holds)] += 1;
+        }
+        assert!(kept[0] > 0 && kept[1] > 0, "{kept:?}");
     }
 }
 
