@@ -60,7 +60,11 @@ def test_layout_and_writability_do_not_matter():
     fixed = faces.copy()
     fixed.setflags(write=False)
     backwards = np.ascontiguousarray(faces[::-1])[::-1]
-    for p, f in [(np.asfortranarray(points), faces), (wide[:, 2:5], fixed), (points, backwards)]:
+    crooked = np.frombuffer(b"\0" * 3 + points.tobytes(), points.dtype, offset=3)
+    crooked = crooked.reshape(points.shape)
+    assert not crooked.flags.aligned
+    layouts = [(np.asfortranarray(points), faces), (wide[:, 2:5], fixed), (points, backwards)]
+    for p, f in [*layouts, (crooked, faces)]:
         found = meshlod.simplify(p, f, 0.5)
         assert all(np.array_equal(a, b) for a, b in zip(expected, found, strict=True))
 
@@ -134,6 +138,16 @@ def test_a_target_out_of_reach_warns():
     assert caught[0].filename == __file__
     assert not report.reached and len(triangles) == report.output_faces > 1
     assert sum(report.refusals.values()) > 0
+    with pytest.warns(meshlod.MeshlodWarning, match="target not reached"):
+        meshlod.simplify(meshlod.Mesh(points, faces), target_count=1, topology="keep")
+
+
+def test_normals_of_whole_numbers_come_back_with_fractions():
+    points, faces = torus()
+    normals = np.rint(points * 9).astype(np.int32)
+    found = meshlod.simplify(points, faces, 0.9, normals=normals)[2]["normals"]
+    assert found.dtype == np.float32
+    assert np.allclose(np.linalg.norm(found, axis=1), 1, atol=1e-3)
 
 
 @pytest.mark.parametrize("method", ["qem", "spr", "pm"])

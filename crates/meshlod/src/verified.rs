@@ -9,7 +9,7 @@ mod check;
 use meshlod_measure::{CertifiedOptions, certified_distance};
 use meshlod_mesh::Mesh;
 use meshlod_multires::{
-    Archive, Cut, ErrorKind, Extract, FileError, Fit, Focus, ModelFile, Query, Source, Tolerance,
+    Archive, Cut, ErrorKind, Extract, FileError, Focus, ModelFile, Query, Source, Tolerance,
 };
 use meshlod_spatial::closest_point;
 
@@ -73,7 +73,9 @@ impl Verification {
 /// In the focus **every point of the mesh is as close to the original mesh as the query asks, and
 /// every point of the original to the mesh**, whatever errors the file stores, unless the query asks
 /// for less than [`Verification::rounding`]. The original is the mesh that the file was built from,
-/// without faces that `build` has left out, or what is there of a truncated file. For tolerances in
+/// without faces that `build` has left out, or what is there of a truncated file. Of a height field it
+/// is the grid of its heights, with diagonals of its own: `moved` and `turned` of its
+/// [`Fit`](meshlod_multires::Fit) say how far the mesh may be from that. For tolerances in
 /// pixels the distance allowed for a point is that at its own distance from the camera. The result
 /// is the same for any number of threads.
 ///
@@ -188,10 +190,7 @@ fn rounding<S: Source>(file: &ModelFile<S>) -> f64 {
     match file {
         ModelFile::Contractions(archive) if archive.is_lossless() => 0.0,
         ModelFile::Contractions(archive) => archive.rounding(),
-        ModelFile::HeightField(field, _) => {
-            let Fit { moved, turned, rounded } = field.fit();
-            moved + turned + rounded
-        }
+        ModelFile::HeightField(field, _) => field.fit().rounded,
     }
 }
 

@@ -19,6 +19,9 @@ MOST_LABEL = 2**24
 #: An attribute for the native part: name, kind, values.
 Attribute = tuple[str, str, NDArray[np.float32]]
 
+#: Layout that Rust can read in place: row after row, at aligned addresses.
+ALIGNED = ("C", "A")
+
 
 def as_points(points: ArrayLike, name: str = "points") -> NDArray[Any]:
     """Returns points as rows of three floats, of single or double precision."""
@@ -29,7 +32,7 @@ def as_points(points: ArrayLike, name: str = "points") -> NDArray[Any]:
     if array.dtype.kind not in "fiu":
         raise MeshlodError(f"{name} must be numbers, not {array.dtype}")
     single = array.dtype.kind == "f" and array.dtype.itemsize == 4
-    return np.ascontiguousarray(array, dtype=np.float32 if single else np.float64)
+    return np.require(array, np.float32 if single else np.float64, ALIGNED)
 
 
 def as_faces(faces: ArrayLike, name: str = "faces") -> NDArray[Any]:
@@ -46,10 +49,10 @@ def as_faces(faces: ArrayLike, name: str = "faces") -> NDArray[Any]:
         if array.max() > np.iinfo(np.int64).max:
             row = int(np.argmax(array.max(axis=1)))
             raise MeshlodError(f"{name}: row {row} has an index that is no index of a point")
-        return np.ascontiguousarray(array, dtype=np.int64)
+        return np.require(array, np.int64, ALIGNED)
     if array.dtype.kind == "u" and array.dtype.itemsize == 4:
-        return np.ascontiguousarray(array, dtype=np.uint32)
-    return np.ascontiguousarray(array, dtype=np.int64 if array.dtype.itemsize == 8 else np.int32)
+        return np.require(array, np.uint32, ALIGNED)
+    return np.require(array, np.int64 if array.dtype.itemsize == 8 else np.int32, ALIGNED)
 
 
 def as_attributes(
@@ -93,7 +96,7 @@ def as_vertices(locks: ArrayLike, count: int) -> NDArray[np.int64]:
     for row in (array.min(), array.max()):
         if not 0 <= row < count:
             raise MeshlodError(f"locks: there is no point {row}, only {count}")
-    return np.ascontiguousarray(array, dtype=np.int64)
+    return np.require(array, np.int64, ALIGNED)
 
 
 def returned(
@@ -107,7 +110,9 @@ def returned(
             like = np.asarray(like)
             if name == "colors" and like.dtype == np.uint8:
                 values = np.rint(values * 255).clip(0, 255)
-            values = values.astype(like.dtype, copy=False)
+            if like.dtype.kind == "f" or name not in ("normals", "uvs"):
+                # Integers would round directions and texture coordinates away.
+                values = values.astype(like.dtype, copy=False)
             if like.ndim == 1:
                 values = values.reshape(-1)
         all_values[name] = values
@@ -143,7 +148,7 @@ def _floats(
         raise MeshlodError(f"{name} has {len(array)} rows, but there are {count} points")
     with np.errstate(over="ignore"):
         # What overflows is infinite, which is refused with its row.
-        return np.ascontiguousarray(array, dtype=np.float32)
+        return np.require(array, np.float32, ALIGNED)
 
 
 def _unit(normals: NDArray[np.float32]) -> NDArray[np.float32]:

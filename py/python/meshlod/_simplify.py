@@ -122,6 +122,8 @@ def _of_mesh(
 
     own, back = (mesh, None) if isinstance(mesh, Mesh) else convert.adopted(mesh)
     level, report = own._simplified(kind, value, locks, options)
+    if not report.reached:
+        warn(report.why_not_reached())
     out = level if back is None else back(level)
     return (out, report) if return_report else out
 
