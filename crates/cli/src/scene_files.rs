@@ -26,7 +26,8 @@ pub fn write(
     write_noted(path, scene, writing, session)
 }
 
-/// Adds to what a format lacks of a scene the name of another that holds all of it, if there is one.
+/// Adds to what a format lacks of a scene the name of another that holds all of it, if there is
+/// one.
 fn remedied(scene: &Scene, limits: Vec<Note>) -> Vec<Note> {
     let holds = |(format, _): &(Format, &str)| scene.limits_of(*format).is_empty();
     let mut formats = [(Format::Glb, ".glb"), (Format::Obj, ".obj")].into_iter();

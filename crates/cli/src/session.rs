@@ -56,7 +56,8 @@ impl Session {
         self.progress.suspend(|| say(format_args!("warning: {line}")));
     }
 
-    /// Warns of what was left out or changed on the way from or to a file, with what to do about it.
+    /// Warns of what was left out or changed on the way from or to a file, with what to do about
+    /// it.
     ///
     /// # Errors
     /// With `--strict`, if something was left out.

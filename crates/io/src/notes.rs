@@ -34,7 +34,7 @@ pub struct Note {
     pub what: String,
     /// Names of the first few of the things, if they have names that help to find them.
     pub names: Vec<String>,
-    /// What to do about it, if there is something to do: `.glb keeps everything`.
+    /// Advice on what to do about it, if there is any: `.glb keeps everything`.
     pub remedy: Option<String>,
     /// Name of the things in the plural, by which notes of one sort are known.
     many: String,
@@ -91,8 +91,8 @@ impl Note {
         }
     }
 
-    /// Describes the notes of one difference as a list, then what to do about them, each remedy once:
-    /// `2 lines, 1 point; .glb keeps everything`. `None` if there are none.
+    /// Describes the notes of one difference as a list, then what to do about them, each remedy
+    /// once: `2 lines, 1 point; .glb keeps everything`. `None` if there are none.
     pub fn list(notes: &[Self], kind: NoteKind) -> Option<String> {
         let of_it = || notes.iter().filter(|note| note.kind == kind);
         let texts: Vec<String> = of_it().map(Self::to_string).collect();

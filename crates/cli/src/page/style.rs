@@ -59,8 +59,8 @@ impl SubjectStyle {
     }
 }
 
-/// Returns the materials of a scene, with a warning for each image of the file that cannot be drawn,
-/// or only smaller than it is.
+/// Returns the materials of a scene, with a warning for each image of the file that cannot be
+/// drawn, or only smaller than it is.
 pub fn materials(scene: &Scene, of: &std::path::Path, session: &Session) -> Materials {
     let (materials, warnings) = materials_of(scene);
     for image in warnings {

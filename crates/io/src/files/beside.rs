@@ -72,8 +72,8 @@ impl Beside {
     /// Finds the file of that name relative to the folder, whatever its case if there is none of
     /// the same.
     ///
-    /// Of an absolute name only the last part counts, as the rest says nothing on a machine that the
-    /// file was copied to; and only of images and libraries.
+    /// Of an absolute name only the last part counts, as the rest says nothing on a machine that
+    /// the file was copied to; and only of images and libraries.
     pub fn find(&mut self, name: &str) -> Option<PathBuf> {
         self.find_relative(name).or_else(|| {
             let bare = bare_name(name)?;
