@@ -53,7 +53,12 @@ pub fn open_again(path: &Path, session: &Session) -> Result<ModelFile<File>, Fai
     }
     session.progress.stage(&format!("reading {}", files::name(path)));
     let file = File::open(path).map_err(|error| Failure::at(path, error))?;
-    ModelFile::open(file).map_err(|error| Failure::at(path, error))
+    ModelFile::open(file).map_err(|error| match error {
+        FileError::Magic => {
+            Failure::at(path, format_args!("{error}; meshlod build makes such a file of a mesh"))
+        }
+        error => Failure::at(path, error),
+    })
 }
 
 pub fn certificate_json(certificate: &Certificate) -> Value {

@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::path::Path;
 
-use meshlod::io::Note;
+use meshlod::io::{Note, merged_instances};
 use meshlod::multires::ModelFile;
 use meshlod::{Format, MissingParts, ModelScene, PoseCounts, Scene, SceneCounts};
 use serde_json::{Value, json};
@@ -135,6 +135,19 @@ pub fn restored(
     }
     let level = std::mem::take(&mut flat.meshes[0]);
     model.into_scene(level.name, level.mesh).map_err(|error| Failure::at(path, error))
+}
+
+/// Notes that meshes become one in a format without nodes. Those with several instances come with
+/// their nodes, and are noted when they are written.
+pub fn note_merged(
+    output: &Path,
+    model: &ModelScene,
+    format: Format,
+    session: &Session,
+) -> Result<(), Failure> {
+    let is_merged = model.is_flat() && !is_gltf(format);
+    let merged = merged_instances(if is_merged { model.mesh_count() } else { 0 });
+    session.note(output, &[merged.remedied(".glb keeps them apart")])
 }
 
 /// Warns that errors that differ by place are not those of each instance of a mesh.

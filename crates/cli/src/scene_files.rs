@@ -22,19 +22,21 @@ pub fn write(
     session: &Session,
 ) -> Result<(), Failure> {
     let limits = scene.limits_of(check_output(path, session)?);
-    session.note_with(path, &limits, &remedy(scene, &limits))?;
+    session.note(path, &remedied(scene, limits))?;
     write_noted(path, scene, writing, session)
 }
 
-/// Names a format that holds what another does not; empty if there is none, or nothing to hold.
-fn remedy(scene: &Scene, limits: &[Note]) -> String {
+/// Adds to what a format lacks of a scene the name of another that holds all of it, if there is
+/// one.
+fn remedied(scene: &Scene, limits: Vec<Note>) -> Vec<Note> {
     let holds = |(format, _): &(Format, &str)| scene.limits_of(*format).is_empty();
     let mut formats = [(Format::Glb, ".glb"), (Format::Obj, ".obj")].into_iter();
-    match limits {
-        [] => String::new(),
-        _ => formats
-            .find(holds)
-            .map_or_else(String::new, |(_, suffix)| format!("; {suffix} keeps everything")),
+    match formats.find(|format| !limits.is_empty() && holds(format)) {
+        None => limits,
+        Some((_, suffix)) => {
+            let remedy = |note: Note| note.remedied(format!("{suffix} keeps everything"));
+            limits.into_iter().map(remedy).collect()
+        }
     }
 }
 

@@ -56,21 +56,17 @@ impl Session {
         self.progress.suspend(|| say(format_args!("warning: {line}")));
     }
 
-    /// Warns of what was left out or changed on the way from or to a file.
+    /// Warns of what was left out or changed on the way from or to a file, with what to do about
+    /// it.
     ///
     /// # Errors
     /// With `--strict`, if something was left out.
     pub fn note(&self, path: &Path, notes: &[Note]) -> Result<(), Failure> {
-        self.note_with(path, notes, "")
-    }
-
-    /// Like [`Session::note`], with a remedy that is added to each warning.
-    pub fn note_with(&self, path: &Path, notes: &[Note], remedy: &str) -> Result<(), Failure> {
         let notes: Vec<Note> = notes.iter().filter(|note| note.count > 0).cloned().collect();
         let notes = &notes[..];
         for kind in [NoteKind::LeftOut, NoteKind::Changed] {
             let Some(list) = Note::list(notes, kind) else { continue };
-            let line = Failure::at(path, format_args!("{}: {list}{remedy}", kind.word()));
+            let line = Failure::at(path, format_args!("{}: {list}", kind.word()));
             if self.strict && kind == NoteKind::LeftOut {
                 return Err(line);
             }
@@ -99,6 +95,7 @@ fn note_json(path: &Path, note: &Note) -> Value {
         "count": note.count,
         "what": note.what,
         "names": note.names,
+        "remedy": note.remedy,
     })
 }
 

@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf};
 
 use meshlod_mesh::{Mesh, VertexId};
 
-use beside::Beside;
+use beside::{Beside, bare_name};
 use write_gltf::write_gltf;
 use write_obj::write_obj;
 use write_ply::write_ply;
@@ -63,6 +63,9 @@ pub type Resolve<'a> = &'a mut dyn FnMut(&str) -> Option<Vec<u8>>;
 
 /// Reads a mesh file and the files that it refers to, such as buffers and images, from its folder.
 ///
+/// Images and material libraries with absolute paths are read from that folder, too, by the last
+/// part of their names, with a note.
+///
 /// # Errors
 /// One line that names the file, the location in it and the reason: an unknown suffix, a missing
 /// file, or invalid contents.
@@ -71,8 +74,10 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Scene, IoError> {
     let bytes = fs::read(path).map_err(|error| IoError::system(path, error))?;
     let mut beside = Beside::of(path, format);
     let mut resolve = |name: &str| beside.read(name);
-    let mut scene = read_bytes(&bytes, format, &mut resolve, options)
+    let mut scene = parse(&bytes, format, &mut resolve, options)
         .map_err(|error| IoError::parse(path, error))?;
+    note_missing_images(&mut scene, path.parent());
+    scene.notes.extend(Some(beside.note()).filter(|note| note.count > 0));
     if let [only] = &mut scene.meshes[..]
         && only.name.is_empty()
         && scene.source.is_none()
@@ -87,6 +92,17 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Scene, IoError> {
 /// # Errors
 /// The location and the reason if the contents are invalid.
 pub fn read_bytes(
+    bytes: &[u8],
+    format: Format,
+    resolve: Resolve<'_>,
+    options: &ReadOptions,
+) -> Result<Scene, ParseError> {
+    let mut scene = parse(bytes, format, resolve, options)?;
+    note_missing_images(&mut scene, None);
+    Ok(scene)
+}
+
+fn parse(
     bytes: &[u8],
     format: Format,
     resolve: Resolve<'_>,
@@ -112,20 +128,24 @@ pub fn read_bytes(
     }
     normals::make_unit(&mut scene);
     influences::note_sums(&mut scene);
-    note_missing_images(&mut scene);
     Ok(scene)
 }
 
-fn note_missing_images(scene: &mut Scene) {
+/// Notes the images without bytes, and where the first was looked for, if that is known.
+fn note_missing_images(scene: &mut Scene, folder: Option<&Path>) {
     let missing = scene.images.iter().filter(|image| image.bytes.is_empty());
     let names: Vec<String> = missing.map(|image| image.name.clone()).collect();
-    if !names.is_empty() {
-        let (one, many) = (
-            "image that was not found or cannot be used",
-            "images that were not found or cannot be used",
-        );
-        scene.notes.push(Note::left_out(names.len(), one, many).named(names));
+    let Some(first) = names.first() else { return };
+    let (one, many) = (
+        "image that was not found or cannot be used",
+        "images that were not found or cannot be used",
+    );
+    let mut note = Note::left_out(names.len(), one, many);
+    if let Some(folder) = folder {
+        let place = folder.join(bare_name(first).unwrap_or(first));
+        note = note.remedied(format!("put an image at {}", place.display()));
     }
+    scene.notes.push(note.named(names));
 }
 
 /// Writes a scene as a mesh file, with the `.bin`, `.mtl` and image files that belong to it next to
@@ -256,8 +276,11 @@ fn write_one(
     replace(path, fill).map_err(|error| IoError::system(path, error))
 }
 
-/// Returns a name as a path if joining it to a folder stays within that folder.
+/// Returns a name as a path if joining it to a folder stays within that folder, on any system.
 pub(crate) fn inner_path(name: &str) -> Option<PathBuf> {
+    if bare_name(name).is_some() {
+        return None;
+    }
     let path = Path::new(name);
     let mut parts = path.components().filter(|part| *part != Component::CurDir).peekable();
     let is_empty = parts.peek().is_none();

@@ -52,6 +52,7 @@ pub use files::{
 pub use flatten::{MeshInstance, transform};
 pub use format::Format;
 pub use image_file::ImageHeader;
+pub use limits::merged_instances;
 pub use material::{Material, MtlMap, MtlStatement, Shading};
 pub use meshlod_mesh::{merge_equal_wedges, weld};
 pub use notes::{Note, NoteKind};

@@ -75,11 +75,10 @@ impl Scene {
         let mut shown = vec![false; self.meshes.len()];
         instances.iter().for_each(|instance| shown[instance.mesh] = true);
         let hidden = shown.iter().filter(|&&shown| !shown).count();
-        let merged = if instances.len() > 1 { instances.len() } else { 0 };
         let count = |array| self.source.as_ref().map_or(0, |source| source.count(array));
         let lights = self.source.as_ref().map_or(0, |source| source.lights());
         let mut notes = vec![
-            Note::changed(merged, "", "instances of meshes merged into one mesh"),
+            merged_instances(instances.len()),
             Note::left_out(hidden, "mesh that no node shows", "meshes that no node shows"),
             Note::left_out(count("skins"), "skin", "skins"),
             Note::left_out(count("animations"), "animation", "animations"),
@@ -153,6 +152,12 @@ impl Scene {
         let labels = self.meshes.iter().filter_map(|mesh| mesh.mesh.objects.as_ref());
         labels.flat_map(|labels| &labels.names).filter(|name| !name.is_empty()).cloned().collect()
     }
+}
+
+/// Notes that instances of meshes become one mesh, if they are several.
+pub fn merged_instances(count: usize) -> Note {
+    let merged = if count > 1 { count } else { 0 };
+    Note::changed(merged, "", "instances of meshes merged into one mesh")
 }
 
 /// Reports whether a format has a place for a layer.

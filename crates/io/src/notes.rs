@@ -34,6 +34,8 @@ pub struct Note {
     pub what: String,
     /// Names of the first few of the things, if they have names that help to find them.
     pub names: Vec<String>,
+    /// Advice on what to do about it, if there is any: `.glb keeps everything`.
+    pub remedy: Option<String>,
     /// Name of the things in the plural, by which notes of one sort are known.
     many: String,
 }
@@ -54,8 +56,8 @@ impl Note {
 
     fn new(kind: NoteKind, count: usize, one: &str, many: &str) -> Self {
         let what = if count == 1 { one } else { many };
-        let names = Vec::new();
-        Self { kind, count, what: what.to_owned(), names, many: many.to_owned() }
+        let (names, remedy) = (Vec::new(), None);
+        Self { kind, count, what: what.to_owned(), names, remedy, many: many.to_owned() }
     }
 
     /// Adds to the name of the things how much they changed, or why.
@@ -67,6 +69,12 @@ impl Note {
     /// Adds the names of the things, of which the first few are kept.
     pub fn named<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
         self.names = names.into_iter().take(MOST_NAMES).map(Into::into).collect();
+        self
+    }
+
+    /// Adds what to do about it.
+    pub fn remedied(mut self, remedy: impl Into<String>) -> Self {
+        self.remedy = Some(remedy.into());
         self
     }
 
@@ -83,11 +91,18 @@ impl Note {
         }
     }
 
-    /// Describes the notes of one difference as a list; `None` if there are none.
+    /// Describes the notes of one difference as a list, then what to do about them, each remedy
+    /// once: `2 lines, 1 point; .glb keeps everything`. `None` if there are none.
     pub fn list(notes: &[Self], kind: NoteKind) -> Option<String> {
-        let of_it = notes.iter().filter(|note| note.kind == kind);
-        let texts: Vec<String> = of_it.map(Self::to_string).collect();
-        (!texts.is_empty()).then(|| texts.join(", "))
+        let of_it = || notes.iter().filter(|note| note.kind == kind);
+        let texts: Vec<String> = of_it().map(Self::to_string).collect();
+        let mut parts = vec![texts.join(", ")];
+        for remedy in of_it().filter_map(|note| note.remedy.as_ref()) {
+            if !parts[1..].contains(remedy) {
+                parts.push(remedy.clone());
+            }
+        }
+        (!texts.is_empty()).then(|| parts.join("; "))
     }
 }
 
@@ -142,6 +157,20 @@ mod tests {
         Note::merge(&mut notes, vec![note(2)]);
         assert_eq!(Note::list(&notes, NoteKind::Changed).unwrap(), "3 vertices rounded by 3 mm");
         assert_eq!(notes.len(), 2);
+    }
+
+    #[test]
+    fn a_remedy_stands_once_behind_its_list() {
+        let note = |count, one, remedy| Note::left_out(count, one, "").remedied(remedy);
+        let notes = [
+            note(1, "line", "use .glb"),
+            note(1, "point", "use .obj"),
+            note(1, "curve", "use .glb"),
+            Note::changed(1, "normal scaled", ""),
+        ];
+        let list = Note::list(&notes, NoteKind::LeftOut).unwrap();
+        assert_eq!(list, "1 line, 1 point, 1 curve; use .glb; use .obj");
+        assert_eq!(Note::list(&notes, NoteKind::Changed).unwrap(), "1 normal scaled");
     }
 
     #[test]

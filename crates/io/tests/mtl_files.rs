@@ -143,6 +143,33 @@ fn images_are_found_by_any_spelling_and_not_copied_beside_themselves() {
 }
 
 #[test]
+fn absolute_paths_lead_to_files_beside_and_stay_in_place() {
+    let object = format!("mtllib C:\\my models\\a.mtl\n{SQUARE}usemtl m\nf 1 2 3\n");
+    let library = b"newmtl m\nmap_Kd -bm 2 C:\\my maps\\wood.png\nmap_Ks /gone/stone.png\n";
+    let here = folder(&[("a.obj", object.as_bytes()), ("a.mtl", library), ("Wood.png", PNG)]);
+    let path = here.path().join("a.obj");
+    let scene = read_it(&path);
+    assert_eq!(scene.images[0].bytes, PNG);
+    let taken = "2 files with absolute paths, taken from beside the model (Wood.png for \
+                 C:\\my maps\\wood.png, a.mtl for C:\\my models\\a.mtl)";
+    let missing = "1 image that was not found or cannot be used (/gone/stone.png)";
+    assert_eq!(notes(&scene), [missing, taken]);
+    let before = contents(here.path());
+    write_it(&path, &scene);
+    let mut after = contents(here.path());
+    let text = after.remove(Path::new("a.obj")).unwrap();
+    assert!(text.starts_with(b"mtllib C:\\my models\\a.mtl\n"));
+    assert!(after.iter().all(|(name, bytes)| before[name] == *bytes) && after.len() == 2);
+    let there = tempdir().unwrap();
+    write_it(&there.path().join("b.obj"), &scene);
+    let written = contents(there.path());
+    assert_eq!(written[Path::new("wood.png")], PNG);
+    let library = String::from_utf8_lossy(&written[Path::new("b.mtl")]).into_owned();
+    assert!(library.contains("map_Kd -bm 2 wood.png\nmap_Ks /gone/stone.png\n"), "{library}");
+    assert_eq!(written.len(), 3);
+}
+
+#[test]
 fn images_of_one_name_in_two_places_become_two() {
     let object = format!("mtllib a.mtl\n{SQUARE}usemtl m\nf 1 2 3\n");
     let second: &[u8] = b"\x89PNG2";

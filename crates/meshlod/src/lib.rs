@@ -269,7 +269,7 @@ pub use exact_volume::{
 pub use fuse::fuse_scene;
 pub use levels::{BuildOptions, BuildReport, ExtractOptions, LevelsError, build, extract};
 pub use locks::join_locks;
-pub use materials::{UnreadImage, materials_of, single_sided_materials};
+pub use materials::{ImageWarning, materials_of, single_sided_materials};
 pub use meshlod_io::{Format, IoError, ReadOptions, Scene, WriteOptions, read, write};
 pub use meshlod_mesh::{Borders, Mesh};
 pub use meshlod_simplify::{Method, Options, Report, SimplifyError, Target, Topology};

@@ -4,25 +4,27 @@ use meshlod_io::{Image, Scene};
 use meshlod_picture::{Materials, PaintMaterial, Texture};
 
 /// Returns the materials needed to draw the mesh made by [`Scene::flatten`], and the images that
-/// could not be decoded.
+/// could not be decoded or are drawn smaller than they are.
 ///
 /// There is one entry for every material of the scene, and a light grey one for faces without a
-/// material. A material whose image cannot be decoded keeps its colour only.
+/// material. A material whose image cannot be decoded keeps its colour only. Textures have at most
+/// 2^24 texels, see [`Texture::decode`].
 ///
 /// Cost: decoding each image that a material uses, once.
-pub fn materials_of(scene: &Scene) -> (Materials, Vec<UnreadImage>) {
+pub fn materials_of(scene: &Scene) -> (Materials, Vec<ImageWarning>) {
     let mut textures = Vec::new();
-    let mut unread = Vec::new();
+    let mut warnings = Vec::new();
     let mut texture_of = vec![None; scene.images.len()];
     let mut texture = |index: usize| {
         let image = scene.images.get(index)?;
         *texture_of[index].get_or_insert_with(|| match decode(image) {
             Ok(texture) => {
+                warnings.extend(smaller(&texture).map(|reason| ImageWarning::of(image, reason)));
                 textures.push(texture);
                 Some(textures.len() - 1)
             }
             Err(reason) => {
-                unread.push(UnreadImage { name: image.name.clone(), reason });
+                warnings.push(ImageWarning::of(image, reason));
                 None
             }
         })
@@ -37,7 +39,7 @@ pub fn materials_of(scene: &Scene) -> (Materials, Vec<UnreadImage>) {
         })
         .collect();
     materials.push(PaintMaterial { base_color: [0.7; 3], texture: None });
-    (Materials { materials, textures }, unread)
+    (Materials { materials, textures }, warnings)
 }
 
 /// Returns whether each material of a scene is single-sided, for the mesh made by
@@ -49,13 +51,29 @@ pub fn single_sided_materials(scene: &Scene) -> Vec<bool> {
     scene.materials.iter().map(|material| !material.is_double_sided).collect()
 }
 
-/// A texture image of a scene that could not be decoded.
+/// Texture image of a scene that could not be decoded, or is drawn smaller than it is.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct UnreadImage {
+pub struct ImageWarning {
     /// Name of the image in the scene.
     pub name: String,
-    /// Reason why the image could not be decoded.
+    /// Reason why the image is not drawn, or at which size it is.
     pub reason: String,
+}
+
+impl ImageWarning {
+    fn of(image: &Image, reason: String) -> Self {
+        Self { name: image.name.clone(), reason }
+    }
+}
+
+/// Says at which size an image is drawn, if that is not its own.
+fn smaller(texture: &Texture) -> Option<String> {
+    let [width, height] = texture.image_size();
+    let (drawn_width, drawn_height, _) = texture.levels().next()?;
+    let is_smaller = [drawn_width, drawn_height] != [width, height];
+    is_smaller.then(|| {
+        format!("drawn as {drawn_width} x {drawn_height} of its {width} x {height} pixels")
+    })
 }
 
 fn decode(image: &Image) -> Result<Texture, String> {
@@ -101,6 +119,18 @@ mod tests {
         let (_, unread) = materials_of(&scene());
         let names: Vec<_> = unread.iter().map(|image| &image.name[..]).collect();
         assert_eq!(names, ["cut", "gone"]);
+    }
+
+    #[test]
+    fn a_large_image_is_drawn_smaller_with_a_warning() {
+        let (width, height) = (4098, 4098);
+        let large = Picture::new(width, height, vec![9; 4 * 4098 * 4098]).unwrap().png();
+        let scene = Scene { images: vec![Image { name: "big".into(), bytes: large }], ..scene() };
+        let scene = Scene { materials: scene.materials[2..3].to_vec(), ..scene };
+        let (materials, warnings) = materials_of(&scene);
+        assert_eq!(materials.textures.len(), 1);
+        let reason = "drawn as 2049 x 2049 of its 4098 x 4098 pixels".into();
+        assert_eq!(warnings, [ImageWarning { name: "big".into(), reason }]);
     }
 
     #[test]

@@ -59,6 +59,7 @@ mod render;
 #[cfg(test)]
 mod scenes;
 mod see_through;
+mod shrink;
 mod srgb;
 mod ssim;
 mod style;
@@ -78,6 +79,7 @@ pub use render::render;
 pub use see_through::{
     LabelledMesh, ReferenceVisibility, SeeThrough, SeeThroughCounts, SeeThroughOptions,
 };
+pub use shrink::Averaging;
 pub use ssim::ssim;
 pub use style::{
     Antialiasing, BackFaces, Background, Lighting, Materials, Normals, Paint, PaintMaterial, Style,

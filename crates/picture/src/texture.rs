@@ -13,6 +13,7 @@ use crate::srgb::{DECODE, encode};
 pub struct Texture {
     /// Mip levels: the image, then successive halves down to a single texel.
     levels: Vec<Level>,
+    image_size: [u32; 2],
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +41,18 @@ impl Texture {
         while let Some(half) = levels.last().and_then(Level::half) {
             levels.push(half);
         }
-        Ok(Self { levels })
+        Ok(Self { levels, image_size: [width, height] })
+    }
+
+    /// Notes the size of the image that was made smaller for this texture.
+    pub(crate) fn of_image(self, image_size: [u32; 2]) -> Self {
+        Self { image_size, ..self }
+    }
+
+    /// Returns the width and height in pixels of the image that the texture was decoded from, which
+    /// are more than those of its first level if [`Texture::decode`] made it smaller.
+    pub fn image_size(&self) -> [u32; 2] {
+        self.image_size
     }
 
     /// Creates a checkerboard texture of `squares` by `squares`, redder to the right and greener

@@ -59,10 +59,11 @@ impl SubjectStyle {
     }
 }
 
-/// Returns the materials of a scene, with a warning for each image of the file that cannot be read.
+/// Returns the materials of a scene, with a warning for each image of the file that cannot be
+/// drawn, or only smaller than it is.
 pub fn materials(scene: &Scene, of: &std::path::Path, session: &Session) -> Materials {
-    let (materials, unread) = materials_of(scene);
-    for image in unread {
+    let (materials, warnings) = materials_of(scene);
+    for image in warnings {
         let reason = format_args!("image {}: {}", image.name, image.reason);
         session.warn(Failure::at(of, reason));
     }

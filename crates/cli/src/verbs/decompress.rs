@@ -40,6 +40,7 @@ impl Decompress {
         let (mesh, model) = decoded.map_err(|error| Failure::at(&self.input, error))?;
         let counts = [mesh.positions.len(), mesh.faces.len()];
         let flat = model.flat_scene(files::stem(&self.input), mesh);
+        model_scene::note_merged(&self.output, &model, format, session)?;
         let scene = model_scene::restored(&self.input, model, flat, format)?;
         let time = start.elapsed();
         let shown = model_scene::shown_faces(&scene);

@@ -85,6 +85,7 @@ impl Extract {
             taken.error.moved += restored.map_or(0.0, |restored| restored.farthest);
             time += start.elapsed();
         }
+        model_scene::note_merged(&self.output, &model, format, session)?;
         let scene = model_scene::restored(&self.input, model, scene, format)?;
         if is_taken_back {
             moves = shown_rounding(&scene, format, precision);

@@ -38,7 +38,8 @@ fn a_file_that_is_none_is_1_and_one_line() {
     refused_by_all(&run, "absent.mlod");
     // A file with another suffix is recognised by its contents.
     write(&run, "mesh.ply", &mesh);
-    refused(&run, &["extract", "mesh.ply", "out.ply", "--error", "0"], 1);
+    let done = refused(&run, &["extract", "mesh.ply", "out.ply", "--error", "0"], 1);
+    assert!(done.only_line().contains("meshlod build makes"), "{done:?}");
 }
 
 #[test]

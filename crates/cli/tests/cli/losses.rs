@@ -197,6 +197,32 @@ fn what_stl_and_off_have_beside_their_surface_is_named() {
 }
 
 #[test]
+fn meshes_that_become_one_are_noted_by_every_way() {
+    let run = Run::new();
+    run.sample("torus", 100, "one.ply");
+    let mut scene = meshlod::read(&run.path("one.ply"), &meshlod::ReadOptions::default()).unwrap();
+    scene.meshes.push(scene.meshes[0].clone());
+    let node = meshlod::io::Node { mesh: Some(1), ..scene.nodes[0].clone() };
+    scene.nodes.push(node);
+    scene.roots.push(1);
+    scene.meshes[1].mesh.positions.iter_mut().for_each(|position| position[0] += 9.0);
+    meshlod::write(&run.path("in.glb"), &scene, &meshlod::WriteOptions::default()).unwrap();
+    run.json(&["build", "in.glb", "in.mlod"]);
+    run.json(&["compress", "in.glb", "in.mlz"]);
+    for way in [
+        &["convert", "in.glb"][..],
+        &["extract", "in.mlod", "--error", "1%"],
+        &["decompress", "in.mlz"],
+    ] {
+        let done = run.run(&[way, &["out.ply"]].concat());
+        let note = "out.ply: changed: 2 instances of meshes merged into one mesh; .glb keeps";
+        assert_eq!(done.err.matches(note).count(), 1, "{way:?}: {done:?}");
+        let done = run.run(&[way, &["out.glb"]].concat());
+        assert!(!done.err.contains("merged"), "{way:?}: {done:?}");
+    }
+}
+
+#[test]
 fn what_a_document_has_beside_its_surface_is_named_when_it_comes_back_without() {
     let run = Run::new();
     std::fs::write(run.path("in.glb"), meshlod_fixtures::folding_strip(8)).unwrap();

@@ -46,16 +46,16 @@ fn what_a_format_cannot_hold_is_named_and_strictly_refused() {
         ["file", "kind", "what"].map(|key| note[key].as_str().unwrap())
     };
     assert_eq!(note(0), ["in.obj", "left out", "image that was not found or cannot be used"]);
+    assert_eq!(notes[0]["remedy"], "put an image at gone.png");
+    assert_eq!(notes[1]["remedy"], ".glb keeps everything");
     assert_eq!(note(1), ["out.stl", "left out", "material"]);
     assert_eq!(note(2), ["out.stl", "left out", "texture"]);
     std::fs::remove_file(run.path("out.stl")).unwrap();
     let strict = run.run(&[&simplify[..], &["--strict"]].concat());
     assert_eq!(strict.code, 1);
-    assert!(
-        strict
-            .only_line()
-            .ends_with("in.obj: left out: 1 image that was not found or cannot be used (gone.png)")
-    );
+    let reason = "in.obj: left out: 1 image that was not found or cannot be used (gone.png); \
+                  put an image at gone.png";
+    assert!(strict.only_line().ends_with(reason), "{strict:?}");
     assert!(!run.path("out.stl").exists());
 }
 

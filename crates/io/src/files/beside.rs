@@ -1,11 +1,11 @@
 //! Files beside a mesh file, which it refers to by name.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-use crate::Format;
+use crate::{Format, Note};
 
 /// Largest image or material library that is read, in bytes.
 const MOST_OF_ONE: u64 = 1 << 30;
@@ -25,6 +25,8 @@ pub(super) struct Beside {
     left: u64,
     /// Entries of folders by their names in lower case.
     listed: HashMap<PathBuf, HashMap<String, OsString>>,
+    /// Absolute names for which a file beside was read, with the name of that.
+    replaced: BTreeMap<String, String>,
 }
 
 impl Beside {
@@ -34,6 +36,7 @@ impl Beside {
             has_no_buffers: !matches!(format, Format::Gltf | Format::Glb),
             left: MOST_OF_ALL,
             listed: HashMap::new(),
+            replaced: BTreeMap::new(),
         }
     }
 
@@ -41,21 +44,45 @@ impl Beside {
     /// library exceeds what is read of these.
     pub fn read(&mut self, name: &str) -> Option<Vec<u8>> {
         let file = self.find(name)?;
-        let suffix = file.extension().unwrap_or_default().to_ascii_lowercase();
-        if self.has_no_buffers || IMAGES.iter().any(|&image| suffix == image) {
+        if self.has_no_buffers || is_image_name(&file) {
             let size = fs::metadata(&file).ok()?.len();
             if size > MOST_OF_ONE.min(self.left) {
                 return None;
             }
             self.left -= size;
         }
-        fs::read(file).ok()
+        let bytes = fs::read(&file).ok()?;
+        if bare_name(name).is_some() && self.find_relative(name).is_none() {
+            let found = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            self.replaced.insert(name.to_owned(), found);
+        }
+        Some(bytes)
+    }
+
+    /// Notes the files that were taken in place of those with absolute names.
+    pub fn note(self) -> Note {
+        let (one, many) = (
+            "file with an absolute path, taken from beside the model",
+            "files with absolute paths, taken from beside the model",
+        );
+        let names = self.replaced.iter().map(|(name, found)| format!("{found} for {name}"));
+        Note::changed(self.replaced.len(), one, many).named(names)
     }
 
     /// Finds the file of that name relative to the folder, whatever its case if there is none of
-    /// the same. Absolute names are rejected: they say nothing on a machine that the file was copied
-    /// to.
+    /// the same.
+    ///
+    /// Of an absolute name only the last part counts, as the rest says nothing on a machine that
+    /// the file was copied to; and only of images and libraries.
     pub fn find(&mut self, name: &str) -> Option<PathBuf> {
+        self.find_relative(name).or_else(|| {
+            let bare = bare_name(name)?;
+            let may_be = self.has_no_buffers || is_image_name(Path::new(bare));
+            may_be.then(|| self.find_relative(bare))?
+        })
+    }
+
+    fn find_relative(&mut self, name: &str) -> Option<PathBuf> {
         // Exporters on Windows write backslashes.
         let names = [name.to_owned(), name.replace('\\', "/")];
         let names = names.into_iter().filter(|name| is_relative(Path::new(name)));
@@ -80,6 +107,29 @@ impl Beside {
             path.push(listed.get(&part.to_string_lossy().to_lowercase())?);
         }
         path.is_file().then_some(path)
+    }
+}
+
+fn is_image_name(path: &Path) -> bool {
+    let suffix = path.extension().unwrap_or_default().to_ascii_lowercase();
+    IMAGES.iter().any(|&image| suffix == image)
+}
+
+/// Returns the last part of an absolute name of any system, as of `/a/b.png` and `C:\a\b.png`;
+/// `None` of a relative name, or of several names in a row.
+pub(super) fn bare_name(name: &str) -> Option<&str> {
+    let mut words = name.split_ascii_whitespace();
+    let is_one = words.next().is_some_and(is_absolute) && !words.any(is_absolute);
+    let bare = name.rsplit(['/', '\\']).next()?;
+    (is_one && !matches!(bare, "" | "." | "..")).then_some(bare)
+}
+
+fn is_absolute(name: &str) -> bool {
+    let is_separator = |byte: &u8| matches!(byte, b'/' | b'\\');
+    match name.as_bytes() {
+        [drive, b':', separator, ..] if drive.is_ascii_alphabetic() => is_separator(separator),
+        [first, ..] => is_separator(first),
+        [] => false,
     }
 }
 
@@ -126,6 +176,35 @@ mod tests {
         for name in ["gone.png", "maps", "", "/etc/hostname"] {
             assert_eq!(beside.read(name), None, "{name}");
         }
+    }
+
+    #[test]
+    fn absolute_names_lead_to_files_beside() {
+        let folder = tempdir().unwrap();
+        fs::write(folder.path().join("Wood grain.png"), "a").unwrap();
+        fs::write(folder.path().join("a.bin"), "b").unwrap();
+        let mut beside = Beside::of(&folder.path().join("a.gltf"), Format::Gltf);
+        let names =
+            ["C:\\my maps\\wood grain.png", "/home/x/Wood grain.png", "\\\\s\\Wood grain.png"];
+        for name in names {
+            assert_eq!(beside.read(name).unwrap(), b"a", "{name}");
+        }
+        for name in ["C:\\a.bin", "/x/a.bin", "C:\\gone.png", "/", "C:\\.."] {
+            assert_eq!(beside.read(name), None, "{name}");
+        }
+        assert_eq!(beside.read("a.bin").unwrap(), b"b");
+        let note = beside.note();
+        assert_eq!(note.count, 3);
+        assert_eq!(note.names[1], "Wood grain.png for C:\\my maps\\wood grain.png");
+    }
+
+    #[test]
+    fn several_names_in_a_row_are_not_one() {
+        for name in ["/a.mtl /b.mtl", "C:/a.mtl D:\\b.mtl", "a.mtl /b.mtl", "maps/a.mtl", "C:a.mtl"]
+        {
+            assert_eq!(bare_name(name), None, "{name}");
+        }
+        assert_eq!(bare_name("c:/my maps/a.mtl"), Some("a.mtl"));
     }
 
     #[test]

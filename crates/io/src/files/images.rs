@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::beside::Beside;
+use super::beside::{Beside, bare_name};
 use super::inner_path;
 use crate::staged::StagedFiles;
 use crate::{Format, Image, IoError, Unsupported};
@@ -50,7 +50,8 @@ pub(super) fn use_own_names(path: &Path, images: &mut [Image]) {
         if inner.is_none() && is_beside(path, image) {
             continue;
         }
-        let bare = || Path::new(&image.name).file_name().map(PathBuf::from);
+        let last = || Path::new(&image.name).file_name().map(PathBuf::from);
+        let bare = || bare_name(&image.name).map(PathBuf::from).or_else(last);
         let Some(file) = inner.clone().or_else(bare) else { continue };
         let is_free = |name: &PathBuf| match taken.get(name) {
             Some(&other) => images[other].bytes == image.bytes,

@@ -81,9 +81,10 @@ pub(super) fn decompress(json: &mut Value, buffers: &mut Buffers) -> Result<Note
 fn decoded(count: usize) -> Note {
     Note::changed(
         count,
-        "primitive decompressed from Draco, which is not written (compress makes a small file)",
-        "primitives decompressed from Draco, which is not written (compress makes a small file)",
+        "primitive decompressed from Draco, which is not written",
+        "primitives decompressed from Draco, which is not written",
     )
+    .remedied("compress makes a small file")
 }
 
 /// Takes the extension out of all primitives that have it.

@@ -69,7 +69,8 @@ impl Skipped {
                 "smoothing group that is no number",
                 "smoothing groups that are no numbers",
             )
-            .named(self.smoothing),
+            .named(self.smoothing)
+            .remedied("write `s` with a number, or `s off`"),
             note(self.groups.len(), "name of a group", "names of groups").named(self.groups),
             note(self.depths, "third texture coordinate", "third texture coordinates"),
             note(self.weights, "weight of a vertex", "weights of vertices"),

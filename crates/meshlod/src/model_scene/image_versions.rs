@@ -1,6 +1,6 @@
 //! Smaller versions of an image, for the parts of a file that come early.
 
-use meshlod_picture::{Picture, Texture};
+use meshlod_picture::{Averaging, Picture, Texture};
 
 /// A version of an image.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -29,16 +29,22 @@ pub(super) fn whole(bytes: &[u8]) -> Vec<ImageVersion> {
 /// Returns the versions of an image, from the smallest to the image itself; none of an image without
 /// bytes. Texels are averaged in linear light if the image has colours.
 ///
-/// Cost: decoding the image, and encoding about a third of its texels.
+/// Cost: decoding the image, and encoding about a third of its texels, of 2^24 at most.
 pub(super) fn versions(bytes: &[u8], is_color: bool) -> Vec<ImageVersion> {
     let mut versions = whole(bytes);
     let Some(whole) = versions.first_mut() else { return versions };
-    let Ok(texture) = Texture::decode(bytes) else { return versions };
+    let averaging = if is_color { Averaging::Light } else { Averaging::Values };
+    let Ok(texture) = Texture::decode_averaged(bytes, averaging) else { return versions };
     let levels: Vec<_> = texture.levels().collect();
-    whole.side = levels[0].0.max(levels[0].1);
-    let mut means = Halved { size: [levels[0].0, levels[0].1], texels: levels[0].2.to_vec() };
-    for &(width, height, colors) in &levels[1..] {
-        means = means.half();
+    let (size, first) = ([levels[0].0, levels[0].1], levels[0].2);
+    whole.side = texture.image_size().into_iter().max().unwrap_or(u32::MAX);
+    let mut means = Halved { size, texels: first.to_vec() };
+    // Of an image that was made smaller to decode it, the first level is a version, too.
+    let is_whole = texture.image_size() == size;
+    for &(width, height, colors) in &levels[usize::from(is_whole)..] {
+        if [width, height] != means.size {
+            means = means.half();
+        }
         let (last, side) = (&versions[versions.len() - 1], width.max(height));
         // Such a PNG would hardly be small enough: it takes a fourth of a byte for each texel.
         if last.side <= LEAST_SIDE || width as usize * height as usize > last.bytes.len() {

@@ -122,6 +122,11 @@ impl ModelScene {
         self.head.meshes.iter().flatten().all(|mesh| mesh.is_only)
     }
 
+    /// Returns the number of meshes that the levels consist of.
+    pub fn mesh_count(&self) -> usize {
+        self.head.meshes.iter().flatten().count().max(1)
+    }
+
     /// Returns true if each mesh of the levels is where it is by itself, so that coordinates are not
     /// changed when a level is taken apart.
     pub fn is_unmoved(&self) -> bool {

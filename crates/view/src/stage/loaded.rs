@@ -159,10 +159,10 @@ fn mesh_file(path: &Path, options: &ReadOptions) -> Result<Loaded, LoadError> {
 }
 
 fn of_scene(path: &Path, scene: Scene, content: LoadedContent) -> Loaded {
-    let (materials, unread) = materials_of(&scene);
+    let (materials, images) = materials_of(&scene);
     let paint = OwnedPaint::of(&scene, materials);
-    let warning = |image: meshlod::UnreadImage| format!("image {}: {}", image.name, image.reason);
-    let warnings = unread.into_iter().map(warning).collect();
+    let warning = |image: meshlod::ImageWarning| format!("image {}: {}", image.name, image.reason);
+    let warnings = images.into_iter().map(warning).collect();
     let single_sided = single_sided_materials(&scene).into();
     let loaded = Loaded::of(path, scene.into_mesh(), paint, content);
     Loaded { warnings, single_sided, ..loaded }

@@ -121,13 +121,15 @@ impl Library {
                 "material library that was not found",
                 "material libraries that were not found",
             )
-            .named(self.missing.clone()),
+            .named(self.missing.clone())
+            .remedied("put it beside the model, or correct its mtllib line"),
             Note::left_out(
                 count,
                 "material that no library defines",
                 "materials that no library defines",
             )
-            .named(undefined),
+            .named(undefined)
+            .remedied("add a newmtl of that name to a library, or correct the usemtl line"),
             Note::left_out(
                 self.repeated.len(),
                 "further definition of a material",
