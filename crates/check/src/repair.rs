@@ -18,7 +18,7 @@ mod triangulate;
 
 use meshlod_mesh::{Mesh, weld};
 
-pub(crate) use edit::{drop_unused, face_values, retain_faces};
+pub(crate) use edit::{drop_unused, retain_faces};
 pub use holes::HoleLimits;
 pub use report::{RepairReport, RepairStep};
 pub(crate) use stitch::stitch;

@@ -40,7 +40,7 @@ pub fn check_scene(
             files::name(input)
         ));
     }
-    session.note(path, &scene.obj_limits())
+    session.note(path, &[scene.obj_limits(), vec![scene.face_scalar_limits()]].concat())
 }
 
 /// Creates the failure for a scene that does not have exactly one mesh.

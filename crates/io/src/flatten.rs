@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use glam::{DMat3, DMat4, DVec3};
-use meshlod_mesh::{Attributes, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId};
+use meshlod_mesh::{Attributes, FaceLayer, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId};
 
 use crate::Scene;
 use crate::scene::IDENTITY;
@@ -83,7 +83,7 @@ impl Scene {
         {
             flat.objects = Some(self.flat_objects(&instances));
         }
-        flat.smoothing = self.flat_smoothing(&instances);
+        flat.face_layers = self.flat_face_layers(&instances);
         flat
     }
 
@@ -180,13 +180,24 @@ impl Scene {
         Some(flat)
     }
 
-    fn flat_smoothing(&self, instances: &[MeshInstance]) -> Option<Vec<u32>> {
-        let shown = || instances.iter().map(|instance| &self.meshes[instance.mesh].mesh);
-        shown().find(|mesh| mesh.smoothing.is_some())?;
-        let none = |mesh: &Mesh| vec![0; mesh.faces.len()];
-        Some(
-            shown().flat_map(|mesh| mesh.smoothing.clone().unwrap_or_else(|| none(mesh))).collect(),
-        )
+    /// Joins the layers of faces of all instances, with zeros where a mesh lacks one.
+    fn flat_face_layers(&self, instances: &[MeshInstance]) -> Vec<FaceLayer> {
+        let mut flat: Vec<FaceLayer> = Vec::new();
+        let mut faces = 0;
+        for instance in instances {
+            let mesh = &self.meshes[instance.mesh].mesh;
+            for own in &mesh.face_layers {
+                let at = flat.iter().position(|known| known.is_like(own)).unwrap_or_else(|| {
+                    flat.push(FaceLayer { values: Vec::new(), ..own.clone() });
+                    flat.len() - 1
+                });
+                flat[at].values.resize(faces, 0.0);
+                flat[at].values.extend_from_slice(&own.values);
+            }
+            faces += mesh.faces.len();
+        }
+        flat.iter_mut().for_each(|layer| layer.values.resize(faces, 0.0));
+        flat
     }
 
     fn flat_objects(&self, instances: &[MeshInstance]) -> Labels {

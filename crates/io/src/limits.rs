@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use meshlod_mesh::{Layer, LayerKind, Mesh};
+use meshlod_mesh::{FaceLayerKind, Layer, LayerKind, Mesh};
 
 use crate::{Format, Material, MeshInstance, Note, Scene};
 
@@ -57,13 +57,23 @@ impl Scene {
         vec![
             Note::left_out(comments, "comment", "comments"),
             Note::left_out(infos, "line obj_info", "lines obj_info"),
+            self.face_scalar_limits(),
         ]
+    }
+
+    /// Counts the scalars at faces, which only PLY holds.
+    pub fn face_scalar_limits(&self) -> Note {
+        let layers = self.meshes.iter().flat_map(|mesh| &mesh.mesh.face_layers);
+        let scalars = layers.filter(|layer| layer.kind == FaceLayerKind::Other);
+        let names: BTreeSet<&str> = scalars.map(|layer| &*layer.name).collect();
+        Note::left_out(names.len(), "property of faces", "properties of faces").named(names)
     }
 
     /// Lists what formats other than OBJ lack of a scene that was read from there.
     pub fn obj_limits(&self) -> Vec<Note> {
-        let groups = self.meshes.iter().filter_map(|mesh| mesh.mesh.smoothing.as_ref());
-        let groups: BTreeSet<u32> = groups.flatten().copied().filter(|&group| group > 0).collect();
+        let groups = self.meshes.iter().filter_map(|mesh| mesh.mesh.smoothing());
+        let groups = groups.flat_map(|layer| &layer.values).map(|&group| group as u32);
+        let groups: BTreeSet<u32> = groups.filter(|&group| group > 0).collect();
         let names = groups.iter().map(u32::to_string);
         let note = Note::left_out(groups.len(), "smoothing group", "smoothing groups");
         vec![note.named(names)]

@@ -21,6 +21,7 @@ mod components;
 mod condition;
 mod connectivity;
 mod duplicates;
+mod face_layers;
 mod frame;
 mod ids;
 mod labels;
@@ -42,6 +43,7 @@ pub use condition::{
     near_borders,
 };
 pub use connectivity::{Connectivity, Marks, Side, Twin};
+pub use face_layers::{FaceLayer, FaceLayerKind};
 pub use frame::Frame;
 pub use ids::{FaceId, VertexId, WedgeId};
 pub use labels::Labels;

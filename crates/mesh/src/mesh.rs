@@ -3,7 +3,7 @@
 use glam::DVec3;
 use thiserror::Error;
 
-use crate::{Attributes, Bounds, FaceId, Labels, VertexId, WedgeId};
+use crate::{Attributes, Bounds, FaceId, FaceLayer, Labels, VertexId, WedgeId};
 
 /// Triangle mesh: vertex positions, faces, attributes, and material and object labels.
 ///
@@ -21,8 +21,8 @@ pub struct Mesh {
     pub materials: Option<Labels>,
     /// Object that each face belongs to, by name.
     pub objects: Option<Labels>,
-    /// Smoothing group of each face, 0 for none; as OBJ has them. They change no shading here.
-    pub smoothing: Option<Vec<u32>>,
+    /// Numbers of each face, such as smoothing groups and scalars that a file has at faces.
+    pub face_layers: Vec<FaceLayer>,
 }
 
 /// Reason why a triangle mesh is invalid.
@@ -150,7 +150,7 @@ impl Mesh {
         self.validate_attributes()
     }
 
-    /// Checks only attributes, materials and objects as [`Mesh::validate`] does, not positions and
+    /// Checks only attributes, labels and layers of faces as [`Mesh::validate`] does, not positions and
     /// faces.
     /// # Errors
     /// The first violation found.
@@ -158,16 +158,10 @@ impl Mesh {
         self.validate_corners()?;
         self.validate_labels("material", self.materials.as_ref())?;
         self.validate_labels("object", self.objects.as_ref())?;
-        match &self.smoothing {
-            Some(groups) => same_length("smoothing groups", groups.len(), self.faces.len()),
-            None => Ok(()),
-        }
-    }
-
-    /// Returns the smoothing groups of the faces with the indices `kept`, in that order.
-    pub fn select_smoothing(&self, kept: &[u32]) -> Option<Vec<u32>> {
-        let groups = self.smoothing.as_ref()?;
-        Some(kept.iter().map(|&face| groups[face as usize]).collect())
+        self.face_layers.iter().try_for_each(|layer| {
+            let what = format!("face layer \"{}\"", layer.name);
+            same_length(&what, layer.values.len(), self.faces.len())
+        })
     }
 
     fn validate_corners(&self) -> Result<(), MeshError> {

@@ -1,7 +1,7 @@
 use std::collections::BTreeSet;
 
 use glam::{DQuat, DVec3};
-use meshlod_mesh::{Connectivity, VertexId};
+use meshlod_mesh::{Connectivity, FaceLayer, FaceLayerKind, VertexId};
 
 use super::*;
 
@@ -50,11 +50,18 @@ fn is_closed(mesh: &Mesh) -> bool {
 
 #[test]
 fn two_blocks_become_one() {
-    let blocks = together([block([0.0; 3], [2.0; 3]), block([1.0; 3], [3.0, 4.0, 2.5])]);
+    let mut blocks = together([block([0.0; 3], [2.0; 3]), block([1.0; 3], [3.0, 4.0, 2.5])]);
+    let second = block([0.0; 3], [1.0; 3]).faces.len();
+    let values = [vec![0.5; second], vec![1.5; second]].concat();
+    let (kind, name) = (FaceLayerKind::Other, "quality".to_owned());
+    blocks.face_layers = vec![FaceLayer { kind, name, values }];
     let (fused, report) = fuse(&blocks, |_| true);
     assert_eq!(fused.validate(), Ok(()));
     assert!(is_closed(&fused));
     assert!((volume(&fused) - (8.0 + 9.0 - 1.0)).abs() < 1e-12);
+    let objects = &fused.objects.as_ref().unwrap().of_face;
+    let of_object = |(&value, &object): (&f64, &u32)| value == 0.5 + f64::from(object);
+    assert!(fused.face_layers[0].values.iter().zip(objects).all(of_object));
     let labels = fused.objects.as_ref().unwrap();
     assert_eq!(labels.names.len(), 2);
     assert!(labels.of_face.contains(&0) && labels.of_face.contains(&1));

@@ -8,7 +8,6 @@ use super::interpolate::interpolate_wedge;
 use super::points::{EndPoint, FaceInterior, IntersectionPoints, PointId, rounding};
 use super::triangulate::{FaceCuts, FaceTriangulation, triangulate};
 use crate::check::edges::lowest_first;
-use crate::repair::face_values;
 use crate::unique_positions::UniquePositions;
 
 /// A mesh being rebuilt face by face, with its faces cut at intersections.
@@ -16,8 +15,10 @@ pub struct CutMesh<'a> {
     mesh: &'a Mesh,
     unique: &'a UniquePositions,
     points: &'a IntersectionPoints,
-    /// All vertices so far; faces, corners and labels of the faces done so far.
+    /// All vertices so far; faces and corners of the faces done so far.
     done: Mesh,
+    /// Face of the original mesh that each face done so far is, or is a piece of.
+    origins: Vec<u32>,
     /// Vertex of each point on an edge, and its wedge between two wedges: faces on both sides share
     /// them.
     vertices: FxHashMap<(PointId, [VertexId; 2]), VertexId>,
@@ -101,12 +102,11 @@ impl<'a> CutMesh<'a> {
     ) -> Self {
         let mut done = mesh.clone();
         done.faces.clear();
-        face_values(&mut done).for_each(Vec::clear);
         if let Some(attributes) = &mut done.attributes {
             attributes.corners.clear();
         }
-        let (vertices, wedges, contact_edges) = Default::default();
-        Self { mesh, unique, points, done, vertices, wedges, contact_edges }
+        let (origins, vertices, wedges, contact_edges) = Default::default();
+        Self { mesh, unique, points, done, origins, vertices, wedges, contact_edges }
     }
 
     /// Adds a face of the original mesh uncut; returns 1, the number of faces added.
@@ -153,7 +153,11 @@ impl<'a> CutMesh<'a> {
 
     /// Returns the finished mesh and its edges along intersections, as vertex pairs with the lower
     /// id first.
-    pub fn finish(self) -> (Mesh, FxHashSet<[VertexId; 2]>) {
+    pub fn finish(mut self) -> (Mesh, FxHashSet<[VertexId; 2]>) {
+        for labels in self.done.materials.iter_mut().chain(&mut self.done.objects) {
+            *labels = labels.select(&self.origins);
+        }
+        self.done.face_layers = self.mesh.select_face_layers(&self.origins);
         (self.done, self.contact_edges)
     }
 
@@ -163,11 +167,7 @@ impl<'a> CutMesh<'a> {
         if let (Some(attributes), Some(wedges)) = (&mut self.done.attributes, wedges) {
             attributes.corners.push(wedges);
         }
-        let labels = self.mesh.materials.iter().chain(&self.mesh.objects);
-        let all = labels.map(|labels| &labels.of_face).chain(&self.mesh.smoothing);
-        for (values, all) in face_values(&mut self.done).zip(all) {
-            values.push(all[of.index()]);
-        }
+        self.origins.push(of.0);
     }
 
     fn add_on_edge(&mut self, cut_face: &mut CutFace, edge: usize, id: PointId) {

@@ -24,11 +24,9 @@ pub fn repair(mesh: &mut Mesh) -> usize {
             count += 1;
         }
     }
-    if mesh.smoothing.as_ref().is_some_and(|groups| groups.len() != faces) {
-        mesh.smoothing = None;
-        count += 1;
-    }
-    count + own_wedges(mesh)
+    let layers = mesh.face_layers.len();
+    mesh.face_layers.retain(|layer| layer.values.len() == faces);
+    count + layers - mesh.face_layers.len() + own_wedges(mesh)
 }
 
 fn corners_fit(attributes: &Attributes, faces: usize) -> bool {

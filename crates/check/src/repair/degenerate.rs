@@ -4,7 +4,7 @@ use glam::DVec3;
 use meshlod_mesh::{Connectivity, FaceId, LayerKind, Mesh, Side, Twin, VertexId, WedgeId};
 use rustc_hash::FxHashSet;
 
-use super::edit::{face_values, retain_faces};
+use super::edit::{copy_face_values, retain_faces};
 use crate::imprint::interpolate::normalize;
 use crate::zero_area::has_zero_area;
 
@@ -129,9 +129,7 @@ impl Flip {
                 attributes.corners[face.index()][end] = wedge;
             }
         }
-        for values in face_values(mesh) {
-            values[self.face.index()] = values[self.neighbour.index()];
-        }
+        copy_face_values(mesh, self.neighbour, self.face);
     }
 
     /// Returns the wedge of the middle corner in the neighbour's halves: its own or, if the edge is

@@ -1,10 +1,10 @@
 //! Edits of a mesh together with its attributes and labels.
 
-use meshlod_mesh::{Mesh, VertexId, WedgeId};
+use meshlod_mesh::{FaceId, Mesh, VertexId, WedgeId};
 use rustc_hash::FxHashMap;
 
-/// Removes the faces for which `keeps` is false, with their corners and labels; returns their
-/// number.
+/// Removes the faces for which `keeps` is false, with their corners, labels and
+/// numbers; returns how many they were.
 pub fn retain_faces(mesh: &mut Mesh, keeps: impl Fn(usize) -> bool) -> usize {
     let before = mesh.faces.len();
     if (0..before).all(&keeps) {
@@ -14,9 +14,8 @@ pub fn retain_faces(mesh: &mut Mesh, keeps: impl Fn(usize) -> bool) -> usize {
     if let Some(attributes) = &mut mesh.attributes {
         retain(&mut attributes.corners, &keeps);
     }
-    for values in face_values(mesh) {
-        retain(values, &keeps);
-    }
+    label_arrays(mesh).for_each(|labels| retain(labels, &keeps));
+    mesh.face_layers.iter_mut().for_each(|layer| retain(&mut layer.values, &keeps));
     before - mesh.faces.len()
 }
 
@@ -28,11 +27,22 @@ fn retain<T>(items: &mut Vec<T>, keeps: impl Fn(usize) -> bool) {
     });
 }
 
-/// Iterates over what the faces of a mesh have one number of each: labels of their material and
-/// object, and smoothing groups.
-pub fn face_values(mesh: &mut Mesh) -> impl Iterator<Item = &mut Vec<u32>> {
-    let labels = mesh.materials.iter_mut().chain(&mut mesh.objects);
-    labels.map(|labels| &mut labels.of_face).chain(&mut mesh.smoothing)
+fn label_arrays(mesh: &mut Mesh) -> impl Iterator<Item = &mut Vec<u32>> {
+    mesh.materials.iter_mut().chain(&mut mesh.objects).map(|labels| &mut labels.of_face)
+}
+
+/// Appends the labels and the numbers of a face once more, for a new face that comes from it.
+pub fn repeat_face_values(mesh: &mut Mesh, face: FaceId) {
+    let face = face.index();
+    label_arrays(mesh).for_each(|labels| labels.push(labels[face]));
+    mesh.face_layers.iter_mut().for_each(|layer| layer.values.push(layer.values[face]));
+}
+
+/// Gives a face the labels and the numbers of another.
+pub fn copy_face_values(mesh: &mut Mesh, from: FaceId, to: FaceId) {
+    let (from, to) = (from.index(), to.index());
+    label_arrays(mesh).for_each(|labels| labels[to] = labels[from]);
+    mesh.face_layers.iter_mut().for_each(|layer| layer.values[to] = layer.values[from]);
 }
 
 /// Copies wedges that several vertices use, so that each vertex has its own; returns the number of

@@ -3,7 +3,7 @@
 use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId, WedgeId, face_components};
 use rustc_hash::FxHashSet;
 
-use super::edit::{face_values, retain_faces};
+use super::edit::{repeat_face_values, retain_faces};
 use super::intersecting::intersecting;
 use super::triangulate::{HoleOutline, triangles_weighed, triangulate};
 use crate::check::boundary::{Boundary, BoundaryPolyline};
@@ -251,9 +251,7 @@ impl Hole {
             if let (Some(attributes), Some(wedges)) = (&mut mesh.attributes, &self.wedges) {
                 attributes.corners.push(indices.map(|i| wedges[i]));
             }
-            for values in face_values(mesh) {
-                values.push(values[self.face.index()]);
-            }
+            repeat_face_values(mesh, self.face);
         }
     }
 }

@@ -3,7 +3,10 @@
 use std::collections::BTreeSet;
 
 use meshlod_fixtures::{cube, fan, grid, hourglass, mesh, moebius, seam_strip, tetrahedron};
-use meshlod_mesh::{Attributes, Connectivity, FaceId, Labels, Layer, LayerKind, VertexId, WedgeId};
+use meshlod_mesh::{
+    Attributes, Connectivity, FaceId, FaceLayer, FaceLayerKind, Labels, Layer, LayerKind, VertexId,
+    WedgeId,
+};
 use meshlod_samples as samples;
 use proptest::prelude::*;
 
@@ -476,7 +479,24 @@ fn soup() -> impl Strategy<Value = Mesh> {
     })
 }
 
+/// Gives each face its number, as a layer and as its material.
+fn numbered(mesh: &Mesh) -> Mesh {
+    let faces = 0..mesh.faces.len() as u32;
+    let names = faces.clone().map(|face| face.to_string()).collect();
+    let materials = Some(Labels { names, of_face: faces.clone().collect() });
+    let (kind, name) = (FaceLayerKind::Other, "number".to_owned());
+    let layer = FaceLayer { kind, name, values: faces.map(f64::from).collect() };
+    Mesh { materials, face_layers: vec![layer], ..mesh.clone() }
+}
+
 proptest! {
+    #[test]
+    fn numbers_of_faces_stay_with_their_faces(soup in soup()) {
+        let (mended, _) = repair(&numbered(&soup), &holes(20));
+        let expected = mended.materials.unwrap().of_face.into_iter().map(f64::from);
+        prop_assert_eq!(&mended.face_layers[0].values, &expected.collect::<Vec<_>>());
+    }
+
     #[test]
     fn a_repaired_soup_has_no_errors_and_stays(soup in soup()) {
         let (mended, report) = repaired(&soup);

@@ -114,6 +114,65 @@ fn labels_are_never_averaged() {
     }
 }
 
+/// Gives each face of `in.ply` two numbers: the first is its own, the second a tenth of it.
+fn numbered(run: &Run) {
+    labelled(run);
+    let text = std::fs::read_to_string(run.path("in.ply")).unwrap();
+    let (vertices, faces) = text.split_at(text.find("\n3 0 1 ").unwrap() + 1);
+    let scalars = "vertex_indices\nproperty ushort number\nproperty double quality\n";
+    let mut text = vertices.replace("vertex_indices\n", scalars);
+    for (i, face) in faces.lines().enumerate() {
+        text += &format!("{face} {i} {}\n", i as f64 / 10.0);
+    }
+    std::fs::write(run.path("in.ply"), text).unwrap();
+}
+
+#[test]
+fn scalars_of_faces_stay_with_their_faces_or_are_named() {
+    let run = Run::new();
+    numbered(&run);
+    for (arguments, part) in [
+        ("convert in.ply out.ply", 1.0),
+        ("simplify in.ply out.ply --ratio 10%", 0.1),
+        ("simplify in.ply out.ply --ratio 10% --method wu", 0.1),
+        ("simplify in.ply out.ply --error 1%", 1.0),
+        ("repair in.ply out.ply", 1.0),
+    ] {
+        let arguments: Vec<&str> = arguments.split(' ').collect();
+        let done = run.run(&[&arguments[..], &["--strict"]].concat());
+        assert!(done.code == 0 && done.err.is_empty(), "{arguments:?}: {done:?}");
+        let path = run.path("out.ply");
+        let header = String::from_utf8_lossy(&std::fs::read(&path).unwrap()[..600]).into_owned();
+        assert!(header.contains("property ushort number\nproperty double quality\n"), "{header}");
+        let mesh = meshlod::read(&path, &meshlod::ReadOptions::default()).unwrap().into_mesh();
+        let [numbers, quality] = &mesh.face_layers[..] else { panic!("{:?}", mesh.face_layers) };
+        assert!(mesh.faces.len() as f64 <= 800.0 * part * 1.1, "{}", mesh.faces.len());
+        // Faces keep their order, so that the numbers show that none came twice.
+        assert!(numbers.values.windows(2).all(|pair| pair[0] < pair[1]), "{arguments:?}");
+        assert!(numbers.values.iter().all(|&number| number < 800.0), "{arguments:?}");
+        assert!(arguments[0] == "simplify" || mesh.faces.len() == 800, "{arguments:?}");
+        let tenths: Vec<f64> = numbers.values.iter().map(|number| number / 10.0).collect();
+        assert_eq!(quality.values, tenths, "{arguments:?}");
+    }
+    let first = "left out: 1 comment, 1 line obj_info, 2 properties of faces (number, quality)";
+    for (arguments, reason) in [
+        ("convert in.ply a.obj", first),
+        ("simplify in.ply a.glb --ratio 10%", first),
+        ("build in.ply a.mlod", first),
+        ("compress in.ply a.mlz", first),
+        ("compress in.ply a.glb", first),
+        (
+            "simplify in.ply a.ply --ratio 10% --sequence a.pm",
+            "left out: 2 properties of faces (number, quality)",
+        ),
+    ] {
+        let arguments: Vec<&str> = arguments.split(' ').collect();
+        let done = run.run(&[&arguments[..], &["--strict"]].concat());
+        assert!(done.code == 1 && done.err.contains(reason), "{arguments:?}: {done:?}");
+        assert!(!run.files().iter().any(|file| file.starts_with("a.")), "{arguments:?}");
+    }
+}
+
 #[test]
 fn remarks_of_ply_come_back_or_are_named() {
     let run = Run::new();

@@ -321,7 +321,7 @@ impl<'a> ObjReader<'a> {
             attributes,
             materials,
             objects,
-            smoothing,
+            face_layers: smoothing.into_iter().collect(),
             ..Mesh::new(self.positions, self.faces)
         };
         let mut notes = self.skipped.notes(self.has_object);

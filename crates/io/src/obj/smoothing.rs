@@ -1,5 +1,7 @@
 //! Smoothing groups of an OBJ file, each valid until the next `s`.
 
+use meshlod_mesh::{FaceLayer, FaceLayerKind};
+
 /// Smoothing groups by runs of consecutive faces.
 #[derive(Default)]
 pub(super) struct SmoothingRuns {
@@ -26,20 +28,21 @@ impl SmoothingRuns {
         number.map(drop).ok_or(group)
     }
 
-    /// Returns the group of each face; `None` if no face has one.
-    pub(super) fn finish(mut self, faces: usize) -> Option<Vec<u32>> {
+    /// Returns the groups of the faces; `None` if no face has one.
+    pub(super) fn finish(mut self, faces: usize) -> Option<FaceLayer> {
         self.runs.retain(|&(start, _)| start < faces);
         if self.runs.iter().all(|&(_, group)| group == 0) {
             return None;
         }
         let mut of_face = Vec::with_capacity(faces);
-        let mut group = 0;
+        let mut group = 0.0;
         for (start, next) in self.runs {
             of_face.resize(start, group);
-            group = next;
+            group = f64::from(next);
         }
         of_face.resize(faces, group);
-        Some(of_face)
+        let (kind, name) = (FaceLayerKind::Smoothing, "smoothing groups".to_owned());
+        Some(FaceLayer { kind, name, values: of_face })
     }
 }
 
@@ -47,18 +50,18 @@ impl SmoothingRuns {
 mod tests {
     use super::*;
 
-    fn groups(sets: &[(usize, &str)], faces: usize) -> Option<Vec<u32>> {
+    fn groups(sets: &[(usize, &str)], faces: usize) -> Option<Vec<f64>> {
         let mut runs = SmoothingRuns::default();
         for &(face, group) in sets {
             let _ = runs.set(face, group.to_owned());
         }
-        runs.finish(faces)
+        runs.finish(faces).map(|layer| layer.values)
     }
 
     #[test]
     fn a_group_holds_until_the_next() {
         let sets = [(0, "9"), (0, "off"), (1, "4"), (3, "4"), (4, "OFF"), (5, "2"), (6, "7")];
-        assert_eq!(groups(&sets, 6), Some(vec![0, 4, 4, 4, 0, 2]));
+        assert_eq!(groups(&sets, 6), Some(vec![0.0, 4.0, 4.0, 4.0, 0.0, 2.0]));
     }
 
     #[test]
@@ -74,6 +77,6 @@ mod tests {
         for group in ["on", "-1", "4294967296"] {
             assert_eq!(runs.set(1, group.into()), Err(group.into()));
         }
-        assert_eq!(runs.finish(2), Some(vec![1, 0]));
+        assert_eq!(runs.finish(2).unwrap().values, [1.0, 0.0]);
     }
 }

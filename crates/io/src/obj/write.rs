@@ -146,7 +146,7 @@ impl FaceChanges<'_> {
         for change in &mut self.labels {
             change.write(face, lines)?;
         }
-        let group = mesh.smoothing.as_ref().map_or(0, |groups| groups[face]);
+        let group = mesh.smoothing().map_or(0, |groups| groups.values[face] as u32);
         if group != self.smoothing {
             self.smoothing = group;
             lines.word("s");
@@ -249,7 +249,9 @@ mod tests {
             f 1 2 3\ns 4294967295\nf 1 2 4\nf 1 3 4\ns off\nf 2 3 4\n";
         let scene = read(text.as_bytes(), &mut |_| None).unwrap();
         assert!(scene.notes.is_empty());
-        assert_eq!(scene.meshes[0].mesh.smoothing, Some(vec![0, u32::MAX, u32::MAX, 0]));
+        let most = f64::from(u32::MAX);
+        let groups = &scene.meshes[0].mesh.smoothing().unwrap().values;
+        assert_eq!(*groups, [0.0, most, most, 0.0]);
         assert_eq!(written(&scene, Precision::F32, None), text);
     }
 

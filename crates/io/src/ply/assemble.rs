@@ -2,7 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use meshlod_mesh::{Attributes, Buckets, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId};
+use meshlod_mesh::{
+    Attributes, Buckets, FaceLayer, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId,
+};
 
 use super::extras::PlyExtras;
 use super::face_values::FaceValues;
@@ -30,17 +32,19 @@ const MOST_FACE_COLORS: usize = 256;
 pub(super) fn scene(header: Header, body: Body, resolve: Resolve<'_>) -> Scene {
     let Body { vertices, faces, mut values, bytes_left } = body;
     let mut notes = notes(&header, &vertices, &values, bytes_left);
-    let mut types = vertices.types;
+    let mut types: BTreeMap<String, Scalar> = vertices.types.into_iter().collect();
     if let Some(kind) = values.color_kind.filter(|&kind| kind != Scalar::U8) {
         types.extend(["red", "green", "blue", "alpha"].map(|c| (format!("face {c}"), kind)));
     }
+    let face_layers = face_layers(&mut values, faces.len(), &mut types, &mut notes);
     let objects = objects(&mut values, &mut types);
     let has_split_seams = values.uvs.is_empty() && values.colors.is_empty();
     let (materials, images) = materials(&header.textures, resolve);
     let (labels, of_label) = textures(&values, &materials, &mut notes);
     let (positions, layers) = (vertices.positions, vertices.layers);
     let attributes = attributes(positions.len(), &faces, layers, values, &mut notes);
-    let mesh = Mesh { attributes, materials: labels, objects, ..Mesh::new(positions, faces) };
+    let bare = Mesh::new(positions, faces);
+    let mesh = Mesh { attributes, materials: labels, objects, face_layers, ..bare };
     Scene {
         meshes: vec![SceneMesh { name: String::new(), mesh, materials: of_label }],
         nodes: vec![Node { mesh: Some(0), ..Node::default() }],
@@ -74,8 +78,8 @@ fn notes(
             .named(skipped().map(|element| super::header::shown(&element.name))),
         Note::left_out(
             properties.len(),
-            "property of vertices or faces",
-            "properties of vertices and faces",
+            "list of vertices or faces",
+            "lists of vertices and faces",
         )
         .named(properties.iter().map(|name| super::header::shown(name))),
         Note::left_out(
@@ -95,8 +99,31 @@ fn notes(
     notes
 }
 
+/// Makes the scalars of faces layers of the triangles.
+fn face_layers(
+    values: &mut FaceValues,
+    triangles: usize,
+    types: &mut BTreeMap<String, Scalar>,
+    notes: &mut Vec<Note>,
+) -> Vec<FaceLayer> {
+    let scalars = std::mem::take(&mut values.scalars);
+    let own: Vec<(String, Scalar)> =
+        scalars.types().iter().map(|(name, &kind)| ((*name).to_owned(), kind)).collect();
+    let Some(layers) = scalars.into_layers(triangles) else {
+        let (one, many) = (
+            "property of faces whose polygons have too many corners",
+            "properties of faces whose polygons have too many corners",
+        );
+        let names = own.iter().map(|(name, _)| super::header::shown(name));
+        notes.push(Note::left_out(own.len(), one, many).named(names));
+        return Vec::new();
+    };
+    types.extend(own.into_iter().map(|(name, kind)| (format!("face {name}"), kind)));
+    layers
+}
+
 /// Makes the labels of faces objects, named as in `label 3`.
-fn objects(values: &mut FaceValues, types: &mut Vec<(String, Scalar)>) -> Option<Labels> {
+fn objects(values: &mut FaceValues, types: &mut BTreeMap<String, Scalar>) -> Option<Labels> {
     let (name, kind) = values.label_property.take()?;
     if values.labels.is_empty() {
         return None;
@@ -105,7 +132,7 @@ fn objects(values: &mut FaceValues, types: &mut Vec<(String, Scalar)>) -> Option
     let number: BTreeMap<i64, u32> = distinct.iter().copied().zip(0..).collect();
     let names = distinct.iter().map(|label| format!("{name} {label}")).collect();
     let of_face = values.labels.iter().map(|label| number[label]).collect();
-    types.push((format!("face {name}"), kind));
+    types.insert(format!("face {name}"), kind);
     Some(Labels { names, of_face })
 }
 

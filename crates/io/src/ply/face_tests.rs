@@ -146,7 +146,7 @@ fn many_face_colours_are_averaged_and_that_is_noted() {
 
 #[test]
 fn what_is_skipped_is_noted() {
-    let text = square("vendor 1\n", "property float quality\n", ["0.5", "nan"]);
+    let text = square("vendor 1\n", "property list int int ring\n", ["1 5", "0"]);
     let text = text
         .replace("element face", "element edge 0\nelement camera 1\nproperty int id\nelement face");
     let text = text.replace("0 1 0\n3", "0 1 0\n5\n3");
@@ -155,7 +155,7 @@ fn what_is_skipped_is_noted() {
         [
             "1 unknown line of the header (vendor)",
             "1 row of an unknown element (camera)",
-            "1 property of vertices or faces (quality)"
+            "1 list of vertices or faces (ring)"
         ]
     );
     let text = square("", TEXCOORD, ["4 0 0 1 0", "6 nan 0 1 1 0 1"]);

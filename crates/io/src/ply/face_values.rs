@@ -1,6 +1,8 @@
-//! Values of PLY faces beyond their vertices: texture coordinates, textures, colours and labels.
+//! Values of PLY faces beyond their vertices: texture coordinates, textures, colours, labels and
+//! scalars.
 
 use super::body::{BodyReader, Row};
+use super::face_scalars::FaceScalars;
 use super::header::{Element, Property, Shape};
 use super::layers::greatest;
 use super::scalar::Scalar;
@@ -37,6 +39,8 @@ enum Role {
     /// Component of the colour, and the divisor of its numbers.
     Color(usize, f64),
     Label,
+    /// Scalar of no other use, with its column.
+    Scalar(usize),
     /// Not kept.
     Other,
 }
@@ -54,6 +58,11 @@ pub(super) struct FaceRow {
 #[derive(Debug, Default)]
 pub(super) struct FaceValues {
     roles: Vec<Role>,
+    /// Distinct uses of which [`FaceRow`] has the values; however many the properties are, these
+    /// are few.
+    of_row: Vec<Role>,
+    pub scalars: FaceScalars,
+    has_scalars: bool,
     /// Texture coordinates of the three corners.
     pub uvs: Vec<[[f32; 2]; 3]>,
     /// Texture number; -1 for none.
@@ -70,7 +79,7 @@ pub(super) struct FaceValues {
     pub skipped: Vec<String>,
     /// Faces whose list of texture coordinates does not match their vertices.
     pub bad_lists: usize,
-    /// Texture coordinates and colours that are not finite, read as 0.
+    /// Texture coordinates, colours and scalars that are not finite, read as 0.
     pub not_finite: usize,
 }
 
@@ -112,8 +121,24 @@ impl FaceValues {
             self.roles[at] = Role::Label;
             self.label_property.get_or_insert((properties[at].name.clone(), kind));
         }
-        let skipped = (0..properties.len()).filter(|&i| i != list && self.roles[i] == Role::Other);
-        self.skipped.extend(skipped.map(|i| properties[i].name.clone()));
+        let has_use = |role: &&Role| !matches!(role, Role::Other | Role::Color(1.., _));
+        self.of_row = self.roles.iter().filter(has_use).copied().collect();
+        self.begin_scalars(properties, list);
+    }
+
+    /// Makes all scalars without a use columns; lists without one are not kept.
+    fn begin_scalars(&mut self, properties: &[Property], list: usize) {
+        self.has_scalars = false;
+        for (i, Property { name, shape }) in properties.iter().enumerate() {
+            match *shape {
+                _ if i == list || self.roles[i] != Role::Other => {}
+                Shape::One(kind) => {
+                    self.roles[i] = Role::Scalar(self.scalars.add_column(name, kind));
+                    self.has_scalars = true;
+                }
+                Shape::List { .. } => self.skipped.push(name.clone()),
+            }
+        }
     }
 
     /// Reads the property at index `at` of a row.
@@ -137,6 +162,11 @@ impl FaceValues {
                 into.color[i] = self.finite(body.number(kind, row)? / unit);
             }
             (Role::Label, Shape::One(kind)) => into.label = body.number(kind, row)?,
+            (Role::Scalar(column), Shape::One(kind)) => {
+                let value = body.number(kind, row)?;
+                self.not_finite += usize::from(!value.is_finite());
+                self.scalars.push(column, if value.is_finite() { value } else { 0.0 });
+            }
             _ => body.skip_property(shape, row)?,
         }
         Ok(())
@@ -153,7 +183,7 @@ impl FaceValues {
 
     /// Counts a face of `corners` corners whose texture coordinates do not match them.
     pub fn check_row(&mut self, row: &mut FaceRow, corners: usize) {
-        if self.roles.contains(&Role::Uvs) && row.uvs.len() != 2 * corners {
+        if self.of_row.contains(&Role::Uvs) && row.uvs.len() != 2 * corners {
             row.uvs.clear();
             self.bad_lists += 1;
         }
@@ -161,7 +191,7 @@ impl FaceValues {
 
     /// Appends the values of a triangle between these corners of the face; it is triangle `index`.
     pub fn push(&mut self, index: usize, row: &FaceRow, corners: [u32; 3]) {
-        for role in &self.roles {
+        for role in &self.of_row {
             match role {
                 Role::Uvs => {
                     self.uvs.resize(index, Default::default());
@@ -184,8 +214,15 @@ impl FaceValues {
                     self.labels.resize(index, 0);
                     self.labels.push(row.label as i64);
                 }
-                Role::Color(..) | Role::Other => {}
+                Role::Color(..) | Role::Scalar(_) | Role::Other => {}
             }
+        }
+    }
+
+    /// Ends a face, whose triangles are those from `first` to `end`.
+    pub fn end_row(&mut self, first: usize, end: usize) {
+        if self.has_scalars {
+            self.scalars.end_row(first, end);
         }
     }
 

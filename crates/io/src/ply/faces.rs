@@ -64,7 +64,13 @@ impl Faces {
             }
             body.end_row(row)?;
             self.values.check_row(&mut self.row, self.list.len());
-            if is_strip { self.add_strips() } else { self.add_polygon(positions) }
+            let before = self.triangles.len();
+            if is_strip {
+                self.add_strips()
+            } else {
+                self.add_polygon(positions)
+            }
+            self.values.end_row(before, self.triangles.len());
         }
         self.values.finish(self.triangles.len());
         Ok(())

@@ -192,9 +192,14 @@ fn layer_names(layer: &Layer, used: &HashSet<String>) -> Vec<String> {
     if known.len() == layer.width && known.iter().all(|name| !used.contains(name)) {
         return known;
     }
-    let mut base = one_word(&layer.name);
+    free_name(&layer.name, layer.width, used)
+}
+
+/// Chooses names for `width` components that are not yet used, as near to `name` as they can be.
+pub(super) fn free_name(name: &str, width: usize, used: &HashSet<String>) -> Vec<String> {
+    let mut base = one_word(name);
     loop {
-        let names: Vec<_> = match layer.width {
+        let names: Vec<_> = match width {
             1 => vec![base.clone()],
             width => (0..width).map(|i| format!("{base}_{i}")).collect(),
         };

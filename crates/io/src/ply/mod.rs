@@ -23,6 +23,7 @@
 //! | `texnumber`, with lines `comment TextureFile` | materials, one for each texture |
 //! | `red green blue`, with `alpha` if present | colour 0, unless vertices have colours |
 //! | an integer `label`, `segment`, `class`, `object_id` and the like | objects, as `label 3` |
+//! | any other scalar | a layer of faces of its name |
 //!
 //! Face colours keep their borders if there are at most 256; more of them are averaged at vertices.
 //! Comments, lines `obj_info` and the types of properties are kept for [`write_scene`]. Written
@@ -37,6 +38,8 @@ mod binary_body;
 mod body;
 mod bulk;
 mod extras;
+mod face_encoder;
+mod face_scalars;
 #[cfg(test)]
 mod face_tests;
 mod face_values;

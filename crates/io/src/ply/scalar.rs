@@ -43,6 +43,16 @@ impl Scalar {
         }
     }
 
+    /// Reports whether a value of this type may be exactly `value`.
+    pub fn holds(self, value: f64) -> bool {
+        match self.whole_range() {
+            Some((least, most)) => {
+                value.fract() == 0.0 && (least as f64..=most as f64).contains(&value)
+            }
+            None => self == Self::F64 || f64::from(value as f32) == value,
+        }
+    }
+
     /// Returns the size of a value of this type in binary PLY, in bytes.
     pub fn size(self) -> usize {
         match self {

@@ -5,6 +5,7 @@ use std::io::{Error, ErrorKind, Result, Write};
 use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, WedgeId};
 
 use super::extras::PlyExtras;
+use super::face_encoder::FaceEncoder;
 use super::layers;
 use super::plan::{Plan, is_color};
 use super::scalar::Scalar;
@@ -171,7 +172,7 @@ fn header(
 }
 
 /// Encoder for the values of a layer.
-struct LayerEncoder<'a> {
+pub(super) struct LayerEncoder<'a> {
     layer: &'a Layer,
     /// Name, type and factor of each component.
     components: Vec<(String, Scalar, f64)>,
@@ -179,7 +180,7 @@ struct LayerEncoder<'a> {
 
 impl<'a> LayerEncoder<'a> {
     /// Chooses the types, by the names that properties had in the file, with `prefix` before them.
-    fn new(layer: &'a Layer, names: Vec<String>, extras: &PlyExtras, prefix: &str) -> Self {
+    pub fn new(layer: &'a Layer, names: Vec<String>, extras: &PlyExtras, prefix: &str) -> Self {
         let component = |name: String| {
             let known = |usual| extras.kind(&format!("{prefix}{name}"), usual);
             let (kind, unit) = match layer.kind {
@@ -196,71 +197,16 @@ impl<'a> LayerEncoder<'a> {
         Self { layer, components: names.into_iter().map(component).collect() }
     }
 
-    fn properties(&self) -> impl Iterator<Item = String> {
+    pub fn properties(&self) -> impl Iterator<Item = String> {
         self.components.iter().map(|(name, kind, _)| format!("property {} {name}", kind.name()))
     }
 
     /// Appends the values of a wedge, or zeros.
-    fn append(&self, wedge: Option<WedgeId>, block: &mut Vec<u8>) {
+    pub fn append(&self, wedge: Option<WedgeId>, block: &mut Vec<u8>) {
         for (i, &(_, kind, unit)) in self.components.iter().enumerate() {
             let value = wedge.map_or(0.0, |wedge| f64::from(self.layer.of(wedge)[i]));
             let is_fraction = unit != 1.0;
             kind.append(if is_fraction { value.clamp(0.0, 1.0) * unit } else { value }, block);
-        }
-    }
-}
-
-/// Encoder for what follows the vertices of a face.
-struct FaceEncoder<'a> {
-    plan: &'a Plan<'a>,
-    corners: &'a [[WedgeId; 3]],
-    uvs: Option<&'a Layer>,
-    colors: Option<LayerEncoder<'a>>,
-}
-
-impl<'a> FaceEncoder<'a> {
-    fn new(plan: &'a Plan<'a>, extras: &PlyExtras) -> Self {
-        let Some(attributes) = &plan.mesh.attributes else {
-            return Self { plan, corners: &[], uvs: None, colors: None };
-        };
-        let colors = plan.colors.map(|i| {
-            let layer = &attributes.layers[i];
-            let names = ["red", "green", "blue", "alpha"].map(str::to_owned);
-            let names = names.into_iter().take(layer.width).collect();
-            LayerEncoder::new(layer, names, extras, "face ")
-        });
-        let uvs = plan.uvs.map(|i| &attributes.layers[i]);
-        Self { plan, corners: &attributes.corners, uvs, colors }
-    }
-
-    fn properties(&self) -> Vec<String> {
-        let mut lines = Vec::new();
-        if self.uvs.is_some() {
-            lines.push("property list uchar float texcoord".to_owned());
-        }
-        if self.plan.texture_of_face.is_some() {
-            lines.push("property int texnumber".to_owned());
-        }
-        lines.extend(self.colors.iter().flat_map(LayerEncoder::properties));
-        let labels = self.plan.labels.iter();
-        lines.extend(labels.map(|l| format!("property {} {}", l.kind.name(), l.property)));
-        lines
-    }
-
-    fn append(&self, face: usize, block: &mut Vec<u8>) {
-        if let Some(uvs) = self.uvs {
-            block.push(6);
-            let values = self.corners[face].iter().flat_map(|&wedge| uvs.of(wedge));
-            values.for_each(|x| block.extend_from_slice(&x.to_le_bytes()));
-        }
-        if let Some(textures) = &self.plan.texture_of_face {
-            block.extend_from_slice(&textures[face].to_le_bytes());
-        }
-        if let Some(colors) = &self.colors {
-            colors.append(Some(self.corners[face][0]), block);
-        }
-        if let (Some(labels), Some(objects)) = (&self.plan.labels, &self.plan.mesh.objects) {
-            labels.kind.append(labels.numbers[objects.of(face) as usize] as f64, block);
         }
     }
 }

@@ -133,9 +133,9 @@ fn without(mesh: Mesh, faces: &[u32]) -> Mesh {
     let mut out = faces.iter().peekable();
     let kept: Vec<u32> =
         (0..mesh.faces.len() as u32).filter(|f| out.next_if_eq(&f).is_none()).collect();
-    let smoothing = mesh.select_smoothing(&kept);
+    let face_layers = mesh.select_face_layers(&kept);
     Mesh {
-        smoothing,
+        face_layers,
         faces: kept.iter().map(|&f| mesh.faces[f as usize]).collect(),
         attributes: mesh.attributes.map(|attributes| {
             let corners = kept.iter().map(|&f| attributes.corners[f as usize]).collect();

@@ -40,7 +40,7 @@ pub(crate) fn level(
     let kept: Vec<u32> = faces.iter().map(|&(face, _)| face).collect();
     level.attributes = model.attributes(kept.iter().map(|&i| (i, of_input(i as usize))));
     level.materials = mesh.materials.as_ref().map(|labels| labels.select(&kept));
-    level.smoothing = mesh.select_smoothing(&kept);
+    level.face_layers = mesh.select_face_layers(&kept);
     level.objects = mesh.objects.as_ref().map(|labels| labels.select(&kept));
     (level, ids)
 }
@@ -64,7 +64,7 @@ pub(crate) fn workspace(
         attributes: model.all_attributes(faces),
         materials: mesh.materials.clone(),
         objects: mesh.objects.clone(),
-        smoothing: mesh.smoothing.clone(),
+        face_layers: mesh.face_layers.clone(),
     }
 }
 

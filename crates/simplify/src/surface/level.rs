@@ -18,7 +18,7 @@ pub(crate) fn level(mesh: &Mesh, surface: &Surface) -> Mesh {
         attributes: attributes.map(|wedges| wedges.select(&kept)),
         materials: mesh.materials.as_ref().map(|labels| labels.select(&kept)),
         objects: mesh.objects.as_ref().map(|labels| labels.select(&kept)),
-        smoothing: mesh.select_smoothing(&kept),
+        face_layers: mesh.select_face_layers(&kept),
     };
     level.compact();
     level

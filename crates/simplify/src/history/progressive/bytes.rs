@@ -133,7 +133,7 @@ impl Progressive {
             materials: input.labels(faces)?,
             objects: input.labels(faces)?,
             // A stored sequence has none.
-            smoothing: None,
+            face_layers: Vec::new(),
         };
         let splits = input.splits(splits, mesh.attributes.as_ref())?;
         if input.at != bytes.len() {

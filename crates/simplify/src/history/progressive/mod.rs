@@ -155,7 +155,7 @@ impl Progressive {
             attributes,
             materials: self.mesh.materials.as_ref().map(|labels| labels.select(&kept)),
             objects: self.mesh.objects.as_ref().map(|labels| labels.select(&kept)),
-            smoothing: self.mesh.select_smoothing(&kept),
+            face_layers: self.mesh.select_face_layers(&kept),
         };
         level.compact();
         level
@@ -250,7 +250,7 @@ fn workspace(mesh: &Mesh, surface: &Surface) -> Mesh {
         attributes: wedges.map(|wedges| wedges.select(&all)),
         materials: mesh.materials.clone(),
         objects: mesh.objects.clone(),
-        smoothing: mesh.smoothing.clone(),
+        face_layers: mesh.face_layers.clone(),
     }
 }
 
