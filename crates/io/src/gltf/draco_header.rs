@@ -1,4 +1,4 @@
-//! StreamCounts at the front of a Draco stream, checked before anything is decoded.
+//! Counts at the front of a Draco stream, checked before anything is decoded.
 //!
 //! The decoder sizes tables by these counts, some of which no byte of the stream stands for: a
 //! stream of 100 bytes can name millions of faces and 255 tables of their corners.

@@ -35,7 +35,7 @@ pub struct Storage {
     ///
     /// The values of a vertex that stands for several may be off by some further steps of the
     /// rounding: one, and a quarter of the difference between the two vertices that it is split
-    /// into, but at most six for normals and tangents and seven for uvs and colours.
+    /// into, but at most six for normals and tangents, seven for colours and one for uvs.
     pub attributes: AttributeBounds,
 }
 
