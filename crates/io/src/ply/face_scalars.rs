@@ -9,7 +9,7 @@ use super::scalar::Scalar;
 /// Scalars of all rows so far. The triangles of a polygon share a row until all is read.
 #[derive(Debug, Default)]
 pub(super) struct FaceScalars {
-    columns: Vec<Column>,
+    columns: Vec<FaceColumn>,
     /// First triangle of each row, and the one after its last. Elements without scalars have no
     /// rows here.
     rows: Vec<[u32; 2]>,
@@ -17,7 +17,7 @@ pub(super) struct FaceScalars {
 
 /// Values of one property of an element.
 #[derive(Debug)]
-struct Column {
+struct FaceColumn {
     name: String,
     kind: Scalar,
     /// Row of the first value.
@@ -37,7 +37,7 @@ impl FaceScalars {
     /// Adds a column of the element that is about to be read; returns its index.
     pub fn add_column(&mut self, name: &str, kind: Scalar) -> usize {
         let (name, first_row) = (name.to_owned(), self.rows.len());
-        self.columns.push(Column { name, kind, first_row, values: Vec::new() });
+        self.columns.push(FaceColumn { name, kind, first_row, values: Vec::new() });
         self.columns.len() - 1
     }
 
@@ -70,7 +70,7 @@ impl FaceScalars {
             return None;
         }
         let used = self.columns.into_iter().filter(|column| !column.values.is_empty());
-        for Column { name, first_row, values, .. } in used {
+        for FaceColumn { name, first_row, values, .. } in used {
             let at = *layer_of.entry(name).or_insert_with_key(|name| {
                 let (kind, name) = (FaceLayerKind::Other, name.clone());
                 layers.push(FaceLayer { kind, name, values: vec![0.0; triangles] });
