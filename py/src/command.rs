@@ -2,8 +2,8 @@
 
 use pyo3::prelude::*;
 
-/// Runs the command `meshlod` with these arguments, the first of which is the name of the program, and
-/// returns its exit code. Ctrl-C ends the process.
+/// Runs the command `meshlod` with these arguments, the first of which is the name of the program,
+/// and returns its exit code. Ctrl-C ends the process.
 #[pyfunction]
 pub fn run_command(py: Python<'_>, arguments: Vec<std::ffi::OsString>) -> u8 {
     py.detach(|| {

@@ -50,7 +50,8 @@ fn compressed(path: &Path) -> PyResult<Scene> {
         .map_err(|error| raised(format_args!("{}: {error}", path.display())))
 }
 
-fn texts(notes: &[Note]) -> Vec<String> {
+/// Returns notes in words, those on nothing left out.
+pub fn texts(notes: &[Note]) -> Vec<String> {
     let notes = notes.iter().filter(|note| note.count > 0);
     notes.map(|note| format!("{}: {note}", note.kind.word())).collect()
 }

@@ -2,7 +2,9 @@
 //!
 //! The package in `python/meshlod` calls it with arrays that are contiguous and of the right type;
 //! what is left to check is their contents. Work runs on threads of its own ([`work`]), without the
-//! GIL, while the calling thread looks after Ctrl-C and progress.
+//! GIL, while the calling thread looks after Ctrl-C and progress. Copies of whole meshes are made
+//! without the GIL too, but for arrays that come in, which others may change, and views of meshes
+//! with seams, which are made once.
 
 mod arrays;
 mod command;

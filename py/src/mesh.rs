@@ -123,7 +123,7 @@ impl NativeMesh {
 
     /// Points, faces and attributes as arrays of their own, which the caller may change.
     fn to_arrays<'py>(&self, py: Python<'py>) -> PyResult<OwnArrays<'py>> {
-        own_arrays(py, self.mesh.to_arrays())
+        own_arrays(py, py.detach(|| self.mesh.to_arrays()))
     }
 }
 
@@ -146,7 +146,8 @@ pub fn own_arrays(py: Python<'_>, arrays: MeshArrays) -> PyResult<OwnArrays<'_>>
     Ok((given(py, positions)?, given(py, faces)?, layers.collect::<PyResult<_>>()?))
 }
 
-/// Makes a mesh of arrays, and returns the vertex of each point where that is not its own.
+/// Makes a mesh of arrays; with `numbered`, returns the vertex of each point where that may be
+/// another one than its own.
 ///
 /// # Errors
 /// The array and the row that is wrong.
@@ -156,12 +157,17 @@ pub fn from_arrays<'py>(
     points: PointArray<'py>,
     faces: FaceArray<'py>,
     attributes: Vec<AttributeArray<'py>>,
+    numbered: bool,
 ) -> PyResult<(NativeMesh, Option<Bound<'py, PyArray1<u32>>>)> {
     let arrays = copied(&points, &faces, &attributes)?;
-    let vertices = (!attributes.is_empty()).then(|| arrays.vertex_of_points());
+    let is_numbered = numbered && !attributes.is_empty();
+    let (vertices, mesh) = py.detach(move || {
+        let vertices = is_numbered.then(|| arrays.vertex_of_points());
+        (vertices, Mesh::from_arrays(arrays))
+    });
     let vertices = vertices.map(|vertices| vertices.into_iter().map(|v| v.0).collect());
-    let mesh = Mesh::from_arrays(arrays).map_err(raised)?;
-    Ok((NativeMesh::new(mesh)?, vertices.map(|vertices| PyArray1::from_vec(py, vertices))))
+    let vertices = vertices.map(|vertices| PyArray1::from_vec(py, vertices));
+    Ok((NativeMesh::new(mesh.map_err(raised)?)?, vertices))
 }
 
 fn labels<'py>(py: Python<'py>, labels: &Labels) -> Option<FaceLabels<'py>> {

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::path::PathBuf;
 
 use meshlod::multires::{ErrorKind, Focus, ModelFile, Query, QueryError, Tolerance, ViewCamera};
-use meshlod::{BuildOptions, ExtractOptions, IoError, extract};
+use meshlod::{BuildOptions, ExtractOptions, ExtractReport, IoError, extract_reported};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -22,18 +22,18 @@ pub struct NativeModel {
 /// and height of the picture in pixels.
 pub type CameraArguments = ([f64; 3], [f64; 3], [f64; 3], f64, [u32; 2]);
 
-/// Writes all levels of a mesh to a `.mlod` file, and returns what the report says.
+/// Writes all levels of a mesh to a `.mlod` file.
 ///
 /// # Errors
 /// A mesh that cannot be simplified, and errors of the file system.
 #[pyfunction]
-pub fn build<'py>(
-    py: Python<'py>,
+pub fn build(
+    py: Python<'_>,
     mesh: &NativeMesh,
     path: PathBuf,
     lossless: bool,
     errors: &str,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> PyResult<()> {
     let errors = match errors {
         "estimate" => ErrorKind::Estimate,
         "measured" => ErrorKind::Measured,
@@ -45,13 +45,8 @@ pub fn build<'py>(
     };
     let options = BuildOptions { lossless, errors, ..BuildOptions::default() };
     let mesh = mesh.shared();
-    let report = run(py, None, move |_| meshlod::build(&mesh, &path, &options))?.map_err(raised)?;
-    let dict = PyDict::new(py);
-    dict.set_item("full_faces", report.full_faces)?;
-    dict.set_item("base_faces", report.base_faces)?;
-    dict.set_item("updates", report.updates)?;
-    dict.set_item("bytes", report.bytes)?;
-    Ok(dict)
+    run(py, None, move |_| meshlod::build(&mesh, &path, &options))?.map_err(raised)?;
+    Ok(())
 }
 
 #[pymethods]
@@ -66,12 +61,12 @@ impl NativeModel {
     }
 
     /// Extracts a mesh: within an error in model units or, with a camera, in pixels; of at most
-    /// `faces` faces; fine in a ball or a box alone.
+    /// `faces` faces; fine in a ball or a box alone. Returns it with its report.
     #[pyo3(signature = (error, faces, camera, sphere, corners, verify, crop))]
     #[allow(clippy::too_many_arguments)]
-    fn extract(
+    fn extract<'py>(
         &self,
-        py: Python<'_>,
+        py: Python<'py>,
         error: f64,
         faces: Option<usize>,
         camera: Option<CameraArguments>,
@@ -79,17 +74,30 @@ impl NativeModel {
         corners: Option<[[f64; 3]; 2]>,
         verify: bool,
         crop: bool,
-    ) -> PyResult<NativeMesh> {
+    ) -> PyResult<(NativeMesh, Bound<'py, PyDict>)> {
         let query = query(error, camera, sphere, corners);
         let options = ExtractOptions { max_faces: faces, verify, crop, ..Default::default() };
         query.validate().map_err(raised)?;
         let path = self.path.clone();
-        let mesh = run(py, None, move |_| {
+        let found = run(py, None, move |_| {
             let query = Query { focus: query.focus.clone(), tolerance: query.uniform_or_pixels() };
-            extract(&path, &ExtractOptions { query, ..options })
+            extract_reported(&path, &ExtractOptions { query, ..options })
         })?;
-        NativeMesh::new(mesh.map_err(raised)?)
+        let (mesh, report) = found.map_err(raised)?;
+        Ok((NativeMesh::new(mesh)?, extracted(py, &report)?))
     }
+}
+
+/// Returns the report of an extraction as a dictionary.
+fn extracted<'py>(py: Python<'py>, report: &ExtractReport) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("level_faces", report.level_faces)?;
+    dict.set_item("holds", report.verification.map(|proof| proof.holds))?;
+    dict.set_item("rounding", report.verification.map(|proof| proof.rounding))?;
+    dict.set_item("pieces", (report.pieces[0], report.pieces[1]))?;
+    dict.set_item("piece_name", report.piece_name)?;
+    dict.set_item("meets_focus", report.meets_focus)?;
+    Ok(dict)
 }
 
 /// A query that may go to another thread: its tolerance is no function.

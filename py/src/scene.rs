@@ -5,6 +5,7 @@ use std::sync::Arc;
 use meshlod::{Mesh, Scene};
 use pyo3::prelude::*;
 
+use crate::files::texts;
 use crate::mesh::NativeMesh;
 
 /// A scene that never changes.
@@ -27,17 +28,23 @@ impl NativeScene {
 impl NativeScene {
     /// Makes a scene of one mesh.
     #[staticmethod]
-    fn of(name: &str, mesh: &NativeMesh) -> Self {
-        Self::new(Scene::from_mesh(name, Mesh::clone(&mesh.shared())))
+    fn of(py: Python<'_>, name: &str, mesh: &NativeMesh) -> Self {
+        let mesh = mesh.shared();
+        Self::new(py.detach(|| Scene::from_mesh(name, Mesh::clone(&mesh))))
     }
 
     /// Name of each mesh, and the mesh in its own space.
-    fn meshes(&self) -> PyResult<Vec<(String, NativeMesh)>> {
-        let meshes = self.0.meshes.iter();
-        meshes.map(|mesh| Ok((mesh.name.clone(), NativeMesh::new(mesh.mesh.clone())?))).collect()
+    fn meshes(&self, py: Python<'_>) -> PyResult<Vec<(String, NativeMesh)>> {
+        let meshes = py.detach(|| self.0.meshes.clone());
+        meshes.into_iter().map(|mesh| Ok((mesh.name, NativeMesh::new(mesh.mesh)?))).collect()
     }
 
-    /// Placed meshes: the index of the mesh, and the matrix from its space to the world, in columns.
+    /// Number of meshes, placed or not.
+    fn mesh_count(&self) -> usize {
+        self.0.meshes.len()
+    }
+
+    /// Placed meshes: the index of the mesh, and the matrix from its space to world space, by columns.
     fn instances(&self) -> Vec<(usize, [[f64; 4]; 4])> {
         self.0.instances().iter().map(|placed| (placed.mesh, placed.transform)).collect()
     }
@@ -48,8 +55,8 @@ impl NativeScene {
     }
 
     /// Merges all placed meshes into one, in world space.
-    fn flatten(&self) -> PyResult<NativeMesh> {
-        NativeMesh::new(self.0.flatten())
+    fn flatten(&self, py: Python<'_>) -> PyResult<NativeMesh> {
+        NativeMesh::new(py.detach(|| self.0.flatten()))
     }
 
     /// Number of faces that the scene shows, counting every placed mesh.
@@ -59,16 +66,6 @@ impl NativeScene {
 
     /// Lists what a mesh lacks of the scene.
     fn beyond_mesh(&self) -> Vec<String> {
-        let scene = &self.0;
-        let of_source = |array| scene.source.as_ref().map_or(0, |source| source.count(array));
-        let placed = scene.instances().len();
-        let counts = [
-            (if placed > 1 { placed } else { 0 }, "placed meshes are merged"),
-            (scene.images.len(), "images"),
-            (of_source("skins"), "skins"),
-            (of_source("animations"), "animations"),
-        ];
-        let counts = counts.iter().filter(|(count, _)| *count > 0);
-        counts.map(|(count, what)| format!("{count} {what}")).collect()
+        texts(&self.0.mesh_limits())
     }
 }

@@ -1,5 +1,7 @@
 //! Simplification of meshes and scenes.
 
+use std::collections::BTreeSet;
+
 use meshlod::mesh::{Lock, Locks};
 use meshlod::simplify::AttributeWeights;
 use meshlod::{
@@ -68,12 +70,17 @@ impl Asked {
         Ok(Options { method, topology, lock_boundary, locks, weights, ..Options::default() })
     }
 
-    fn progress(self, faces: usize) -> PyResult<Option<Progress>> {
-        let faces = match self.target()? {
+    /// Returns the progress to report on a surface that shows so many `faces`, `stored` of them
+    /// each once: those are the ones that are counted as they go.
+    fn progress(self, faces: usize, stored: usize) -> PyResult<Option<Progress>> {
+        let gone = match self.target()? {
             Target::Error(_) => None,
-            target => Some(faces.saturating_sub(target.faces_of(faces))),
+            target => {
+                let part = target.faces_of(faces).min(faces) as f64 / faces.max(1) as f64;
+                Some((stored as f64 * (1.0 - part)).ceil() as usize)
+            }
         };
-        Ok(self.progress.map(|callback| Progress { callback, faces }))
+        Ok(self.progress.map(|callback| Progress { callback, faces: gone }))
     }
 }
 
@@ -89,7 +96,7 @@ pub fn simplify<'py>(
 ) -> PyResult<(NativeMesh, Bound<'py, PyDict>)> {
     let mesh = mesh.shared();
     let (target, options) = (asked.target()?, asked.options(mesh.positions.len())?);
-    let progress = asked.progress(mesh.faces.len())?;
+    let progress = asked.progress(mesh.faces.len(), mesh.faces.len())?;
     let (level, report) =
         run(py, progress, move |watch| simplify_observed(&mesh, target, &options, watch))?
             .map_err(raised)?;
@@ -109,8 +116,11 @@ pub fn simplify_scene<'py>(
     let scene = scene.shared();
     let vertices = scene.meshes.iter().map(|mesh| mesh.mesh.positions.len()).sum();
     let (target, options) = (asked.target()?, asked.options(vertices)?);
-    let faces = scene.instances().iter().map(|at| scene.meshes[at.mesh].mesh.faces.len()).sum();
-    let progress = asked.progress(faces)?;
+    let faces_of = |mesh: usize| scene.meshes[mesh].mesh.faces.len();
+    let instances = scene.instances();
+    let shown: BTreeSet<usize> = instances.iter().map(|at| at.mesh).collect();
+    let faces = instances.iter().map(|at| faces_of(at.mesh)).sum();
+    let progress = asked.progress(faces, shown.into_iter().map(faces_of).sum())?;
     let (level, report) = run(py, progress, move |watch| {
         let conditioned = ConditionedScene::new(&scene, &options, Borders::Stitch)
             .map_err(|error| error.to_string())?;
@@ -142,7 +152,7 @@ pub fn levels<'py>(
 ) -> PyResult<Vec<(NativeMesh, Bound<'py, PyDict>)>> {
     let mesh = mesh.shared();
     let options = asked.options(mesh.positions.len())?;
-    let progress = asked.progress(mesh.faces.len())?;
+    let progress = asked.progress(mesh.faces.len(), mesh.faces.len())?;
     let done = run(py, progress, move |watch| {
         let scene = Scene::from_mesh("", (*mesh).clone());
         let conditioned = ConditionedScene::new(&scene, &options, Borders::Stitch)

@@ -142,7 +142,7 @@ pub fn compress(
 /// Draws a mesh, and returns the pixels as RGBA bytes, or as a PNG file.
 ///
 /// # Errors
-/// A mesh without faces, a size of 0 or too large, and errors of the file system.
+/// A mesh without faces, a size of 0 or too large, and a direction without length.
 #[pyfunction]
 pub fn render<'py>(
     py: Python<'py>,
@@ -161,6 +161,13 @@ pub fn render<'py>(
     let mesh = mesh.shared();
     if mesh.faces.is_empty() {
         return Err(raised("the mesh has no faces"));
+    }
+    if let Some([x, y, z]) = direction {
+        let length = (x * x + y * y + z * z).sqrt();
+        if !(length.is_finite() && length > 0.0) {
+            let must = "direction must have a length, greater than 0 and finite";
+            return Err(raised(format_args!("{must}, not ({x}, {y}, {z})")));
+        }
     }
     let mut view = View::three_quarter(up);
     view.aspect = f64::from(size[0]) / f64::from(size[1].max(1));

@@ -1,9 +1,9 @@
 //! Work without the GIL that Ctrl-C stops and that reports its progress.
 //!
-//! The work runs on a pool of threads. The calling thread waits for it without the GIL, and wakes up
-//! now and then to let Python handle signals and to call the progress callback. If either raises, the
-//! exception is passed on at once, and the work ends at its next contraction, or else by itself: it
-//! owns all that it uses.
+//! The work runs on a pool of threads. The calling thread waits for it without the GIL, and wakes
+//! up now and then to let Python handle signals and to call the progress callback. If either
+//! raises, the exception is passed on at once, and the work ends at its next contraction, or else
+//! by itself: it owns all that it uses.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -56,7 +56,7 @@ impl Observe for Watch {
 
 impl Watch {
     /// Ends the work if it has been cancelled, by unwinding to where it was started.
-    pub fn check(&self) {
+    fn check(&self) {
         if self.0.is_cancelled.load(Ordering::Relaxed) {
             // No panic: nothing is printed.
             resume_unwind(Box::new(Cancelled));
@@ -67,7 +67,7 @@ impl Watch {
 /// Runs `work` on the pool, without the GIL, and returns its result.
 ///
 /// # Errors
-/// The exception of a signal handler or of the callback; a panic of the work, which is a defect here.
+/// The exception of a signal handler or of the callback; a panic of the work, a defect here.
 pub fn run<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<Progress>,

@@ -1,4 +1,6 @@
-"""Meshes for tests, as arrays."""
+"""Meshes for tests, as arrays and as a scene."""
+
+import json
 
 import numpy as np
 
@@ -52,3 +54,30 @@ def welded(points, faces):
     """Faces over distinct positions."""
     _, first = np.unique(points, axis=0, return_inverse=True)
     return first.reshape(-1)[faces]
+
+
+def write_gltf(folder, mesh, places):
+    """Writes a glTF file with one mesh of a red material, which nodes show at several places."""
+    points, faces = mesh[0].astype("<f4"), mesh[1].astype("<u4")
+    low, high = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+    views = [
+        {"buffer": 0, "byteLength": points.nbytes},
+        {"buffer": 0, "byteOffset": points.nbytes, "byteLength": faces.nbytes},
+    ]
+    positions = {"bufferView": 0, "componentType": 5126, "count": len(points), "type": "VEC3"}
+    indices = {"bufferView": 1, "componentType": 5125, "count": faces.size, "type": "SCALAR"}
+    part = {"attributes": {"POSITION": 0}, "indices": 1, "material": 0}
+    document = {
+        "asset": {"version": "2.0"},
+        "scene": 0,
+        "scenes": [{"nodes": list(range(places))}],
+        "nodes": [{"mesh": 0, "translation": [5 * i, 0, 0]} for i in range(places)],
+        "materials": [{"name": "red"}],
+        "meshes": [{"name": "torus", "primitives": [part]}],
+        "buffers": [{"uri": "torus.bin", "byteLength": points.nbytes + faces.nbytes}],
+        "bufferViews": views,
+        "accessors": [{**positions, "min": low, "max": high}, indices],
+    }
+    (folder / "torus.bin").write_bytes(points.tobytes() + faces.tobytes())
+    (folder / "torus.gltf").write_text(json.dumps(document))
+    return folder / "torus.gltf"

@@ -82,6 +82,14 @@ def test_arrays(points, faces, message):
         ({"target_count": 9, "locks": [True]}, "locks: a mask of 1 rows, but there are 96 points"),
         ({"target_count": 9, "locks": [0.5]}, "locks must be a mask or rows of points"),
         ({"target_count": 9, "weights": (-1, 0, 0)}, "the weight must be a number of at least 0"),
+        ({"target_count": 9, "weights": (1, 2)}, r"weights must be three numbers, not \(1, 2\)"),
+        ({"target_count": 9, "weights": "abc"}, "weights must be three numbers, not 'abc'"),
+        ({"target_count": 9, "method": 3}, "method must be a string, not 3"),
+        ({"target_count": 9, "topology": None}, "topology must be a string, not None"),
+        ({"target_count": 9, "attributes": [POINTS]}, "attributes must be a dictionary"),
+        ({"target_count": 9, "attributes": {"": POINTS}}, "a name must be a string that is not"),
+        ({"target_count": 9, "attributes": {3: POINTS}}, "a name must be a string .* not 3"),
+        ({"max_error": 10**400}, "max_error must be a number, not 1000"),
         ({"target_count": 9, "progress": 3}, "progress must be a function or True, not 3"),
         ({"target_count": 9, "lossless": True}, "lossless is not supported: use max_error=0"),
     ],
@@ -90,6 +98,47 @@ def test_options(options, message):
     with pytest.raises(meshlod.MeshlodError, match=message) as raised:
         meshlod.simplify(POINTS, FACES, **options)
     assert "\n" not in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        (lambda mesh, _: mesh.render(size=(1, 2, 3)), "size must be a width and a height"),
+        (lambda mesh, _: mesh.render(size=5), "size must be a width and a height, not 5"),
+        (lambda mesh, _: mesh.render(size=(640.0, 480)), "size must be a whole number, not 640.0"),
+        (lambda mesh, _: mesh.render(direction=(0, 0, 0)), "direction must have a length"),
+        (lambda mesh, _: mesh.render(direction=(0, np.nan, 0)), "direction must have a length"),
+        (lambda mesh, _: mesh.render(direction=(1, 0)), "direction must be three numbers"),
+        (lambda mesh, _: mesh.render(up="x"), "up must be y or z, not x"),
+        (lambda mesh, _: mesh.render(up=3), "up must be a string, not 3"),
+        (lambda mesh, to: mesh.compress(to / "a.mlz", max_error="a"), "max_error must be a number"),
+        (lambda mesh, to: mesh.compress(to / "a.mlz", bits=1), "bits must be between 2 and 24"),
+        (lambda mesh, to: mesh.build(to / "a.mlod", errors=3), "errors must be a string, not 3"),
+        (lambda mesh, _: mesh.strip(quality=None), "quality must be a string, not None"),
+        (lambda mesh, _: mesh.lods(0.5), "ratios must be numbers in a row, not 0.5"),
+        (lambda mesh, _: mesh.lods(["a"]), "ratios must be a number, not 'a'"),
+        (lambda mesh, _: mesh.repair(weld="a"), "weld must be a number, not 'a'"),
+        (lambda _, __: meshlod.Scene(3), "a Scene is made of a Mesh, not int"),
+    ],
+)
+def test_what_is_done_to_meshes(tmp_path, wrong, message):
+    with pytest.raises(meshlod.MeshlodError, match=message) as raised:
+        wrong(meshlod.Mesh(POINTS, FACES), tmp_path)
+    assert "\n" not in str(raised.value) and list(tmp_path.iterdir()) == []
+
+
+def test_cameras(tmp_path):
+    model = meshlod.Mesh(POINTS, FACES).build(tmp_path / "a.mlod")
+    at = {"eye": (0, 0, 9), "look": (0, 0, 0)}
+    for camera, message in [
+        (meshlod.Camera(**at, size=(640.0, 480)), "size must be a whole number, not 640.0"),
+        (meshlod.Camera(**at, size=(0, 480)), "size must be between 1"),
+        (meshlod.Camera(**at, fov="wide"), "fov must be a number, not 'wide'"),
+        (meshlod.Camera(eye=(1, 2), look=(0, 0, 0)), "eye must be three numbers"),
+        (at, "camera must be a Camera, not dict"),
+    ]:
+        with pytest.raises(meshlod.MeshlodError, match=message):
+            model.extract(camera=camera)
 
 
 def test_an_object_that_is_no_mesh():

@@ -8,46 +8,7 @@ import sys
 import meshlod
 import numpy as np
 import pytest
-from shapes import torus, unrolled
-
-#: A triangle in a glTF file with a material and two nodes.
-GLTF = {
-    "asset": {"version": "2.0"},
-    "scene": 0,
-    "scenes": [{"nodes": [0, 1]}],
-    "nodes": [{"mesh": 0}, {"mesh": 0, "translation": [5, 0, 0], "name": "second"}],
-    "materials": [{"name": "red"}],
-    "meshes": [
-        {
-            "name": "torus",
-            "primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}],
-        }
-    ],
-    "buffers": [{"uri": "torus.bin"}],
-}
-
-
-def write_gltf(folder):
-    points, faces = torus(24, 12)
-    points, faces = points.astype("<f4"), faces.astype("<u4")
-    low, high = points.min(axis=0).tolist(), points.max(axis=0).tolist()
-    document = {
-        **GLTF,
-        "bufferViews": [
-            {"buffer": 0, "byteLength": points.nbytes},
-            {"buffer": 0, "byteOffset": points.nbytes, "byteLength": faces.nbytes},
-        ],
-        "accessors": [
-            {"bufferView": 0, "componentType": 5126, "count": len(points), "type": "VEC3",
-             "min": low, "max": high},
-            {"bufferView": 1, "componentType": 5125, "count": faces.size, "type": "SCALAR"},
-        ],
-    }
-    document["buffers"][0]["byteLength"] = points.nbytes + faces.nbytes
-    (folder / "torus.bin").write_bytes(points.tobytes() + faces.tobytes())
-    (folder / "torus.gltf").write_text(json.dumps(document))
-    return folder / "torus.gltf"
-
+from shapes import torus, unrolled, write_gltf
 
 @pytest.mark.parametrize("suffix", ["ply", "obj", "stl", "off", "smf", "gltf", "glb"])
 def test_every_format_is_written_and_read(tmp_path, suffix):
@@ -80,7 +41,12 @@ def test_bad_files_raise(tmp_path):
     with pytest.raises(meshlod.MeshlodError, match="broken.ply"):
         meshlod.load(broken)
     with pytest.raises(meshlod.MeshlodError, match="unknown suffix"):
-        meshlod.load(tmp_path / "a.txt")
+        meshlod.load(os.fsencode(tmp_path / "a.txt"))
+    for wrong in 3, None, [missing]:
+        with pytest.raises(meshlod.MeshlodError, match="a path must be a string or path-like"):
+            meshlod.load(wrong)
+        with pytest.raises(meshlod.MeshlodError, match="a path must be a string or path-like"):
+            meshlod.Mesh(*torus()).save(wrong)
     with pytest.raises(meshlod.MeshlodError, match="open it with meshlod.Model"):
         meshlod.load(tmp_path / "a.mlod")
     with pytest.raises(meshlod.MeshlodError, match="broken.ply"):
@@ -106,9 +72,11 @@ def test_compressed_files(tmp_path, suffix):
 
 
 def test_scenes_keep_their_nodes_and_materials(tmp_path):
-    path = write_gltf(tmp_path)
-    with pytest.warns(meshlod.MeshlodWarning, match="2 placed meshes are merged"):
+    path = write_gltf(tmp_path, torus(24, 12), places=2)
+    lacks = "2 instances of meshes merged into one mesh; left out: 1 material's look"
+    with pytest.warns(meshlod.MeshlodWarning, match=lacks) as caught:
         flat = meshlod.load(path)
+    assert caught[0].filename == __file__
     assert len(flat.faces) == 2 * 576 and flat.bounds[1, 0] > 7
     assert flat.materials[0][0] == "red"
     scene = meshlod.Scene.load(path)
@@ -139,7 +107,7 @@ def test_models_have_all_levels(tmp_path):
     cropped = model.extract(focus=corners, crop=True, verify=False)
     assert 0 < len(cropped.faces) < len(mesh.faces) / 2
     for wrong in 3, (1, 2), ((1, 2), 3):
-        with pytest.raises((meshlod.MeshlodError, ValueError), match="focus|size|length|tuple"):
+        with pytest.raises(meshlod.MeshlodError, match="focus must be"):
             model.extract(focus=wrong)
     with pytest.raises(meshlod.MeshlodError, match="faces must be between 0"):
         model.extract(faces=-1)
@@ -148,6 +116,28 @@ def test_models_have_all_levels(tmp_path):
     with pytest.raises(meshlod.MeshlodError, match="errors must be"):
         mesh.build(tmp_path / "other.mlod", errors="none")
     assert not (tmp_path / "other.mlod").exists()
+
+
+def test_models_say_what_cannot_be_met(tmp_path):
+    mesh = meshlod.Mesh(*torus(120, 60))
+    path = tmp_path / "torus.mlod"
+    model = mesh.build(path)
+    # The finest level and errors above the rounding are there.
+    whole = model.extract()
+    model.extract(error=0.02)
+    with pytest.warns(meshlod.MeshlodWarning, match="an error of 1e-12 is below the rounding"):
+        found = model.extract(error=1e-12)
+    assert found.measure(mesh, samples=10_000).max > 1e-12
+    with pytest.warns(meshlod.MeshlodWarning, match="faces=1 is out of reach: the coarsest") as to:
+        assert len(model.extract(faces=1).faces) > 1
+    assert to[0].filename == __file__
+    with pytest.warns(meshlod.MeshlodWarning, match="no face intersects the focus, so all"):
+        assert len(model.extract(focus=((9, 9, 9), 0.1)).faces) > 0
+    with pytest.warns(meshlod.MeshlodWarning, match="no face intersects the focus$"):
+        assert len(model.extract(focus=((9, 9, 9), 0.1), crop=True).faces) == 0
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    with pytest.warns(meshlod.MeshlodWarning, match="truncated, and .* of its .* chunks are"):
+        assert len(model.extract().faces) < len(whole.faces)
 
 
 def command(*arguments):

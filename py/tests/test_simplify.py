@@ -150,6 +150,13 @@ def test_normals_of_whole_numbers_come_back_with_fractions():
     assert np.allclose(np.linalg.norm(found, axis=1), 1, atol=1e-3)
 
 
+def test_attributes_are_single_precision_on_the_way():
+    points, faces = torus()
+    third = np.full(len(points), 1 / 3)
+    found = meshlod.simplify(points, faces, 0.5, attributes={"third": third})[2]["third"]
+    assert found.dtype == np.float64 and (found == np.float32(1 / 3)).all()
+
+
 @pytest.mark.parametrize("method", ["qem", "spr", "pm"])
 def test_other_methods_run(method):
     _, faces, report = meshlod.simplify(*torus(24, 12), 0.5, method=method, return_report=True)

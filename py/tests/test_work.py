@@ -10,14 +10,36 @@ import threading
 import meshlod
 import numpy as np
 import pytest
-from shapes import torus
+from shapes import torus, write_gltf
+
+
+def check_rise(seen):
+    """Progress was told several times, rises all the way, and is 1 once."""
+    assert seen[-1] == 1.0 and seen == sorted(seen) and 1.0 not in seen[:-1]
+    assert len(set(seen)) > 3 and 0 <= seen[0] < 0.5 < seen[-2]
 
 
 def test_progress_rises_to_one():
     seen = []
-    meshlod.simplify(*torus(300, 100), 0.9, progress=seen.append)
-    assert seen[-1] == 1.0 and seen == sorted(seen) and 1.0 not in seen[:-1]
-    assert all(0 <= done <= 1 for done in seen)
+    # Slow enough to be looked at several times.
+    meshlod.simplify(*torus(300, 100), 0.95, method="pm", progress=seen.append)
+    check_rise(seen)
+
+
+def test_progress_of_a_scene_counts_every_mesh_once(tmp_path):
+    path = write_gltf(tmp_path, torus(300, 100), places=4)
+    scene = meshlod.Scene.load(path)
+    assert scene.face_count == 4 * 60_000
+    seen = []
+    level = scene.simplify(0.95, method="pm", progress=seen.append)
+    assert level.face_count <= 12_000
+    check_rise(seen)
+
+
+def test_with_an_error_the_end_is_all_that_is_told():
+    seen = []
+    meshlod.simplify(*torus(60, 30), max_error=0.02, progress=seen.append)
+    assert seen == [1.0]
 
 
 def test_an_exception_of_the_callback_ends_the_work():

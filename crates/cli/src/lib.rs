@@ -1,6 +1,6 @@
 //! The command `meshlod`: level of detail for triangle meshes, one verb at a time.
 //!
-//! A verb takes its arguments and the [`Session`] and returns an [`Answer`] or a [`Failure`]; only
+//! A verb takes its arguments and the `Session` and returns an `Answer` or a `Failure`; only
 //! this file prints answers and sets exit codes: 0 for success, 1 for failure, 2 for wrong usage, 3
 //! for findings. Programs and the Python package call [`run`].
 #![forbid(unsafe_code)]
@@ -93,10 +93,41 @@ pub fn end_at_signals() {
 }
 
 fn answer(verb: Verb, session: &Session) -> Result<Answer, Failure> {
-    session.start_threads()?;
-    let mut answer = verb.run(session)?;
+    let mut answer = match verb {
+        // Windows belong to the main thread.
+        Verb::View(_) => {
+            session.set_threads_of_process();
+            verb.run(session)?
+        }
+        verb => session.on_threads(|| verb.run(session))?,
+    };
     if let Value::Object(json) = &mut answer.json {
         json.insert("notes".into(), session.take_notes().into());
     }
     Ok(answer)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_run_in_a_process_has_its_own_threads() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("torus.ply");
+        for threads in ["2", "3"] {
+            let arguments = ["meshlod", "sample", "torus", path.to_str().unwrap()];
+            assert_eq!(run([&arguments[..], &["--threads", threads]].concat()), 0, "{threads}");
+        }
+        let session = |threads| {
+            let line = ["meshlod", "--threads", threads, "sample", "torus", "-"];
+            Session::new(Cli::try_parse_from(line).unwrap().global)
+        };
+        for threads in [3, 1] {
+            let found = session(&*threads.to_string())
+                .on_threads(|| Ok(rayon::current_num_threads()))
+                .unwrap_or_default();
+            assert_eq!(found, threads);
+        }
+    }
 }

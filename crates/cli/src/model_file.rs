@@ -34,9 +34,9 @@ pub fn check_output(path: &Path) -> Result<(), Failure> {
 /// Opens a multiresolution file, with a note of how far it goes if it is truncated.
 pub fn open(path: &Path, session: &Session) -> Result<ModelFile<File>, Failure> {
     let model = open_again(path, session)?;
-    let [there, all] = pieces(&model);
+    let [there, all] = model.pieces();
     if there < all {
-        let one = piece_name(&model);
+        let one = model.piece_name();
         let many = format!("{one}s");
         let goes = format!(": the file is truncated, and {there} of its {all} {many} are present");
         session.note(path, &[Note::left_out(all - there, one, &many).detailed(&goes)])?;
@@ -89,26 +89,9 @@ pub fn fit_text(fit: &Fit) -> String {
     )
 }
 
-/// Returns the numbers of chunks, or of parts of a height field, that are there and that a whole
-/// file has.
-pub fn pieces(file: &ModelFile<File>) -> [usize; 2] {
-    match file {
-        ModelFile::Contractions(archive) => [archive.complete_chunks(), archive.chunk_count()],
-        ModelFile::HeightField(_, parts) => [parts.complete, parts.all].map(|parts| parts as usize),
-    }
-}
-
-/// Returns the word for a piece of a file: a chunk, or a part of a height field.
-pub fn piece_name(file: &ModelFile<File>) -> &'static str {
-    match file {
-        ModelFile::Contractions(_) => "chunk",
-        ModelFile::HeightField(..) => "part",
-    }
-}
-
 /// Returns true unless the file is truncated.
 pub fn is_whole(file: &ModelFile<File>) -> bool {
-    let [there, all] = pieces(file);
+    let [there, all] = file.pieces();
     there == all
 }
 

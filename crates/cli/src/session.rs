@@ -15,6 +15,9 @@ use crate::failure::Failure;
 use crate::files;
 use crate::progress::Progress;
 
+/// Stack of a thread that does the work of a verb: that of a main thread.
+const STACK_BYTES: usize = 8 << 20;
+
 /// State of one run of the program.
 pub struct Session {
     pub json: bool,
@@ -45,10 +48,27 @@ impl Session {
         }
     }
 
-    pub fn start_threads(&self) -> Result<(), Failure> {
-        let Some(threads) = self.threads else { return Ok(()) };
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        pool.build_global().map_err(|error| Failure::new(format_args!("--threads: {error}")))
+    /// Does `work` on the number of threads that was asked for, however many other runs in the
+    /// process use.
+    ///
+    /// # Errors
+    /// Those of the work, and of a system that has no threads left.
+    pub fn on_threads<T: Send>(
+        &self,
+        work: impl FnOnce() -> Result<T, Failure> + Send,
+    ) -> Result<T, Failure> {
+        let Some(threads) = self.threads else { return work() };
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK_BYTES);
+        let failed = |error| Failure::new(format_args!("--threads: {error}"));
+        pool.build().map_err(failed)?.install(work)
+    }
+
+    /// Makes all threads of the process that are started later as many as was asked for. If an
+    /// earlier run has set their number, that stays.
+    pub fn set_threads_of_process(&self) {
+        if let Some(threads) = self.threads {
+            let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+        }
     }
 
     /// Prints a warning to standard error.

@@ -40,6 +40,25 @@ impl Scene {
         notes
     }
 
+    /// Lists what the [flattened](Self::flatten) scene lacks, a mesh that has the names of materials
+    /// and objects alone. Comments of PLY files are not listed.
+    pub fn mesh_limits(&self) -> Vec<Note> {
+        let plain = Material::default();
+        // A material that no library defines is grey and has no lines.
+        let has_look = |material: &&Material| match self.source {
+            Some(_) => Material { name: String::new(), ..(*material).clone() } != plain,
+            None => !material.mtl.is_empty() || material.images().next().is_some(),
+        };
+        let looks = self.materials.iter().filter(has_look);
+        let names: Vec<&str> = looks.map(|material| &*material.name).collect();
+        let images = self.images.iter().map(|image| &*image.name);
+        let mut notes = self.graph_limits();
+        notes.push(Note::left_out(names.len(), "material's look", "materials' looks").named(names));
+        notes.push(Note::left_out(self.images.len(), "texture", "textures").named(images));
+        notes.retain(|note| note.count > 0);
+        notes
+    }
+
     /// Lists what glTF lacks of a new scene whose meshes stay whole, as strips and compressed ones
     /// do: the names of their objects.
     pub fn whole_mesh_limits(&self) -> Vec<Note> {
@@ -247,6 +266,15 @@ mod tests {
         assert_eq!(limits(&scene, Format::Off), [&parts[..], &[seam]].concat());
         let layers = "2 vertex attributes (normals, texture coordinates)";
         assert_eq!(limits(&scene, Format::Stl), [&parts[..], &[layers]].concat());
+    }
+
+    #[test]
+    fn a_flattened_scene_lacks_looks_and_textures() {
+        let lacks =
+            |scene: &Scene| scene.mesh_limits().iter().map(Note::to_string).collect::<Vec<_>>();
+        assert_eq!(lacks(&obj(QUAD)), ["1 material's look (red)", "1 texture (red.tif)"]);
+        let named = obj("v 0 0 0\nv 1 0 0\nv 0 1 0\no leaf\nusemtl red\nf 1 2 3\n");
+        assert_eq!(lacks(&named), [""; 0], "names are in the mesh");
     }
 
     #[test]

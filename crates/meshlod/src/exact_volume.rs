@@ -77,10 +77,7 @@ pub fn conserve_cut_volume<S: Source>(
     file: &ModelFile<S>,
     digits: Digits,
 ) -> Result<VolumeResidual, CutVolumeError> {
-    let [there, all] = match file {
-        ModelFile::Contractions(archive) => [archive.complete_chunks(), archive.chunk_count()],
-        ModelFile::HeightField(_, parts) => [parts.complete, parts.all].map(|n| n as usize),
-    };
+    let [there, all] = file.pieces();
     if there < all {
         return Err(CutVolumeError::Truncated { there, all });
     }

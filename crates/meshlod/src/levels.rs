@@ -1,19 +1,15 @@
-//! Multiresolution files in one call: all levels of a mesh to a file, or one mesh out of it.
+//! Multiresolution files in one call: all levels of a mesh to a file.
 
 use std::borrow::Cow;
-use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use meshlod_io::{IoError, Scene, write_file};
 use meshlod_mesh::Mesh;
-use meshlod_multires::{
-    Archive, Certificate, ErrorKind, FileError, Forest, Level, ModelFile, Query, Storage,
-    StoredErrors,
-};
-use meshlod_simplify::{Digits, Method, Options, SimplifyError};
+use meshlod_multires::{Archive, Certificate, ErrorKind, FileError, Forest, Storage, StoredErrors};
+use meshlod_simplify::{Method, Options, SimplifyError};
 use thiserror::Error;
 
-use crate::{Constraints, CutVolumeError, conserve_cut_volume, extract_verified};
+use crate::{Constraints, CutVolumeError};
 
 /// Options for writing a multiresolution file with [`build`].
 #[derive(Clone, Debug, PartialEq)]
@@ -58,40 +54,6 @@ pub struct BuildReport {
     pub certificate: Certificate,
     /// Size of the file in bytes.
     pub bytes: usize,
-}
-
-/// Options for extracting a mesh from a multiresolution file with [`extract`].
-#[derive(Clone, Debug)]
-pub struct ExtractOptions<'f> {
-    /// Region to refine, and the largest error allowed there; by default the whole model, without
-    /// error. A point stands for the closest point of the finest surface.
-    pub query: Query<'f>,
-    /// Largest number of faces of the mesh. If set, the query only decides where errors matter
-    /// most.
-    pub max_faces: Option<usize>,
-    /// True to refine the mesh until it is proven to satisfy the query, like [`extract_verified`];
-    /// false to go by the errors stored in the file, which is faster and reads less. A tolerance that
-    /// is a field needs false. Of no effect if `max_faces` is set.
-    pub verify: bool,
-    /// True to leave out faces entirely outside the focus region of the query. Of a point only the
-    /// nearest faces are left.
-    pub crop: bool,
-    /// Number format in which the mesh shall have [exactly the volume](crate::conserve_cut_volume)
-    /// of the finest cut in the file; `None` to leave the vertices where the file has them. Does not
-    /// go with `crop`.
-    pub exact_volume: Option<Digits>,
-}
-
-impl Default for ExtractOptions<'static> {
-    fn default() -> Self {
-        Self {
-            query: Query::finest(),
-            max_faces: None,
-            verify: true,
-            crop: false,
-            exact_volume: None,
-        }
-    }
 }
 
 /// Reason why a multiresolution file cannot be built, or a mesh extracted from it.
@@ -186,66 +148,15 @@ fn constrained<'m>(
     Ok((Cow::Owned(mesh), options))
 }
 
-/// Extracts a mesh at one level of detail from a `.mlod` file, reading only the parts needed.
-///
-/// Unless a number of faces is asked for, the mesh is proven to satisfy the query, as
-/// [`extract_verified`] says.
-///
-/// # Errors
-/// A file that cannot be read or is damaged, an invalid query, and a volume that the mesh cannot get.
-///
-/// ```
-/// use meshlod::multires::{Focus, Query, Tolerance};
-/// use meshlod::{BuildOptions, ExtractOptions, build, extract, samples};
-/// # let folder = tempfile::tempdir()?;
-/// # let path = folder.path().join("knot.mlod");
-/// # build(&samples::knot(4_000), &path, &BuildOptions::default())?;
-///
-/// // Fine in a ball, coarse elsewhere.
-/// let focus = Focus::Sphere { center: [0.9, 0.0, 0.0], radius: 0.2 };
-/// let query = Query { focus, tolerance: Tolerance::Uniform(0.001) };
-/// let near = extract(&path, &ExtractOptions { query, ..Default::default() })?;
-/// let all = extract(&path, &ExtractOptions::default())?;
-/// assert!(2 * near.faces.len() < all.faces.len());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn extract(path: &Path, options: &ExtractOptions<'_>) -> Result<Mesh, LevelsError> {
-    let file = File::open(path).map_err(|error| IoError::system(path, error))?;
-    let unread = |source| LevelsError::File { path: path.to_owned(), source };
-    let file = ModelFile::open(file).map_err(unread)?;
-    let mut mesh = level(&file, options).map_err(unread)?.mesh();
-    if let Some(digits) = options.exact_volume {
-        let conserved = match options.crop {
-            true => Err(CutVolumeError::Cropped),
-            false => conserve_cut_volume(&mut mesh, &file, digits),
-        };
-        conserved.map_err(|source| LevelsError::Volume { path: path.to_owned(), source })?;
-    }
-    Ok(mesh)
-}
-
-fn level(file: &ModelFile<File>, options: &ExtractOptions<'_>) -> Result<Level, FileError> {
-    let ExtractOptions { query, max_faces, crop, verify, .. } = options;
-    let (query, nearest) = file.at_surface(query, *max_faces)?;
-    let level = match *max_faces {
-        None if *verify => extract_verified(file, &query)?.extract.level,
-        None => file.extract(&query)?.level,
-        Some(faces) => file.extract_at_most(faces, &query)?.level,
-    };
-    Ok(match nearest {
-        _ if !*crop => level,
-        Some(point) => level.nearest(point)?,
-        None => level.within(&query.focus)?,
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use meshlod_mesh::{Connectivity, VertexId};
-    use meshlod_multires::Focus;
+    use meshlod_multires::{Focus, Query};
     use meshlod_samples as samples;
+    use meshlod_simplify::Digits;
 
     use super::*;
+    use crate::{ExtractOptions, extract};
 
     #[test]
     fn a_lossless_file_restores_the_mesh() {

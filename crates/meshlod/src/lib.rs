@@ -227,6 +227,7 @@ mod constraints;
 mod contacts;
 mod decompressed;
 mod exact_volume;
+mod extract;
 mod fuse;
 mod levels;
 mod locks;
@@ -266,8 +267,9 @@ pub use decompressed::{decompress, decompress_bytes, decompress_model, decompres
 pub use exact_volume::{
     CutVolumeError, closed_volume, conserve_cut_volume, conserve_volumes, digits_of,
 };
+pub use extract::{ExtractOptions, ExtractReport, extract, extract_reported};
 pub use fuse::fuse_scene;
-pub use levels::{BuildOptions, BuildReport, ExtractOptions, LevelsError, build, extract};
+pub use levels::{BuildOptions, BuildReport, LevelsError, build};
 pub use locks::join_locks;
 pub use materials::{ImageWarning, materials_of, single_sided_materials};
 pub use meshlod_io::{Format, IoError, ReadOptions, Scene, WriteOptions, read, write};

@@ -70,7 +70,7 @@ def as_attributes(
         attributes.append(("uvs", "uv", _floats(uvs, "uvs", count, (2,))))
     if colors is not None:
         attributes.append(("colors", "color", _colors(colors, count)))
-    for name, values in (others or {}).items():
+    for name, values in as_named(others).items():
         if name in ("normals", "uvs", "colors"):
             raise MeshlodError(f"attributes: {name} has a parameter of its own")
         array = _array(values, name)
@@ -78,6 +78,20 @@ def as_attributes(
         if is_label and array.size and not -MOST_LABEL <= array.min() <= array.max() <= MOST_LABEL:
             raise MeshlodError(f"{name}: whole numbers must be at most {MOST_LABEL}")
         attributes.append((name, "label" if is_label else "other", _floats(array, name, count)))
+    return attributes
+
+
+def as_named(attributes: Mapping[str, ArrayLike] | None) -> Mapping[str, ArrayLike]:
+    """Returns attributes by their names, none of which is empty."""
+    if attributes is None:
+        return {}
+    if not isinstance(attributes, Mapping):
+        kind = type(attributes).__name__
+        raise MeshlodError(f"attributes must be a dictionary of names and arrays, not {kind}")
+    for name in attributes:
+        if not isinstance(name, str) or not name:
+            what = "a string that is not empty"
+            raise MeshlodError(f"attributes: a name must be {what}, not {name!r}")
     return attributes
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import operator
+import os
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -30,7 +31,7 @@ def target(
         raise MeshlodError(f"give one of target_reduction, target_count and max_error, not {what}")
     if target_count is not None:
         return "count", whole("target_count", target_count, 0, 2**53)
-    value = _number(names[0], given[names[0]])
+    value = number(names[0], given[names[0]])
     if target_reduction is not None:
         if not 0 <= value <= 1:
             raise MeshlodError(f"target_reduction must be between 0 and 1, not {value}")
@@ -56,11 +57,11 @@ def asked(
     return {
         "kind": kind,
         "value": value,
-        "method": method,
-        "topology": topology,
+        "method": word("method", method),
+        "topology": word("topology", topology),
         "lock_boundary": bool(lock_boundary),
         "locks": locked,
-        "weights": weights,
+        "weights": None if weights is None else triple("weights", weights),
         "progress": progress,
     }
 
@@ -68,16 +69,51 @@ def asked(
 def whole(name: str, value: Any, least: int, most: int) -> int:
     """Returns a whole number within limits."""
     try:
-        number = operator.index(value)
+        found = operator.index(value)
     except TypeError:
         raise MeshlodError(f"{name} must be a whole number, not {value!r}") from None
-    if isinstance(value, (bool, np.bool_)) or not least <= number <= most:
+    if isinstance(value, (bool, np.bool_)) or not least <= found <= most:
         raise MeshlodError(f"{name} must be between {least} and {most}, not {value!r}")
-    return number
+    return found
 
 
-def _number(name: str, value: Any) -> float:
+def number(name: str, value: Any) -> float:
+    """Returns a number."""
     try:
         return float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise MeshlodError(f"{name} must be a number, not {value!r}") from None
+
+
+def triple(name: str, values: Any) -> tuple[float, float, float]:
+    """Returns three numbers."""
+    try:
+        x, y, z = (float(value) for value in values)
+    except (TypeError, ValueError, OverflowError):
+        raise MeshlodError(f"{name} must be three numbers, not {values!r}") from None
+    return x, y, z
+
+
+def size_px(values: Any) -> list[int]:
+    """Returns the width and the height of a picture."""
+    try:
+        width, height = values
+    except (TypeError, ValueError):
+        raise MeshlodError(f"size must be a width and a height, not {values!r}") from None
+    return [whole("size", side, 1, 2**32 - 1) for side in (width, height)]
+
+
+def word(name: str, value: Any) -> str:
+    """Returns a string, whose meaning the native part checks."""
+    if not isinstance(value, str):
+        raise MeshlodError(f"{name} must be a string, not {value!r}")
+    return value
+
+
+def path_name(path: Any) -> str:
+    """Returns the name of a path of any kind."""
+    try:
+        return os.fsdecode(path)
+    except TypeError:
+        kind = type(path).__name__
+        raise MeshlodError(f"a path must be a string or path-like, not {kind}") from None

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
-
-from . import _native
+from . import _asked, _native
 from ._errors import MeshlodError, warn
 from ._mesh import Mesh, Path
 from ._scene import Scene
@@ -14,10 +12,10 @@ def load(path: Path) -> Mesh:
     """Reads a file as one mesh, in world space.
 
     PLY, OBJ, STL, OFF, SMF, glTF and GLB, and the compressed ``.mlz`` and ``.mlq``. A warning says
-    what the mesh lacks of a scene; :meth:`Scene.load` keeps it. Of a ``.mlod`` file,
-    :class:`Model` extracts meshes.
+    what the mesh lacks of a scene; :meth:`Scene.load` keeps it. Comments are not counted. Of a
+    ``.mlod`` file, :class:`Model` extracts meshes.
     """
-    name = os.fspath(path)
+    name = _asked.path_name(path)
     if name.lower().endswith(".mlod"):
         raise MeshlodError(f"{name}: holds all levels: open it with meshlod.Model")
     native, notes = _native.load(name)
@@ -25,7 +23,7 @@ def load(path: Path) -> Mesh:
         warn(f"{name}: {note}")
     beyond = native.beyond_mesh()
     if beyond:
-        warn(f"{name}: left out: {', '.join(beyond)}; meshlod.Scene.load keeps them")
+        warn(f"{name}: {'; '.join(beyond)}; meshlod.Scene.load keeps the whole scene")
     return Mesh._of(native.flatten())
 
 

@@ -50,7 +50,7 @@ class Mesh:
     ) -> None:
         points = as_points(vertices, "vertices")
         layers = as_attributes(len(points), normals, uvs, colors, attributes)
-        self._native, _ = _native.from_arrays(points, as_faces(faces), layers)
+        self._native, _ = _native.from_arrays(points, as_faces(faces), layers, False)
 
     @classmethod
     def _of(cls, native: _native.NativeMesh) -> Mesh:
@@ -158,7 +158,9 @@ class Mesh:
         progress: ProgressLike = None,
     ) -> list[Mesh]:
         """Returns coarser and coarser meshes, with these ratios of the faces, from one run."""
-        ratios = [float(ratio) for ratio in ratios]
+        if isinstance(ratios, str) or not hasattr(ratios, "__iter__"):
+            raise MeshlodError(f"ratios must be numbers in a row, not {ratios!r}")
+        ratios = [_asked.number("ratios", ratio) for ratio in ratios]
         if any(not 0 <= ratio <= 1 for ratio in ratios) or ratios != sorted(ratios, reverse=True):
             raise MeshlodError(f"ratios must fall, and be between 0 and 1, not {ratios}")
         if not ratios:
@@ -213,13 +215,15 @@ class Mesh:
         """
         if fill_holes is not None:
             fill_holes = _asked.whole("fill_holes", fill_holes, 0, 2**53)
+        weld = None if weld is None else _asked.number("weld", weld)
+        stitch = None if stitch is None else _asked.number("stitch", stitch)
         repaired, counts = _native.repair(self._native, weld, stitch, fill_holes)
         mesh = Mesh._of(repaired)
         return (mesh, dict(counts)) if return_report else mesh
 
     def strip(self, *, quality: str = "quick") -> NDArray[np.uint32]:
         """Returns triangle strips of the faces: rows of vertices, with 2**32 - 1 between strips."""
-        return _native.strip(self._native, quality)
+        return _native.strip(self._native, _asked.word("quality", quality))
 
     def compress(self, path: Path, *, bits: int = 11, max_error: float | None = None) -> int:
         """Writes a compressed file, ``.mlz`` or ``.mlq``, and returns its size in bytes.
@@ -227,9 +231,11 @@ class Mesh:
         ``bits`` are those of a coordinate; ``max_error`` is a mean distance in their place.
         """
         bits = _asked.whole("bits", bits, 2, 24)
-        size, reached = _native.compress(self._native, os.fspath(path), bits, max_error)
+        error = None if max_error is None else _asked.number("max_error", max_error)
+        name = _asked.path_name(path)
+        size, reached = _native.compress(self._native, name, bits, error)
         if not reached:
-            warn(f"{os.fspath(path)}: the target was not met")
+            warn(f"{name}: the target was not met")
         return size
 
     def build(self, path: Path, *, lossless: bool = False, errors: str = "measured") -> Model:
@@ -239,8 +245,9 @@ class Mesh:
         """
         from ._model import Model
 
-        _native.build(self._native, os.fspath(path), lossless, errors)
-        return Model(path)
+        name = _asked.path_name(path)
+        _native.build(self._native, name, bool(lossless), _asked.word("errors", errors))
+        return Model(name)
 
     def render(
         self,
@@ -254,14 +261,17 @@ class Mesh:
 
         ``direction`` is that in which the camera looks.
         """
-        width, height = (_asked.whole("size", side, 1, 2**32 - 1) for side in size)
-        pixels = _native.render(self._native, [width, height], wireframe, up, direction, False)
+        width, height = _asked.size_px(size)
+        toward = None if direction is None else _asked.triple("direction", direction)
+        axis, lines = _asked.word("up", up), bool(wireframe)
+        pixels = _native.render(self._native, [width, height], lines, axis, toward, False)
         return np.frombuffer(pixels, dtype=np.uint8).reshape(height, width, 4)
 
     def save(self, path: Path) -> None:
         """Writes a file in the format of its suffix, whole or not at all."""
-        for note in _native.save(_native.NativeScene.of("", self._native), os.fspath(path)):
-            warn(f"{os.fspath(path)}: {note}")
+        name = _asked.path_name(path)
+        for note in _native.save(_native.NativeScene.of("", self._native), name):
+            warn(f"{name}: {note}")
 
     def to_arrays(self) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
         """Returns vertices and faces as arrays of their own, which may be changed."""

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
+from numbers import Real
+from typing import Any
 
 from . import _native
-from ._asked import whole
-from ._errors import MeshlodError
+from ._asked import number, path_name, size_px, triple, whole
+from ._errors import MeshlodError, warn
 from ._mesh import Mesh, Path
 
 #: A ball, as its center and radius, or a box, as its least and greatest corner.
@@ -38,7 +39,7 @@ class Model:
 
     def __init__(self, path: Path) -> None:
         #: Path of the file.
-        self.path = os.fspath(path)
+        self.path = path_name(path)
         self._native = _native.NativeModel(self.path)
 
     def extract(
@@ -59,29 +60,67 @@ class Model:
         ``(least corner, greatest corner)``; ``crop`` leaves out what is outside.
 
         Unless ``faces`` is given, the error is proved; without ``verify`` it goes by the errors
-        stored in the file, which is faster.
+        stored in the file, which is faster. A :class:`MeshlodWarning` says what cannot be met:
+        an error below the rounding of a file that is not lossless, fewer faces than its coarsest
+        level has, a focus that no face intersects, and a file that was cut off. An error of 0 asks
+        for the finest level in the file, whose vertices that rounding has moved.
         """
-        if error is None:
-            error = 0.0 if camera is None else 1.0
-        if faces is not None:
-            faces = whole("faces", faces, 0, 2**53)
-        sphere, corners = None, None
-        if focus is not None:
-            try:
-                first, second = focus
-                if isinstance(second, (int, float)):
-                    sphere = ([float(x) for x in first], float(second))
-                else:
-                    corners = [[float(x) for x in first], [float(x) for x in second]]
-            except (TypeError, ValueError):
-                shapes = "(center, radius) or (least corner, greatest corner)"
-                raise MeshlodError(f"focus must be {shapes}, not {focus!r}") from None
-        seen = None
-        if camera is not None:
-            eye, look, up = ([float(x) for x in at] for at in (camera.eye, camera.look, camera.up))
-            seen = (eye, look, up, camera.fov, list(camera.size))
-        found = self._native.extract(error, faces, seen, sphere, corners, verify, crop)
+        sphere, corners = (None, None) if focus is None else _focus(focus)
+        most = None if faces is None else whole("faces", faces, 0, 2**53)
+        least = (0.0 if camera is None else 1.0) if error is None else number("error", error)
+        seen = None if camera is None else _seen(camera)
+        found, report = self._native.extract(
+            least, most, seen, sphere, corners, bool(verify), bool(crop)
+        )
+        for text in _missed(report, least, most, camera is not None):
+            warn(f"{self.path}: {text}")
+        if not report["meets_focus"] and (focus is not None or crop):
+            rest = "" if crop else ", so all are as coarse as the file has them"
+            warn(f"{self.path}: no face intersects the focus{rest}")
         return Mesh._of(found)
 
     def __repr__(self) -> str:
         return f"Model({self.path!r})"
+
+
+def _focus(focus: Any) -> tuple[tuple[list[float], float] | None, list[list[float]] | None]:
+    """Returns a ball or the corners of a box."""
+    try:
+        first, second = focus
+        if isinstance(second, Real):
+            return (list(triple("focus", first)), float(second)), None
+        return None, [list(triple("focus", first)), list(triple("focus", second))]
+    except (TypeError, ValueError):
+        shapes = "(center, radius) or (least corner, greatest corner)"
+        raise MeshlodError(f"focus must be {shapes}, not {focus!r}") from None
+
+
+def _seen(camera: Any) -> tuple[list[float], list[float], list[float], float, list[int]]:
+    """Returns a camera in numbers."""
+    if not isinstance(camera, Camera):
+        raise MeshlodError(f"camera must be a Camera, not {type(camera).__name__}")
+    at = {name: list(triple(name, getattr(camera, name))) for name in ("eye", "look", "up")}
+    return at["eye"], at["look"], at["up"], number("fov", camera.fov), size_px(camera.size)
+
+
+def _missed(
+    report: dict[str, Any], error: float, faces: int | None, is_pixels: bool
+) -> list[str]:
+    """Says what a mesh lacks of what was asked for."""
+    texts = []
+    (there, whole_file), piece = report["pieces"], report["piece_name"]
+    if there < whole_file:
+        texts.append(
+            f"the file is truncated, and {there} of its {whole_file} {piece}s are present: finer "
+            "levels are missing, and errors refer to what is there"
+        )
+    if faces is not None and report["level_faces"] > faces:
+        has = f"the coarsest level has {report['level_faces']}"
+        texts.append(f"faces={faces} is out of reach: {has}")
+    if report["holds"] is False and error > 0:
+        asked, part = (f"{error:g} pixels", "parts of it") if is_pixels else (f"{error:g}", "it")
+        texts.append(
+            f"an error of {asked} is below the rounding of the file, {report['rounding']:.3g}: "
+            f"{part} cannot be that close to the mesh; build it with lossless=True"
+        )
+    return texts

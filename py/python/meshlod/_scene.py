@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _asked, _native
-from ._errors import warn
+from ._errors import MeshlodError, warn
 from ._mesh import Mesh, Path
 from ._progress import ProgressLike, callback
 from ._reports import Report
@@ -25,7 +24,9 @@ class Scene:
     __slots__ = ("_native",)
 
     def __init__(self, mesh: Mesh, name: str = "") -> None:
-        self._native = _native.NativeScene.of(name, mesh._native)
+        if not isinstance(mesh, Mesh):
+            raise MeshlodError(f"a Scene is made of a Mesh, not {type(mesh).__name__}")
+        self._native = _native.NativeScene.of(_asked.word("name", name), mesh._native)
 
     @classmethod
     def _of(cls, native: _native.NativeScene) -> Scene:
@@ -36,9 +37,10 @@ class Scene:
     @classmethod
     def load(cls, path: Path) -> Scene:
         """Reads a file of any format."""
-        native, notes = _native.load(os.fspath(path))
+        name = _asked.path_name(path)
+        native, notes = _native.load(name)
         for note in notes:
-            warn(f"{os.fspath(path)}: {note}")
+            warn(f"{name}: {note}")
         return cls._of(native)
 
     @property
@@ -101,9 +103,10 @@ class Scene:
 
     def save(self, path: Path) -> None:
         """Writes a file in the format of its suffix, whole or not at all."""
-        for note in _native.save(self._native, os.fspath(path)):
-            warn(f"{os.fspath(path)}: {note}")
+        name = _asked.path_name(path)
+        for note in _native.save(self._native, name):
+            warn(f"{name}: {note}")
 
     def __repr__(self) -> str:
-        meshes = len(self._native.meshes())
+        meshes = self._native.mesh_count()
         return f"Scene({meshes} {'mesh' if meshes == 1 else 'meshes'}, {self.face_count} faces)"

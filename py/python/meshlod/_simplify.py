@@ -8,7 +8,7 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from . import _asked, _native
-from ._arrays import as_attributes, as_faces, as_points, as_vertices, returned
+from ._arrays import as_attributes, as_faces, as_named, as_points, as_vertices, returned
 from ._errors import MeshlodError, warn
 from ._mesh import Mesh
 from ._progress import ProgressLike, callback
@@ -51,15 +51,20 @@ def simplify(
     that come back are double precision, the faces 32-bit integers, both new arrays.
 
     ``normals``, ``uvs``, ``colors`` (0 to 1, or ``uint8``) and further ``attributes`` have a row
-    for each point. They are kept, and come third, as a dictionary with the same names: whole
-    numbers are taken from a neighbour, all others interpolated. Points at equal positions may differ in
-    them; such a seam does not tear the surface.
+    for each point. They are kept, and come third, as a dictionary with the same names. Whole
+    numbers in ``attributes`` are labels, taken from a neighbour; all others are interpolated.
+    Values pass through single precision, also where double precision is given and comes back.
+    Normals and texture coordinates given as whole numbers come back as floats. Points at equal
+    positions may differ in attributes; such a seam does not tear the surface.
 
     ``locks`` is a mask, or rows, of points that stay where they are; ``lock_boundary`` locks those
     on the boundary. ``topology="keep"`` keeps closed surfaces closed and every component.
-    ``weights`` are those of normals, uvs and colours against distances. ``progress`` is a function
-    of the part that is done, or ``True`` for a bar on a terminal. With ``return_report`` a
+    ``weights`` are those of normals, uvs and colours against distances. With ``return_report`` a
     :class:`Report` comes last.
+
+    ``progress`` is a function of the part that is done, or ``True`` for a bar on a terminal. It is
+    called with 1 at the end. Before that, how far a run with ``max_error`` goes is not known, so
+    1 is all that it hears.
 
     In place of arrays ``points`` may be a mesh of this package, trimesh, pyvista, open3d or meshio:
     then a mesh of that package comes back.
@@ -82,7 +87,7 @@ def simplify(
         faces = triangles
     lock_boundary = lock_boundary or bool(preserve_border)
     kind, value = _asked.target(target_reduction, target_count, max_error)
-    given = {"normals": normals, "uvs": uvs, "colors": colors, **(attributes or {})}
+    given = {"normals": normals, "uvs": uvs, "colors": colors, **as_named(attributes)}
     bar = callback(progress, "simplifying")
     options: dict[str, Any] = {
         "method": method,
@@ -97,7 +102,7 @@ def simplify(
         return _of_mesh(points, kind, value, locks, options, return_report)
     rows = as_points(points)
     layers = as_attributes(len(rows), normals, uvs, colors, attributes)
-    mesh, vertices = _native.from_arrays(rows, as_faces(faces), layers)
+    mesh, vertices = _native.from_arrays(rows, as_faces(faces), layers, locks is not None)
     locked: Any = None if locks is None else as_vertices(locks, len(rows))
     if locked is not None and vertices is not None:
         locked = vertices[locked]

@@ -83,7 +83,7 @@ fn prove_field(
     let model = Rtin::new(field);
     let sound = model.certify().map_err(|error| Failure::found(path, error))?;
     let [columns, rows] = field.size();
-    let [there, parts] = model_file::pieces(file);
+    let [there, parts] = file.pieces();
     let json = json!({
         "file": files::name(path),
         "model": "right-triangles",
@@ -109,8 +109,8 @@ fn prove_field(
 
 /// Describes the part of a truncated file of which nothing is proved; empty if it is whole.
 fn unproved_text(file: &ModelFile<File>) -> String {
-    let [there, all] = model_file::pieces(file);
-    let piece = model_file::piece_name(file);
+    let [there, all] = file.pieces();
+    let piece = file.piece_name();
     match all - there {
         0 => String::new(),
         missing => format!(

@@ -130,7 +130,7 @@ impl Extract {
             ),
             ModelFile::HeightField(field, _) => (field.fit().rounded, false, "bound"),
         };
-        let [there, all] = model_file::pieces(file);
+        let [there, all] = file.pieces();
         Ok(Extracted {
             whole_faces: taken.level.faces.len(),
             level: self.cut_out(taken.level, &query, nearest, session)?,

@@ -54,8 +54,13 @@ pub(super) struct BlockSpan {
     pub(super) faces: usize,
 }
 
-/// Version of files with positions and faces only, and of all others.
-const VERSIONS: [u32; 2] = [1, 2];
+/// Version of files with positions and faces only.
+const SURFACES: u32 = 1;
+/// Version of files with attributes, labels or resources.
+const WITH_LAYERS: u32 = 2;
+/// Version of files in which a layer of directions follows its neighbours. Readers of version 2 would
+/// take that mode for another one, and decode wrong directions.
+const BY_NEIGHBOURS: u32 = 3;
 /// Bytes before what the checksum of the header covers: magic bytes, version and two checksums.
 pub(super) const SUMS_END: usize = 20;
 /// Bytes of the coder's state, which every block begins with.
@@ -94,7 +99,8 @@ impl Header {
         }
         self.store_index(&mut out);
         let mut file = TransportFile::MAGIC.to_vec();
-        file.extend(VERSIONS[usize::from(self.layers.is_some())].to_le_bytes());
+        let format = self.layers.as_ref().map(|(format, _)| format);
+        file.extend(format.map_or(SURFACES, version_of).to_le_bytes());
         file.extend(crc32fast::hash(&out).to_le_bytes());
         file.extend(crc32fast::hash(rest).to_le_bytes());
         file.extend(out);
@@ -130,8 +136,13 @@ impl OpenHeader {
         let [faces, vertices, blocks] = [reader.u32()?, reader.u32()?, reader.u32()?];
         let codes = ModelCodes::restore(reader)?;
         let (mut layers, mut resources) = (None, 0);
-        if version == VERSIONS[1] {
+        if version != SURFACES {
             let (format, tables) = LayersFormat::restore(reader)?;
+            let expected = version_of(&format);
+            if version != expected {
+                let found = format!("version {version}, but its layers are of version {expected}");
+                return Err(reader.wrong(found));
+            }
             layers = (!format.is_empty()).then_some((format, tables));
             resources = usize::try_from(reader.u64()?).unwrap_or(usize::MAX);
         }
@@ -150,15 +161,19 @@ impl OpenHeader {
     }
 }
 
+/// Returns the first version that has all that layers need.
+fn version_of(format: &LayersFormat) -> u32 {
+    if format.follows_neighbours() { BY_NEIGHBOURS } else { WITH_LAYERS }
+}
+
 /// Reads the magic bytes and the version.
 pub(super) fn read_version(reader: &mut Reader) -> Result<u32, Malformed> {
     if reader.take(TransportFile::MAGIC.len())? != TransportFile::MAGIC {
         return Err(reader.wrong("not an .mlz file: the magic bytes are missing"));
     }
     let version = reader.u32()?;
-    if !VERSIONS.contains(&version) {
-        let [first, last] = VERSIONS;
-        let known = format!("this reader knows versions {first} and {last}");
+    if !(SURFACES..=BY_NEIGHBOURS).contains(&version) {
+        let known = format!("this reader knows versions {SURFACES} to {BY_NEIGHBOURS}");
         return Err(reader.wrong(format!("unknown version {version}; {known}")));
     }
     Ok(version)

@@ -259,6 +259,44 @@ fn directions_that_are_all_the_same_cost_next_to_nothing() {
 }
 
 #[test]
+fn versions_say_what_a_reader_needs() {
+    let mut mesh = samples::knot(2000);
+    let own = attributes(&mesh, smooth(&mesh), None);
+    // Beside texture coordinates, from which tangents would follow.
+    let with = |constant: Option<(LayerKind, &[f32])>| {
+        let is_kept = |layer: &&Layer| {
+            let kind = constant.map(|(kind, _)| kind);
+            layer.kind == LayerKind::Uv(0) || Some(layer.kind) == kind
+        };
+        let mut layers: Vec<Layer> = own.layers.iter().filter(is_kept).cloned().collect();
+        for layer in &mut layers {
+            if let Some((_, value)) = constant.filter(|(kind, _)| *kind == layer.kind) {
+                layer.values = value.repeat(own.wedge_count);
+            }
+        }
+        Some(Attributes { layers, ..own.clone() })
+    };
+    let all = [
+        (None, 1),
+        (with(None), 2),
+        (with(Some((LayerKind::Normal, &[0.0, 0.6, 0.8]))), 3),
+        (with(Some((LayerKind::Tangent, &[1.0, 0.0, 0.0, -1.0]))), 3),
+    ];
+    for (attributes, version) in all {
+        mesh.attributes = attributes;
+        let bytes = Transport::encode(&mesh, &options(256)).unwrap().bytes;
+        assert_eq!(bytes[8..12], u32::to_le_bytes(version));
+        assert!(TransportFile::open(&bytes).unwrap().decode().is_ok());
+        for other in [0, 1, 2, 3, 4, u32::MAX] {
+            let mut named = bytes.clone();
+            named[8..12].copy_from_slice(&other.to_le_bytes());
+            let opened = TransportFile::open(&named);
+            assert_eq!(opened.is_ok(), other == version, "{version} as {other}");
+        }
+    }
+}
+
+#[test]
 fn blocks_decoded_alone_have_the_attributes_of_the_mesh() {
     let mut mesh = samples::knot(3000);
     mesh.attributes = Some(attributes(&mesh, torn(&mesh, 2, 7), Some(3)));

@@ -79,6 +79,23 @@ impl<S: Source> ModelFile<S> {
 }
 
 impl<S: Source> ModelFile<S> {
+    /// Returns the number of chunks that are there and that a whole file has; a height field counts
+    /// its [parts](FieldParts). The first is less in a truncated file.
+    pub fn pieces(&self) -> [usize; 2] {
+        match self {
+            Self::Contractions(archive) => [archive.complete_chunks(), archive.chunk_count()],
+            Self::HeightField(_, parts) => [parts.complete, parts.all].map(|n| n as usize),
+        }
+    }
+
+    /// Returns the word for one of the [pieces](Self::pieces) of the file.
+    pub fn piece_name(&self) -> &'static str {
+        match self {
+            Self::Contractions(_) => "chunk",
+            Self::HeightField(..) => "part",
+        }
+    }
+
     /// Reads all levels that the file holds into memory, where a
     /// [`HierarchyCut`](crate::HierarchyCut) can follow queries. Of a truncated file these are the
     /// coarser ones.

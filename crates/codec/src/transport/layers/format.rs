@@ -119,6 +119,11 @@ impl LayersFormat {
         self.layers.is_empty() && self.names == [None, None]
     }
 
+    /// Returns true if a layer has the mode [`BY_NEIGHBOURS`], which only those of directions have.
+    pub(in super::super) fn follows_neighbours(&self) -> bool {
+        self.layers.iter().any(|layer| layer.mode == BY_NEIGHBOURS)
+    }
+
     /// Returns the number of values of a wedge.
     pub(in super::super) fn width(&self) -> usize {
         self.layers.iter().map(|layer| layer.coding.width).sum()
