@@ -119,15 +119,14 @@ mod tests {
             let arguments = ["meshlod", "sample", "torus", path.to_str().unwrap()];
             assert_eq!(run([&arguments[..], &["--threads", threads]].concat()), 0, "{threads}");
         }
-        let session = |threads| {
-            let line = ["meshlod", "--threads", threads, "sample", "torus", "-"];
+        let session = |threads: usize| {
+            let threads = threads.to_string();
+            let line = ["meshlod", "--threads", &threads, "sample", "torus", "-"];
             Session::new(Cli::try_parse_from(line).unwrap().global)
         };
         for threads in [3, 1] {
-            let found = session(&*threads.to_string())
-                .on_threads(|| Ok(rayon::current_num_threads()))
-                .unwrap_or_default();
-            assert_eq!(found, threads);
+            let found = session(threads).on_threads(|| Ok(rayon::current_num_threads()));
+            assert_eq!(found.unwrap_or_default(), threads);
         }
     }
 }
