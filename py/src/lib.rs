@@ -8,11 +8,13 @@
 
 mod arrays;
 mod command;
+mod cut;
 mod errors;
 mod files;
 mod mesh;
 mod model;
 mod numpy_views;
+mod query;
 mod report;
 mod scene;
 mod simplify;
@@ -26,6 +28,8 @@ use pyo3::prelude::*;
 mod _native {
     #[pymodule_export]
     use super::command::run_command;
+    #[pymodule_export]
+    use super::cut::NativeCut;
     #[pymodule_export]
     use super::errors::MeshlodError;
     #[pymodule_export]

@@ -175,7 +175,7 @@ fn labels<'py>(py: Python<'py>, labels: &Labels) -> Option<FaceLabels<'py>> {
 }
 
 /// Returns the name of an attribute in Python.
-fn name_of(kind: LayerKind, name: &str) -> String {
+pub fn name_of(kind: LayerKind, name: &str) -> String {
     match kind {
         LayerKind::Normal => "normals".into(),
         LayerKind::Uv(0) => "uvs".into(),

@@ -3,13 +3,15 @@
 use std::fs::File;
 use std::path::PathBuf;
 
-use meshlod::multires::{ErrorKind, Focus, ModelFile, Query, QueryError, Tolerance, ViewCamera};
+use meshlod::multires::{ErrorKind, FileError, ModelFile};
 use meshlod::{BuildOptions, ExtractOptions, ExtractReport, IoError, extract_reported};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::cut::NativeCut;
 use crate::errors::{raised, raised_by_file};
 use crate::mesh::NativeMesh;
+use crate::query::{CameraArguments, SentQuery};
 use crate::work::run;
 
 /// A `.mlod` file, of which every extraction reads what it needs.
@@ -17,10 +19,6 @@ use crate::work::run;
 pub struct NativeModel {
     path: PathBuf,
 }
-
-/// A camera: eye, point looked at, direction upwards, vertical field of view in radians, and width
-/// and height of the picture in pixels.
-pub type CameraArguments = ([f64; 3], [f64; 3], [f64; 3], f64, [u32; 2]);
 
 /// Writes all levels of a mesh to a `.mlod` file.
 ///
@@ -54,10 +52,9 @@ impl NativeModel {
     /// Opens a file and reads its header.
     #[new]
     fn new(path: PathBuf) -> PyResult<Self> {
-        let file = File::open(&path).map_err(|error| IoError::system(&path, error));
-        ModelFile::open(file.map_err(raised_by_file)?)
-            .map_err(|error| raised(format_args!("{}: {error}", path.display())))?;
-        Ok(Self { path })
+        let this = Self { path };
+        this.open()?;
+        Ok(this)
     }
 
     /// Extracts a mesh: within an error in model units or, with a camera, in pixels; of at most
@@ -75,16 +72,34 @@ impl NativeModel {
         verify: bool,
         crop: bool,
     ) -> PyResult<(NativeMesh, Bound<'py, PyDict>)> {
-        let query = query(error, camera, sphere, corners);
+        let query = SentQuery::new(error, camera, sphere, corners)?;
         let options = ExtractOptions { max_faces: faces, verify, crop, ..Default::default() };
-        query.validate().map_err(raised)?;
         let path = self.path.clone();
         let found = run(py, None, move |_| {
-            let query = Query { focus: query.focus.clone(), tolerance: query.uniform_or_pixels() };
-            extract_reported(&path, &ExtractOptions { query, ..options })
+            extract_reported(&path, &ExtractOptions { query: query.query(), ..options })
         })?;
         let (mesh, report) = found.map_err(raised)?;
         Ok((NativeMesh::new(mesh)?, extracted(py, &report)?))
+    }
+
+    /// Reads all levels and returns a cut of them at the coarsest, with the numbers of pieces that
+    /// are there and that a whole file has, and the word for one.
+    fn cut(&self, py: Python<'_>) -> PyResult<(NativeCut, [usize; 2], &'static str)> {
+        let file = self.open()?;
+        let (pieces, word) = (file.pieces(), file.piece_name());
+        let levels = run(py, None, move |_| file.read())?;
+        Ok((NativeCut::new(levels.map_err(|error| self.damaged(&error))?), pieces, word))
+    }
+}
+
+impl NativeModel {
+    fn open(&self) -> PyResult<ModelFile<File>> {
+        let file = File::open(&self.path).map_err(|error| IoError::system(&self.path, error));
+        ModelFile::open(file.map_err(raised_by_file)?).map_err(|error| self.damaged(&error))
+    }
+
+    fn damaged(&self, error: &FileError) -> PyErr {
+        raised(format_args!("{}: {error}", self.path.display()))
     }
 }
 
@@ -98,46 +113,4 @@ fn extracted<'py>(py: Python<'py>, report: &ExtractReport) -> PyResult<Bound<'py
     dict.set_item("piece_name", report.piece_name)?;
     dict.set_item("meets_focus", report.meets_focus)?;
     Ok(dict)
-}
-
-/// A query that may go to another thread: its tolerance is no function.
-struct SentQuery {
-    focus: Focus,
-    error: f64,
-    camera: Option<ViewCamera>,
-}
-
-impl SentQuery {
-    fn uniform_or_pixels(&self) -> Tolerance<'static> {
-        match self.camera {
-            Some(camera) => Tolerance::Pixels { camera, pixels: self.error },
-            None => Tolerance::Uniform(self.error),
-        }
-    }
-
-    fn validate(&self) -> Result<(), QueryError> {
-        Query { focus: self.focus.clone(), tolerance: self.uniform_or_pixels() }.validate()
-    }
-}
-
-fn query(
-    error: f64,
-    camera: Option<CameraArguments>,
-    sphere: Option<([f64; 3], f64)>,
-    corners: Option<[[f64; 3]; 2]>,
-) -> SentQuery {
-    let camera = camera.map(|(eye, look, up, fov_rad, viewport)| ViewCamera {
-        eye,
-        look,
-        up,
-        fov_rad,
-        viewport,
-    });
-    let focus = match (sphere, corners, camera) {
-        (Some((center, radius)), ..) => Focus::Sphere { center, radius },
-        (None, Some(corners), _) => Focus::Box(corners),
-        (None, None, Some(camera)) => Focus::Frustum(camera),
-        (None, None, None) => Focus::Everything,
-    };
-    SentQuery { focus, error, camera }
 }

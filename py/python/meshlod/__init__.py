@@ -10,10 +10,12 @@ Mesh(4 vertices, 4 faces)
 """
 
 from . import convert
+from ._cut import Cut, CutChange
 from ._errors import MeshlodError, MeshlodWarning
 from ._files import load, save
 from ._mesh import Mesh
-from ._model import Camera, Model
+from ._model import Model
+from ._query import Camera
 from ._reports import CheckReport, Distance, OneSidedDistance, Report
 from ._scene import Scene
 from ._simplify import simplify
@@ -21,6 +23,8 @@ from ._simplify import simplify
 __all__ = [
     "Camera",
     "CheckReport",
+    "Cut",
+    "CutChange",
     "Distance",
     "Mesh",
     "MeshlodError",

@@ -181,3 +181,17 @@ def _colors(colors: ArrayLike, count: int) -> NDArray[np.float32]:
     if array.dtype.kind != "f":
         raise MeshlodError(f"colors must be floats from 0 to 1, or uint8, not {array.dtype}")
     return values
+
+
+def by_name(
+    layers: list[tuple[str, NDArray[np.float32]]],
+) -> dict[str, NDArray[np.float32]]:
+    """Returns attributes by name; those with a name that is taken get a number."""
+    named: dict[str, NDArray[np.float32]] = {}
+    for known, values in layers:
+        name, number = known, 1
+        while name in named:
+            number += 1
+            name = f"{known}-{number}"
+        named[name] = values
+    return named

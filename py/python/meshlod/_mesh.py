@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _asked, _native
-from ._arrays import as_attributes, as_faces, as_points, as_vertices
+from ._arrays import as_attributes, as_faces, as_points, as_vertices, by_name
 from ._errors import MeshlodError, warn
 from ._progress import ProgressLike, callback
 from ._reports import CheckReport, Distance, OneSidedDistance, Report
@@ -71,13 +71,7 @@ class Mesh:
     @property
     def attributes(self) -> dict[str, NDArray[np.float32]]:
         """Attributes of the vertices by name, as read-only views."""
-        named: dict[str, NDArray[np.float32]] = {}
-        for name, values in self._native.attributes():
-            known, number = name, 1
-            while name in named:
-                name, number = f"{known}-{number + 1}", number + 1
-            named[name] = values
-        return named
+        return by_name(self._native.attributes())
 
     @property
     def normals(self) -> NDArray[np.float32] | None:
