@@ -7,6 +7,7 @@ use thiserror::Error;
 
 /// Reason why a cut cannot get the volume of the finest cut in its file.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum CutVolumeError {
     /// The file cannot be read.
     #[error(transparent)]

@@ -34,8 +34,7 @@ pub struct ModelArgs {
         allow_hyphen_values = true)]
     pub up: SignedAxis,
     /// Simplification method of the levels
-    #[arg(long, value_name = "NAME", default_value = Method::default().name(),
-        value_parser = parse::method, help = parse::methods())]
+    #[arg(long, value_name = "NAME", default_value = Method::default().name(), help = parse::methods())]
     pub method: Method,
 }
 
