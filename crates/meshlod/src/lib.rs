@@ -233,6 +233,11 @@
 //! - Files are written whole or not at all.
 #![forbid(unsafe_code)]
 
+/// The example of the package's page is compiled and run, too.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExample;
+
 mod bounded;
 mod conditioned;
 
