@@ -57,7 +57,8 @@ pub struct QueryTarget {
     pub error: Option<ErrorLimit>,
     /// The best mesh of at most N faces: for the camera if there is one, else from all sides. A mesh
     /// that several nodes show counts once
-    #[arg(short, long, value_name = "N", value_parser = parse::whole, allow_negative_numbers = true)]
+    #[arg(short, long, value_name = "N", value_parser = parse::whole,
+        allow_negative_numbers = true)]
     pub faces: Option<usize>,
 }
 

@@ -34,7 +34,8 @@ pub struct ModelArgs {
         allow_hyphen_values = true)]
     pub up: SignedAxis,
     /// Simplification method of the levels
-    #[arg(long, value_name = "NAME", default_value = Method::default().name(), help = parse::methods())]
+    #[arg(long, value_name = "NAME", default_value = Method::default().name(),
+        help = parse::methods())]
     pub method: Method,
 }
 

@@ -49,7 +49,8 @@ pub struct Build {
     /// Kind of model, by which the levels are made
     #[arg(long, value_name = "MODEL", default_value = "contractions")]
     model: ModelArg,
-    #[arg(long, value_name = "NAME", default_value = Method::LindstromTurk.name(), help = parse::methods())]
+    #[arg(long, value_name = "NAME", default_value = Method::LindstromTurk.name(),
+        help = parse::methods())]
     method: Method,
     /// Compute proven error bounds in place of measured errors: levels of the same error have two to
     /// three times as many faces. The errors of right triangles are bounds in any case

@@ -84,7 +84,8 @@ struct CompressTarget {
     #[arg(long, value_name = "BITS", allow_negative_numbers = true)]
     bits: Option<u32>,
     /// Mean distance between the surfaces: 0.005% of the diagonal, or 0.1 in model units
-    #[arg(short, long, value_name = "BOUND", value_parser = parse::bound, allow_hyphen_values = true)]
+    #[arg(short, long, value_name = "BOUND", value_parser = parse::bound,
+        allow_hyphen_values = true)]
     error: Option<Bound>,
     /// Reduction of positions against three f32 per vertex: 70%
     #[arg(long, value_name = "RATIO", value_parser = parse::ratio, allow_hyphen_values = true)]

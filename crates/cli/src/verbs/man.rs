@@ -36,7 +36,8 @@ impl Man {
         files::make_folder(&folder)?;
         session.progress.stage("writing manual pages");
         let mut written = Vec::new();
-        for command in std::iter::once(&command).chain(command.get_subcommands()) {
+        let verbs = command.get_subcommands().filter(|verb| verb.get_name() != "help");
+        for command in std::iter::once(&command).chain(verbs) {
             let name = command.get_display_name().unwrap_or(command.get_name());
             let path = folder.join(format!("{name}.1"));
             write_file(&path, page(command)?.as_bytes())?;

@@ -65,15 +65,18 @@ pub struct Simplify {
 #[group(required = true, multiple = false)]
 struct TargetArgs {
     /// Target number of faces
-    #[arg(short, long, value_name = "N", value_parser = parse::whole, allow_negative_numbers = true)]
+    #[arg(short, long, value_name = "N", value_parser = parse::whole,
+        allow_negative_numbers = true)]
     faces: Option<usize>,
     /// Target ratio of the faces: 10% or 0.1
-    #[arg(short, long, value_name = "RATIO", value_parser = parse::ratio, allow_hyphen_values = true)]
+    #[arg(short, long, value_name = "RATIO", value_parser = parse::ratio,
+        allow_hyphen_values = true)]
     ratio: Option<f64>,
     /// Largest distance from the input: 0.5 in model units, or 0.1% of the diagonal. It is proved
     /// for every point of both surfaces, as written, and what is farther away is mended; methods
     /// other than lindstrom-turk and qem start again with a lower bound for that
-    #[arg(short, long, value_name = "BOUND", value_parser = parse::bound, allow_hyphen_values = true)]
+    #[arg(short, long, value_name = "BOUND", value_parser = parse::bound,
+        allow_hyphen_values = true)]
     error: Option<Bound>,
 }
 
@@ -81,7 +84,8 @@ struct TargetArgs {
 #[derive(Args)]
 #[command(next_help_heading = "Method")]
 pub struct MethodArgs {
-    #[arg(long, value_name = "NAME", default_value = Method::default().name(), help = parse::methods())]
+    #[arg(long, value_name = "NAME", default_value = Method::default().name(),
+        help = parse::methods())]
     method: Method,
     #[command(flatten)]
     pub constraints: ConstraintArgs,
