@@ -46,9 +46,9 @@ impl Asked {
 
     /// Returns the options for a mesh, or a scene whose vertices are numbered mesh after mesh.
     fn options(&self, vertices: usize) -> PyResult<Options> {
-        let method = Method::by_name(&self.method).ok_or_else(|| {
-            let names = Method::ALL.map(Method::name).join(", ");
-            raised(format_args!("method must be one of {names}, not {}", self.method))
+        let method = self.method.parse::<Method>().map_err(|unknown| {
+            let names = unknown.known.join(", ");
+            raised(format_args!("method must be one of {names}, not {}", unknown.name))
         })?;
         let topology = report::topology(&self.topology).ok_or_else(|| {
             raised(format_args!("topology must be free or keep, not {}", self.topology))

@@ -58,6 +58,8 @@ impl ContactPolicy {
     }
 }
 
+meshlod_mesh::by_name!(ContactPolicy, "policies for contacts");
+
 /// Reason why a vertex is restricted during simplification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum LockReason {

@@ -5,6 +5,7 @@ use std::io::{self, ErrorKind, Write};
 use serde_json::Value;
 
 use crate::failure::Failure;
+use crate::session::Session;
 
 /// Outcome of a command that has an answer; it sets the exit code.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -42,21 +43,25 @@ pub struct Answer {
     /// True if standard output carries a mesh or a picture, so that the text goes to standard
     /// error.
     pub file_on_stdout: bool,
+    /// True if the text is the output itself, which `--quiet` leaves.
+    pub is_output: bool,
     /// Outcome, which sets the exit code.
     pub outcome: Outcome,
 }
 
 impl Answer {
     pub fn new(json: Value, text: String) -> Self {
-        Self { json, text, file_on_stdout: false, outcome: Outcome::Done }
+        Self { json, text, file_on_stdout: false, is_output: false, outcome: Outcome::Done }
     }
 
-    /// Prints the answer and returns the exit code.
+    /// Prints the answer, of `--quiet` only JSON, and returns the exit code.
     ///
     /// A closed pipe counts as success: its reader has seen enough.
-    pub fn print(&self, json: bool) -> Result<u8, Failure> {
-        let written = if json {
-            write_all(&mut io::stdout(), &format!("{:#}\n", self.json))
+    pub fn print(&self, session: &Session) -> Result<u8, Failure> {
+        let written = if session.json {
+            write_json(&self.json)
+        } else if session.quiet && !self.is_output {
+            Ok(())
         } else if self.file_on_stdout {
             write_all(&mut io::stderr(), &self.text)
         } else {
@@ -69,6 +74,15 @@ impl Answer {
             _ => Ok(self.outcome.exit_code()),
         }
     }
+}
+
+/// Prints a JSON object to standard output. If that is closed, nobody is left to tell.
+pub fn print_json(json: &Value) {
+    let _ = write_json(json);
+}
+
+fn write_json(json: &Value) -> io::Result<()> {
+    write_all(&mut io::stdout(), &format!("{json:#}\n"))
 }
 
 fn write_all(out: &mut impl Write, text: &str) -> io::Result<()> {

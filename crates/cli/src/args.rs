@@ -19,17 +19,21 @@ pub struct GlobalArgs {
     /// out of reach
     #[arg(long, global = true)]
     pub strict: bool,
+    /// Print errors only, and JSON with --json: no progress, no warnings, no summary
+    #[arg(short, long, global = true)]
+    pub quiet: bool,
     /// Number of threads [default: one per core]
-    #[arg(long, global = true, value_name = "N", value_parser = parse::threads,
+    #[arg(short = 'j', long, global = true, value_name = "N", value_parser = parse::threads,
         allow_negative_numbers = true)]
     pub threads: Option<usize>,
     /// Format of standard input and output (-), as a suffix: ply, glb, …
-    #[arg(long, global = true, value_name = "SUFFIX", value_parser = parse::format)]
+    #[arg(long, global = true, value_name = "SUFFIX")]
     pub format: Option<Format>,
 }
 
 /// Options of every verb that reads meshes.
 #[derive(Args, Default)]
+#[command(next_help_heading = "Files")]
 pub struct ReadArgs {
     /// Do not weld vertices at identical positions when reading glTF and STL
     #[arg(long, conflicts_with = "weld")]
@@ -64,10 +68,11 @@ impl ReadArgs {
 
 /// Options of every verb that writes meshes.
 #[derive(Clone, Copy, Args)]
+#[command(next_help_heading = "Files")]
 pub struct WriteArgs {
     /// Coordinate type in PLY, OBJ, OFF and SMF: f32, f64, or auto, which is f32 where that keeps
     /// vertices apart and moves none by more than a thousandth of the mean edge
-    #[arg(long, value_name = "TYPE", default_value = "auto", value_parser = parse::precision)]
+    #[arg(long, value_name = "TYPE", default_value = "auto")]
     precision: Precision,
 }
 
@@ -98,6 +103,7 @@ impl WriteArgs {
 
 /// Options for the precision of attributes.
 #[derive(Args)]
+#[command(next_help_heading = "Attributes")]
 pub struct AttributeErrorArgs {
     /// Largest error of normals and tangents, in degrees
     #[arg(long, value_name = "DEGREES", value_parser = parse::length, allow_hyphen_values = true)]
@@ -125,6 +131,7 @@ impl AttributeErrorArgs {
 
 /// Options for sampling a distance.
 #[derive(Args)]
+#[command(next_help_heading = "Distances")]
 pub struct SamplingArgs {
     /// Number of samples each way, in addition to all vertices
     #[arg(long, value_name = "N", default_value_t = 500_000, value_parser = parse::samples,
@@ -143,6 +150,7 @@ impl SamplingArgs {
 
 /// Options for the viewing direction.
 #[derive(Args)]
+#[command(next_help_heading = "Picture")]
 pub struct ViewArgs {
     /// Side to look from: front, back, left, right, top or bottom; or the viewing direction x,y,z
     /// [default: three-quarter view]

@@ -9,8 +9,8 @@ use crate::demo::Demo;
 use crate::failure::Failure;
 use crate::session::Session;
 use crate::verbs::{
-    build, check, compress, convert, decompress, extract, flock, info, lods, measure, render,
-    repair, replay, sample, simplify, strip, view,
+    build, check, completions, compress, convert, decompress, extract, flock, info, lods, man,
+    measure, render, repair, replay, sample, simplify, strip, view,
 };
 
 /// Level of detail for triangle meshes.
@@ -48,6 +48,8 @@ pub enum Verb {
     View(view::View),
     Flock(flock::Flock),
     Demo(Demo),
+    Completions(completions::Completions),
+    Man(man::Man),
 }
 
 impl Verb {
@@ -72,6 +74,8 @@ impl Verb {
             Self::View(verb) => verb.run(session),
             Self::Flock(verb) => verb.run(session),
             Self::Demo(verb) => verb.run(session),
+            Self::Completions(verb) => verb.run(),
+            Self::Man(verb) => verb.run(session),
         }
     }
 }

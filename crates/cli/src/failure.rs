@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::Path;
 
 use meshlod::IoError;
+use serde_json::{Value, json};
 
 use crate::files;
 
@@ -11,17 +12,22 @@ use crate::files;
 #[derive(Debug)]
 pub struct Failure {
     line: String,
+    /// File that the reason is about, as messages name it.
+    file: Option<String>,
+    /// Line, byte or part of the file.
+    place: Option<String>,
     exit_code: u8,
 }
 
 impl Failure {
     pub fn new(line: impl fmt::Display) -> Self {
-        Self { line: line.to_string(), exit_code: 1 }
+        Self { line: line.to_string(), file: None, place: None, exit_code: 1 }
     }
 
     /// Creates a failure that begins with a file name.
     pub fn at(path: &Path, reason: impl fmt::Display) -> Self {
-        Self::new(format_args!("{}: {reason}", files::name(path)))
+        let file = files::name(path);
+        Self { file: Some(file.clone()), ..Self::new(format_args!("{file}: {reason}")) }
     }
 
     /// Creates a usage error, for arguments that the command-line parser itself accepts.
@@ -37,6 +43,11 @@ impl Failure {
     pub fn exit_code(&self) -> u8 {
         self.exit_code
     }
+
+    /// Returns the message with the file and the place in it, where they are known.
+    pub fn to_json(&self) -> Value {
+        json!({ "message": self.to_string(), "file": self.file, "place": self.place })
+    }
 }
 
 impl fmt::Display for Failure {
@@ -48,6 +59,7 @@ impl fmt::Display for Failure {
 
 impl From<IoError> for Failure {
     fn from(error: IoError) -> Self {
-        Self::new(error)
+        let (file, place) = (Some(files::name(error.path())), error.place());
+        Self { file, place, ..Self::new(error) }
     }
 }

@@ -10,6 +10,7 @@ use crate::session::Session;
 
 /// Option to fuse objects.
 #[derive(Args)]
+#[command(next_help_heading = "Constraints")]
 pub struct FuseArgs {
     /// Fuse closed objects that intersect into one surface: cut them where they meet, remove the
     /// parts inside, join the rest. Object labels are kept, and ratios refer to the faces before

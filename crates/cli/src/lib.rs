@@ -30,6 +30,7 @@ mod parse;
 mod poses;
 mod progress;
 mod query_args;
+mod report_head;
 mod scene_files;
 mod sequence;
 mod session;
@@ -44,7 +45,7 @@ mod volume;
 use std::ffi::OsString;
 use std::process::exit;
 
-use clap::Parser;
+use clap::{CommandFactory, FromArgMatches};
 use serde_json::Value;
 
 use crate::answer::Answer;
@@ -61,24 +62,47 @@ const INTERRUPTED: i32 = 130;
 /// Output goes to the standard streams of the process. Wrong usage and `--help` print their text and
 /// are returned as exit codes, too. Signals are left alone; see [`end_at_signals`].
 pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> u8 {
-    let cli = match Cli::try_parse_from(arguments) {
-        Ok(cli) => cli,
-        Err(usage) => {
-            // If the stream is closed, nobody is left to tell.
-            let _ = usage.print();
-            return u8::try_from(usage.exit_code()).unwrap_or(2);
-        }
+    let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+    let (verb, cli) = match parse(&arguments) {
+        Ok(parsed) => parsed,
+        Err(usage) => return refuse(&usage, arguments.iter().any(|argument| argument == "--json")),
     };
     let session = Session::new(cli.global);
-    let done = answer(cli.verb, &session);
+    let done = answer(&verb, cli.verb, &session);
     session.progress.clear();
-    match done.and_then(|answer| answer.print(session.json)) {
+    match done.and_then(|answer| answer.print(&session)) {
         Ok(code) => code,
         Err(failure) => {
             session.complain(&failure);
+            if session.json {
+                answer::print_json(&report_head::of_failure(Some(&verb), &failure));
+            }
             failure.exit_code()
         }
     }
+}
+
+/// Parses the arguments, and returns the name of the verb with them.
+fn parse(arguments: &[OsString]) -> Result<(String, Cli), clap::Error> {
+    let mut command = Cli::command();
+    let matches = command.try_get_matches_from_mut(arguments)?;
+    let verb = matches.subcommand_name().unwrap_or_default().to_owned();
+    let cli = Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut command))?;
+    Ok((verb, cli))
+}
+
+/// Prints wrong usage, or the help or version that was asked for, and returns the exit code.
+fn refuse(usage: &clap::Error, json: bool) -> u8 {
+    // If the stream is closed, nobody is left to tell.
+    let _ = usage.print();
+    if json && usage.use_stderr() {
+        let text = usage.to_string();
+        let reason = text.split("\n\nUsage:").next().unwrap_or_default();
+        let words: Vec<&str> = reason.trim_start_matches("error: ").split_whitespace().collect();
+        let failure = Failure::usage(words.join(" "));
+        answer::print_json(&report_head::of_failure(None, &failure));
+    }
+    u8::try_from(usage.exit_code()).unwrap_or(2)
 }
 
 /// Makes Ctrl-C, SIGTERM and SIGHUP end the process with exit code 130, without temporary files.
@@ -92,7 +116,7 @@ pub fn end_at_signals() {
     });
 }
 
-fn answer(verb: Verb, session: &Session) -> Result<Answer, Failure> {
+fn answer(name: &str, verb: Verb, session: &Session) -> Result<Answer, Failure> {
     let mut answer = match verb {
         // Windows belong to the main thread.
         Verb::View(_) => {
@@ -104,11 +128,14 @@ fn answer(verb: Verb, session: &Session) -> Result<Answer, Failure> {
     if let Value::Object(json) = &mut answer.json {
         json.insert("notes".into(), session.take_notes().into());
     }
+    answer.json = report_head::with_head(name, answer.json);
     Ok(answer)
 }
 
 #[cfg(test)]
 mod tests {
+    use clap::Parser;
+
     use super::*;
 
     #[test]

@@ -14,6 +14,7 @@ use crate::failure::Failure;
 
 /// Options that keep vertices in place.
 #[derive(Args)]
+#[command(next_help_heading = "Constraints")]
 pub struct LockArgs {
     /// Lock every vertex of a boundary edge in place
     #[arg(long)]

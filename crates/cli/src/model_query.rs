@@ -17,6 +17,7 @@ use crate::session::Session;
 
 /// Options of verbs that read one cut out of a multiresolution file.
 #[derive(Args)]
+#[command(next_help_heading = "Query of an .mlod file")]
 pub struct QueryArgs {
     #[command(flatten)]
     pub target: QueryTarget,
@@ -51,11 +52,13 @@ pub struct QueryTarget {
     /// Largest error: 1px as the camera sees it, 0.01% of the diagonal of the meshes as
     /// they are stored, whatever nodes make of them, or 0.5 in model units; 0 for the finest level. In the focus, every point of the result is as close to the mesh, and every
     /// point of the mesh to the result, which is proven
-    #[arg(long, value_name = "BOUND", value_parser = query_args::error_limit, allow_hyphen_values = true)]
+    #[arg(short, long, value_name = "BOUND", value_parser = query_args::error_limit,
+        allow_hyphen_values = true)]
     pub error: Option<ErrorLimit>,
     /// The best mesh of at most N faces: for the camera if there is one, else from all sides. A mesh
     /// that several nodes show counts once
-    #[arg(long, value_name = "N", value_parser = parse::whole, allow_negative_numbers = true)]
+    #[arg(short, long, value_name = "N", value_parser = parse::whole,
+        allow_negative_numbers = true)]
     pub faces: Option<usize>,
 }
 

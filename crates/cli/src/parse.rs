@@ -2,8 +2,7 @@
 
 use std::fmt;
 
-use meshlod::io::Precision;
-use meshlod::{Format, Method, Target};
+use meshlod::{Method, Target};
 
 use crate::numbers::{count, plural};
 
@@ -172,11 +171,6 @@ pub fn view_direction(text: &str) -> Result<ViewDirection, String> {
     }
 }
 
-/// Parses the name of a simplification method.
-pub fn method(text: &str) -> Result<Method, String> {
-    Method::by_name(text).ok_or_else(|| format!("the methods are {}", names()))
-}
-
 /// Returns the help text of `--method`.
 pub fn methods() -> String {
     format!("Simplification method: {}; the verb compare shows which suits a mesh", names())
@@ -184,22 +178,6 @@ pub fn methods() -> String {
 
 fn names() -> String {
     Method::ALL.map(Method::name).join(", ")
-}
-
-/// Parses a file format given by its suffix, such as `ply`.
-pub fn format(text: &str) -> Result<Format, String> {
-    let known = || Format::ALL.map(|(suffix, _)| suffix).join(", ");
-    Format::of_suffix(text).ok_or_else(|| format!("the formats are {}", known()))
-}
-
-/// Parses the type of written coordinates: `f32` or `f64`.
-pub fn precision(text: &str) -> Result<Precision, String> {
-    match text {
-        "auto" => Ok(Precision::Auto),
-        "f32" => Ok(Precision::F32),
-        "f64" => Ok(Precision::F64),
-        _ => Err("it must be auto, f32 or f64".into()),
-    }
 }
 
 fn at_most(most: usize, text: &str) -> Result<usize, String> {

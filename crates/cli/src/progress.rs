@@ -12,8 +12,9 @@ pub struct Progress {
 }
 
 impl Progress {
-    pub fn new() -> Self {
-        let on_terminal = std::io::stderr().is_terminal();
+    /// Makes a line that is hidden if `quiet`, or where standard error is no terminal.
+    pub fn new(quiet: bool) -> Self {
+        let on_terminal = !quiet && std::io::stderr().is_terminal();
         let target =
             if on_terminal { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
         let bar = ProgressBar::with_draw_target(None, target);

@@ -21,6 +21,8 @@ const STACK_BYTES: usize = 8 << 20;
 /// State of one run of the program.
 pub struct Session {
     pub json: bool,
+    /// True to print errors only, beside JSON.
+    pub quiet: bool,
     /// True if what is left out of a file, or a target that is missed, is a failure.
     pub strict: bool,
     /// File format of standard input and output.
@@ -36,12 +38,13 @@ pub struct Session {
 
 impl Session {
     pub fn new(global: GlobalArgs) -> Self {
-        let GlobalArgs { json, strict, threads, format } = global;
+        let GlobalArgs { json, strict, quiet, threads, format } = global;
         Self {
             json,
+            quiet,
             strict,
             format,
-            progress: Progress::new(),
+            progress: Progress::new(quiet),
             started: Instant::now(),
             threads,
             notes: Mutex::default(),
@@ -71,8 +74,11 @@ impl Session {
         }
     }
 
-    /// Prints a warning to standard error.
+    /// Prints a warning to standard error, unless `--quiet` was given.
     pub fn warn(&self, line: impl fmt::Display) {
+        if self.quiet {
+            return;
+        }
         self.progress.suspend(|| say(format_args!("warning: {line}")));
     }
 

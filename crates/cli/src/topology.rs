@@ -11,6 +11,7 @@ use crate::session::Session;
 
 /// Options for what may happen to the topology of a mesh.
 #[derive(Args, Clone)]
+#[command(next_help_heading = "Constraints")]
 pub struct TopologyArgs {
     /// Changes that are allowed to the topology of the surface [default: free]
     #[arg(long, value_name = "KIND")]

@@ -16,6 +16,7 @@ const UNSEEN: f64 = 1e-4;
 
 /// Option for levels of exactly the original volume.
 #[derive(Args)]
+#[command(next_help_heading = "Constraints")]
 pub struct ExactVolumeArgs {
     /// Move vertices along their normals, by at most 0.5% of the diagonal and mostly by their last
     /// digits, until the closed parts of every mesh have their original volume in the precision that

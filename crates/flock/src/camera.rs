@@ -23,6 +23,7 @@ pub struct FlockCamera {
 
 /// Reason why a camera cannot be made.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum CameraError {
     /// The eye or the target has a coordinate that is not finite.
     #[error("the camera's eye and target must be finite, not {eye:?} and {target:?}")]

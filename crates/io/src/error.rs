@@ -72,6 +72,7 @@ impl Unsupported {
 /// Reason why a mesh file could not be read or written. Prints as one line that starts with the
 /// path.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum IoError {
     /// The operating system reported an error, such as a missing file.
     #[error("{}: {source}", path.display())]
@@ -108,6 +109,23 @@ pub enum IoError {
 }
 
 impl IoError {
+    /// Returns the path of the file that could not be read or written.
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::System { path, .. } | Self::UnknownFormat { path, .. } => path,
+            Self::Parse { path, .. } | Self::Unsupported { path, .. } => path,
+        }
+    }
+
+    /// Returns the line, byte or part of the file that the error is about, if it is about one.
+    pub fn place(&self) -> Option<String> {
+        match self {
+            Self::Parse { source, .. } => Some(source.location.to_string()),
+            Self::Unsupported { source, .. } => Some(source.part.clone()),
+            Self::System { .. } | Self::UnknownFormat { .. } => None,
+        }
+    }
+
     /// Creates an error from an operating system error and the path of the file.
     pub fn system(path: &Path, source: std::io::Error) -> Self {
         Self::System { path: path.to_owned(), source }

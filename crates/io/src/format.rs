@@ -1,6 +1,10 @@
 //! Supported mesh file formats and their suffixes.
 
+use std::fmt;
 use std::path::Path;
+use std::str::FromStr;
+
+use meshlod_mesh::UnknownName;
 
 use crate::IoError;
 
@@ -52,6 +56,27 @@ impl Format {
         suffix.and_then(Self::of_suffix).ok_or_else(|| IoError::UnknownFormat {
             path: path.to_owned(),
             known: ".ply .obj .stl .off .smf .gltf .glb .vrm",
+        })
+    }
+}
+
+/// Prints the suffix of the format.
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let named = Self::ALL.iter().find(|(_, format)| format == self);
+        f.pad(named.map_or("", |(suffix, _)| suffix))
+    }
+}
+
+/// Parses a suffix such as `ply`, in any case.
+impl FromStr for Format {
+    type Err = UnknownName;
+
+    fn from_str(suffix: &str) -> Result<Self, UnknownName> {
+        Self::of_suffix(suffix).ok_or_else(|| UnknownName {
+            name: suffix.to_owned(),
+            nouns: "formats",
+            known: Self::ALL.map(|(known, _)| known).to_vec(),
         })
     }
 }

@@ -21,6 +21,22 @@ pub enum Precision {
     F64,
 }
 
+impl Precision {
+    /// All precisions, the default first.
+    pub const ALL: [Self; 3] = [Self::Auto, Self::F32, Self::F64];
+
+    /// Returns the name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        }
+    }
+}
+
+meshlod_mesh::by_name!(Precision, "precisions");
+
 /// Bits of a coordinate in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Width {

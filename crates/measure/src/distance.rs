@@ -65,6 +65,7 @@ pub struct Place {
 
 /// Reason why the distance between two meshes cannot be measured.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum MeasureError {
     /// The first of the two meshes cannot be measured.
     #[error("the first mesh: {0}")]

@@ -21,6 +21,7 @@ pub struct PreparedSurface<'m> {
 
 /// Reason why distances to or from a mesh cannot be measured.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum SurfaceError {
     /// The mesh has no faces, or its positions or indices are invalid.
     #[error(transparent)]

@@ -35,6 +35,7 @@ pub struct MeshArrays {
 
 /// Reason why arrays are not a mesh.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ArraysError {
     /// A coordinate of a point is NaN or infinite.
     #[error("points: row {row} is not finite: {position:?}")]

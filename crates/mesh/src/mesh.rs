@@ -27,6 +27,7 @@ pub struct Mesh {
 
 /// Reason why a triangle mesh is invalid.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum MeshError {
     /// A vertex coordinate is NaN or infinite.
     #[error("vertex {vertex} has a coordinate that is not finite: {position:?}")]

@@ -52,6 +52,7 @@ pub struct CompressReport {
 
 /// Reason why a compressed file cannot be written or read.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum CompressedFileError {
     /// The file cannot be read or written.
     #[error(transparent)]

@@ -1,104 +1,15 @@
-//! Meshes and scenes ready to be simplified: conditioned, unless their topology is to be kept.
+//! A mesh ready to be simplified: conditioned, unless its topology is to be kept.
 
 use std::sync::OnceLock;
 
-use meshlod_io::Scene;
 use meshlod_mesh::{
-    Borders, ConditionOptions, Conditioned, Conditioning, Locks, Mesh, NearBorders, Search,
-    condition, near_borders,
+    Borders, ConditionOptions, Conditioned, Conditioning, Locks, Mesh, Search, condition,
 };
 use meshlod_simplify::{
     Observe, Options, Report, Simplifier, SimplifyError, Target, Topology, VolumeLoss,
 };
 
 use crate::bounded::run_within;
-use crate::locks;
-
-/// Smallest number of near boundary edges that is worth mentioning.
-const MANY_EDGES: usize = 100;
-
-/// Smallest part of all boundary edges that is worth mentioning, as its reciprocal.
-const MANY_PARTS: usize = 20;
-
-/// A scene ready to be simplified, with the options for it.
-///
-/// With [`Topology::Free`] borders that lie on each other are sewn together, and non-manifold
-/// vertices are split, so that their copies move and are contracted freely; see [`condition`]. With
-/// [`Topology::Keep`] all meshes are simplified as they are. The scene itself does not change.
-pub struct ConditionedScene<'s> {
-    pub(crate) scene: &'s Scene,
-    pub(crate) options: Options,
-    pub(crate) meshes: Vec<ConditionedMesh<'s>>,
-    /// Number of nodes that show each mesh.
-    copies: Vec<usize>,
-}
-
-impl<'s> ConditionedScene<'s> {
-    /// Conditions every mesh that the scene shows, with the given treatment of borders that lie on
-    /// each other.
-    ///
-    /// `options.locks` number vertices through all meshes of the scene, mesh after mesh, see
-    /// [`join_locks`](crate::join_locks). Vertices tied across two meshes are locked, since meshes
-    /// are simplified independently.
-    ///
-    /// Cost: linear, with a sort of the boundary edges. Non-manifold vertices are split only when
-    /// a simplifier finds some.
-    /// # Errors
-    /// Locks of another length.
-    pub fn new(
-        scene: &'s Scene,
-        options: &Options,
-        borders: Borders,
-    ) -> Result<Self, SimplifyError> {
-        let locks = locks::split(scene, &options.locks)?;
-        let mut copies = vec![0; scene.meshes.len()];
-        scene.instances().iter().for_each(|placed| copies[placed.mesh] += 1);
-        let parts = scene.meshes.iter().zip(locks).zip(&copies);
-        let meshes = parts.map(|((mesh, locks), &copies)| {
-            let options = Options { locks, ..options.clone() };
-            ConditionedMesh::new(&mesh.mesh, options, (copies > 0).then_some(borders))
-        });
-        Ok(Self { scene, options: options.clone(), meshes: meshes.collect(), copies })
-    }
-
-    /// Returns what has been changed so far in the meshes of the scene, counting every instance.
-    pub fn counts(&self) -> Conditioning {
-        let mut all = Conditioning::default();
-        for (mesh, &copies) in self.meshes.iter().zip(&self.copies) {
-            (0..copies).for_each(|_| all += mesh.counts());
-        }
-        all
-    }
-
-    /// Returns the smallest distance by which welding would join most of the boundary edges that
-    /// lie near each other, and their number; `None` if they are few.
-    ///
-    /// Looks for distances of about a millionth to a ten-thousandth of the diagonal of the largest
-    /// mesh. Edges that lie exactly on each other are not counted where they have been sewn.
-    ///
-    /// Cost: as for [`near_borders`], at three distances.
-    pub fn near_borders(&self) -> Option<NearBorders> {
-        let valid = |mesh: &&Mesh| mesh.validate().is_ok();
-        let meshes: Vec<&Mesh> =
-            self.meshes.iter().map(ConditionedMesh::mesh).filter(valid).collect();
-        let diagonal = meshes.iter().map(|mesh| mesh.bounds().diagonal()).fold(0.0, f64::max);
-        let power = diagonal.log10().floor();
-        if !power.is_finite() {
-            return None;
-        }
-        let distances = [-6.0, -5.0, -4.0].map(|below| 10_f64.powf(power + below));
-        let none = |distance| NearBorders { distance, boundary_edges: 0, near_edges: 0 };
-        let mut found = distances.map(none);
-        for mesh in meshes {
-            let of_mesh = near_borders(mesh, &distances);
-            found.iter_mut().zip(&of_mesh).for_each(|(all, own)| all.add(own));
-        }
-        let most = found.iter().map(|found| found.near_edges).max()?;
-        let is_many = most >= MANY_EDGES && most * MANY_PARTS >= found[0].boundary_edges;
-        let enough = |found: &NearBorders| found.near_edges * 10 >= most * 9;
-        found.into_iter().filter(|_| is_many).find(enough)
-    }
-}
 
 /// A mesh ready to be simplified, with the options for it.
 pub(crate) struct ConditionedMesh<'m> {
@@ -115,7 +26,7 @@ pub(crate) struct ConditionedMesh<'m> {
 impl<'m> ConditionedMesh<'m> {
     /// Conditions a mesh at its borders, if a treatment for them is given and the topology need not
     /// be kept. What is wrong with a mesh or its locks is left to the simplifier to say.
-    fn new(input: &'m Mesh, options: Options, borders: Option<Borders>) -> Self {
+    pub(crate) fn new(input: &'m Mesh, options: Options, borders: Option<Borders>) -> Self {
         let is_wanted = options.topology == Topology::Free
             && has_valid_locks(input, &options.locks)
             && input.validate().is_ok();
@@ -136,24 +47,9 @@ impl<'m> ConditionedMesh<'m> {
         self.split.get().and_then(Option::as_ref).or(self.sewn.as_ref())
     }
 
-    /// Returns the mesh as it is simplified.
-    pub(crate) fn mesh(&self) -> &Mesh {
-        self.conditioned().map_or(self.input, |found| &found.mesh)
-    }
-
-    /// Returns the locks of the mesh as it is simplified.
-    pub(crate) fn locks(&self) -> &Locks {
-        self.conditioned().map_or(&self.options.locks, |found| &found.locks)
-    }
-
     /// Returns what has been changed so far.
     pub(crate) fn counts(&self) -> Conditioning {
         self.conditioned().map_or_else(Conditioning::default, |found| found.counts)
-    }
-
-    /// Returns true if the mesh is not simplified as it is.
-    pub(crate) fn is_changed(&self) -> bool {
-        self.conditioned().is_some()
     }
 
     /// Starts the simplification of the mesh. If non-manifold vertices turn up, they are split
@@ -193,6 +89,24 @@ impl<'m> ConditionedMesh<'m> {
             found.rejoin(&mut level);
         }
         level
+    }
+}
+
+#[cfg(feature = "io")]
+impl ConditionedMesh<'_> {
+    /// Returns the mesh as it is simplified.
+    pub(crate) fn mesh(&self) -> &Mesh {
+        self.conditioned().map_or(self.input, |found| &found.mesh)
+    }
+
+    /// Returns the locks of the mesh as it is simplified.
+    pub(crate) fn locks(&self) -> &Locks {
+        self.conditioned().map_or(&self.options.locks, |found| &found.locks)
+    }
+
+    /// Returns true if the mesh is not simplified as it is.
+    pub(crate) fn is_changed(&self) -> bool {
+        self.conditioned().is_some()
     }
 }
 

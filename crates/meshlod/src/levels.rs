@@ -58,6 +58,7 @@ pub struct BuildReport {
 
 /// Reason why a multiresolution file cannot be built, or a mesh extracted from it.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum LevelsError {
     /// The file cannot be read or written.
     #[error(transparent)]

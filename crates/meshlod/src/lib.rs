@@ -208,6 +208,22 @@
 //!
 //! [`spatial`] has the search structures behind these: the exact closest point of a surface.
 //!
+//! # Features
+//! All are on by default. With `default-features = false` there are [`mesh`], [`simplify`],
+//! [`measure`] and [`spatial`], with 18 crates below this one and no C.
+//!
+//! | feature | adds | and needs |
+//! |---|---|---|
+//! | `io` | [`io`]: files and scenes, [`simplify_scene`] | |
+//! | `check` | [`check`]: findings, repair, locks, [`Constraints`] | `io` |
+//! | `picture` | [`picture`]: a rasteriser, the materials of scenes | `io` |
+//! | `multires` | [`multires`]: all levels in a file, [`build`], [`extract`]; compiles zstd, which is C | `check`, `picture` |
+//! | `strip` | [`strip`]: triangle strips for any level | `multires` |
+//! | `codec` | [`codec`]: meshes in few bytes, [`compress`] | `strip` |
+//! | `flock` | [`flock`]: a level for each of thousands of members | `multires` |
+//! | `samples` | [`samples`]: procedural meshes | |
+//! | `draco` | glTF compressed by Draco is read | `io` |
+//!
 //! # Guarantees
 //! - No input makes it crash: errors in files are reported in one line with their position.
 //! - The same input and options give the same bytes, for any number of threads.
@@ -217,71 +233,134 @@
 //! - Files are written whole or not at all.
 #![forbid(unsafe_code)]
 
-mod appearance;
+/// The example of the package's page is compiled and run, too.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExample;
+
 mod bounded;
-mod check_report;
-mod compressed;
-mod compressed_strips;
 mod conditioned;
+
+#[cfg(feature = "picture")]
+mod appearance;
+#[cfg(feature = "check")]
+mod check_report;
+#[cfg(feature = "codec")]
+mod compressed;
+#[cfg(feature = "codec")]
+mod compressed_strips;
+#[cfg(feature = "io")]
+mod conditioned_scene;
+#[cfg(feature = "check")]
 mod constraints;
+#[cfg(feature = "check")]
 mod contacts;
+#[cfg(feature = "multires")]
+mod cut_volume;
+#[cfg(feature = "codec")]
 mod decompressed;
+#[cfg(feature = "io")]
 mod exact_volume;
+#[cfg(feature = "multires")]
 mod extract;
+#[cfg(feature = "check")]
 mod fuse;
+#[cfg(feature = "multires")]
 mod levels;
+#[cfg(feature = "io")]
 mod locks;
+#[cfg(feature = "picture")]
 mod materials;
+#[cfg(feature = "multires")]
 mod model_scene;
+#[cfg(feature = "io")]
 mod place;
+#[cfg(feature = "multires")]
 mod posed;
+#[cfg(feature = "check")]
 mod repair;
+#[cfg(feature = "io")]
 mod scene;
+#[cfg(feature = "strip")]
 mod strips;
+#[cfg(feature = "multires")]
 mod verified;
 
-pub use meshlod_check as check;
-pub use meshlod_codec as codec;
-pub use meshlod_flock as flock;
-pub use meshlod_io as io;
 pub use meshlod_measure as measure;
 pub use meshlod_mesh as mesh;
-pub use meshlod_multires as multires;
-pub use meshlod_picture as picture;
-pub use meshlod_samples as samples;
 #[doc(inline)]
 pub use meshlod_simplify as simplify;
 pub use meshlod_spatial as spatial;
+
+#[cfg(feature = "check")]
+pub use meshlod_check as check;
+#[cfg(feature = "codec")]
+pub use meshlod_codec as codec;
+#[cfg(feature = "flock")]
+pub use meshlod_flock as flock;
+#[cfg(feature = "io")]
+pub use meshlod_io as io;
+#[cfg(feature = "multires")]
+pub use meshlod_multires as multires;
+#[cfg(feature = "picture")]
+pub use meshlod_picture as picture;
+#[cfg(feature = "samples")]
+pub use meshlod_samples as samples;
+#[cfg(feature = "strip")]
 pub use meshlod_strip as strip;
 
+pub use conditioned::{simplify, simplify_observed};
+pub use meshlod_mesh::{Borders, Mesh};
+pub use meshlod_simplify::{Method, Options, Report, SimplifyError, Target, Topology};
+
+#[cfg(feature = "picture")]
 pub use appearance::{OwnedPaint, normals_of};
+#[cfg(feature = "check")]
 pub use check_report::{CheckReport, check_report};
+#[cfg(feature = "codec")]
 pub use compressed::{
     CompressOptions, CompressReport, CompressedFileError, compress, compress_scene,
 };
+#[cfg(feature = "codec")]
 pub use compressed_strips::compressed_strips;
-pub use conditioned::{ConditionedScene, simplify, simplify_observed};
+#[cfg(feature = "io")]
+pub use conditioned_scene::ConditionedScene;
+#[cfg(feature = "check")]
 pub use constraints::{Constraints, VertexLocking};
+#[cfg(feature = "check")]
 pub use contacts::scene_locks;
+#[cfg(feature = "multires")]
+pub use cut_volume::{CutVolumeError, conserve_cut_volume};
+#[cfg(feature = "codec")]
 pub use decompressed::{decompress, decompress_bytes, decompress_model, decompress_scene};
-pub use exact_volume::{
-    CutVolumeError, closed_volume, conserve_cut_volume, conserve_volumes, digits_of,
-};
+#[cfg(feature = "io")]
+pub use exact_volume::{closed_volume, conserve_volumes, digits_of};
+#[cfg(feature = "multires")]
 pub use extract::{ExtractOptions, ExtractReport, extract, extract_reported};
+#[cfg(feature = "check")]
 pub use fuse::fuse_scene;
+#[cfg(feature = "multires")]
 pub use levels::{BuildOptions, BuildReport, LevelsError, build};
+#[cfg(feature = "io")]
 pub use locks::join_locks;
+#[cfg(feature = "picture")]
 pub use materials::{ImageWarning, materials_of, single_sided_materials};
+#[cfg(feature = "io")]
 pub use meshlod_io::{Format, IoError, ReadOptions, Scene, WriteOptions, read, write};
-pub use meshlod_mesh::{Borders, Mesh};
-pub use meshlod_simplify::{Method, Options, Report, SimplifyError, Target, Topology};
+#[cfg(feature = "multires")]
 pub use model_scene::{
     LevelInstance, MissingParts, ModelScene, ModelSceneError, PackedScene, PlaceError, PlacedScene,
     SceneCounts, SceneLayout, measured_poses, model_limits, place_scene,
 };
+#[cfg(feature = "io")]
 pub use place::{moved_at_most, rounding_of_level, shown_rounding, world_bounds};
+#[cfg(feature = "multires")]
 pub use posed::{PoseCounts, ScenePoses, posed_mesh};
+#[cfg(feature = "check")]
 pub use repair::repair_scene;
+#[cfg(feature = "io")]
 pub use scene::{SceneError, SceneSimplifier, simplify_scene};
+#[cfg(feature = "strip")]
 pub use strips::scene_strips;
+#[cfg(feature = "multires")]
 pub use verified::{Verification, VerifiedExtract, extract_verified, measure_extract};

@@ -50,6 +50,7 @@ struct Part<'s> {
 
 /// Reason why the meshes of a scene cannot be simplified.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum SceneError {
     /// The scene has no node that shows a mesh.
     #[error("nodes: none of them shows a mesh")]

@@ -29,8 +29,7 @@ fn main() -> Result<(), Failure> {
         Some(path) => path.into(),
         None => meshlod_fixtures::shared_mesh("dragon.ply").ok_or("name a PLY file")?,
     };
-    let method = args.next().map_or(Some(Method::LindstromTurk), |name| Method::by_name(&name));
-    let method = method.ok_or("no such method")?;
+    let method = args.next().map_or(Ok(Method::LindstromTurk), |name| name.parse())?;
     let options = Options { method, ..Options::default() };
     let mesh = meshlod_io::ply::read(&std::fs::read(path)?)?;
     println!("{} vertices, {} faces", mesh.positions.len(), mesh.faces.len());

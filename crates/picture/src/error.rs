@@ -7,6 +7,7 @@ use crate::Picture;
 
 /// Reason why a picture or a texture could not be made.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum PictureError {
     /// The mesh to be drawn is invalid.
     #[error(transparent)]

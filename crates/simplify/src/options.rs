@@ -11,6 +11,7 @@ use crate::refusal::Refusals;
 
 /// Mesh simplification algorithm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Method {
     /// Edge contraction by quadric error metrics, with optimal placement of new vertices [GH97].
     Qem,
@@ -112,11 +113,6 @@ impl Method {
             Self::Wu | Self::Pm | Self::Spr => false,
         }
     }
-
-    /// Returns the simplification method with this name, if there is one.
-    pub fn by_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|method| method.name() == name)
-    }
 }
 
 /// Number of faces or error at which a simplification stops.
@@ -165,6 +161,8 @@ impl Target {
     }
 }
 
+meshlod_mesh::by_name!(Method, "methods");
+
 /// Changes that a simplification may make to the topology of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Topology {
@@ -178,6 +176,21 @@ pub enum Topology {
     /// vanishes.
     Keep,
 }
+
+impl Topology {
+    /// All treatments of the topology, the default first.
+    pub const ALL: [Self; 2] = [Self::Free, Self::Keep];
+
+    /// Returns the name on the command line and in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Free => "free",
+            Self::Keep => "keep",
+        }
+    }
+}
+
+meshlod_mesh::by_name!(Topology, "treatments of the topology");
 
 /// Options of a mesh simplification.
 #[derive(Clone, Debug, Default)]
@@ -277,6 +290,7 @@ impl AttributeWeights {
 
 /// Reason why a mesh cannot be simplified.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum SimplifyError {
     /// The mesh is invalid; see [`meshlod_mesh::Mesh::validate`].
     #[error(transparent)]

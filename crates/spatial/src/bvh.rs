@@ -26,6 +26,7 @@ pub struct Bvh {
 
 /// Reason why no bounding volume hierarchy can be built over a mesh.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum BvhError {
     /// The mesh has no faces to build a hierarchy over.
     #[error("the mesh has no faces")]

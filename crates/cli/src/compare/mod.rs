@@ -44,7 +44,7 @@ pub struct Compare {
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Methods to compare [default: all]
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = parse::method)]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     methods: Vec<Method>,
     /// Draw no pictures: the page has figures only
     #[arg(long)]
@@ -61,14 +61,15 @@ pub struct Compare {
 
 /// Sizes of the levels.
 #[derive(Args)]
+#[command(next_help_heading = "Targets, one of")]
 #[group(required = true, multiple = false)]
 struct Sizes {
     /// Target ratios of the faces: 10%,1%
-    #[arg(long, value_name = "RATIOS", value_delimiter = ',', value_parser = parse::ratio,
+    #[arg(short, long, value_name = "RATIOS", value_delimiter = ',', value_parser = parse::ratio,
         allow_hyphen_values = true)]
     ratio: Vec<f64>,
     /// Target numbers of faces: 5000,500
-    #[arg(long, value_name = "NUMBERS", value_delimiter = ',', value_parser = parse::whole,
+    #[arg(short, long, value_name = "NUMBERS", value_delimiter = ',', value_parser = parse::whole,
         allow_negative_numbers = true)]
     faces: Vec<usize>,
 }

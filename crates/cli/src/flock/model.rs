@@ -35,7 +35,7 @@ pub struct ModelArgs {
     pub up: SignedAxis,
     /// Simplification method of the levels
     #[arg(long, value_name = "NAME", default_value = Method::default().name(),
-        value_parser = parse::method, help = parse::methods())]
+        help = parse::methods())]
     pub method: Method,
 }
 

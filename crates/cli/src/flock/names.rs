@@ -1,6 +1,5 @@
 //! Parsers of the values that only `flock` takes.
 
-use meshlod::flock::scene::ScenarioName;
 use meshlod::flock::select::PolicyName;
 
 use crate::numbers::count;
@@ -44,17 +43,6 @@ pub fn impostors(text: &str) -> Result<f64, String> {
         px if (0.1..=10_000.0).contains(&px) => Ok(px),
         _ => Err("it must be between 0.1 and 10000".into()),
     }
-}
-
-/// Parses the name of a scene.
-pub fn camera(text: &str) -> Result<ScenarioName, String> {
-    let known = || ScenarioName::ALL.map(ScenarioName::name).join(", ");
-    ScenarioName::by_name(text).ok_or_else(|| format!("the cameras are {}", known()))
-}
-
-/// Parses the name of a policy.
-pub fn policy(text: &str) -> Result<PolicyName, String> {
-    PolicyName::by_name(text).ok_or_else(|| format!("the policies are {}", policy_names()))
 }
 
 /// Returns the help text of `--policy`.

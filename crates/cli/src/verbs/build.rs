@@ -50,7 +50,7 @@ pub struct Build {
     #[arg(long, value_name = "MODEL", default_value = "contractions")]
     model: ModelArg,
     #[arg(long, value_name = "NAME", default_value = Method::LindstromTurk.name(),
-        value_parser = parse::method, help = parse::methods())]
+        help = parse::methods())]
     method: Method,
     /// Compute proven error bounds in place of measured errors: levels of the same error have two to
     /// three times as many faces. The errors of right triangles are bounds in any case

@@ -77,13 +77,15 @@ pub struct Compress {
 
 /// Target of the compression: accuracy or size.
 #[derive(Args)]
+#[command(next_help_heading = "Accuracy, one of")]
 #[group(multiple = false)]
 struct CompressTarget {
     /// As accurate as a grid of this many bits per axis over the whole mesh [default: 11]
     #[arg(long, value_name = "BITS", allow_negative_numbers = true)]
     bits: Option<u32>,
     /// Mean distance between the surfaces: 0.005% of the diagonal, or 0.1 in model units
-    #[arg(long, value_name = "BOUND", value_parser = parse::bound, allow_hyphen_values = true)]
+    #[arg(short, long, value_name = "BOUND", value_parser = parse::bound,
+        allow_hyphen_values = true)]
     error: Option<Bound>,
     /// Reduction of positions against three f32 per vertex: 70%
     #[arg(long, value_name = "RATIO", value_parser = parse::ratio, allow_hyphen_values = true)]

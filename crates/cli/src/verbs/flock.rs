@@ -39,10 +39,10 @@ pub struct Flock {
     pub schools: usize,
     /// Scene and path of the camera: ring circles a school, inside swims in it, far keeps away from
     /// it, obstacles and terrain follow it past solids and over hills
-    #[arg(long, value_name = "NAME", default_value = "ring", value_parser = names::camera)]
+    #[arg(long, value_name = "NAME", default_value = "ring")]
     pub camera: ScenarioName,
     /// Policy that chooses the levels
-    #[arg(long, value_name = "NAME", default_value = "ours", value_parser = names::policy,
+    #[arg(long, value_name = "NAME", default_value = "ours",
         help = names::policies())]
     pub policy: PolicyName,
     /// Most triangles a frame by the policies budget and ours [default: a tenth of those of all

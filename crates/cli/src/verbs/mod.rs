@@ -2,6 +2,7 @@
 
 pub mod build;
 pub mod check;
+pub mod completions;
 pub mod compress;
 pub mod convert;
 pub mod decompress;
@@ -9,6 +10,7 @@ pub mod extract;
 pub mod flock;
 pub mod info;
 pub mod lods;
+pub mod man;
 pub mod measure;
 pub mod render;
 pub mod repair;

@@ -48,6 +48,7 @@ pub struct Repair {
 
 /// Options that add or skip repair steps.
 #[derive(Args)]
+#[command(next_help_heading = "Steps")]
 struct StepArgs {
     /// Stitch borders that lie within EPS of each other, in model units
     #[arg(long, value_name = "EPS", default_value_t = 0.0, value_parser = parse::length,

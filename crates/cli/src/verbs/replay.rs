@@ -40,13 +40,16 @@ pub struct Replay {
 
 /// Level to restore.
 #[derive(Args)]
+#[command(next_help_heading = "Level, one of")]
 #[group(required = true, multiple = false)]
 struct LevelArgs {
     /// The finest level of at most N faces
-    #[arg(long, value_name = "N", value_parser = parse::whole, allow_negative_numbers = true)]
+    #[arg(short, long, value_name = "N", value_parser = parse::whole,
+        allow_negative_numbers = true)]
     faces: Option<usize>,
     /// The finest level of at most this ratio of all faces: 10% or 0.1
-    #[arg(long, value_name = "RATIO", value_parser = parse::ratio, allow_hyphen_values = true)]
+    #[arg(short, long, value_name = "RATIO", value_parser = parse::ratio,
+        allow_hyphen_values = true)]
     ratio: Option<f64>,
 }
 

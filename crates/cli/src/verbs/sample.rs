@@ -27,7 +27,7 @@ pub struct Sample {
     #[arg(value_name = "OUT")]
     output: PathBuf,
     /// Approximate number of faces [default: enough to show the sample well]
-    #[arg(long, value_name = "N", value_parser = faces, allow_negative_numbers = true)]
+    #[arg(short, long, value_name = "N", value_parser = faces, allow_negative_numbers = true)]
     faces: Option<usize>,
     #[command(flatten)]
     writing: WriteArgs,

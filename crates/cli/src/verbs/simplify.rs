@@ -61,26 +61,31 @@ pub struct Simplify {
 
 /// Target of the simplification.
 #[derive(Args)]
+#[command(next_help_heading = "Target, one of")]
 #[group(required = true, multiple = false)]
 struct TargetArgs {
     /// Target number of faces
-    #[arg(long, value_name = "N", value_parser = parse::whole, allow_negative_numbers = true)]
+    #[arg(short, long, value_name = "N", value_parser = parse::whole,
+        allow_negative_numbers = true)]
     faces: Option<usize>,
     /// Target ratio of the faces: 10% or 0.1
-    #[arg(long, value_name = "RATIO", value_parser = parse::ratio, allow_hyphen_values = true)]
+    #[arg(short, long, value_name = "RATIO", value_parser = parse::ratio,
+        allow_hyphen_values = true)]
     ratio: Option<f64>,
     /// Largest distance from the input: 0.5 in model units, or 0.1% of the diagonal. It is proved
     /// for every point of both surfaces, as written, and what is farther away is mended; methods
     /// other than lindstrom-turk and qem start again with a lower bound for that
-    #[arg(long, value_name = "BOUND", value_parser = parse::bound, allow_hyphen_values = true)]
+    #[arg(short, long, value_name = "BOUND", value_parser = parse::bound,
+        allow_hyphen_values = true)]
     error: Option<Bound>,
 }
 
 /// Method and its options.
 #[derive(Args)]
+#[command(next_help_heading = "Method")]
 pub struct MethodArgs {
     #[arg(long, value_name = "NAME", default_value = Method::default().name(),
-        value_parser = parse::method, help = parse::methods())]
+        help = parse::methods())]
     method: Method,
     #[command(flatten)]
     pub constraints: ConstraintArgs,
@@ -95,6 +100,7 @@ const WEIGHTS: AttributeWeights = AttributeWeights::DEFAULT;
 
 /// Weights of attributes in the cost of a contraction.
 #[derive(Args)]
+#[command(next_help_heading = "Attributes")]
 struct WeightArgs {
     /// Weight of normals: a deviation of 1 counts like this fraction of the diagonal, where 0 means
     /// not at all; for lindstrom-turk, qem and qem-endpoint

@@ -22,10 +22,10 @@ pub struct SchoolArgs {
         allow_negative_numbers = true)]
     pub schools: usize,
     /// Scene of the start, with its path of the camera: ring, inside, far, obstacles or terrain
-    #[arg(long, value_name = "NAME", default_value = "ring", value_parser = names::camera)]
+    #[arg(long, value_name = "NAME", default_value = "ring")]
     pub camera: ScenarioName,
     /// Policy of the start
-    #[arg(long, value_name = "NAME", default_value = "ours", value_parser = names::policy,
+    #[arg(long, value_name = "NAME", default_value = "ours",
         help = names::policies())]
     pub policy: PolicyName,
 }

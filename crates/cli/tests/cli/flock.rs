@@ -208,7 +208,7 @@ fn wrong_values_are_named_and_write_nothing() {
         (&["--members", "5000001"], 2, "at most 5,000,000"),
         (&["--schools", "21", "--members", "20"], 2, "1 to 20 schools, not 21"),
         (&["--policy", "best"], 2, "distance, screen-error, "),
-        (&["--camera", "top"], 2, "the cameras are ring, inside, far, obstacles, terrain"),
+        (&["--camera", "top"], 2, "the scenarios are ring, inside, far, obstacles, terrain"),
         (&["--frames", "0"], 2, "at least 1"),
         (&["--fps", "0"], 2, "between 0.1 and 1000"),
         (&["--fps", "nan"], 2, "not a number"),

@@ -103,11 +103,13 @@ fn what_could_not_be_done_is_1_and_one_line() {
         (&["render", "none.ply", "no/out.png"], "no/out.png: "),
     ];
     for (arguments, beginning) in cases {
-        for json in [&[][..], &["--json"]] {
-            let done = run.run(&[arguments, json].concat());
-            assert_eq!((done.code, &done.out[..]), (1, &b""[..]), "{arguments:?}: {done:?}");
-            assert!(done.only_line().starts_with(&format!("meshlod: {beginning}")), "{done:?}");
-        }
+        let done = run.run(arguments);
+        assert_eq!((done.code, &done.out[..]), (1, &b""[..]), "{arguments:?}: {done:?}");
+        assert!(done.only_line().starts_with(&format!("meshlod: {beginning}")), "{done:?}");
+        let json = run.run(&[arguments, &["--json"]].concat());
+        assert_eq!((json.code, json.only_line()), (1, done.only_line()), "{arguments:?}");
+        let message = format!("meshlod: {}", json.json()["failure"]["message"].as_str().unwrap());
+        assert_eq!(message, done.only_line());
     }
     assert_eq!(run.files(), ["folder.glb", "folder.ply", "in.ply", "l_LOD2.off"]);
 }

@@ -17,6 +17,7 @@ fn info_knows_a_cube() {
     std::fs::write(run.path("cube.obj"), obj).unwrap();
     let info = run.json(&["info", "cube.obj"]);
     let expected = json!({
+        "format": "meshlod-report", "version": 1, "verb": "info",
         "vertices": 9, "unreferenced": 1, "faces": 12, "degenerate_faces": 0, "edges": 18,
         "boundary_edges": 0, "non_manifold_edges": 0, "inconsistent_edges": 0,
         "pinched_vertices": 0, "components": 1, "objects": 2, "closed": true,

@@ -12,7 +12,10 @@ fn options_of_a_school_need_the_flag() {
         (&["--flock", "a.ply"], "cannot be used with"),
         (&["--flock", "--script", "a.json", "--out", "b"], "cannot be used with"),
         (&["--flock", "--policy", "best"], "distance, screen-error, "),
-        (&["--flock", "--camera", "top"], "the cameras are ring, inside, far, obstacles, terrain"),
+        (
+            &["--flock", "--camera", "top"],
+            "the scenarios are ring, inside, far, obstacles, terrain",
+        ),
     ];
     for (arguments, reason) in cases {
         let done = run.run(&[&["view"], *arguments].concat());

@@ -94,6 +94,7 @@ pub struct SurfaceChange {
 
 /// Reason why a mesh cannot be stored in blocks.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum BlocksError {
     /// A coordinate is infinite, NaN, or too large for `f32`.
     #[error("{0} has a coordinate that is not finite or is beyond 1e38")]

@@ -37,6 +37,7 @@ pub struct LatticeBlocks {
 
 /// Reason why positions cannot be rounded to a lattice.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum LatticeError {
     /// A coordinate is infinite or NaN.
     #[error("{0} has a coordinate that is not finite")]

@@ -49,6 +49,7 @@ pub struct Part {
 
 /// Reason why a mesh cannot be partitioned.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum PartsError {
     /// The mesh has no face with three different corners.
     #[error("the mesh has no faces")]

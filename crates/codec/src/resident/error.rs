@@ -10,6 +10,7 @@ use crate::parts::PartsError;
 
 /// Reason why a mesh cannot be compressed.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum CompressError {
     /// The mesh is invalid.
     #[error(transparent)]

@@ -28,6 +28,7 @@ pub struct StoredStrips<'a>(&'a PartStrips);
 
 /// Reason why strips cannot take the place of a compressed mesh's faces.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum StripsError {
     /// The scheme has no parts, so faces have corners anywhere.
     #[error("strips need positions in parts")]

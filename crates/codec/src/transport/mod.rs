@@ -101,6 +101,7 @@ impl Default for TransportOptions {
 
 /// Reason why a mesh cannot be encoded for transport.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum TransportError {
     /// The mesh has no faces.
     #[error("the mesh has no faces")]

@@ -89,6 +89,7 @@ pub struct FacingLevels {
 
 /// Reason why no levels can be built for a model.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum TableError {
     /// The model is not a valid mesh.
     #[error(transparent)]

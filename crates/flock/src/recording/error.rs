@@ -6,6 +6,7 @@ use crate::recording::npy::NpyError;
 
 /// Reason why a recording cannot be read.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum RecordingError {
     /// A file cannot be read.
     #[error("{file}: {reason}")]

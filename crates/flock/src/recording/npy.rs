@@ -17,6 +17,7 @@ pub struct Array<T> {
 
 /// Reason why an array cannot be read.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum NpyError {
     /// The file does not begin as a `.npy` file does.
     #[error("not a .npy file")]

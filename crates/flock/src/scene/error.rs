@@ -7,6 +7,7 @@ use crate::simulation::{FieldError, PathError, SimulationError};
 
 /// Reason why a scenario cannot be set up or filmed.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum SceneError {
     /// There are no members.
     #[error("a flock needs at least one member")]

@@ -30,9 +30,6 @@ impl ScenarioName {
             Self::Terrain => "terrain",
         }
     }
-
-    /// Returns the scenario of this name.
-    pub fn by_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|scenario| scenario.name() == name)
-    }
 }
+
+meshlod_mesh::by_name!(ScenarioName, "scenarios");

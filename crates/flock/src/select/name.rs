@@ -67,11 +67,6 @@ impl PolicyName {
         }
     }
 
-    /// Returns the policy of this name.
-    pub fn by_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|policy| policy.name() == name)
-    }
-
     /// Returns true if the policy keeps to [`Budget::triangles`](crate::select::Budget::triangles).
     pub fn has_budget(self) -> bool {
         matches!(self, Self::Budget | Self::Ours)
@@ -94,3 +89,5 @@ impl PolicyName {
         }
     }
 }
+
+meshlod_mesh::by_name!(PolicyName, "policies");

@@ -5,6 +5,7 @@ use thiserror::Error;
 
 /// Reason why a simulation cannot be made or advanced.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum SimulationError {
     /// An option is outside its range, or not a number.
     #[error("{option} must be {range}, not {value}")]
@@ -62,6 +63,7 @@ pub enum SimulationError {
 
 /// Reason why a leader's path cannot be made.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum PathError {
     /// A closed path needs at least three waypoints.
     #[error("a closed path needs at least three waypoints, not {0}")]
@@ -76,6 +78,7 @@ pub enum PathError {
 
 /// Reason why no distance field can be made of a mesh.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum FieldError {
     /// The mesh has no faces, or is invalid.
     #[error(transparent)]

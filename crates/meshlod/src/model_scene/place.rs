@@ -50,6 +50,7 @@ pub struct PackedScene {
 
 /// Reason why a scene cannot be merged into one mesh for its levels.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum PlaceError {
     /// The scene is not that of its glTF source.
     #[error(transparent)]

@@ -39,6 +39,7 @@ pub struct MissingParts {
 
 /// Reason why the scene of a multiresolution or compressed file cannot be read.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum ModelSceneError {
     /// The file is damaged.
     #[error(transparent)]

@@ -31,6 +31,7 @@ pub struct Certificate {
 
 /// Reason why a multiresolution model cannot be certified.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum CertifyError {
     /// An update has a flaw that would show in some cut of the model.
     #[error("update {update} is not sound: {why}")]
@@ -57,6 +58,7 @@ pub enum CertifyError {
 
 /// Flaws that an update of a multiresolution model can have.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum Flaw {
     /// The update may be applied before the vertex that it splits exists.
     #[error("its vertex is created by an update of the same or a lower level")]

@@ -64,6 +64,7 @@ const VERSION: u32 = 1;
 
 /// Reason why a multiresolution file cannot be read or written.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum FileError {
     /// The file cannot be read.
     #[error(transparent)]

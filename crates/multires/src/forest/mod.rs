@@ -108,6 +108,7 @@ pub(crate) struct Update {
 
 /// Reason why no multiresolution model can be built from a mesh.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum BuildError {
     /// The mesh cannot be simplified.
     #[error(transparent)]

@@ -94,6 +94,7 @@ pub struct ViewCamera {
 
 /// Reasons why a query is invalid.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum QueryError {
     /// A coordinate of the focus or the camera is not finite.
     #[error("a coordinate of the {0} is not finite")]

@@ -21,6 +21,7 @@ pub enum HeightPrecision {
 
 /// Reason why a height field cannot be written or read.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum FieldBytesError {
     /// The requested bound on the rounding of heights is not a positive length.
     #[error("the bound on rounding must be a length above 0, not {0}")]

@@ -21,6 +21,7 @@ pub struct RtinCertifyError {
 
 /// Flaws that a vertex of an [`Rtin`] can have.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum RtinFlaw {
     /// A level without the vertex would extend beyond the border of the height field.
     #[error("it removes triangles across the border but is not in every level")]

@@ -11,6 +11,7 @@ use super::grid::{Grid, GridPoint};
 
 /// Reason why a mesh cannot be read as a height field.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum HeightFieldError {
     /// The mesh is invalid.
     #[error(transparent)]

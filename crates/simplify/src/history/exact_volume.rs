@@ -71,6 +71,7 @@ pub struct VolumeResidual {
 
 /// Reason why the volume of a simplified mesh cannot be corrected.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ExactVolumeError {
     /// No component of the original mesh is closed and consistently oriented.
     #[error("no part of the mesh is a closed, oriented surface with a volume: see `meshlod check`")]

@@ -13,6 +13,7 @@ use super::wedges::MeshWedges;
 
 /// Reason why a merge tree cannot be built from a recorded simplification.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum HistoryError {
     /// A contraction moves a vertex instead of merging it into the other end of its edge.
     #[error(

@@ -9,6 +9,7 @@ use crate::parse;
 
 /// Camera for which the distances of the levels are computed.
 #[derive(Clone, Copy, Args)]
+#[command(next_help_heading = "Distances of the levels")]
 pub struct Camera {
     /// Vertical field of view for the distances beside the levels, in degrees
     #[arg(long, value_name = "DEGREES", default_value = "60", value_parser = field_of_view,

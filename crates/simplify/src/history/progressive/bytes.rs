@@ -21,6 +21,7 @@ const BODY: usize = 20;
 
 /// Reason why the bytes of a progressive mesh cannot be decoded.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ProgressiveError {
     /// The data does not start with the magic number of the format.
     #[error("this is not a progressive mesh: it does not start with \"meshlodp\"")]

@@ -1,0 +1,33 @@
+//! A camera flies past a model in a `.mlod` file, and a cut follows it: one pixel of error in every
+//! frame, and only the triangles that changed are touched.
+//!
+//! `cargo run --release -p meshlod --example follow`
+
+use std::error::Error;
+use std::fs::File;
+
+use meshlod::multires::{ModelFile, Query, UpdateLimits, ViewCamera};
+use meshlod::{BuildOptions, build, samples};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let folder = tempfile::tempdir()?;
+    let path = folder.path().join("knot.mlod");
+    let knot = samples::knot(40_000);
+    build(&knot, &path, &BuildOptions::default())?;
+    let model = ModelFile::open(File::open(&path)?)?.read()?;
+
+    let diagonal = knot.bounds().diagonal();
+    let mut cut = model.cut();
+    println!("{:>5}  {:>8}  {:>7}  {:>7}", "frame", "distance", "faces", "changed");
+    for frame in 0..12 {
+        let distance = diagonal * (0.6 + 0.4 * f64::from(frame));
+        let eye = [0.2 * distance, 0.1 * distance, distance];
+        let (look, up) = ([0.0; 3], [0.0, 1.0, 0.0]);
+        let camera = ViewCamera { eye, look, up, fov_rad: 0.8, viewport: [1280, 720] };
+        cut.update(&Query::pixels(camera, 1.0), &UpdateLimits::default())?;
+        // A renderer would write these slots of its index buffer.
+        let changed = cut.patches().count();
+        println!("{frame:>5}  {distance:>8.2}  {:>7}  {changed:>7}", cut.face_count());
+    }
+    Ok(())
+}

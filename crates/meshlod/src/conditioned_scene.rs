@@ -1,0 +1,94 @@
+//! Scenes ready to be simplified: their meshes conditioned, unless their topology is to be kept.
+
+use meshlod_io::Scene;
+use meshlod_mesh::{Borders, Conditioning, Mesh, NearBorders, near_borders};
+use meshlod_simplify::{Options, SimplifyError};
+
+use crate::conditioned::ConditionedMesh;
+use crate::locks;
+
+/// Smallest number of near boundary edges that is worth mentioning.
+const MANY_EDGES: usize = 100;
+
+/// Smallest part of all boundary edges that is worth mentioning, as its reciprocal.
+const MANY_PARTS: usize = 20;
+
+/// A scene ready to be simplified, with the options for it.
+///
+/// With [`Topology::Free`](crate::Topology::Free) borders that lie on each other are sewn together, and non-manifold
+/// vertices are split, so that their copies move and are contracted freely; see [`condition`](meshlod_mesh::condition). With
+/// [`Topology::Keep`](crate::Topology::Keep) all meshes are simplified as they are. The scene itself does not change.
+pub struct ConditionedScene<'s> {
+    pub(crate) scene: &'s Scene,
+    pub(crate) options: Options,
+    pub(crate) meshes: Vec<ConditionedMesh<'s>>,
+    /// Number of nodes that show each mesh.
+    copies: Vec<usize>,
+}
+
+impl<'s> ConditionedScene<'s> {
+    /// Conditions every mesh that the scene shows, with the given treatment of borders that lie on
+    /// each other.
+    ///
+    /// `options.locks` number vertices through all meshes of the scene, mesh after mesh, see
+    /// [`join_locks`](crate::join_locks). Vertices tied across two meshes are locked, since meshes
+    /// are simplified independently.
+    ///
+    /// Cost: linear, with a sort of the boundary edges. Non-manifold vertices are split only when
+    /// a simplifier finds some.
+    /// # Errors
+    /// Locks of another length.
+    pub fn new(
+        scene: &'s Scene,
+        options: &Options,
+        borders: Borders,
+    ) -> Result<Self, SimplifyError> {
+        let locks = locks::split(scene, &options.locks)?;
+        let mut copies = vec![0; scene.meshes.len()];
+        scene.instances().iter().for_each(|placed| copies[placed.mesh] += 1);
+        let parts = scene.meshes.iter().zip(locks).zip(&copies);
+        let meshes = parts.map(|((mesh, locks), &copies)| {
+            let options = Options { locks, ..options.clone() };
+            ConditionedMesh::new(&mesh.mesh, options, (copies > 0).then_some(borders))
+        });
+        Ok(Self { scene, options: options.clone(), meshes: meshes.collect(), copies })
+    }
+
+    /// Returns what has been changed so far in the meshes of the scene, counting every instance.
+    pub fn counts(&self) -> Conditioning {
+        let mut all = Conditioning::default();
+        for (mesh, &copies) in self.meshes.iter().zip(&self.copies) {
+            (0..copies).for_each(|_| all += mesh.counts());
+        }
+        all
+    }
+
+    /// Returns the smallest distance by which welding would join most of the boundary edges that
+    /// lie near each other, and their number; `None` if they are few.
+    ///
+    /// Looks for distances of about a millionth to a ten-thousandth of the diagonal of the largest
+    /// mesh. Edges that lie exactly on each other are not counted where they have been sewn.
+    ///
+    /// Cost: as for [`near_borders`], at three distances.
+    pub fn near_borders(&self) -> Option<NearBorders> {
+        let valid = |mesh: &&Mesh| mesh.validate().is_ok();
+        let meshes: Vec<&Mesh> =
+            self.meshes.iter().map(ConditionedMesh::mesh).filter(valid).collect();
+        let diagonal = meshes.iter().map(|mesh| mesh.bounds().diagonal()).fold(0.0, f64::max);
+        let power = diagonal.log10().floor();
+        if !power.is_finite() {
+            return None;
+        }
+        let distances = [-6.0, -5.0, -4.0].map(|below| 10_f64.powf(power + below));
+        let none = |distance| NearBorders { distance, boundary_edges: 0, near_edges: 0 };
+        let mut found = distances.map(none);
+        for mesh in meshes {
+            let of_mesh = near_borders(mesh, &distances);
+            found.iter_mut().zip(&of_mesh).for_each(|(all, own)| all.add(own));
+        }
+        let most = found.iter().map(|found| found.near_edges).max()?;
+        let is_many = most >= MANY_EDGES && most * MANY_PARTS >= found[0].boundary_edges;
+        let enough = |found: &NearBorders| found.near_edges * 10 >= most * 9;
+        found.into_iter().filter(|_| is_many).find(enough)
+    }
+}
