@@ -7,6 +7,7 @@
 
 mod answer;
 mod args;
+mod batch;
 mod check;
 mod command;
 mod compare;
@@ -30,6 +31,7 @@ mod parse;
 mod poses;
 mod progress;
 mod query_args;
+mod recipe;
 mod scene_files;
 mod sequence;
 mod session;
@@ -42,14 +44,16 @@ mod view;
 mod volume;
 
 use std::ffi::OsString;
+use std::path::Path;
 use std::process::exit;
 
 use clap::Parser;
 use serde_json::Value;
 
 use crate::answer::Answer;
-use crate::command::{Cli, Verb};
+use crate::command::{Cli, Task, Verb};
 use crate::failure::Failure;
+use crate::progress::Progress;
 use crate::session::Session;
 
 /// Exit code that shells report for Ctrl-C; also used for SIGTERM and SIGHUP.
@@ -69,8 +73,8 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
             return u8::try_from(usage.exit_code()).unwrap_or(2);
         }
     };
-    let session = Session::new(cli.global);
-    let done = answer(cli.verb, &session);
+    let mut session = Session::new(cli.global.clone());
+    let done = perform(cli, &mut session);
     session.progress.clear();
     match done.and_then(|answer| answer.print(session.json)) {
         Ok(code) => code,
@@ -79,6 +83,44 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
             failure.exit_code()
         }
     }
+}
+
+/// Runs the command with these arguments as [`run`] does, but prints nothing, and returns the JSON
+/// that `--json` prints.
+///
+/// `listener` is told how many files of a batch, or parts of other work, are done, and of how many.
+///
+/// # Errors
+/// The line that [`run`] prints, of failures and wrong usage.
+pub fn answer_of<A: Into<OsString> + Clone>(
+    arguments: impl IntoIterator<Item = A>,
+    listener: impl Fn(usize, usize) + Send + Sync + 'static,
+) -> Result<String, String> {
+    let cli = Cli::try_parse_from(arguments).map_err(|usage| recipe::one_line(&usage))?;
+    let progress = Progress::told(Box::new(listener));
+    let mut session = Session::heard(cli.global.clone(), progress);
+    let done = perform(cli, &mut session).map_err(|failure| failure.to_string())?;
+    Ok(done.json.to_string())
+}
+
+/// Does one file of a batch and returns its report as JSON, for workers in other processes.
+///
+/// `arguments` are the `arguments` of a dry run (`meshlod batch … --dry-run --json`), `input` and
+/// `output` those of one of its files. The output is written whole or not at all; a failure is told
+/// by the report.
+pub fn run_file_of_batch(arguments: Vec<OsString>, input: &Path, output: &Path) -> String {
+    batch::run_file_json(arguments, input, output)
+}
+
+/// Notes that a file of a batch was made elsewhere, so that later batches skip it.
+///
+/// `folder` is the output folder, `recipe` that of the dry run, `report` what
+/// [`run_file_of_batch`] returned; reports of failures are ignored.
+///
+/// # Errors
+/// One line, if the journal in the folder cannot be written.
+pub fn record_file_of_batch(folder: &Path, recipe: &str, report: &str) -> Result<(), String> {
+    batch::record_json(folder, recipe, report).map_err(|failure| failure.to_string())
 }
 
 /// Makes Ctrl-C, SIGTERM and SIGHUP end the process with exit code 130, without temporary files.
@@ -90,6 +132,18 @@ pub fn end_at_signals() {
         meshlod::io::abandon_files();
         exit(INTERRUPTED);
     });
+}
+
+fn perform(cli: Cli, session: &mut Session) -> Result<Answer, Failure> {
+    match cli.task {
+        Task::Verb(verb) => answer(verb, session),
+        Task::Batch(batch) => batch::run(&batch, cli.global, session),
+        Task::Run(run) => {
+            let line = run.line(cli.global)?;
+            session.ask(line.global);
+            answer(line.verb, session)
+        }
+    }
 }
 
 fn answer(verb: Verb, session: &Session) -> Result<Answer, Failure> {

@@ -59,6 +59,18 @@ impl fmt::Display for LevelSize {
     }
 }
 
+/// Suffix of a file format.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Suffix {
+    /// The suffix, without a dot.
+    pub text: String,
+    /// Format of a mesh; `None` for files of our own and pictures.
+    pub mesh: Option<Format>,
+}
+
+/// Suffixes of files that are written, but neither read nor written through a pipe as meshes.
+const OTHER_SUFFIXES: [&str; 4] = ["mlod", "mlq", "mlz", "png"];
+
 /// Viewing direction, as the name of a side or as a vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ViewDirection {
@@ -186,10 +198,15 @@ fn names() -> String {
     Method::ALL.map(Method::name).join(", ")
 }
 
-/// Parses a file format given by its suffix, such as `ply`.
-pub fn format(text: &str) -> Result<Format, String> {
-    let known = || Format::ALL.map(|(suffix, _)| suffix).join(", ");
-    Format::of_suffix(text).ok_or_else(|| format!("the formats are {}", known()))
+/// Parses a suffix, such as `ply`.
+pub fn suffix(text: &str) -> Result<Suffix, String> {
+    let meshes = Format::ALL.map(|(suffix, _)| suffix);
+    match Format::of_suffix(text) {
+        None if !OTHER_SUFFIXES.contains(&text) => {
+            Err(format!("the formats are {}", [&meshes[..], &OTHER_SUFFIXES].concat().join(", ")))
+        }
+        mesh => Ok(Suffix { text: text.into(), mesh }),
+    }
 }
 
 /// Parses the type of written coordinates: `f32` or `f64`.
