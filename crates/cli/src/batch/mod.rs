@@ -176,13 +176,18 @@ fn answer(
 }
 
 /// Does one file of a batch, as a worker elsewhere does, and returns its report as JSON. `arguments`
-/// are those of a dry run, without paths.
+/// are those of a dry run, without paths; the file gets one thread unless they say otherwise.
 pub fn run_file_json(mut arguments: Vec<OsString>, input: &Path, output: &Path) -> String {
     let job = FileJob { input: input.into(), output: output.into() };
     arguments.extend([input.as_os_str().to_owned(), output.as_os_str().to_owned()]);
     let line = VerbLine::try_parse_from(arguments);
     let line = line.map_err(|error| Failure::usage(one_line(&error)));
-    file::run_file(line, &job).to_json().to_string()
+    let threads = line.as_ref().ok().and_then(|line| line.global.threads).unwrap_or(1);
+    let report = match workers::pool(threads) {
+        Ok(pool) => pool.install(|| file::run_file(line, &job)),
+        Err(failure) => file::run_file(Err(failure), &job),
+    };
+    report.to_json().to_string()
 }
 
 /// Notes in the journal of `folder` that a worker elsewhere has made a file, given its report.

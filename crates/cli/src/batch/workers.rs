@@ -30,11 +30,15 @@ impl<'g> Crew<'g> {
         let jobs = jobs.unwrap_or(cores);
         Self { jobs, threads: global.threads.unwrap_or((cores / jobs).max(1)), global }
     }
+}
 
-    fn pool(&self) -> Result<ThreadPool, Failure> {
-        let pool = ThreadPoolBuilder::new().num_threads(self.threads).stack_size(STACK_BYTES);
-        pool.build().map_err(|error| Failure::new(format_args!("--jobs: {error}")))
-    }
+/// Starts the threads of one file at a time.
+///
+/// # Errors
+/// If the system has none left.
+pub fn pool(threads: usize) -> Result<ThreadPool, Failure> {
+    let pool = ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK_BYTES);
+    pool.build().map_err(|error| Failure::new(format_args!("cannot start threads: {error}")))
 }
 
 /// Makes all files, the largest first, so that no long one is left for the end; tells of each when
@@ -51,7 +55,7 @@ pub fn run_jobs(
     let bytes = |job: &FileJob| FileState::of(&job.input).map_or(0, |state| state.bytes);
     let mut order: Vec<usize> = (0..jobs.len()).collect();
     order.sort_by_cached_key(|&at| std::cmp::Reverse(bytes(jobs[at])));
-    let pools = (0..crew.jobs.min(jobs.len())).map(|_| crew.pool());
+    let pools = (0..crew.jobs.min(jobs.len())).map(|_| pool(crew.threads));
     let pools = pools.collect::<Result<Vec<_>, _>>()?;
     let queue = Queue { jobs, order, next: AtomicUsize::new(0), stopped: AtomicBool::new(false) };
     thread::scope(|scope| {

@@ -47,11 +47,15 @@ enum Source {
 }
 
 impl Recipe {
-    /// Reads a recipe; the suffix of the file decides about its syntax.
+    /// Reads a recipe; the suffix of the file decides about its syntax. What begins with a brace is
+    /// itself a recipe, in JSON, with paths relative to the current folder.
     ///
     /// # Errors
     /// Of the system, of the syntax, and keys that the verb does not have, with their lines.
     pub fn read(path: &Path) -> Result<Self, Failure> {
+        if let Some(text) = path.to_str().filter(|text| text.trim_start().starts_with('{')) {
+            return Self::parse(text, Syntax::Json, Path::new("recipe"));
+        }
         let suffix = path.extension().unwrap_or_default().to_ascii_lowercase();
         let syntax = match suffix.to_str() {
             Some("toml") => Syntax::Toml,
@@ -92,7 +96,8 @@ impl Recipe {
                 .add(entry, folder, &mut recipe)
                 .map_err(|reason| wrong(Fault { line: entry.line, reason }))?;
         }
-        recipe.options.sort();
+        // Stable: values of one option keep their order.
+        recipe.options.sort_by(|a, b| a.name.cmp(&b.name));
         let lines = entries.into_iter().map(|entry| (entry.key, entry.line)).collect();
         recipe.source = Source::File { path: path.to_owned(), lines };
         Ok(recipe)
@@ -100,7 +105,7 @@ impl Recipe {
 
     /// Makes a recipe of options that the command-line parser has accepted.
     pub fn of_options(verb: &str, mut options: Vec<Spelled>) -> Self {
-        options.sort();
+        options.sort_by(|a, b| a.name.cmp(&b.name));
         Self { verb: verb.into(), options, places: Vec::new(), source: Source::CommandLine }
     }
 

@@ -13,7 +13,7 @@ use crate::recipe::Recipe;
 use crate::recipe::text::{Entry, Given};
 
 /// An option with its value, as it is given on the command line.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Spelled {
     /// Long name, without dashes.
     pub name: String,

@@ -22,8 +22,8 @@ pub struct Batch {
     /// Folder to write to
     #[arg(value_name = "OUT", required = true)]
     pub output: PathBuf,
-    /// Recipe in place of the options of simplify: a .toml or .json file, as for the verb run, of a
-    /// verb with IN and OUT
+    /// Recipe in place of the options of simplify, for a verb with IN and OUT: a .toml or .json file
+    /// as for the verb run, or its JSON itself, in braces
     #[arg(long, value_name = "FILE")]
     recipe: Option<PathBuf>,
     /// Number of files at a time, each on cores / N threads unless --threads is given [default: one

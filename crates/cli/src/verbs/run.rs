@@ -14,7 +14,7 @@ use crate::recipe::Recipe;
 /// recipe are relative to its folder
 #[derive(Args)]
 pub struct Run {
-    /// Recipe, a .toml or .json file
+    /// Recipe, a .toml or .json file, or its JSON itself, in braces
     #[arg(value_name = "RECIPE")]
     recipe: PathBuf,
     /// Paths in place of those of the recipe, in the order of the verb: mostly IN OUT
