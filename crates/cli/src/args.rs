@@ -4,12 +4,12 @@ use clap::{Args, ValueEnum};
 use meshlod::io::{Precision, Weld};
 use meshlod::mesh::AttributeBounds;
 use meshlod::picture::{UpAxis, View};
-use meshlod::{Format, ReadOptions, Scene, WriteOptions};
+use meshlod::{ReadOptions, Scene, WriteOptions};
 
-use crate::parse::{self, ViewDirection};
+use crate::parse::{self, Suffix, ViewDirection};
 
 /// Options of every verb.
-#[derive(Args)]
+#[derive(Clone, Args)]
 #[command(next_help_heading = "Global options")]
 pub struct GlobalArgs {
     /// Print one JSON object to standard output and nothing else; messages go to standard error
@@ -26,9 +26,22 @@ pub struct GlobalArgs {
     #[arg(short = 'j', long, global = true, value_name = "N", value_parser = parse::threads,
         allow_negative_numbers = true)]
     pub threads: Option<usize>,
-    /// Format of standard input and output (-), as a suffix: ply, glb, …
-    #[arg(long, global = true, value_name = "SUFFIX")]
-    pub format: Option<Format>,
+    /// Format of standard input and output (-) and of the files of a batch, as a suffix: ply, glb, …
+    #[arg(long, global = true, value_name = "SUFFIX", value_parser = parse::suffix)]
+    pub format: Option<Suffix>,
+}
+
+impl GlobalArgs {
+    /// Returns these options, and of those that are not given the others.
+    pub fn or(self, others: Self) -> Self {
+        Self {
+            json: self.json || others.json,
+            strict: self.strict || others.strict,
+            quiet: self.quiet || others.quiet,
+            threads: self.threads.or(others.threads),
+            format: self.format.or(others.format),
+        }
+    }
 }
 
 /// Options of every verb that reads meshes.

@@ -9,8 +9,8 @@ use crate::demo::Demo;
 use crate::failure::Failure;
 use crate::session::Session;
 use crate::verbs::{
-    build, check, completions, compress, convert, decompress, extract, flock, info, lods, man,
-    measure, render, repair, replay, sample, simplify, strip, view,
+    batch, build, check, completions, compress, convert, decompress, extract, flock, info, lods,
+    man, measure, render, repair, replay, run, sample, simplify, strip, view,
 };
 
 /// Level of detail for triangle meshes.
@@ -20,6 +20,25 @@ use crate::verbs::{
 #[derive(Parser)]
 #[command(name = "meshlod", version, max_term_width = 100)]
 pub struct Cli {
+    #[command(flatten)]
+    pub global: GlobalArgs,
+    #[command(subcommand)]
+    pub task: Task,
+}
+
+/// One verb, or several runs of verbs.
+#[derive(Subcommand)]
+pub enum Task {
+    #[command(flatten)]
+    Verb(Verb),
+    Batch(batch::Batch),
+    Run(run::Run),
+}
+
+/// Command line with one verb, as a recipe has it.
+#[derive(Parser)]
+#[command(name = "meshlod", disable_help_subcommand = true)]
+pub struct VerbLine {
     #[command(flatten)]
     pub global: GlobalArgs,
     #[command(subcommand)]

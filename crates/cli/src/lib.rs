@@ -7,6 +7,7 @@
 
 mod answer;
 mod args;
+mod batch;
 mod check;
 mod command;
 mod compare;
@@ -30,6 +31,7 @@ mod parse;
 mod poses;
 mod progress;
 mod query_args;
+mod recipe;
 mod report_head;
 mod scene_files;
 mod sequence;
@@ -43,14 +45,16 @@ mod view;
 mod volume;
 
 use std::ffi::OsString;
+use std::path::Path;
 use std::process::exit;
 
 use clap::{CommandFactory, FromArgMatches};
 use serde_json::Value;
 
 use crate::answer::Answer;
-use crate::command::{Cli, Verb};
+use crate::command::{Cli, Task, Verb};
 use crate::failure::Failure;
+use crate::progress::Progress;
 use crate::session::Session;
 
 /// Exit code that shells report for Ctrl-C; also used for SIGTERM and SIGHUP.
@@ -67,8 +71,8 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
         Ok(parsed) => parsed,
         Err(usage) => return refuse(&usage, arguments.iter().any(|argument| argument == "--json")),
     };
-    let session = Session::new(cli.global);
-    let done = answer(&verb, cli.verb, &session);
+    let mut session = Session::new(cli.global.clone());
+    let done = perform(&verb, cli, &mut session);
     session.progress.clear();
     match done.and_then(|answer| answer.print(&session)) {
         Ok(code) => code,
@@ -105,6 +109,45 @@ fn refuse(usage: &clap::Error, json: bool) -> u8 {
     u8::try_from(usage.exit_code()).unwrap_or(2)
 }
 
+/// Runs the command with these arguments as [`run`] does, but prints nothing, and returns the JSON
+/// that `--json` prints.
+///
+/// `listener` is told how many files of a batch, or parts of other work, are done, and of how many.
+///
+/// # Errors
+/// The line that [`run`] prints, of failures and wrong usage.
+pub fn answer_of<A: Into<OsString> + Clone>(
+    arguments: impl IntoIterator<Item = A>,
+    listener: impl Fn(usize, usize) + Send + Sync + 'static,
+) -> Result<String, String> {
+    let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+    let (verb, cli) = parse(&arguments).map_err(|usage| recipe::one_line(&usage))?;
+    let progress = Progress::told(Box::new(listener));
+    let mut session = Session::heard(cli.global.clone(), progress);
+    let done = perform(&verb, cli, &mut session).map_err(|failure| failure.to_string())?;
+    Ok(done.json.to_string())
+}
+
+/// Does one file of a batch and returns its report as JSON, for workers in other processes.
+///
+/// `arguments` are the `arguments` of a dry run (`meshlod batch … --dry-run --json`), `input` and
+/// `output` those of one of its files. The output is written whole or not at all; a failure is told
+/// by the report.
+pub fn run_file_of_batch(arguments: Vec<OsString>, input: &Path, output: &Path) -> String {
+    batch::run_file_json(arguments, input, output)
+}
+
+/// Notes that a file of a batch was made elsewhere, so that later batches skip it.
+///
+/// `folder` is the output folder, `recipe` that of the dry run, `report` what
+/// [`run_file_of_batch`] returned; reports of failures are ignored.
+///
+/// # Errors
+/// One line, if the journal in the folder cannot be written.
+pub fn record_file_of_batch(folder: &Path, recipe: &str, report: &str) -> Result<(), String> {
+    batch::record_json(folder, recipe, report).map_err(|failure| failure.to_string())
+}
+
 /// Makes Ctrl-C, SIGTERM and SIGHUP end the process with exit code 130, without temporary files.
 ///
 /// For processes that do nothing else: no destructor runs. Where a handler is set already, it stays.
@@ -116,7 +159,22 @@ pub fn end_at_signals() {
     });
 }
 
-fn answer(name: &str, verb: Verb, session: &Session) -> Result<Answer, Failure> {
+fn perform(name: &str, cli: Cli, session: &mut Session) -> Result<Answer, Failure> {
+    let (name, mut answer) = match cli.task {
+        Task::Verb(verb) => (name.to_owned(), answer(verb, session)?),
+        Task::Batch(batch) => (name.to_owned(), batch::run(&batch, cli.global, session)?),
+        Task::Run(run) => {
+            let recipe = run.recipe()?;
+            let line = recipe.line(&run.paths)?;
+            session.ask(cli.global.or(line.global));
+            (recipe.verb, answer(line.verb, session)?)
+        }
+    };
+    answer.json = report_head::with_head(&name, answer.json);
+    Ok(answer)
+}
+
+fn answer(verb: Verb, session: &Session) -> Result<Answer, Failure> {
     let mut answer = match verb {
         // Windows belong to the main thread.
         Verb::View(_) => {
@@ -128,7 +186,6 @@ fn answer(name: &str, verb: Verb, session: &Session) -> Result<Answer, Failure> 
     if let Value::Object(json) = &mut answer.json {
         json.insert("notes".into(), session.take_notes().into());
     }
-    answer.json = report_head::with_head(name, answer.json);
     Ok(answer)
 }
 

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use meshlod::{Method, Target};
+use meshlod::{Format, Method, Target};
 
 use crate::numbers::{count, plural};
 
@@ -57,6 +57,18 @@ impl fmt::Display for LevelSize {
         }
     }
 }
+
+/// Suffix of a file format.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Suffix {
+    /// The suffix, without a dot.
+    pub text: String,
+    /// Format of a mesh; `None` for files of our own and pictures.
+    pub mesh: Option<Format>,
+}
+
+/// Suffixes of files that are written, but neither read nor written through a pipe as meshes.
+const OTHER_SUFFIXES: [&str; 4] = ["mlod", "mlq", "mlz", "png"];
 
 /// Viewing direction, as the name of a side or as a vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -178,6 +190,17 @@ pub fn methods() -> String {
 
 fn names() -> String {
     Method::ALL.map(Method::name).join(", ")
+}
+
+/// Parses a suffix, such as `ply`.
+pub fn suffix(text: &str) -> Result<Suffix, String> {
+    let meshes = Format::ALL.map(|(suffix, _)| suffix);
+    match Format::of_suffix(text) {
+        None if !OTHER_SUFFIXES.contains(&text) => {
+            Err(format!("the formats are {}", [&meshes[..], &OTHER_SUFFIXES].concat().join(", ")))
+        }
+        mesh => Ok(Suffix { text: text.into(), mesh }),
+    }
 }
 
 fn at_most(most: usize, text: &str) -> Result<usize, String> {

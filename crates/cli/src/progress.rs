@@ -9,7 +9,11 @@ use meshlod::simplify::Observe;
 /// Progress line on standard error.
 pub struct Progress {
     bar: ProgressBar,
+    listener: Option<Listener>,
 }
+
+/// Function that is told how many of a known number of things are done.
+pub type Listener = Box<dyn Fn(usize, usize) + Send + Sync>;
 
 impl Progress {
     /// Makes a line that is hidden if `quiet`, or where standard error is no terminal.
@@ -21,7 +25,17 @@ impl Progress {
         if on_terminal {
             bar.enable_steady_tick(Duration::from_millis(100));
         }
-        Self { bar }
+        Self { bar, listener: None }
+    }
+
+    /// Creates a progress line that is never shown.
+    pub fn hidden() -> Self {
+        Self { bar: ProgressBar::hidden(), listener: None }
+    }
+
+    /// Creates a progress line that is never shown, but told to a listener where numbers are known.
+    pub fn told(listener: Listener) -> Self {
+        Self { listener: Some(listener), ..Self::hidden() }
     }
 
     /// Shows a stage of work of unknown length.
@@ -51,6 +65,9 @@ impl Progress {
             self.bar.set_length(of as u64);
         }
         self.bar.set_position(done as u64);
+        if let Some(listener) = &self.listener {
+            listener(done, of);
+        }
     }
 
     /// Runs `act` while the progress line is hidden.

@@ -16,7 +16,7 @@ use crate::files;
 use crate::progress::Progress;
 
 /// Stack of a thread that does the work of a verb: that of a main thread.
-const STACK_BYTES: usize = 8 << 20;
+pub const STACK_BYTES: usize = 8 << 20;
 
 /// State of one run of the program.
 pub struct Session {
@@ -34,21 +34,46 @@ pub struct Session {
     threads: Option<usize>,
     /// Notes on files so far, for the JSON object.
     notes: Mutex<Vec<Value>>,
+    /// Warnings so far, where they are kept for somebody else to print.
+    kept_warnings: Option<Mutex<Vec<String>>>,
 }
 
 impl Session {
     pub fn new(global: GlobalArgs) -> Self {
+        let progress = Progress::new(global.quiet);
+        Self::with(global, progress)
+    }
+
+    fn with(global: GlobalArgs, progress: Progress) -> Self {
         let GlobalArgs { json, strict, quiet, threads, format } = global;
         Self {
             json,
             quiet,
             strict,
-            format,
-            progress: Progress::new(quiet),
+            format: format.and_then(|suffix| suffix.mesh),
+            progress,
             started: Instant::now(),
             threads,
             notes: Mutex::default(),
+            kept_warnings: None,
         }
+    }
+
+    /// Creates a session that prints nothing: it shows no progress and keeps warnings.
+    pub fn silent(global: GlobalArgs) -> Self {
+        Self::heard(global, Progress::hidden())
+    }
+
+    /// Creates a session that prints nothing: it keeps warnings, and tells of its progress.
+    pub fn heard(global: GlobalArgs, progress: Progress) -> Self {
+        Self { kept_warnings: Some(Mutex::default()), ..Self::with(global, progress) }
+    }
+
+    /// Takes over options, those of a recipe with those of its run.
+    pub fn ask(&mut self, global: GlobalArgs) {
+        let GlobalArgs { json, strict, quiet, threads, format } = global;
+        (self.json, self.strict, self.quiet, self.threads) = (json, strict, quiet, threads);
+        self.format = format.and_then(|suffix| suffix.mesh);
     }
 
     /// Does `work` on the number of threads that was asked for, however many other runs in the
@@ -74,12 +99,22 @@ impl Session {
         }
     }
 
-    /// Prints a warning to standard error, unless `--quiet` was given.
+    /// Prints a warning to standard error, unless `--quiet` was given, or keeps it.
     pub fn warn(&self, line: impl fmt::Display) {
-        if self.quiet {
-            return;
+        match &self.kept_warnings {
+            Some(kept) => {
+                kept.lock().unwrap_or_else(PoisonError::into_inner).push(line.to_string())
+            }
+            None if self.quiet => {}
+            None => self.progress.suspend(|| say(format_args!("warning: {line}"))),
         }
-        self.progress.suspend(|| say(format_args!("warning: {line}")));
+    }
+
+    /// Returns the warnings that were kept.
+    pub fn take_warnings(&self) -> Vec<String> {
+        let kept = self.kept_warnings.as_ref();
+        kept.map(|kept| std::mem::take(&mut *kept.lock().unwrap_or_else(PoisonError::into_inner)))
+            .unwrap_or_default()
     }
 
     /// Warns of what was left out or changed on the way from or to a file, with what to do about
@@ -108,9 +143,12 @@ impl Session {
         std::mem::take(&mut *self.notes.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Prints the reason why a command failed.
+    /// Prints the reason why a command or one of its files failed, unless the session prints
+    /// nothing.
     pub fn complain(&self, failure: &Failure) {
-        say(failure);
+        if self.kept_warnings.is_none() {
+            self.progress.suspend(|| say(failure));
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Atomic file replacement: a temporary file in the same folder, renamed when complete.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -26,6 +27,35 @@ pub fn abandon_files() {
         // Nothing could be done about a failure here.
         let _ = fs::remove_file(path);
     }
+}
+
+/// Removes temporary files that processes which were killed have left beside these paths.
+///
+/// For callers who know that no other process is writing to them. Cost: reads each folder once.
+pub fn remove_abandoned<'p>(paths: impl IntoIterator<Item = &'p Path>) {
+    let mut folders: BTreeMap<&Path, BTreeSet<&str>> = BTreeMap::new();
+    for path in paths {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        let name = path.file_name().and_then(|name| name.to_str());
+        folders.entry(folder.unwrap_or(Path::new("."))).or_default().extend(name);
+    }
+    for (folder, names) in folders {
+        for file in fs::read_dir(folder).into_iter().flatten().flatten() {
+            let found = file.file_name();
+            if found.to_str().and_then(target_of).is_some_and(|target| names.contains(target)) {
+                // What cannot be removed does no harm.
+                let _ = fs::remove_file(file.path());
+            }
+        }
+    }
+}
+
+/// Returns the name that a temporary file would have got.
+fn target_of(temporary: &str) -> Option<&str> {
+    let (target, numbers) = temporary.strip_prefix('.')?.rsplit_once('.')?;
+    let (process, number) = numbers.split_once('-')?;
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    (is_number(process) && is_number(number)).then_some(target)
 }
 
 /// Writes a file with `fill`; the old one stays as it is until the new one is complete.
@@ -188,6 +218,17 @@ mod tests {
         assert!(failed.is_err(), "there is nothing to rename");
         assert!(!unfinished().iter().any(|other| other.starts_with(folder.path())));
         assert_eq!(fs::read(&path).unwrap(), b"old");
+    }
+
+    #[test]
+    fn what_a_killed_process_left_goes_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let names =
+            [".a.ply.17-0", ".a.ply.17-x", ".a.ply.17", ".ba.ply.1-1", "a.ply.1-1", "a.ply"];
+        names.iter().for_each(|name| fs::write(folder.path().join(name), name).unwrap());
+        remove_abandoned([folder.path().join("a.ply").as_path()]);
+        let left = names.map(|name| folder.path().join(name).exists());
+        assert_eq!(left, [false, true, true, true, true, true]);
     }
 
     #[cfg(unix)]

@@ -1,5 +1,6 @@
 //! Commands of the program, one per file: arguments, work, answer.
 
+pub mod batch;
 pub mod build;
 pub mod check;
 pub mod completions;
@@ -15,6 +16,7 @@ pub mod measure;
 pub mod render;
 pub mod repair;
 pub mod replay;
+pub mod run;
 pub mod sample;
 pub mod simplify;
 pub mod strip;

@@ -1,5 +1,6 @@
 //! Tests of the program from outside: exit codes, streams, files.
 
+mod batch;
 mod check;
 mod compare;
 mod compress;
@@ -24,6 +25,7 @@ mod model_scenes;
 mod models;
 mod pipes;
 mod queries;
+mod recipes;
 mod repair;
 mod run;
 mod scans;

@@ -16,7 +16,7 @@ use clap::Parser;
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
-use crate::command::Cli;
+use crate::command::VerbLine;
 use crate::demo::sample_report::SampleReport;
 use crate::failure::Failure;
 use crate::files;
@@ -88,9 +88,9 @@ fn run(words: &[&str], folder: &Path, session: &Session) -> Result<Value, Failur
         false => OsString::from(word),
     });
     let line = std::iter::once(OsString::from("meshlod")).chain(placed);
-    let cli = Cli::try_parse_from(line).map_err(Failure::new)?;
+    let line = VerbLine::try_parse_from(line).map_err(Failure::new)?;
     // The mesh is broken on purpose: that `check` finds errors is no failure.
-    let Answer { json, .. } = cli.verb.run(session)?;
+    let Answer { json, .. } = line.verb.run(session)?;
     Ok(json)
 }
 

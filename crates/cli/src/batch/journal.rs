@@ -1,0 +1,99 @@
+//! What a batch has made, one line for each file, beside the outputs.
+//!
+//! A line is written once its output is complete and in its place. It holds the recipe and the
+//! states of input and output; an output counts as there while all of these are as they were. A line
+//! that is cut off, as by a full disk, counts for nothing.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+
+use crate::batch::file::FileState;
+use crate::batch::plan::FileJob;
+use crate::batch::report::{FileReport, Status};
+use crate::failure::Failure;
+
+/// Name of the journal in an output folder.
+const NAME: &str = ".meshlod-batch.jsonl";
+
+/// Journal of an output folder.
+pub struct Journal {
+    path: PathBuf,
+    /// Recipe and report by which each output was made last.
+    made: BTreeMap<String, (String, FileReport)>,
+    /// The file, once a line is added.
+    file: Option<File>,
+}
+
+impl Journal {
+    /// Makes a journal of which nothing is known, to add lines to.
+    pub fn new(folder: &Path) -> Self {
+        Self { path: folder.join(NAME), made: BTreeMap::new(), file: None }
+    }
+
+    /// Reads the journal of a folder, if there is one.
+    ///
+    /// # Errors
+    /// Of the system.
+    pub fn read(folder: &Path) -> Result<Self, Failure> {
+        let mut journal = Self::new(folder);
+        let bytes = match fs::read(&journal.path) {
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(journal),
+            read => read.map_err(|error| Failure::at(&journal.path, error))?,
+        };
+        for line in bytes.split(|&byte| byte == b'\n') {
+            let entry = serde_json::from_slice(line).ok().and_then(|json: Value| {
+                let report = FileReport::from_json(&json["report"])?;
+                Some((json["recipe"].as_str()?.to_owned(), report))
+            });
+            if let Some((recipe, report)) = entry {
+                journal.made.insert(report.output.clone(), (recipe, report));
+            }
+        }
+        Ok(journal)
+    }
+
+    /// Returns the report of an output that is there and as this recipe would make it.
+    pub fn made(&self, job: &FileJob, recipe: &str) -> Option<FileReport> {
+        let planned = FileReport::planned(job);
+        let (made_by, report) = self.made.get(&planned.output)?;
+        let states = [FileState::of(&job.input)?, FileState::of(&job.output)?];
+        let same = made_by == recipe
+            && report.input == planned.input
+            && [report.input_state, report.output_state] == states.map(Some);
+        same.then(|| FileReport { status: Status::Skipped, ..report.clone() })
+    }
+
+    /// Adds a line for a file that was made.
+    ///
+    /// # Errors
+    /// Of the system.
+    pub fn add(&mut self, report: &FileReport, recipe: &str) -> Result<(), Failure> {
+        if report.status != Status::Done {
+            return Ok(());
+        }
+        let line = json!({ "recipe": recipe, "report": report.to_json() });
+        let mut append = || -> io::Result<()> {
+            let file = match &mut self.file {
+                Some(file) => file,
+                file => file.insert(open(&self.path)?),
+            };
+            // In one piece, so that lines of two processes do not mix.
+            file.write_all(format!("{line}\n").as_bytes())
+        };
+        append().map_err(|error| Failure::at(&self.path, error))
+    }
+}
+
+/// Opens a journal to add lines, after the end of a line that was cut off.
+fn open(path: &Path) -> io::Result<File> {
+    let whole = fs::read(path).map_or(true, |bytes| bytes.last().is_none_or(|&last| last == b'\n'));
+    let mut file = OpenOptions::new().append(true).create(true).open(path)?;
+    if !whole {
+        file.write_all(b"\n")?;
+    }
+    Ok(file)
+}
