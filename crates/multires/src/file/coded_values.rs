@@ -23,14 +23,12 @@ impl CodedValues {
     ) -> Result<WedgeValues, &'static str> {
         let rows = select_rows(&self.rows, self.columns, wedges);
         let mut numbers = wedge_values::restored(mt, all, &self.coding, rows);
-        let mut values = Vec::new();
         for row in numbers.chunks_exact_mut(self.columns.max(1)) {
             let mut start = 0;
             for coding in &self.coding {
                 let numbers = &mut row[start..start + coding.columns()];
                 start += numbers.len();
-                values.clear();
-                if coding.decode(numbers, &mut values).is_none() {
+                if !coding.are_finite(numbers) {
                     if has_all {
                         return Err("an attribute is not finite");
                     }

@@ -202,12 +202,13 @@ impl Header {
             resources,
             has_old_resources: index == ResourceIndex::Old,
         };
-        let known = LOSSLESS | WEDGES | OLD_RESOURCES | RESOURCES | STAGES | OLD_PAIRS | PREDICTED;
+        let known =
+            LOSSLESS | WEDGES | OLD_RESOURCES | RESOURCES | STAGES | OLD_PREDICTED | PREDICTED;
         let has = |flag: u8| bytes[BODY_AT + 3] & flag != 0;
-        if has(!known) || !this.has_wedges && has(OLD_PAIRS | PREDICTED) {
+        if has(!known) || !this.has_wedges && has(OLD_PREDICTED | PREDICTED) {
             return Err(bad(UNKNOWN_FLAGS));
         }
-        if this.has_wedges && (has(OLD_PAIRS) || !has(PREDICTED)) {
+        if this.has_wedges && (has(OLD_PREDICTED) || !has(PREDICTED)) {
             return Err(bad(OLD_WEDGES));
         }
         if this.updates() > MAX_UPDATES || this.roots as usize > MAX_UPDATES {
@@ -237,11 +238,11 @@ const OLD_RESOURCES: u8 = 4;
 const RESOURCES: u8 = 8;
 /// Flag of a file whose updates have stages.
 const STAGES: u8 = 16;
-/// Flag of a file whose values of wedges have the second form that was never released.
-const OLD_PAIRS: u8 = 32;
-/// Flag of a file whose values of wedges are predicted from the faces around; those of the first form
-/// that was never released have neither.
-const PREDICTED: u8 = 64;
+/// Flags of files whose values of wedges have one of the later forms that were never released; those
+/// of the first have none.
+const OLD_PREDICTED: u8 = 32 | 64;
+/// Flag of a file whose values of wedges are predicted by their shares.
+const PREDICTED: u8 = 128;
 /// Message for a file of these forms.
 const OLD_WEDGES: &str = "its attributes are in a form that was never released; build it again";
 /// Message for any other flag.

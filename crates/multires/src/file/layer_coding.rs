@@ -98,6 +98,18 @@ impl LayerCoding {
         }
     }
 
+    /// Returns true if the values of a wedge are finite.
+    pub(super) fn are_finite(&self, numbers: &[i32]) -> bool {
+        match self.numbers {
+            Numbers::Directions(_) => true,
+            Numbers::Steps(exponent) => {
+                let step = step(exponent);
+                numbers.iter().all(|&x| ((f64::from(x) * step) as f32).is_finite())
+            }
+            Numbers::Bits => numbers.iter().all(|&x| f32::from_bits(ordered(x) as u32).is_finite()),
+        }
+    }
+
     /// Appends the values of a wedge, or returns `None` if one is not finite.
     pub(crate) fn decode(&self, numbers: &[i32], to: &mut Vec<f32>) -> Option<()> {
         let start = to.len();

@@ -15,6 +15,7 @@ mod coded_values;
 mod container;
 mod decoder_state;
 mod exact_coding;
+mod fixed_order;
 mod header;
 mod lattice;
 mod layer_coding;

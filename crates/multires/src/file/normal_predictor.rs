@@ -5,6 +5,8 @@
 
 use glam::{DVec3, Vec3};
 
+use super::fixed_order::{cross, length};
+
 /// Plane through a node, approximately tangent to the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct NormalPredictor {
@@ -21,10 +23,10 @@ impl NormalPredictor {
     pub(super) fn from_ancestors(above: [Option<[Vec3; 2]>; 3]) -> Self {
         let [a, b, c] =
             above.map(|family| family.map_or(DVec3::ZERO, |[a, b]| b.as_dvec3() - a.as_dvec3()));
-        let (first, second) = (a.cross(b), a.cross(c));
+        let (first, second) = (cross(a, b), cross(a, c));
         // Both sines are scaled by the lengths of `b` and `c`, to compare them without a division.
-        let is_clear = first.length() >= MIN_SINE * a.length() * b.length();
-        let is_better = second.length() * b.length() > first.length() * c.length();
+        let is_clear = length(first) >= MIN_SINE * length(a) * length(b);
+        let is_better = length(second) * length(b) > length(first) * length(c);
         let normal = if is_clear || !is_better { first } else { second };
         let normal = if normal == DVec3::ZERO { DVec3::Z } else { normal };
         Self { normal, axis: normal.abs().max_position() }

@@ -1,13 +1,17 @@
 //! Values of a wedge with one child at either node: the difference of both, and by how much the
 //! parent is off the place between them.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
+use super::fixed_order::dot;
 use super::lineage::Lineage;
-use super::octahedral_plane::{OctahedralPlane, Place};
-use super::slope::Slope;
-use super::value_prediction::{LayerColumns, PairSlopes};
+use super::octahedral_plane::Place;
+use super::slope::Slopes;
+use super::value_prediction::{DirectionColumns, LayerColumns};
 use super::wedge_values::Values;
+use crate::cut::StarFace;
 
 /// The children of a wedge, one at each node, and the wedge between them.
 pub(super) struct Pair {
@@ -17,6 +21,30 @@ pub(super) struct Pair {
     part: f64,
     /// Way to the parent from that place.
     aside: DVec3,
+}
+
+/// Wedges by which the values of a pair are predicted, with their shares.
+#[derive(Default)]
+pub(super) struct PairShares {
+    pub(super) slopes: Slopes,
+    /// In the changes from the parent to both children.
+    children: Vec<[f64; 2]>,
+    /// In the change aside, to the parent from its place on the line between them.
+    aside: Vec<[f64; 1]>,
+}
+
+impl PairShares {
+    fn children(&self) -> impl Iterator<Item = (u32, [f64; 2])> {
+        self.slopes.wedges().iter().copied().zip(self.children.iter().copied())
+    }
+
+    fn difference(&self) -> impl Iterator<Item = (u32, f64)> {
+        self.children().map(|(wedge, [first, second])| (wedge, second - first))
+    }
+
+    fn aside(&self) -> impl Iterator<Item = (u32, f64)> {
+        self.slopes.wedges().iter().copied().zip(self.aside.iter().map(|[share]| *share))
+    }
 }
 
 impl Pair {
@@ -34,58 +62,82 @@ impl Values<'_> {
         let wedges = [first, of.parent?, second];
         let [a, p, b] = wedges.map(|wedge| self.known.place(wedge));
         let way = b - a;
-        let length = way.length_squared();
-        let part = if length > 0.0 { (way.dot(p - a) / length).clamp(0.0, 1.0) } else { 0.5 };
+        let squared = dot(way, way);
+        let part = if squared > 0.0 { (dot(way, p - a) / squared).clamp(0.0, 1.0) } else { 0.5 };
         Some(Pair { wedges, part, aside: p - a - part * way })
     }
 
+    /// Computes the shares of the wedges around a pair's parent in the values of the pair.
+    pub(super) fn share(&self, pair: &Pair, star: &[StarFace], shares: &mut PairShares) {
+        let [first, parent, second] = pair.wedges;
+        let PairShares { slopes, children, aside } = shares;
+        self.known.fit(parent, None, star, slopes);
+        slopes.shares([first, second].map(|child| self.known.way([child, parent])), children);
+        slopes.shares_around(pair.aside, aside);
+    }
+
     /// Replaces the values of a pair's parent by those that a file can hold.
-    pub(super) fn derive_parent(&mut self, pair: &Pair, layer: &LayerColumns, ring: &Slope) {
-        if let Some(bits) = layer.directions {
-            let plane = OctahedralPlane::new(bits);
-            let [a, p, b] = pair.wedges.map(|wedge| self.known.code(wedge, layer.start));
+    pub(super) fn derive_parent(&mut self, pair: &Pair, layer: &LayerColumns, shares: &PairShares) {
+        if let Some(directions) = layer.directions {
+            let plane = directions.plane();
+            let [a, p, b] = pair.wedges.map(|wedge| self.known.code(wedge, directions));
             let difference = apart(plane.near(b, a), a);
-            let (middle, step) = self.middle(pair, layer.start, a, difference);
+            let (middle, step) = self.middle(pair, directions, a, difference);
             let off = apart(plane.near(p, middle), middle);
             let off = [0, 1].map(|k| nearest(off[k], step[k]));
             let at = plane.code([0, 1].map(|k| middle[k] + off[k] * step[k])).0;
             let is_there = plane.steps_to(at, middle, step).is_some();
             let p = if is_there { at } else { plane.code(middle).0 };
-            self.set_code(pair.wedges[1], layer.start, p);
+            self.known.set_code(pair.wedges[1], directions, p);
         }
-        for column in layer.plain() {
-            let [a, p, b] = pair.wedges.map(|wedge| self.number(wedge, column));
-            let difference = b.wrapping_sub(a);
-            let between = self.between(pair, column, difference, ring);
-            let step = self.leeways[column].step(difference);
-            let off = nearest(p.wrapping_sub(a).wrapping_sub(between), step);
-            let p = a.wrapping_add(between).wrapping_add(off.wrapping_mul(step));
-            self.set(pair.wedges[1], column, p);
+        for columns in layer.plain() {
+            let asides = self.known.changes(layer, &columns, shares.aside());
+            for (column, aside) in columns.zip(asides) {
+                let [a, p, b] = pair.wedges.map(|wedge| self.number(wedge, column));
+                let difference = b.wrapping_sub(a);
+                let between = pair.between(difference).wrapping_add(aside);
+                let step = self.leeways[column].step(difference);
+                let off = nearest(p.wrapping_sub(a).wrapping_sub(between), step);
+                let p = a.wrapping_add(between).wrapping_add(off.wrapping_mul(step));
+                self.set(pair.wedges[1], column, p);
+            }
         }
     }
 
-    /// Returns by how much a number of the parent is expected to differ from that of the first child:
-    /// by its part of the difference, and by what the wedges around change aside from the line
-    /// between the children.
-    fn between(&self, pair: &Pair, column: usize, difference: i32, ring: &Slope) -> i32 {
-        pair.between(difference).wrapping_add(self.known.change(ring, pair.aside, column))
+    /// Returns by how much columns of the second child are expected to differ from the first, and
+    /// those of the parent from its place on the line between them.
+    fn expected(
+        &self,
+        layer: &LayerColumns,
+        columns: &Range<usize>,
+        shares: &PairShares,
+    ) -> impl Iterator<Item = [i32; 2]> + use<> {
+        let differences = self.known.changes(layer, columns, shares.difference());
+        let asides = self.known.changes(layer, columns, shares.aside());
+        differences.into_iter().zip(asides).map(|(difference, aside)| [difference, aside])
     }
 
     /// Returns the place at which a parent is expected, and the steps in which it is off that.
-    fn middle(&self, pair: &Pair, start: usize, a: Place, difference: Place) -> (Place, Place) {
+    fn middle(
+        &self,
+        pair: &Pair,
+        columns: DirectionColumns,
+        a: Place,
+        difference: Place,
+    ) -> (Place, Place) {
         let middle = [0, 1].map(|k| a[k].wrapping_add(pair.between(difference[k])));
-        (middle, [0, 1].map(|k| self.leeways[start + k].step(difference[k])))
+        (middle, [0, 1].map(|k| self.leeways[columns.start + k].step(difference[k])))
     }
 
-    fn predicted_places(
+    fn predicted_difference(
         &self,
         pair: &Pair,
         layer: &LayerColumns,
-        bits: u8,
-        slope: &Slope,
+        directions: DirectionColumns,
+        shares: &PairShares,
     ) -> Place {
         let [a, p, b] = pair.wedges;
-        let [a, b] = self.known.directions_at(slope, ([a, b], p), layer, bits);
+        let [a, b] = self.known.directions_at(([a, b], p), layer, directions, shares.children());
         apart(b, a)
     }
 
@@ -94,67 +146,69 @@ impl Values<'_> {
         &self,
         pair: &Pair,
         layer: &LayerColumns,
-        slopes: &PairSlopes,
+        shares: &PairShares,
         set: &mut impl FnMut(u32, usize, i32),
     ) {
         let [first, _, second] = pair.wedges;
-        if let Some(bits) = layer.directions {
-            let plane = OctahedralPlane::new(bits);
-            let [a, p, b] = pair.wedges.map(|wedge| self.known.code(wedge, layer.start));
+        if let Some(directions) = layer.directions {
+            let plane = directions.plane();
+            let [a, p, b] = pair.wedges.map(|wedge| self.known.code(wedge, directions));
             let mut difference = apart(plane.near(b, a), a);
-            let (middle, step) = self.middle(pair, layer.start, a, difference);
+            let (middle, step) = self.middle(pair, directions, a, difference);
             let (at, mut off) = plane.steps_to(p, middle, step).unwrap_or((middle, [0; 2]));
             if plane.code(at).1 {
                 // Seen from the parent, all is turned.
                 (difference, off) = (difference.map(|x| -x), off.map(|x| -x));
             }
-            let predicted = self.predicted_places(pair, layer, bits, &slopes.difference);
-            let line = self.known.line(pair.wedges[1], layer, bits);
+            let predicted = self.predicted_difference(pair, layer, directions, shares);
+            let line = self.known.line(pair.wedges[1], layer, directions);
             let (off, residual) = (line.encode(off), line.encode(apart(difference, predicted)));
             for k in 0..2 {
                 set(first, layer.start + k, off[k]);
                 set(second, layer.start + k, residual[k]);
             }
         }
-        let way = self.known.place(second) - self.known.place(first);
-        for column in layer.plain() {
-            let [a, p, b] = pair.wedges.map(|wedge| self.number(wedge, column));
-            let difference = b.wrapping_sub(a);
-            let between = self.between(pair, column, difference, &slopes.ring);
-            let off = p.wrapping_sub(a).wrapping_sub(between);
-            set(first, column, nearest(off, self.leeways[column].step(difference)));
-            let predicted = self.known.change(&slopes.difference, way, column);
-            set(second, column, difference.wrapping_sub(predicted));
+        for columns in layer.plain() {
+            let expected = self.expected(layer, &columns, shares);
+            for (column, [predicted, aside]) in columns.zip(expected) {
+                let [a, p, b] = pair.wedges.map(|wedge| self.number(wedge, column));
+                let difference = b.wrapping_sub(a);
+                let between = pair.between(difference).wrapping_add(aside);
+                let off = p.wrapping_sub(a).wrapping_sub(between);
+                set(first, column, nearest(off, self.leeways[column].step(difference)));
+                set(second, column, difference.wrapping_sub(predicted));
+            }
         }
     }
 
     /// Computes the values of a pair from their residuals.
-    pub(super) fn solve_pair(&mut self, pair: &Pair, layer: &LayerColumns, slopes: &PairSlopes) {
+    pub(super) fn solve_pair(&mut self, pair: &Pair, layer: &LayerColumns, shares: &PairShares) {
         let [first, _, second] = pair.wedges;
-        if let Some(bits) = layer.directions {
-            let plane = OctahedralPlane::new(bits);
-            let [off, p, residual] = pair.wedges.map(|wedge| self.known.code(wedge, layer.start));
-            let line = self.known.line(pair.wedges[1], layer, bits);
+        if let Some(directions) = layer.directions {
+            let plane = directions.plane();
+            let [off, p, residual] = pair.wedges.map(|wedge| self.known.code(wedge, directions));
+            let line = self.known.line(pair.wedges[1], layer, directions);
             let (off, residual) = (line.decode(off), line.decode(residual));
-            let predicted = self.predicted_places(pair, layer, bits, &slopes.difference);
+            let predicted = self.predicted_difference(pair, layer, directions, shares);
             let difference = [0, 1].map(|k| predicted[k].wrapping_add(residual[k]));
-            let (middle, step) = self.middle(pair, layer.start, [0; 2], difference);
+            let (middle, step) = self.middle(pair, directions, [0; 2], difference);
             let a = [0, 1]
                 .map(|k| p[k].wrapping_sub(off[k].wrapping_mul(step[k])).wrapping_sub(middle[k]));
             let b = [0, 1].map(|k| a[k].wrapping_add(difference[k]));
-            self.set_code(first, layer.start, plane.code(a).0);
-            self.set_code(second, layer.start, plane.code(b).0);
+            self.known.set_code(first, directions, plane.code(a).0);
+            self.known.set_code(second, directions, plane.code(b).0);
         }
-        let way = self.known.place(second) - self.known.place(first);
-        for column in layer.plain() {
-            let [off, p, residual] = pair.wedges.map(|wedge| self.number(wedge, column));
-            let difference = self.known.change(&slopes.difference, way, column);
-            let difference = difference.wrapping_add(residual);
-            let off = off.wrapping_mul(self.leeways[column].step(difference));
-            let between = self.between(pair, column, difference, &slopes.ring);
-            let a = p.wrapping_sub(off).wrapping_sub(between);
-            self.set(first, column, a);
-            self.set(second, column, a.wrapping_add(difference));
+        for columns in layer.plain() {
+            let expected = self.expected(layer, &columns, shares);
+            for (column, [predicted, aside]) in columns.zip(expected) {
+                let [off, p, residual] = pair.wedges.map(|wedge| self.number(wedge, column));
+                let difference = predicted.wrapping_add(residual);
+                let off = off.wrapping_mul(self.leeways[column].step(difference));
+                let between = pair.between(difference).wrapping_add(aside);
+                let a = p.wrapping_sub(off).wrapping_sub(between);
+                self.set(first, column, a);
+                self.set(second, column, a.wrapping_add(difference));
+            }
         }
     }
 }

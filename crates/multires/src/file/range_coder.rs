@@ -13,6 +13,18 @@ const MOST_SEEN: u8 = 120;
 /// Least probability, of 2¹⁶, so that no bit is impossible.
 const LEAST: u32 = 64;
 
+/// Part of the way to a bit that a model learns from it, 2 / (2 n + 3) after n bits, rounded up in
+/// 2^-40: products with numbers of 16 bits are rounded down as quotients are.
+const RATES: [u64; MOST_SEEN as usize + 1] = {
+    let (mut all, mut seen) = ([0; MOST_SEEN as usize + 1], 0);
+    while seen < all.len() {
+        all[seen] = (2u64 << RATE_BITS).div_ceil(2 * seen as u64 + 3);
+        seen += 1;
+    }
+    all
+};
+const RATE_BITS: u32 = 40;
+
 impl Default for BitModel {
     fn default() -> Self {
         Self { probability: 1 << 15, seen: 0 }
@@ -22,8 +34,10 @@ impl Default for BitModel {
 impl BitModel {
     fn learn(&mut self, bit: bool) {
         let target = if bit { i32::from(u16::MAX) } else { 0 };
-        let step = (target - i32::from(self.probability)) * 2 / (2 * i32::from(self.seen) + 3);
-        self.probability = (i32::from(self.probability) + step) as u16;
+        let apart = target - i32::from(self.probability);
+        let step =
+            (u64::from(apart.unsigned_abs()) * RATES[usize::from(self.seen)] >> RATE_BITS) as i32;
+        self.probability = (i32::from(self.probability) + if bit { step } else { -step }) as u16;
         self.seen += u8::from(self.seen < MOST_SEEN);
     }
 }
@@ -206,6 +220,15 @@ mod tests {
             assert!(decoder.is_at_end());
             let model = bytes.len() - (3000 * 3) / 8;
             assert!(model < if part == 2 || part == 7 { 400 } else { 60 }, "{part}: {model}");
+        }
+    }
+
+    #[test]
+    fn rates_are_quotients() {
+        for (seen, rate) in (0..).zip(RATES) {
+            for apart in 0..1u64 << 16 {
+                assert_eq!(apart * rate >> RATE_BITS, 2 * apart / (2 * seen + 3), "{seen} {apart}");
+            }
         }
     }
 

@@ -1,15 +1,17 @@
 //! Prediction of attribute values from those around a vertex that is split, and above it.
 
+use std::ops::Range;
+
 use glam::{DVec2, DVec3, Vec3};
 use meshlod_mesh::LayerKind;
 use meshlod_mesh::octahedral::{project, unfold};
 
+use super::fixed_order::{cross, dot};
 use super::layer_coding::{LayerCoding, Numbers};
 use super::octahedral_plane::{OctahedralPlane, Place};
-use super::slope::Slope;
+use super::slope::Slopes;
 use crate::cut::StarFace;
 use crate::forest::NONE;
-use crate::implicit::Implicit;
 
 /// Number of ancestors by whose siblings values are predicted, the weight of the first, where that of
 /// a step to a wedge around is 1, and the weight of each relative to the one before.
@@ -28,6 +30,9 @@ const OWN: f64 = 8.0;
 /// Greatest number of faces around a vertex from which values are predicted, so that a file with hubs
 /// of many wedges is read in linear time.
 const MOST_AROUND: usize = 64;
+
+/// Greatest number of columns that are predicted together.
+const TOGETHER: usize = 4;
 
 /// Length of a step along a line, short enough not to leave it.
 const STEP: f64 = 1.0 / 64.0;
@@ -65,20 +70,11 @@ impl Line {
     }
 }
 
-/// Slopes from which the values of a pair are predicted.
-#[derive(Default)]
-pub(super) struct PairSlopes {
-    /// Slope of the difference, from all that is known.
-    pub(super) difference: Slope,
-    /// Slope of the wedges around alone. The parent's own value does not matter for it, so it tells
-    /// by how much that is off before it is rounded.
-    pub(super) ring: Slope,
-}
-
-/// Relations of a wedge.
+/// Place of a wedge, and its relations as far as they are known.
 #[derive(Clone, Copy)]
 pub(super) struct Kin {
-    pub(super) node: u32,
+    pub(super) place: Vec3,
+    /// Wedge at the node above, or [`NONE`].
     pub(super) parent: u32,
     /// Wedge of the other child that has the same parent, or [`NONE`].
     pub(super) sibling: u32,
@@ -89,23 +85,39 @@ pub(super) struct Kin {
 pub(super) struct LayerColumns {
     pub(super) start: usize,
     pub(super) end: usize,
-    /// Bits of directions, in the first two columns.
-    pub(super) directions: Option<u8>,
+    /// Directions, in the first two columns.
+    pub(super) directions: Option<DirectionColumns>,
     pub(super) kind: LayerKind,
+}
+
+/// Two columns that are directions.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DirectionColumns {
+    pub(super) start: usize,
+    pub(super) bits: u8,
+    /// Number among the layers of directions.
+    number: usize,
+}
+
+impl DirectionColumns {
+    pub(super) fn plane(self) -> OctahedralPlane {
+        OctahedralPlane::new(self.bits)
+    }
 }
 
 impl LayerColumns {
     /// Returns the columns of each layer, in the order in which values are predicted: each by those
     /// before.
     pub(super) fn of(coding: &[LayerCoding]) -> Vec<Self> {
-        let mut end = 0;
+        let (mut end, mut number) = (0, 0);
         let columns = |layer: &LayerCoding| {
             let start = end;
             end += layer.columns();
             let directions = match layer.numbers {
-                Numbers::Directions(bits) => Some(bits),
+                Numbers::Directions(bits) => Some(DirectionColumns { start, bits, number }),
                 _ => None,
             };
+            number += usize::from(directions.is_some());
             Self { start, end, directions, kind: layer.kind }
         };
         let mut all: Vec<Self> = coding.iter().map(columns).collect();
@@ -113,155 +125,204 @@ impl LayerColumns {
         all
     }
 
-    /// Returns the columns that are numbers of their own, and not of a direction.
-    pub(super) fn plain(&self) -> std::ops::Range<usize> {
-        self.start + if self.directions.is_some() { 2 } else { 0 }..self.end
+    /// Returns the columns that are numbers of their own, and not of a direction, by ranges of which
+    /// changes are computed together.
+    pub(super) fn plain(&self) -> impl Iterator<Item = Range<usize>> + use<> {
+        let Self { start, end, directions, .. } = *self;
+        let starts = (start + if directions.is_some() { 2 } else { 0 }..end).step_by(TOGETHER);
+        starts.map(move |start| start..end.min(start + TOGETHER))
     }
 }
 
 /// Values and relations of all wedges of a model.
-pub(super) struct Known<'m> {
-    pub(super) mt: &'m Implicit,
+pub(super) struct Known {
     /// Integers, a row for each wedge.
     pub(super) rows: Vec<i32>,
     pub(super) columns: usize,
     pub(super) kin: Vec<Kin>,
-    /// Columns of the normals, and their bits.
-    pub(super) normals: Option<(usize, u8)>,
+    /// Columns of the normals.
+    normals: Option<DirectionColumns>,
+    /// Directions that the codes in the rows stand for, of each layer of them, wedge by wedge.
+    directions: Vec<DVec3>,
+    direction_layers: usize,
 }
 
-impl Known<'_> {
+impl Known {
+    pub(super) fn new(layers: &[LayerColumns], rows: Vec<i32>, kin: Vec<Kin>) -> Self {
+        let normals = layers.iter().find(|layer| layer.kind == LayerKind::Normal);
+        let direction_layers = layers.iter().filter(|layer| layer.directions.is_some()).count();
+        Self {
+            rows,
+            columns: layers.iter().map(|layer| layer.end).max().unwrap_or(0),
+            directions: vec![DVec3::ZERO; kin.len() * direction_layers],
+            direction_layers,
+            kin,
+            normals: normals.and_then(|layer| layer.directions),
+        }
+    }
+
     pub(super) fn row(&self, wedge: u32) -> &[i32] {
         &self.rows[wedge as usize * self.columns..][..self.columns]
     }
 
     pub(super) fn place(&self, wedge: u32) -> DVec3 {
-        let node = self.kin[wedge as usize].node;
-        Vec3::from(self.mt.stored_position(node)).as_dvec3()
+        self.kin[wedge as usize].place.as_dvec3()
     }
 
     /// Returns the way from the second wedge to the first.
-    fn way(&self, [to, from]: [u32; 2]) -> DVec3 {
+    pub(super) fn way(&self, [to, from]: [u32; 2]) -> DVec3 {
         self.place(to) - self.place(from)
     }
 
-    /// Fits a slope to the steps around a wedge that is split, and above it; with a child, also to
-    /// the step to that.
-    pub(super) fn fit(&self, wedge: u32, child: Option<u32>, star: &[StarFace], slope: &mut Slope) {
-        slope.clear();
+    /// Fits slopes to the steps around a wedge that is split, and above it; with a child, also to the
+    /// step to that.
+    ///
+    /// The slope of those around does not depend on the wedge's own values, so it tells by how much
+    /// these are off before they are rounded.
+    pub(super) fn fit(
+        &self,
+        wedge: u32,
+        child: Option<u32>,
+        star: &[StarFace],
+        slopes: &mut Slopes,
+    ) {
+        slopes.clear();
+        let own = slopes.add_wedge(wedge, self.place(wedge));
         if let Some(child) = child {
-            slope.add(self.way([child, wedge]), [child, wedge], OWN);
+            let child = slopes.add_wedge(child, self.place(child));
+            slopes.add_step([child, own], OWN);
         }
+        self.add_around(wedge, star, slopes);
+        self.add_above(wedge, slopes);
+        slopes.fit();
+    }
+
+    /// Adds the steps to the wedges around one, the first that was added, and those between them.
+    fn add_around(&self, wedge: u32, star: &[StarFace], slopes: &mut Slopes) {
         let star = if star.len() <= MOST_AROUND { star } else { &[] };
-        let own = || star.iter().filter(|face| face.own == wedge);
-        for face in own() {
-            let [a, b] = face.others;
-            slope.add(self.way([b, a]), [b, a], ALONG);
-            slope.add(self.way([a, wedge]), [a, wedge], 1.0);
-            if own().all(|other| other.others[0] != b) {
-                slope.add(self.way([b, wedge]), [b, wedge], 1.0);
+        let faces = || star.iter().filter(|face| face.own == wedge);
+        let first = slopes.wedges().len();
+        for face in faces() {
+            slopes.add_wedge(face.others[0], self.place(face.others[0]));
+        }
+        for (a, face) in (first..).zip(faces()) {
+            let other = face.others[1];
+            let followed = faces().position(|face| face.others[0] == other);
+            let b = match followed {
+                Some(at) => first + at,
+                None => slopes.add_wedge(other, self.place(other)),
+            };
+            slopes.add_step_around([b, a], ALONG);
+            slopes.add_step([a, 0], 1.0);
+            if followed.is_none() {
+                slopes.add_step([b, 0], 1.0);
             }
         }
-        let (mut at, mut weight) = (wedge, ABOVE);
+    }
+
+    /// Adds the steps to the wedge that was added first, and to those above it, from their siblings.
+    fn add_above(&self, wedge: u32, slopes: &mut Slopes) {
+        let (mut at, mut end, mut weight) = (wedge, Some(0), ABOVE);
         for _ in 0..ANCESTORS {
             let Kin { parent, sibling, .. } = self.kin[at as usize];
             if sibling != NONE {
-                slope.add(self.way([at, sibling]), [at, sibling], weight);
+                let end = end.unwrap_or_else(|| slopes.add_wedge(at, self.place(at)));
+                let sibling = slopes.add_wedge(sibling, self.place(sibling));
+                slopes.add_step([end, sibling], weight);
                 weight *= FADE;
             }
             if parent == NONE {
                 break;
             }
-            at = parent;
+            (at, end) = (parent, None);
         }
-        slope.fit();
     }
 
-    /// Fits the slopes of a pair's values to the steps around its parent.
-    pub(super) fn fit_pair(&self, parent: u32, star: &[StarFace], slopes: &mut PairSlopes) {
-        self.fit(parent, None, star, &mut slopes.difference);
-        self.fit_ring(parent, star, &mut slopes.ring);
-    }
-
-    /// Fits a slope to the steps between the wedges around one that is split, along the faces that use
-    /// it, but not to its own values.
-    pub(super) fn fit_ring(&self, wedge: u32, star: &[StarFace], slope: &mut Slope) {
-        slope.clear();
-        let star = if star.len() <= MOST_AROUND { star } else { &[] };
-        for face in star.iter().filter(|face| face.own == wedge) {
-            let [a, b] = face.others;
-            slope.add(self.way([b, a]), [b, a], 1.0);
+    /// Returns by how much columns of a layer change, given the shares of known wedges.
+    pub(super) fn changes(
+        &self,
+        layer: &LayerColumns,
+        columns: &Range<usize>,
+        shares: impl Iterator<Item = (u32, f64)>,
+    ) -> [i32; TOGETHER] {
+        // The handedness of tangents has no slope.
+        if layer.directions.is_some() {
+            return [0; TOGETHER];
         }
-        slope.fit();
-    }
-
-    /// Returns by how much a column changes along a way.
-    pub(super) fn change(&self, slope: &Slope, way: DVec3, column: usize) -> i32 {
-        let at = |wedge: u32| f64::from(self.rows[wedge as usize * self.columns + column]);
-        let steps = slope.parts(way).map(|(part, [to, from])| part * (at(to) - at(from)));
-        steps.sum::<f64>().round() as i32
+        let mut sums = [0.0; TOGETHER];
+        for (wedge, share) in shares {
+            for (sum, &number) in sums.iter_mut().zip(&self.row(wedge)[columns.clone()]) {
+                *sum += share * f64::from(number);
+            }
+        }
+        sums.map(|sum| sum.round() as i32)
     }
 
     /// Returns the line along which directions mostly differ from that of a wedge: tangents turn about
     /// the normal.
-    pub(super) fn line(&self, wedge: u32, layer: &LayerColumns, bits: u8) -> Line {
-        let at = self.direction(wedge, layer.start, bits);
+    pub(super) fn line(
+        &self,
+        wedge: u32,
+        layer: &LayerColumns,
+        directions: DirectionColumns,
+    ) -> Line {
+        let at = self.direction(wedge, directions);
         let across = match self.normals {
-            Some((start, bits)) if layer.kind == LayerKind::Tangent => {
-                self.direction(wedge, start, bits).cross(at)
+            Some(normals) if layer.kind == LayerKind::Tangent => {
+                cross(self.direction(wedge, normals), at)
             }
             _ => return Line::default(),
         };
-        let place = |at: DVec3| DVec2::from(project(at, bits.into()));
+        let place = |at: DVec3| DVec2::from(project(at, directions.bits.into()));
         Line::along(place(at + STEP * across) - place(at))
     }
 
     /// Returns the code of a direction.
-    pub(super) fn code(&self, wedge: u32, start: usize) -> Place {
+    pub(super) fn code(&self, wedge: u32, directions: DirectionColumns) -> Place {
         let row = self.row(wedge);
-        [row[start], row[start + 1]]
+        [row[directions.start], row[directions.start + 1]]
     }
 
-    fn direction(&self, wedge: u32, start: usize, bits: u8) -> DVec3 {
+    /// Replaces the code of a direction.
+    pub(super) fn set_code(&mut self, wedge: u32, directions: DirectionColumns, code: Place) {
+        let start = wedge as usize * self.columns + directions.start;
+        self.rows[start..start + 2].copy_from_slice(&code);
         // Only damaged data is out of range.
-        let at = self.code(wedge, start).map(|x| x.clamp(0, (1 << bits) - 1) as u32);
-        unfold(at, bits.into())
+        let at = code.map(|x| x.clamp(0, (1 << directions.bits) - 1) as u32);
+        let number = wedge as usize * self.direction_layers + directions.number;
+        self.directions[number] = unfold(at, directions.bits.into());
     }
 
-    /// Predicts the places of the directions of wedges, near to that of another wedge from which the
-    /// slope leads to them. Tangents are across their wedges' normals, which are known already.
+    fn direction(&self, wedge: u32, DirectionColumns { number, .. }: DirectionColumns) -> DVec3 {
+        self.directions[wedge as usize * self.direction_layers + number]
+    }
+
+    /// Predicts the places of the directions of wedges, near to that of another wedge, given the shares
+    /// by which known wedges change it on the way there. Tangents are across their wedges' normals,
+    /// which are known already.
     pub(super) fn directions_at<const N: usize>(
         &self,
-        slope: &Slope,
         (wedges, from): ([u32; N], u32),
         layer: &LayerColumns,
-        bits: u8,
+        directions: DirectionColumns,
+        shares: impl Iterator<Item = (u32, [f64; N])>,
     ) -> [Place; N] {
-        let start = self.direction(from, layer.start, bits);
-        let of = |wedge: u32| match wedge == from {
-            true => start,
-            false => self.direction(wedge, layer.start, bits),
-        };
+        let start = self.direction(from, directions);
         let mut all = [start; N];
-        let mut parts = wedges.map(|wedge| slope.parts(self.way([wedge, from])));
-        for [to, end] in slope.ends() {
-            let change = of(to) - of(end);
-            for (at, parts) in all.iter_mut().zip(&mut parts) {
-                *at += parts.next().map_or(0.0, |(part, _)| part) * change;
-            }
+        for (wedge, shares) in shares {
+            let direction = self.direction(wedge, directions);
+            (0..N).for_each(|k| all[k] += shares[k] * direction);
         }
         std::array::from_fn(|k| {
             let mut at = all[k];
-            if layer.kind == LayerKind::Tangent
-                && let Some((start, bits)) = self.normals
-            {
-                let normal = self.direction(wedges[k], start, bits);
-                at -= at.dot(normal) * normal;
+            if let Some(normals) = self.normals.filter(|_| layer.kind == LayerKind::Tangent) {
+                let normal = self.direction(wedges[k], normals);
+                at -= dot(at, normal) * normal;
             }
-            let is_clear = at.length_squared() > 1e-6;
-            let at = project(if is_clear { at } else { start }, bits.into());
+            let is_clear = dot(at, at) > 1e-6;
+            let at = project(if is_clear { at } else { start }, directions.bits.into());
             let place = at.map(|x| x.round() as i32);
-            OctahedralPlane::new(bits).near(place, self.code(from, layer.start))
+            directions.plane().near(place, self.code(from, directions))
         })
     }
 }
