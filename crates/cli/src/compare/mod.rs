@@ -38,8 +38,6 @@ pub struct Compare {
     /// Mesh to read, or -
     #[arg(value_name = "IN")]
     input: PathBuf,
-    #[command(flatten)]
-    sizes: Sizes,
     /// Folder to write to; created if missing
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
@@ -49,6 +47,8 @@ pub struct Compare {
     /// Draw no pictures: the page has figures only
     #[arg(long)]
     no_pictures: bool,
+    #[command(flatten)]
+    sizes: Sizes,
     #[command(flatten)]
     constraints: ConstraintArgs,
     #[command(flatten)]

@@ -41,8 +41,6 @@ pub struct Compress {
     /// File to write: .mlq to render from directly, .mlz to send, .glb for other programs
     #[arg(value_name = "OUT", required_unless_present = "sweep")]
     output: Option<PathBuf>,
-    #[command(flatten)]
-    target: CompressTarget,
     /// Encoding of positions: any scheme in .mlq [default: blocks], lattice in .mlz, parts in .glb
     #[arg(long, value_name = "SCHEME")]
     scheme: Option<SchemeArg>,
@@ -67,6 +65,8 @@ pub struct Compress {
     /// may err by the arc of this angle at the largest of their track [default: 0.1]
     #[arg(long, value_name = "DEGREES", value_parser = parse::length, allow_hyphen_values = true)]
     animation_error: Option<f64>,
+    #[command(flatten)]
+    target: CompressTarget,
     #[command(flatten)]
     attributes: AttributeErrorArgs,
     #[command(flatten)]

@@ -35,8 +35,6 @@ pub struct Extract {
     /// File to write, or -
     #[arg(value_name = "OUT")]
     output: PathBuf,
-    #[command(flatten)]
-    query: QueryArgs,
     /// Leave out faces that do not intersect the focus; of a point leave the nearest ones
     #[arg(long, requires = "focus")]
     only: bool,
@@ -50,6 +48,8 @@ pub struct Extract {
     /// farther off than --error, and the error of --faces is not measured
     #[arg(long)]
     unverified: bool,
+    #[command(flatten)]
+    query: QueryArgs,
     #[command(flatten)]
     writing: WriteArgs,
 }

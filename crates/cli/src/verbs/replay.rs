@@ -26,12 +26,12 @@ pub struct Replay {
     /// File to write, or -
     #[arg(value_name = "OUT")]
     output: PathBuf,
-    #[command(flatten)]
-    level: LevelArgs,
     /// The input of that simplify, to be read with the same options: OUT gets its nodes, materials
     /// and textures [default: OUT has geometry and attributes only]
     #[arg(long, value_name = "IN")]
     scene: Option<PathBuf>,
+    #[command(flatten)]
+    level: LevelArgs,
     #[command(flatten)]
     reading: ReadArgs,
     #[command(flatten)]

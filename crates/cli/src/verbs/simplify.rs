@@ -39,10 +39,6 @@ pub struct Simplify {
     /// File to write, or -
     #[arg(value_name = "OUT")]
     output: PathBuf,
-    #[command(flatten)]
-    target: TargetArgs,
-    #[command(flatten)]
-    method: MethodArgs,
     /// Measure the result, as is always done with --error
     #[arg(long)]
     measured: bool,
@@ -51,6 +47,10 @@ pub struct Simplify {
     #[arg(long, value_name = "FILE",
         conflicts_with_all = ["measured", "fuse", "exact_volume"])]
     sequence: Option<PathBuf>,
+    #[command(flatten)]
+    target: TargetArgs,
+    #[command(flatten)]
+    method: MethodArgs,
     #[command(flatten)]
     volume: ExactVolumeArgs,
     #[command(flatten)]
@@ -87,11 +87,11 @@ pub struct MethodArgs {
     #[arg(long, value_name = "NAME", default_value = Method::default().name(),
         help = parse::methods())]
     method: Method,
-    #[command(flatten)]
-    pub constraints: ConstraintArgs,
     /// Cost weight of boundaries, where 0 means none [default: 9 for lindstrom-turk, 2 for qem]
     #[arg(long, value_name = "WEIGHT", value_parser = parse::weight, allow_negative_numbers = true)]
     boundary: Option<f64>,
+    #[command(flatten)]
+    pub constraints: ConstraintArgs,
     #[command(flatten)]
     weights: WeightArgs,
 }

@@ -40,8 +40,6 @@ pub struct Strip {
     /// Mesh to read, or -; or an .mlod file to take a cut from
     #[arg(value_name = "IN")]
     input: PathBuf,
-    #[command(flatten)]
-    query: QueryArgs,
     /// Follow the cuts of an .mlod file at these errors in turn, repair strips and index buffers
     /// where one differs from the last, and list each: 1%,0.1%,1%
     #[arg(long, value_name = "BOUNDS", value_delimiter = ',', value_parser = query_args::error_limit,
@@ -70,6 +68,8 @@ pub struct Strip {
     /// the level, which is simplified a second time for that, or of the cut; exit with 3 if they differ
     #[arg(long)]
     verify: bool,
+    #[command(flatten)]
+    query: QueryArgs,
     #[command(flatten)]
     constraints: ConstraintArgs,
     #[command(flatten)]

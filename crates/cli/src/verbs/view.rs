@@ -37,11 +37,11 @@ pub struct View {
     /// Folder for the film of a script; created if missing
     #[arg(long, value_name = "OUT", requires = "script")]
     pub out: Option<PathBuf>,
-    #[command(flatten)]
-    pub reading: ReadArgs,
     /// Show a school of a model instead of files
     #[arg(long, conflicts_with_all = ["files", "script"])]
     pub flock: bool,
+    #[command(flatten)]
+    pub reading: ReadArgs,
     #[command(flatten)]
     pub school: SchoolArgs,
     #[command(flatten)]

@@ -40,9 +40,14 @@ fn help_comes_in_groups() {
         let count = help.text().lines().filter(|line| *line == heading).count();
         assert_eq!(count, 1, "{heading} in {}", help.text());
     }
-    let of = |option: &str| help.text().find(option).unwrap_or_else(|| panic!("{option}"));
-    assert!(of("Target, one of:") < of("--ratio") && of("--ratio") < of("Method:"));
-    assert!(of("Constraints:") < of("--fuse") && of("Attributes:") < of("--weight-uv"));
+    let line = |start: &str| {
+        let found = help.text().lines().position(|line| line.trim_start().starts_with(start));
+        found.unwrap_or_else(|| panic!("{start} in {}", help.text()))
+    };
+    let order =
+        ["Options:", "--measured", "Target, one of:", "-r, --ratio", "Method:", "--boundary"];
+    let rest = ["Constraints:", "--fuse", "Attributes:", "--weight-uv", "Files:", "--weld"];
+    assert!([order, rest].concat().windows(2).all(|pair| line(pair[0]) < line(pair[1])));
 }
 
 #[test]

@@ -116,7 +116,7 @@ fn every_verb_has_a_section() {
         .filter(|&name| name != "help")
         .collect();
     assert!(names.len() > 15, "{names:?}");
-    names.iter().for_each(|name| drop(section(name)));
+    assert!(names.iter().all(|name| !section(name).is_empty()));
 }
 
 #[test]
