@@ -51,7 +51,7 @@ impl LayerCoding {
             Some(bound) if layer.kind.is_direction() => {
                 Numbers::Directions(octahedral::bits_within(bound) as u8)
             }
-            Some(bound) => Numbers::Steps(exponent(layer, bound)),
+            Some(bound) => exponent(layer, bound).map_or(Numbers::Bits, Numbers::Steps),
         };
         Self { kind: layer.kind, name: layer.name.clone(), width: layer.width, numbers }
     }
@@ -131,12 +131,14 @@ impl LayerCoding {
     }
 }
 
-/// Returns the exponent of the largest step that keeps values within a bound.
-fn exponent(layer: &Layer, bound: f64) -> i16 {
+/// Returns the exponent of the largest step that keeps values within a bound; `None` if integers
+/// cannot count such steps up to the greatest value, as with one stray value among millions.
+fn exponent(layer: &Layer, bound: f64) -> Option<i16> {
     let most = layer.values.iter().fold(0.0, |most: f64, &x| most.max(f64::from(x).abs()));
     let log2 = |x: f64| if x > 0.0 { x.log2().floor() as i32 } else { i32::MIN / 2 };
-    let exponent = log2(2.0 * bound).max(log2(most) - F32_BITS);
-    (exponent.clamp((*EXPONENTS.start()).into(), (*EXPONENTS.end()).into())) as i16
+    let [finest, asked] = [log2(most) - F32_BITS, log2(2.0 * bound)];
+    let exponent = finest.max(asked).clamp((*EXPONENTS.start()).into(), (*EXPONENTS.end()).into());
+    (bound == 0.0 || asked >= finest).then_some(exponent as i16)
 }
 
 fn step(exponent: i16) -> f64 {
@@ -182,6 +184,9 @@ mod tests {
         near(&layer(LayerKind::Joints(0), 4, &[0.0, 255.0, 70.0, 3.0]), 0.0);
         near(&layer(LayerKind::Other, 1, &[0.0, 0.0]), 0.0);
         near(&layer(LayerKind::Other, 1, &[1e30, -1e30, 0.0]), 2e30 / 65_536.0);
+        // Steps that are fine enough cannot be counted up to the stray value.
+        near(&layer(LayerKind::Uv(0), 2, &[0.1, 0.7, 1e9, 0.3]), 1.0 / 8192.0);
+        near(&layer(LayerKind::Color(0), 3, &[0.1, 0.7, 3e38]), 1.0 / 512.0);
     }
 
     #[test]

@@ -77,7 +77,15 @@ impl Values<'_> {
     }
 
     /// Replaces the values of a pair's parent by those that a file can hold.
-    pub(super) fn derive_parent(&mut self, pair: &Pair, layer: &LayerColumns, shares: &PairShares) {
+    ///
+    /// They stay within the ranges of their columns, so that no colour is brighter than 1.
+    pub(super) fn derive_parent(
+        &mut self,
+        pair: &Pair,
+        layer: &LayerColumns,
+        shares: &PairShares,
+        ranges: &[[i32; 2]],
+    ) {
         if let Some(directions) = layer.directions {
             let plane = directions.plane();
             let [a, p, b] = pair.wedges.map(|wedge| self.known.code(wedge, directions));
@@ -99,7 +107,7 @@ impl Values<'_> {
                 let step = self.leeways[column].step(difference);
                 let off = nearest(p.wrapping_sub(a).wrapping_sub(between), step);
                 let p = a.wrapping_add(between).wrapping_add(off.wrapping_mul(step));
-                self.set(pair.wedges[1], column, p);
+                self.set(pair.wedges[1], column, back_within(p, step, ranges[column]));
             }
         }
     }
@@ -217,6 +225,13 @@ fn apart(to: Place, from: Place) -> Place {
     [0, 1].map(|k| to[k].wrapping_sub(from[k]))
 }
 
+/// Moves a number that rounding has taken out of a range back by a step, if that helps.
+fn back_within(number: i32, step: i32, [low, high]: [i32; 2]) -> i32 {
+    let back = if number > high { number.checked_sub(step) } else { number.checked_add(step) };
+    let is_within = |number: i32| (low..=high).contains(&number);
+    back.filter(|&back| !is_within(number) && is_within(back)).unwrap_or(number)
+}
+
 /// Divides a number and rounds it to the nearest integer; `step` must be odd.
 fn nearest(number: i32, step: i32) -> i32 {
     let half = i64::from(step / 2);
@@ -235,5 +250,17 @@ mod tests {
             }
         }
         assert_eq!(nearest(i32::MIN, 1), i32::MIN);
+    }
+
+    #[test]
+    fn numbers_go_back_into_their_range() {
+        for number in 0..=10 {
+            assert_eq!(back_within(number, 3, [0, 10]), number);
+        }
+        assert_eq!([-1, 11, 13].map(|number| back_within(number, 3, [0, 10])), [2, 8, 10]);
+        // Of no help: too far away, too narrow, at the end of numbers.
+        assert_eq!(back_within(14, 3, [0, 10]), 14);
+        assert_eq!(back_within(4, 15, [3, 3]), 4);
+        assert_eq!(back_within(i32::MIN, 15, [0, 10]), i32::MIN);
     }
 }

@@ -165,6 +165,17 @@ impl Known {
         &self.rows[wedge as usize * self.columns..][..self.columns]
     }
 
+    /// Returns the least and the greatest number of each column.
+    pub(super) fn ranges(&self) -> Vec<[i32; 2]> {
+        let mut ranges = vec![[i32::MAX, i32::MIN]; self.columns];
+        for row in self.rows.chunks_exact(self.columns.max(1)) {
+            for ([low, high], &number) in ranges.iter_mut().zip(row) {
+                (*low, *high) = ((*low).min(number), (*high).max(number));
+            }
+        }
+        ranges
+    }
+
     pub(super) fn place(&self, wedge: u32) -> DVec3 {
         self.kin[wedge as usize].place.as_dvec3()
     }

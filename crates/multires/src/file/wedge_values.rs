@@ -173,6 +173,7 @@ impl<'m> Values<'m> {
                 self.known.set_code(wedge, directions, code);
             }
         }
+        let ranges = self.known.ranges();
         let (mut family, mut shares) = (Vec::new(), PairShares::default());
         // Children and all nodes around are split by later updates.
         for (update, star) in stars.iter().rev() {
@@ -181,7 +182,7 @@ impl<'m> Values<'m> {
                 let Some(pair) = self.pair(of) else { continue };
                 self.share(&pair, star, &mut shares);
                 for layer in &layers {
-                    self.derive_parent(&pair, layer, &shares);
+                    self.derive_parent(&pair, layer, &shares, &ranges);
                 }
             }
         }

@@ -119,6 +119,40 @@ fn linear_values_take_next_to_nothing() {
     assert!(each < 0.75, "{each}");
 }
 
+/// Returns a torus with values at its vertices, and those of all levels in its file.
+fn with_values(kind: LayerKind, value: impl FnMut(usize) -> f32) -> (Mesh, Vec<f32>) {
+    let mut mesh = samples::torus(2000);
+    let wedge_count = mesh.positions.len();
+    let values = (0..wedge_count).map(value).collect();
+    mesh.attributes = Some(Attributes {
+        corners: mesh.faces.iter().map(|face| face.map(|v| WedgeId(v.0))).collect(),
+        wedge_count,
+        layers: vec![Layer { kind, name: "it".into(), width: 1, values }],
+    });
+    let file = Archive::write(&forest(&mesh), &Storage::default()).unwrap().0;
+    let is = Archive::open(file).unwrap().read().unwrap().0;
+    let mut values = Vec::new();
+    (0..is.wedge_count() as u32).for_each(|wedge| is.append_values(wedge, &mut values));
+    (mesh, values)
+}
+
+#[test]
+fn no_level_has_colours_beyond_those_of_the_mesh() {
+    let (_, values) = with_values(LayerKind::Color(0), |v| if v % 7 < 3 { 1.0 } else { 0.0 });
+    assert!(values.iter().all(|x| (0.0..=1.0).contains(x)));
+    assert!(values.iter().any(|x| (0.2..0.8).contains(x)), "levels mix the colours");
+}
+
+#[test]
+fn a_stray_value_takes_nothing_from_the_others() {
+    let (mesh, values) =
+        with_values(LayerKind::Uv(0), |v| if v == 40 { 1e9 } else { v as f32 / 999.0 });
+    let attributes = mesh.attributes.as_ref().unwrap();
+    for was in &attributes.layers[0].values {
+        assert!(values.iter().any(|is| (is - was).abs() <= 1.0 / 8192.0), "{was}");
+    }
+}
+
 /// Returns the model of a forest with the positions and the order of nodes that a file has.
 fn rounded(forest: &Forest, storage: &Storage) -> Implicit {
     let cells = lattice(forest, storage, diagonal(forest));
