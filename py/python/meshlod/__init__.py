@@ -10,6 +10,7 @@ Mesh(4 vertices, 4 faces)
 """
 
 from . import convert
+from ._batch import FileReport, batch
 from ._errors import MeshlodError, MeshlodWarning
 from ._files import load, save
 from ._mesh import Mesh
@@ -22,6 +23,7 @@ __all__ = [
     "Camera",
     "CheckReport",
     "Distance",
+    "FileReport",
     "Mesh",
     "MeshlodError",
     "MeshlodWarning",
@@ -29,6 +31,7 @@ __all__ = [
     "OneSidedDistance",
     "Report",
     "Scene",
+    "batch",
     "load",
     "save",
     "convert",
