@@ -19,7 +19,7 @@ from ._mesh import Path
 from ._progress import ProgressLike, callback
 
 if TYPE_CHECKING:
-    from distributed import Client, Future
+    from distributed import Client
 
 __all__ = ["map"]
 
@@ -73,9 +73,13 @@ def _run(
     place = dict(zip(futures, todo, strict=True))
     done = len(rows) - len(todo)
     try:
-        for future in distributed.as_completed(futures):
+        # Results come along: to ask for each would take longer than to make a small file.
+        for future, result in distributed.as_completed(
+            futures, with_results=True, raise_errors=False
+        ):
             row = rows[place[future]]
-            row |= _row(future, distributed) | {key: row[key] for key in ("input", "output")}
+            told = _row(future.status, result, distributed)
+            row |= told | {key: row[key] for key in ("input", "output")}
             _native.record_file_of_batch(folder, plan["recipe"], json.dumps(row))
             done += 1
             show(done / len(rows))
@@ -96,13 +100,15 @@ def _one(task: tuple[list[str], str, str]) -> str:
     return _native.run_file_of_batch(arguments, source, target)
 
 
-def _row(future: Future, distributed: Any) -> dict[str, Any]:
+def _row(status: str, result: Any, distributed: Any) -> dict[str, Any]:
     """Returns the report of a task, or that of a file whose workers died."""
-    try:
-        return json.loads(future.result())
-    except distributed.scheduler.KilledWorker:
+    if status != "error":
+        return json.loads(result)
+    _, error, trace = result
+    if isinstance(error, distributed.scheduler.KilledWorker):
         reason = "its workers died; it may need more memory than they have"
         return {"status": "failed", "error": reason}
+    raise error.with_traceback(trace)
 
 
 def _tidy(rows: list[dict[str, Any]], todo: list[int]) -> None:
