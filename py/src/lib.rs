@@ -27,7 +27,9 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _native {
     #[pymodule_export]
-    use super::command::run_command;
+    use super::command::{
+        answer, record_file_of_batch, remove_abandoned, run_command, run_file_of_batch,
+    };
     #[pymodule_export]
     use super::cut::NativeCut;
     #[pymodule_export]

@@ -38,6 +38,7 @@ struct Shared {
 }
 
 /// Observer that counts removed faces and ends the work if nobody waits for it any more.
+#[derive(Clone)]
 pub struct Watch(Arc<Shared>);
 
 /// Payload with which cancelled work unwinds.
@@ -55,6 +56,12 @@ impl Observe for Watch {
 }
 
 impl Watch {
+    /// Sets how much is done, and ends the work if nobody waits for it any more.
+    pub fn reach(&self, done: usize) {
+        self.0.gone.store(done, Ordering::Relaxed);
+        self.check();
+    }
+
     /// Ends the work if it has been cancelled, by unwinding to where it was started.
     fn check(&self) {
         if self.0.is_cancelled.load(Ordering::Relaxed) {

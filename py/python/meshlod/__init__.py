@@ -10,6 +10,7 @@ Mesh(4 vertices, 4 faces)
 """
 
 from . import convert
+from ._batch import FileReport, batch
 from ._cut import Cut, CutChange
 from ._errors import MeshlodError, MeshlodWarning
 from ._files import load, save
@@ -26,6 +27,7 @@ __all__ = [
     "Cut",
     "CutChange",
     "Distance",
+    "FileReport",
     "Mesh",
     "MeshlodError",
     "MeshlodWarning",
@@ -33,6 +35,7 @@ __all__ = [
     "OneSidedDistance",
     "Report",
     "Scene",
+    "batch",
     "load",
     "save",
     "convert",

@@ -9,9 +9,10 @@ const PAGE: &str = include_str!("../../../../docs/formats/json.md");
 /// Sections that hold for every verb.
 const SHARED: [&str; 2] = ["Every verb", "Shared objects"];
 
-/// Objects whose keys are names of findings, steps or reasons, not of fields.
-const TABLES: [&str; 5] =
-    ["counts", "findings_left_out", "steps", "errors_left_by_kind", "refusals"];
+/// Objects whose keys are names of findings, steps or reasons, not of fields, or those of another
+/// verb.
+const TABLES: [&str; 6] =
+    ["counts", "findings_left_out", "steps", "errors_left_by_kind", "refusals", "result"];
 
 /// Returns the text of a section of the page, up to the next one.
 fn section(name: &str) -> &str {
@@ -76,6 +77,8 @@ fn every_key_that_a_verb_prints_is_on_the_page() {
         "measure in.ply out.ply --certified --samples 1000",
         "render in.ply heat.png --size 64x64 --heat-against out.ply",
         "flock --members 20 --frames 2 --size 64x64 --out school",
+        "batch in.ply many -r 50%",
+        "batch in.ply more -r 50% --dry-run",
         "completions bash",
         "man pages",
     ];
