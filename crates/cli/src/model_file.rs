@@ -39,7 +39,8 @@ pub fn open(path: &Path, session: &Session) -> Result<ModelFile<File>, Failure> 
         let one = model.piece_name();
         let many = format!("{one}s");
         let goes = format!(": the file is truncated, and {there} of its {all} {many} are present");
-        session.note(path, &[Note::left_out(all - there, one, &many).detailed(&goes)])?;
+        let note = Note::left_out(all - there, one, &many).detailed(&goes);
+        session.note(path, &[note.remedied("fetch the rest for the finest levels")])?;
     }
     Ok(model)
 }

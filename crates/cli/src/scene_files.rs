@@ -26,15 +26,19 @@ pub fn write(
     write_noted(path, scene, writing, session)
 }
 
-/// Adds to what a format lacks of a scene the name of another that holds all of it, if there is
-/// one.
+/// Adds to what a format lacks of a scene the name of another that holds all of it, if there is one
+/// and nothing else is to do.
 fn remedied(scene: &Scene, limits: Vec<Note>) -> Vec<Note> {
     let holds = |(format, _): &(Format, &str)| scene.limits_of(*format).is_empty();
     let mut formats = [(Format::Glb, ".glb"), (Format::Obj, ".obj")].into_iter();
     match formats.find(|format| !limits.is_empty() && holds(format)) {
         None => limits,
         Some((_, suffix)) => {
-            let remedy = |note: Note| note.remedied(format!("{suffix} keeps everything"));
+            let keeps = format!("{suffix} keeps everything");
+            let remedy = |note: Note| match note.remedy {
+                Some(_) => note,
+                None => note.remedied(keeps.clone()),
+            };
             limits.into_iter().map(remedy).collect()
         }
     }
@@ -56,7 +60,7 @@ pub fn write_chain(
         Note::merge(&mut notes, scene.limits_of(format));
         swap(scene, level);
     }
-    session.note(first, &notes)?;
+    session.note(first, &remedied(scene, notes))?;
     write_noted(first, scene, writing, session)?;
     for (path, level) in &mut levels {
         swap(scene, level);
@@ -164,7 +168,7 @@ fn write_pipe(
     let flat = || scene.flatten();
     let written = match format {
         Format::Ply => ply::write_scene(scene, precision, out),
-        Format::Stl => stl::write(&flat(), out),
+        Format::Stl => stl::write_scene(scene, precision, out),
         Format::Off => off::write(&flat(), precision, out),
         Format::Smf => smf::write(&flat(), precision, out),
         Format::Obj => obj::write(scene, precision, out, &[]),

@@ -49,8 +49,9 @@ pub struct ReadOptions {
 /// Options for writing a mesh file with [`write()`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WriteOptions {
-    /// Precision of coordinates in PLY, OBJ, OFF and SMF. STL and glTF always use 32 bits; glTF
-    /// counts them from a centre of the mesh where that is needed, see [`gltf::write_glb`].
+    /// Precision of coordinates in PLY, OBJ, OFF, SMF and text STL. Binary STL and glTF always use
+    /// 32 bits; glTF counts them from a centre of the mesh where that is needed, see
+    /// [`gltf::write_glb`].
     pub precision: Precision,
 }
 
@@ -168,7 +169,7 @@ pub fn write(path: &Path, scene: &Scene, options: &WriteOptions) -> Result<(), I
         Format::Gltf | Format::Glb => write_lods(path, scene, &[], LodLayout::default()),
         Format::Obj => write_obj(path, scene, precision),
         Format::Ply => write_ply(path, scene, precision),
-        Format::Stl => write_one(path, |out| stl::write(&scene.shown_mesh(), out)),
+        Format::Stl => write_one(path, |out| stl::write_scene(scene, precision, out)),
         Format::Off => write_one(path, |out| off::write(&scene.shown_mesh(), precision, out)),
         Format::Smf => write_one(path, |out| smf::write(&scene.shown_mesh(), precision, out)),
     }

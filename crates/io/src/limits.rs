@@ -28,13 +28,15 @@ impl Scene {
                 [self.graph_limits(), self.obj_limits(), crate::ply::limits(self)].concat()
             }
             Format::Stl | Format::Off | Format::Smf => {
-                let parts = [self.graph_limits(), self.single_mesh_limits(), self.ply_limits()];
+                let parts =
+                    [self.graph_limits(), self.single_mesh_limits(format), self.ply_limits()];
                 [parts.concat(), self.obj_limits(), self.layer_limits(format)].concat()
             }
         };
         if let Some((most, count)) = self.unavoidable_rounding(format) {
             let why = format!(" by up to {most:.1e}: the format has 32-bit coordinates");
-            notes.push(Note::changed(count, "vertex rounded", "vertices rounded").detailed(&why));
+            let note = Note::changed(count, "vertex rounded", "vertices rounded").detailed(&why);
+            notes.push(note.remedied(".ply, .obj and .off have 64 bits"));
         }
         notes.retain(|note| note.count > 0);
         notes
@@ -132,7 +134,7 @@ impl Scene {
     }
 
     /// Lists what formats lack that hold one mesh without parts.
-    fn single_mesh_limits(&self) -> Vec<Note> {
+    fn single_mesh_limits(&self, format: Format) -> Vec<Note> {
         let shown: BTreeSet<usize> = self.instances().iter().map(|i| i.mesh).collect();
         let used: BTreeSet<usize> = shown
             .iter()
@@ -142,7 +144,8 @@ impl Scene {
         let images: BTreeSet<usize> = materials.clone().flat_map(Material::images).collect();
         let images: Vec<&str> =
             images.iter().filter_map(|&i| self.images.get(i)).map(|i| &*i.name).collect();
-        let objects = self.object_names();
+        let has_names = format == Format::Stl && self.has_solids;
+        let objects = if has_names { Vec::new() } else { self.object_names() };
         let named = materials.filter(|m| !m.name.is_empty()).map(|m| &*m.name);
         vec![
             Note::left_out(used.len(), "material", "materials").named(named),

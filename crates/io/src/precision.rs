@@ -81,7 +81,8 @@ impl Scene {
     pub fn mesh_rounding(&self, mesh: &Mesh, format: Format, precision: Precision) -> f64 {
         match (format, precision) {
             (Format::Gltf | Format::Glb, _) => self.gltf_rounding(mesh),
-            (Format::Stl, _) | (Format::Ply, Precision::F32) => rounding(mesh),
+            (Format::Stl, _) if !self.has_solids => rounding(mesh),
+            (Format::Ply, Precision::F32) => rounding(mesh),
             (_, Precision::F64) => 0.0,
             // The shortest decimal of an `f32` usually parses to a different `f64`.
             (_, Precision::F32 | Precision::Auto) => {
@@ -110,6 +111,7 @@ impl Scene {
             (!fits_f32(mesh)).then(|| (rounding(mesh), count))
         };
         let all: Vec<(f64, usize)> = match format {
+            Format::Stl if self.has_solids => Vec::new(),
             Format::Stl => changes(&self.shown_mesh()).into_iter().collect(),
             Format::Gltf | Format::Glb => {
                 let of_mesh = |mesh: &Mesh| {

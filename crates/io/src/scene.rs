@@ -32,6 +32,9 @@ pub struct Scene {
     /// True if the format that the scene was read from has one set of attributes for each vertex, so
     /// that vertices are split at seams there. glTF has too.
     pub has_split_seams: bool,
+    /// True if the scene was read from a text STL file of several solids: as STL it is written as text
+    /// again, since binary files have no names.
+    pub has_solids: bool,
     /// Notes on what the reader left out or changed; writers ignore them.
     pub notes: Vec<Note>,
 }

@@ -32,3 +32,22 @@ fn strictly_nothing_is_written_where_something_is_lost() {
     assert!(done.only_line().ends_with("; .glb keeps everything"), "{done:?}");
     assert_eq!(run.run(&["convert", "a.obj", "b.glb", "--strict"]).code, 0);
 }
+
+#[test]
+fn solids_of_a_text_file_keep_their_names_and_bits() {
+    let run = Run::new();
+    let mut solids = String::new();
+    for (name, x) in [("left part", "0.1"), ("right", "1000000.1")] {
+        solids += &format!("solid {name}\nfacet normal 0 0 1\nouter loop\nvertex {x} 0 0\n");
+        solids += &format!("vertex 1000000.3 0 0\nvertex {x} 1 0\nendloop\nendfacet\n");
+        solids += &format!("endsolid {name}\n");
+    }
+    std::fs::write(run.path("in.stl"), &solids).unwrap();
+    assert_eq!(run.run(&["convert", "in.stl", "out.stl", "--strict"]).code, 0);
+    assert_eq!(std::fs::read_to_string(run.path("out.stl")).unwrap(), solids);
+    let done = run.run(&["convert", "in.stl", "-", "--format", "stl", "--strict"]);
+    assert_eq!((done.code, done.out), (0, solids));
+    assert_eq!(run.run(&["convert", "in.stl", "out.obj"]).code, 0);
+    let done = run.run(&["convert", "out.obj", "out.stl"]);
+    assert!(done.err.contains("left out: 2 names of objects (left part, right)"), "{done:?}");
+}

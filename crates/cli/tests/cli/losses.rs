@@ -246,8 +246,9 @@ fn what_stl_and_off_have_beside_their_surface_is_named() {
     stl.extend([0xff, 0x83, 7]);
     std::fs::write(run.path("in.stl"), stl).unwrap();
     for (file, expected) in [
-        ("in.off", "left out: 1 colour of a face"),
+        ("in.off", "left out: 1 colour of a face; colours of vertices (COFF) stay"),
         ("in.stl", "left out: 1 attribute of a facet, such as its colour, 1 byte behind the last"),
+        ("in.stl", "facet; export colours as .ply, .obj or .glb; if they are facets, correct the"),
     ] {
         let done = run.run(&["convert", file, "out.ply"]);
         assert!(done.only_line().contains(expected), "{done:?}");

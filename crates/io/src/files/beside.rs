@@ -66,7 +66,8 @@ impl Beside {
             "files with absolute paths, taken from beside the model",
         );
         let names = self.replaced.iter().map(|(name, found)| format!("{found} for {name}"));
-        Note::changed(self.replaced.len(), one, many).named(names)
+        let note = Note::changed(self.replaced.len(), one, many).named(names);
+        note.remedied("write the names of files without their folders")
     }
 
     /// Finds the file of that name relative to the folder, whatever its case if there is none of

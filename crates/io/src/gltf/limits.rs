@@ -32,7 +32,8 @@ pub(crate) fn new_document_limits(scene: &Scene) -> Vec<Note> {
             "image that is no PNG, JPEG or WebP",
             "images that are no PNG, JPEG or WebP",
         )
-        .named(names),
+        .named(names)
+        .remedied("convert images to PNG or JPEG"),
     ]
 }
 
@@ -79,7 +80,8 @@ fn separate_images(scene: &Scene) -> [Note; 2] {
             own.filter(is_lost).count(),
             "map of opacity in an image of its own",
             "maps of opacity in images of their own",
-        ),
+        )
+        .remedied("put the opacity into the alpha of the colour's image"),
     ]
 }
 
@@ -90,8 +92,8 @@ fn maps_apart(count: usize) -> Note {
         "map of roughness or metalness in an image of its own",
         "maps of roughness or metalness in images of their own",
     );
-    note.detailed(
-        ": glTF has both in one; make an image with roughness in green and metalness in blue, and \
+    note.remedied(
+        "glTF has both in one image: make one with roughness in green and metalness in blue, and \
          name it in map_Pr and map_Pm",
     )
 }

@@ -57,7 +57,8 @@ impl Skipped {
                 free_form,
                 "statement of free-form curves or surfaces",
                 "statements of free-form curves or surfaces",
-            ),
+            )
+            .remedied("export curves and surfaces as faces"),
             note(other, "other statement", "other statements").named(words),
             note(
                 self.thin_faces,
@@ -71,10 +72,13 @@ impl Skipped {
             )
             .named(self.smoothing)
             .remedied("write `s` with a number, or `s off`"),
-            note(self.groups.len(), "name of a group", "names of groups").named(self.groups),
+            note(self.groups.len(), "name of a group", "names of groups")
+                .named(self.groups)
+                .remedied("remove the `o` lines to keep groups instead of objects"),
             note(self.depths, "third texture coordinate", "third texture coordinates"),
             note(self.weights, "weight of a vertex", "weights of vertices"),
-            note(self.opacities, "opacity of a vertex", "opacities of vertices"),
+            note(self.opacities, "opacity of a vertex", "opacities of vertices")
+                .remedied("export opacities as .ply or .glb"),
         ];
         notes.retain(|note| note.count > 0);
         notes

@@ -61,7 +61,8 @@ fn read_noted(bytes: &[u8]) -> Result<(Mesh, Note), ParseError> {
         return Err(text.error("the file has no faces"));
     }
     let attributes = columns.attributes(layout, &triangles);
-    let note = Note::left_out(scratch.colored, "colour of a face", "colours of faces");
+    let note = Note::left_out(scratch.colored, "colour of a face", "colours of faces")
+        .remedied("colours of vertices (COFF) stay, and those of faces in .ply");
     Ok((Mesh { attributes, ..Mesh::new(columns.positions, triangles) }, note))
 }
 

@@ -86,8 +86,10 @@ fn notes(
             values.bad_lists,
             "list of texture coordinates that does not match its face",
             "lists of texture coordinates that do not match their faces",
-        ),
-        Note::left_out(bytes_left, "byte behind the last row", "bytes behind the last row"),
+        )
+        .remedied("a list needs two numbers for each corner of its face"),
+        Note::left_out(bytes_left, "byte behind the last row", "bytes behind the last row")
+            .remedied("if they are rows, correct the counts in the header"),
         Note::changed(
             values.not_finite,
             "value of a face that is not finite read as 0",
@@ -115,7 +117,8 @@ fn face_layers(
             "properties of faces whose polygons have too many corners",
         );
         let names = own.iter().map(|(name, _)| super::header::shown(name));
-        notes.push(Note::left_out(own.len(), one, many).named(names));
+        let note = Note::left_out(own.len(), one, many).named(names);
+        notes.push(note.remedied("divide the polygons into triangles"));
         return Vec::new();
     };
     types.extend(own.into_iter().map(|(name, kind)| (format!("face {name}"), kind)));
@@ -152,7 +155,9 @@ fn textures(
     if unknown > 0 && (count > 0 || values.textures.iter().any(|&texture| texture > 0)) {
         let (one, many) =
             ("face whose texture has no TextureFile", "faces whose textures have no TextureFile");
-        notes.push(Note::left_out(unknown, one, many));
+        let note = Note::left_out(unknown, one, many);
+        notes
+            .push(note.remedied("add a line `comment TextureFile` to the header for each texture"));
     }
     let has_none = values.textures.iter().any(|&texture| number(texture).is_none());
     if count == 0 || (count == 1 && !has_none) {
@@ -204,7 +209,8 @@ fn attributes(
                 "colour of a face, as vertices have colours",
                 "colours of faces, as vertices have colours",
             );
-            notes.push(Note::left_out(colors.len(), one, many));
+            let note = Note::left_out(colors.len(), one, many);
+            notes.push(note.remedied("remove the colours of the vertices to keep them"));
         } else if has_few(&colors) {
             face_colors = Some(colors);
         } else {

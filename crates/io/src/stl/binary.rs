@@ -6,7 +6,7 @@ use glam::DVec3;
 use meshlod_mesh::Mesh;
 
 use super::weld::Welder;
-use super::{invalid, normal, write_blocks};
+use super::{invalid, normal};
 use crate::{Note, ParseError};
 
 const HEADER: usize = 80;
@@ -61,12 +61,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<(Mesh, Vec<Note>), ParseError> {
             colored,
             "attribute of a facet, such as its colour",
             "attributes of facets, such as their colours",
-        ),
+        )
+        .remedied("export colours as .ply, .obj or .glb"),
         Note::left_out(
             body.len() - claimed * FACET,
             "byte behind the last facet",
             "bytes behind the last facet",
-        ),
+        )
+        .remedied("if they are facets, correct the count at byte 80"),
     ];
     notes.retain(|note| note.count > 0);
     Ok((Mesh::new(welder.positions, faces), notes))
@@ -105,4 +107,21 @@ pub fn write(mesh: &Mesh, out: &mut dyn Write) -> IoResult<()> {
         block.extend_from_slice(&[0; 2]);
     };
     write_blocks(mesh.faces.iter().map(|&face| mesh.triangle(face)), append, out)
+}
+
+fn write_blocks<T>(
+    rows: impl IntoIterator<Item = T>,
+    mut append: impl FnMut(T, &mut Vec<u8>),
+    out: &mut dyn Write,
+) -> IoResult<()> {
+    const BLOCK: usize = 1 << 16;
+    let mut block = Vec::with_capacity(BLOCK + BLOCK / 4);
+    for row in rows {
+        append(row, &mut block);
+        if block.len() >= BLOCK {
+            out.write_all(&block)?;
+            block.clear();
+        }
+    }
+    out.write_all(&block)
 }

@@ -2,7 +2,8 @@
 //!
 //! Corners at the same position, bit for bit (−0 equals 0), are welded into one vertex. Normals in
 //! the file are ignored on reading and computed on writing. If a text file has several solids with
-//! facets, they become named objects.
+//! facets, they become named objects, and the scene is written as text again: binary files have no
+//! names.
 
 mod binary;
 #[cfg(test)]
@@ -15,7 +16,7 @@ use std::io::{Error, ErrorKind, Result as IoResult, Write};
 use glam::DVec3;
 use meshlod_mesh::Mesh;
 
-use crate::{ParseError, Scene};
+use crate::{ParseError, Precision, Scene};
 
 pub use binary::write;
 pub use text::write as write_ascii;
@@ -35,9 +36,9 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
 /// Parses an STL file, binary or text, as one mesh under one node.
 ///
 /// Vertices are numbered in order of appearance. A facet whose corners coincide is kept, as a face
-/// that repeats a vertex. The two further bytes of binary facets, with which some programs colour
-/// them, and bytes behind the last facet are noted. Cost: O(n) expected, n = facets. Memory: at most a small multiple of
-/// `bytes`, whatever the header claims.
+/// that repeats a vertex. Solids without facets, the two further bytes of binary facets, with which
+/// some programs colour them, and bytes behind the last facet are noted. Cost: O(n) expected, n =
+/// facets. Memory: at most a small multiple of `bytes`, whatever the header claims.
 /// # Errors
 /// Anything that is not a mesh of at least one face, with the line of text or byte of binary data.
 pub fn read_scene(bytes: &[u8]) -> Result<Scene, ParseError> {
@@ -45,10 +46,20 @@ pub fn read_scene(bytes: &[u8]) -> Result<Scene, ParseError> {
         return Err(ParseError::byte(0, "the file is empty"));
     }
     if is_text(bytes) {
-        return text::read(bytes).map(|mesh| Scene::from_mesh("", mesh));
+        return text::read(bytes);
     }
     let (mesh, notes) = binary::read(bytes)?;
     Ok(Scene { notes, ..Scene::from_mesh("", mesh) })
+}
+
+/// Writes the meshes that a scene shows as one: as text if the scene was read from several solids, else
+/// in binary form, which takes no notice of `precision`.
+///
+/// # Errors
+/// Those of [`write()`] and [`write_ascii`].
+pub fn write_scene(scene: &Scene, precision: Precision, out: &mut dyn Write) -> IoResult<()> {
+    let mesh = scene.shown_mesh();
+    if scene.has_solids { write_ascii(&mesh, precision, out) } else { write(&mesh, out) }
 }
 
 /// Tells text from binary. Some binary files begin with "solid" too: they are recognised by a
@@ -66,21 +77,4 @@ fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
 
 fn invalid(reason: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Error {
     Error::new(ErrorKind::InvalidInput, reason)
-}
-
-fn write_blocks<T>(
-    rows: impl IntoIterator<Item = T>,
-    mut append: impl FnMut(T, &mut Vec<u8>),
-    out: &mut dyn Write,
-) -> IoResult<()> {
-    const BLOCK: usize = 1 << 16;
-    let mut block = Vec::with_capacity(BLOCK + BLOCK / 4);
-    for row in rows {
-        append(row, &mut block);
-        if block.len() >= BLOCK {
-            out.write_all(&block)?;
-            block.clear();
-        }
-    }
-    out.write_all(&block)
 }

@@ -2,7 +2,8 @@ use meshlod_fixtures::{shared_mesh, tetrahedron, two_objects};
 use meshlod_mesh::{Mesh, VertexId};
 use proptest::prelude::*;
 
-use super::{read, write, write_ascii};
+use super::{read, read_scene, write, write_ascii, write_scene};
+use crate::{Format, Precision, Scene};
 
 const FACET: &str = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n\
                      endloop\nendfacet\n";
@@ -21,7 +22,7 @@ fn binary(mesh: &Mesh) -> Vec<u8> {
 
 fn text(mesh: &Mesh) -> Vec<u8> {
     let mut bytes = Vec::new();
-    write_ascii(mesh, &mut bytes).expect("memory takes everything");
+    write_ascii(mesh, Precision::F64, &mut bytes).expect("memory takes everything");
     bytes
 }
 
@@ -76,12 +77,40 @@ fn a_binary_file_may_begin_with_solid() {
 }
 
 #[test]
-fn empty_solids_leave_no_trace_and_unnamed_ones_count() {
+fn empty_solids_are_noted_and_unnamed_ones_count() {
     let text = format!(
         "SOLID\n{FACET}endsolid\nsolid nothing\nendsolid nothing\nsolid b\n{FACET}ENDSOLID b"
     );
-    let objects = read(text.as_bytes()).unwrap().objects.unwrap();
-    assert_eq!((objects.names, objects.of_face), (vec![String::new(), "b".into()], vec![0, 1]));
+    let scene = read_scene(text.as_bytes()).unwrap();
+    let objects = scene.meshes[0].mesh.objects.as_ref().unwrap();
+    assert_eq!(
+        (&objects.names[..], &objects.of_face[..]),
+        (&[String::new(), "b".into()][..], &[0, 1][..])
+    );
+    let notes: Vec<String> = scene.notes.iter().map(ToString::to_string).collect();
+    assert_eq!(notes, ["1 solid without facets (nothing)"]);
+}
+
+#[test]
+fn solids_are_written_as_text_with_their_names() {
+    let written = |scene: &Scene| {
+        let mut out = Vec::new();
+        write_scene(scene, Precision::Auto, &mut out).unwrap();
+        out
+    };
+    let mut solids = String::new();
+    for name in ["left part", "", "right"] {
+        solids += format!("solid {name}").trim_end();
+        solids += &format!("\n{FACET}");
+        solids += format!("endsolid {name}").trim_end();
+        solids += "\n";
+    }
+    let scene = read_scene(solids.as_bytes()).unwrap();
+    assert!(scene.limits_of(Format::Stl).is_empty());
+    assert_eq!(String::from_utf8(written(&scene)).unwrap(), solids);
+    let one = read_scene(format!("solid it\n{FACET}endsolid it\n").as_bytes()).unwrap();
+    assert_eq!((&*one.meshes[0].name, one.has_solids), ("it", false));
+    assert!(read_scene(&written(&one)).unwrap().meshes[0].name.is_empty(), "in binary form");
 }
 
 #[test]

@@ -5,15 +5,18 @@ use std::io::{Result as IoResult, Write};
 use meshlod_mesh::{Labels, Mesh};
 
 use super::weld::Welder;
-use super::{invalid, normal, write_blocks};
-use crate::ParseError;
+use super::{invalid, normal};
+use crate::line_writer::LineWriter;
+use crate::{Note, ParseError, Precision, Scene};
 
-/// Reads all solids; those without facets are dropped.
-pub(super) fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
+/// Reads all solids as one mesh: several become objects, one gives the mesh its name. Those without
+/// facets are noted.
+pub(super) fn read(bytes: &[u8]) -> Result<Scene, ParseError> {
     let mut words = Words { rest: bytes, line: 1 };
     let mut welder = Welder::with_facets(0);
     let mut faces = Vec::new();
     let mut solids = Labels::default();
+    let mut empty = Vec::new();
     while words.peek_is("solid") {
         words.expect("solid")?;
         let name = words.rest_of_line();
@@ -27,6 +30,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
         if faces.len() > before {
             solids.of_face.resize(faces.len(), solids.names.len() as u32);
             solids.names.push(name);
+        } else {
+            empty.push(name);
         }
     }
     if let Some(word) = words.next() {
@@ -35,8 +40,17 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
     if faces.is_empty() {
         return Err(ParseError::line(words.line, "no faces: no solid has a facet"));
     }
-    let objects = (solids.names.len() > 1).then_some(solids);
-    Ok(Mesh { objects, ..Mesh::new(welder.positions, faces) })
+    Ok(scene(Mesh::new(welder.positions, faces), solids, &empty))
+}
+
+fn scene(mut mesh: Mesh, mut solids: Labels, empty: &[String]) -> Scene {
+    let has_solids = solids.names.len() > 1;
+    let name = if has_solids { String::new() } else { solids.names.swap_remove(0) };
+    mesh.objects = has_solids.then_some(solids);
+    let note = Note::left_out(empty.len(), "solid without facets", "solids without facets")
+        .named(empty.iter().filter(|name| !name.is_empty()));
+    let notes = Some(note).filter(|note| note.count > 0).into_iter().collect();
+    Scene { has_solids, notes, ..Scene::from_mesh(name, mesh) }
 }
 
 /// Iterator over words that keeps the line of the last one, counted from 1.
@@ -130,35 +144,46 @@ fn shown(word: &[u8]) -> String {
     format!("\"{}\"", String::from_utf8_lossy(short).escape_debug())
 }
 
-/// Writes a mesh as a text STL file: exact coordinates and computed facet normals, with one `solid`
-/// for each object that has faces.
+/// Writes a mesh as a text STL file: positions, computed facet normals, and one `solid` for each
+/// object that has faces.
 ///
 /// # Errors
-/// Errors of `out`. Before anything is written: a mesh that breaks [`Mesh::validate`].
-pub fn write(mesh: &Mesh, out: &mut dyn Write) -> IoResult<()> {
+/// Errors of `out`, and a position that `precision` cannot hold. Before anything is written: a mesh
+/// that breaks [`Mesh::validate`].
+pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> IoResult<()> {
     mesh.validate().map_err(invalid)?;
     let label = |face: u32| mesh.objects.as_ref().map_or(0, |objects| objects.of(face as usize));
     let mut order: Vec<u32> = (0..mesh.faces.len() as u32).collect();
     order.sort_by_key(|&face| label(face));
+    let mut lines = LineWriter::new(out, precision.width(mesh));
     for solid in order.chunk_by(|&a, &b| label(a) == label(b)) {
         let name = mesh.objects.as_ref().map_or("meshlod", |o| &o.names[label(solid[0]) as usize]);
         let name = name.replace(char::is_control, " ");
-        writeln!(out, "solid {name}")?;
-        let faces = solid.iter().map(|&face| face as usize);
-        write_blocks(faces, |face, block| append_facet(mesh, face, block), out)?;
-        writeln!(out, "endsolid {name}")?;
+        lines.word(format!("solid {name}").trim_end());
+        lines.end()?;
+        for &face in solid {
+            write_facet(mesh, face as usize, &mut lines)?;
+        }
+        lines.word(format!("endsolid {name}").trim_end());
+        lines.end()?;
     }
-    Ok(())
+    lines.finish()
 }
 
-fn append_facet(mesh: &Mesh, face: usize, block: &mut Vec<u8>) {
-    let corners = mesh.triangle(mesh.faces[face]);
-    let [x, y, z] = normal(corners).to_array();
-    let mut text = format!("facet normal {x:e} {y:e} {z:e}\n outer loop\n");
+fn write_facet(mesh: &Mesh, face: usize, lines: &mut LineWriter<'_>) -> IoResult<()> {
+    let corners = mesh.faces[face];
+    lines.word("facet normal");
+    lines.attributes(&normal(mesh.triangle(corners)).as_vec3().to_array());
+    lines.end()?;
+    lines.word("outer loop");
+    lines.end()?;
     for corner in corners {
-        let [x, y, z] = corner.to_array();
-        text += &format!("  vertex {x:e} {y:e} {z:e}\n");
+        lines.word("vertex");
+        lines.position(corner.index(), mesh.positions[corner.index()])?;
+        lines.end()?;
     }
-    text += " endloop\nendfacet\n";
-    block.extend_from_slice(text.as_bytes());
+    lines.word("endloop");
+    lines.end()?;
+    lines.word("endfacet");
+    lines.end()
 }

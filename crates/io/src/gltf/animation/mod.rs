@@ -4,6 +4,7 @@ mod key_times;
 pub(super) mod packing;
 mod sampler;
 mod skin;
+mod slerp;
 mod track;
 
 use glam::{DMat4, DQuat, DVec3};

@@ -4,6 +4,7 @@ use glam::{DQuat, DVec4};
 use serde_json::Value;
 
 use super::sampler::{Interpolation, Sampler};
+use super::slerp::slerp;
 use crate::gltf::document::Document;
 
 /// Meaning of a track's numbers.
@@ -137,27 +138,9 @@ fn quaternion(values: &[f64]) -> DQuat {
     DQuat::from_slice(values)
 }
 
-/// Number of halvings after which what is left of a turn is linear.
-const HALVINGS: usize = 40;
-
-/// Returns the rotation between two that is this part of the way, by the shorter way at constant
-/// speed.
-///
-/// The way is halved again and again, by sums and roots alone, so that the result is the same on
-/// every machine.
+/// Returns the rotation between two that is this part of the way, by the shorter way.
 fn turned(from: DQuat, to: DQuat, part: f64) -> DQuat {
-    let (mut from, mut to) = (from, if from.dot(to) < 0.0 { -to } else { to });
-    let mut part = part;
-    for _ in 0..HALVINGS {
-        let middle = (from + to).normalize();
-        part *= 2.0;
-        if part >= 1.0 {
-            (from, part) = (middle, part - 1.0);
-        } else {
-            to = middle;
-        }
-    }
-    (from * (1.0 - part) + to * part).normalize()
+    slerp(from, if from.dot(to) < 0.0 { -to } else { to }, part)
 }
 
 #[cfg(test)]

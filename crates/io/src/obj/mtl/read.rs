@@ -135,7 +135,8 @@ impl Library {
                 "further definition of a material",
                 "further definitions of materials",
             )
-            .named(self.repeated.clone()),
+            .named(self.repeated.clone())
+            .remedied("give each material a name of its own"),
         ];
         notes.retain(|note| note.count > 0);
         notes

@@ -1,8 +1,10 @@
 //! Tracks of animations as they are packed: their keys, and the pose between two keys.
 
+use glam::DQuat;
 use serde_json::Value;
 
 use crate::gltf::animation::sampler::{AnimatedProperty, Interpolation, Sampler};
+use crate::gltf::animation::slerp;
 use crate::gltf::document::Document;
 
 /// Value of a sampler: a unit quaternion, or a vector with a fourth component of zero.
@@ -99,13 +101,9 @@ pub(in crate::gltf) fn arc(a: KeyValue, b: KeyValue) -> f64 {
 }
 
 /// Interpolates along the arc between two unit quaternions, by their own signs.
-pub(in crate::gltf) fn slerp(a: KeyValue, b: KeyValue, part: f64) -> KeyValue {
-    let angle = arc(a, b);
-    let sine = angle.sin();
-    if sine < 1e-9 {
-        return mixed(a, b, [1.0 - part, part]);
-    }
-    mixed(a, b, [((1.0 - part) * angle).sin() / sine, (part * angle).sin() / sine])
+pub(super) fn slerp(a: KeyValue, b: KeyValue, part: f64) -> KeyValue {
+    let [from, to] = [a, b].map(DQuat::from_array);
+    slerp::slerp(from, to, part).to_array()
 }
 
 fn mixed(a: KeyValue, b: KeyValue, [s, t]: [f64; 2]) -> KeyValue {
