@@ -35,8 +35,8 @@ impl BitModel {
     fn learn(&mut self, bit: bool) {
         let target = if bit { i32::from(u16::MAX) } else { 0 };
         let apart = target - i32::from(self.probability);
-        let step =
-            (u64::from(apart.unsigned_abs()) * RATES[usize::from(self.seen)] >> RATE_BITS) as i32;
+        let rated = u64::from(apart.unsigned_abs()) * RATES[usize::from(self.seen)];
+        let step = (rated >> RATE_BITS) as i32;
         self.probability = (i32::from(self.probability) + if bit { step } else { -step }) as u16;
         self.seen += u8::from(self.seen < MOST_SEEN);
     }
@@ -227,7 +227,8 @@ mod tests {
     fn rates_are_quotients() {
         for (seen, rate) in (0..).zip(RATES) {
             for apart in 0..1u64 << 16 {
-                assert_eq!(apart * rate >> RATE_BITS, 2 * apart / (2 * seen + 3), "{seen} {apart}");
+                let quotient = 2 * apart / (2 * seen + 3);
+                assert_eq!((apart * rate) >> RATE_BITS, quotient, "{seen} {apart}");
             }
         }
     }
