@@ -313,7 +313,7 @@ impl<'a> ObjReader<'a> {
             wedges::attributes(self.positions.len(), &self.faces, &self.corners, self.pools);
         let mut library = Library::default();
         for name in &self.libraries {
-            library.add(name, resolve)?;
+            library.add(name, resolve);
         }
         let used = materials.as_ref().map_or(&[][..], |labels| &labels.names);
         let resolved = resolve_materials(used, &library, resolve);
