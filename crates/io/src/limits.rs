@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 
 use meshlod_mesh::{FaceLayerKind, Layer, LayerKind, Mesh};
 
-use crate::{Format, Material, MeshInstance, Note, Scene};
+use crate::obj::color_splits;
+use crate::{Format, Material, MeshInstance, Note, Scene, SceneMesh};
 
 impl Scene {
     /// Lists what a file of this format cannot hold of the scene, or holds in another form; empty if
@@ -59,6 +60,29 @@ impl Scene {
         notes
     }
 
+    /// Lists what a file of this format lacks where it is written alone, without the library and the
+    /// images that belong beside it.
+    pub fn lone_file_limits(&self, format: Format) -> Vec<Note> {
+        let looks = crate::obj::mtl::defined(self);
+        let of_colors = self.materials.iter().filter_map(|material| material.base_color_image);
+        let (looks, images): (_, BTreeSet<usize>) = match format {
+            Format::Obj => (looks, self.materials.iter().flat_map(Material::images).collect()),
+            Format::Ply => (Vec::new(), of_colors.collect()),
+            _ => return Vec::new(),
+        };
+        // Images that were not found are noted by the reader.
+        let images = images.iter().filter_map(|&image| self.images.get(image));
+        let images: Vec<&str> =
+            images.filter(|image| !image.bytes.is_empty()).map(|image| &*image.name).collect();
+        let remedy = "write to a file to get what belongs beside it";
+        let mut notes = vec![
+            Note::left_out(looks.len(), "material's look", "materials' looks").named(looks),
+            Note::left_out(images.len(), "texture", "textures").named(images),
+        ];
+        notes.retain(|note| note.count > 0);
+        notes.into_iter().map(|note| note.remedied(remedy)).collect()
+    }
+
     /// Lists what glTF lacks of a new scene whose meshes stay whole, as strips and compressed ones
     /// do: the names of their objects.
     pub fn whole_mesh_limits(&self) -> Vec<Note> {
@@ -106,6 +130,7 @@ impl Scene {
         let hidden = shown.iter().filter(|&&shown| !shown).count();
         let count = |array| self.source.as_ref().map_or(0, |source| source.count(array));
         let lights = self.source.as_ref().map_or(0, |source| source.lights());
+        let images = self.source.as_ref().map_or_else(Vec::new, |source| source.extension_images());
         let mut notes = vec![
             merged_instances(instances.len()),
             Note::left_out(hidden, "mesh that no node shows", "meshes that no node shows"),
@@ -113,6 +138,12 @@ impl Scene {
             Note::left_out(count("animations"), "animation", "animations"),
             Note::left_out(count("cameras"), "camera", "cameras"),
             Note::left_out(lights, "light", "lights"),
+            Note::left_out(
+                images.len(),
+                "texture that only an extension of glTF names",
+                "textures that only extensions of glTF name",
+            )
+            .named(images),
         ];
         notes.extend(self.source.iter().flat_map(|source| source.unheld_parts()));
         notes
@@ -158,17 +189,68 @@ impl Scene {
         let layers =
             meshes.iter().filter_map(|mesh| mesh.attributes.as_ref()).flat_map(|a| &a.layers);
         let lost: BTreeSet<String> =
-            layers.filter(|layer| !holds(format, layer)).map(title).collect();
-        let is_new = splits_seams(format) && !self.had_split_seams();
-        let split = if is_new { meshes.iter().map(|mesh| seams(mesh)).sum() } else { 0 };
+            layers.filter(|layer| !self.holds(format, layer)).map(title).collect();
+        let split = |splits: fn(&Mesh) -> usize| {
+            let is_new = !self.had_split_seams();
+            if is_new { meshes.iter().map(|mesh| splits(mesh)).sum() } else { 0 }
+        };
+        let all = if splits_seams(format) { split(seams) } else { 0 };
+        let of_colors = if format == Format::Obj { split(color_splits) } else { 0 };
+        let lacks_opacity = matches!(format, Format::Obj | Format::Smf);
+        let translucent = meshes.iter().map(|mesh| translucent_vertices(mesh));
+        let translucent = if lacks_opacity { translucent.sum() } else { 0 };
         vec![
             Note::left_out(lost.len(), "vertex attribute", "vertex attributes").named(lost),
+            Note::left_out(translucent, "opacity of a vertex", "opacities of vertices"),
             Note::changed(
-                split,
+                all,
                 "vertex split at seams of its attributes",
                 "vertices split at seams of their attributes",
             ),
+            Note::changed(
+                of_colors,
+                "vertex split at seams of its colours",
+                "vertices split at seams of their colours",
+            ),
         ]
+    }
+
+    /// Reports whether a format has a place for a layer.
+    fn holds(&self, format: Format, layer: &Layer) -> bool {
+        match (format, layer.kind) {
+            (Format::Gltf | Format::Glb | Format::Ply, _) => true,
+            (Format::Stl, _) => false,
+            (Format::Obj, LayerKind::Uv(set)) => self.shown_texture_sets().contains(&set),
+            (_, kind) => {
+                matches!(kind, LayerKind::Normal | LayerKind::Uv(0) | LayerKind::Color(0))
+            }
+        }
+    }
+
+    /// Returns the set of texture coordinates that the base colour of each material uses.
+    pub(crate) fn texture_sets(&self) -> Vec<u8> {
+        self.source.as_ref().map_or_else(Vec::new, |source| source.texture_sets())
+    }
+
+    /// Returns the sets of texture coordinates that an OBJ file has: those of the materials of the
+    /// meshes, and the first for faces without.
+    fn shown_texture_sets(&self) -> BTreeSet<u8> {
+        let sets = self.texture_sets();
+        let shown: BTreeSet<usize> = self.instances().iter().map(|i| i.mesh).collect();
+        let meshes = shown.iter().map(|&mesh| &self.meshes[mesh]);
+        let of_mesh = |mesh: &SceneMesh| -> Vec<u8> {
+            let has = |set: u8| {
+                let attributes = mesh.mesh.attributes.as_ref();
+                attributes.is_some_and(|own| own.layer(LayerKind::Uv(set)).is_some())
+            };
+            let set = |material: &Option<usize>| sets.get((*material)?).copied();
+            let of_materials = mesh.materials.iter().map(|material| set(material).unwrap_or(0));
+            of_materials.map(|set| if has(set) { set } else { 0 }).collect()
+        };
+        match sets.iter().all(|&set| set == 0) {
+            true => BTreeSet::from([0]),
+            false => meshes.flat_map(of_mesh).collect(),
+        }
     }
 
     /// Reports whether vertices were split at seams in the file that the scene was read from, so
@@ -189,17 +271,6 @@ pub fn merged_instances(count: usize) -> Note {
     Note::changed(merged, "", "instances of meshes merged into one mesh")
 }
 
-/// Reports whether a format has a place for a layer.
-fn holds(format: Format, layer: &Layer) -> bool {
-    match format {
-        Format::Gltf | Format::Glb | Format::Ply => true,
-        Format::Stl => false,
-        Format::Obj | Format::Off | Format::Smf => {
-            matches!(layer.kind, LayerKind::Normal | LayerKind::Uv(0) | LayerKind::Color(0))
-        }
-    }
-}
-
 fn splits_seams(format: Format) -> bool {
     matches!(format, Format::Off | Format::Smf)
 }
@@ -217,6 +288,17 @@ fn title(layer: &Layer) -> String {
         LayerKind::Weights(_) => "joint weights".to_owned(),
         LayerKind::Other | LayerKind::Label => layer.name.clone(),
     }
+}
+
+/// Counts the vertices whose colour is not opaque for every face.
+fn translucent_vertices(mesh: &Mesh) -> usize {
+    let Some(attributes) = &mesh.attributes else { return 0 };
+    let Some(colors) = attributes.layer(LayerKind::Color(0)) else { return 0 };
+    let mut found = vec![false; mesh.positions.len()];
+    for (v, &wedge) in mesh.faces.as_flattened().iter().zip(attributes.corners.as_flattened()) {
+        found[v.index()] |= colors.of(wedge).get(3).is_some_and(|&opacity| opacity != 1.0);
+    }
+    found.into_iter().filter(|&found| found).count()
 }
 
 /// Counts the wedges in use beyond one for each vertex in use.
