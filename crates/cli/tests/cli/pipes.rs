@@ -50,7 +50,7 @@ fn what_belongs_beside_a_file_is_noted_where_there_is_no_place_beside() {
         assert!(strict.code == 1 && strict.out.is_empty(), "{strict:?}");
     }
     let glb = run.run(&["convert", "in.obj", "-", "--format", "glb", "--strict"]);
-    assert_eq!((glb.code, glb.err.as_str()), (0, ""), "an image is embedded");
+    assert!(glb.code == 0 && !glb.err.contains("left out"), "an image is embedded: {glb:?}");
 }
 
 #[test]
