@@ -166,8 +166,8 @@ fn image_remedy(name: &str, folder: &Path) -> String {
 /// last, so that it never meets the files of another version: where the file there uses a buffer or
 /// library that differs, the new one is called `stem-2.bin` or `stem-2.mtl`, and the old one is
 /// removed at the end. PLY, STL, OFF and SMF store a single mesh: the result of [`Scene::flatten`].
-/// An existing image with different contents is not overwritten: in OBJ and PLY files, the new one is
-/// called `image-2.png` then, in glTF it is an error. Material libraries that already say what the
+/// An existing image with different contents is not overwritten: for OBJ and PLY, the new one is
+/// called `image-2.png` then; for glTF it is an error. Material libraries that already say what the
 /// scene does stay.
 ///
 /// # Errors

@@ -123,8 +123,8 @@ fn is_richer(material: &Value) -> bool {
         || textures.into_iter().flatten().any(is_moved)
 }
 
-/// Returns the set of texture coordinates that the base colour of each material uses, 0 where it has
-/// no texture.
+/// Returns the set of texture coordinates that the base colour of each material uses; 0 if it has no
+/// texture.
 pub(super) fn texture_sets(json: &Value) -> Vec<u8> {
     let materials = json.get("materials").and_then(Value::as_array).into_iter().flatten();
     materials.map(|material| u8::try_from(texture_set(material)).unwrap_or(0)).collect()

@@ -18,8 +18,8 @@ use crate::{Node, ParseError, Scene, SceneMesh};
 /// textures, or returns `None` if there is no such file.
 ///
 /// Polygons are triangulated. A `v` gives three coordinates and, if present, a colour; a `vt` gives
-/// two coordinates. Values of `vt`, `vn` and colours that are not finite become 0, and are counted, as
-/// do those of corners that lack what others have. Colours above 1 are taken to be out of 255; those
+/// two coordinates. Values of `vt`, `vn` and colours that are not finite become 0, and are counted.
+/// Corners that lack what others have get 0, too. Colours above 1 are taken to be out of 255; those
 /// in comments `#MRGB`, the polypaint of ZBrush, hold where no vertex has another. `o` wins over
 /// `g`. A material whose library or image is missing keeps its name. Materials that no face uses come
 /// last. Lines, points, curves, faces with fewer than three corners and everything else that is not a

@@ -54,8 +54,8 @@ pub(super) struct UvNumbers {
 }
 
 impl UvNumbers {
-    /// Writes the texture coordinates that faces use; `of_label` has the set of each material, which
-    /// is the first for all others and where the mesh lacks the set.
+    /// Writes the texture coordinates that faces use; `of_label` has the set of each material. The
+    /// first set is that of all other faces, and stands in for a set that the mesh lacks.
     pub fn write(mesh: &Mesh, of_label: &[u8], lines: &mut LineWriter) -> io::Result<Self> {
         let has = |set: u8| {
             let attributes = mesh.attributes.as_ref();

@@ -14,9 +14,9 @@ use crate::{Precision, Scene};
 /// names of the material libraries, such as the one that [`write_mtl`](super::write_mtl) writes.
 ///
 /// Equal uvs and equal normals are written once; the uvs of a face are those of the set that the
-/// texture of its base colour uses. Colours follow the positions, without opacity; a
-/// vertex whose faces see it in several colours is written once for each. Objects become `o`, materials `usemtl`, with names made unique, and
-/// smoothing groups `s`.
+/// texture of its base colour uses. Colours follow the positions, without opacity; a vertex whose
+/// faces see it in several colours is written once for each. Objects become `o`, materials `usemtl`,
+/// with names made unique, and smoothing groups `s`.
 /// Positions (at `F64`), uvs and normals read back bit for bit. Other layers are not written.
 ///
 /// # Errors

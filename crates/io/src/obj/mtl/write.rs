@@ -95,8 +95,8 @@ fn holds(library: &Library, materials: impl Iterator<Item = Definition>) -> bool
 /// Returns the statements that define a material: its own, less those that are no longer true, and
 /// those that are needed besides.
 ///
-/// The colour of a material that is not from a library is always said: not all readers take grey for
-/// one that is missing.
+/// The colour of a material that is not from a library is always said: not all readers take grey
+/// for one that is missing.
 fn statements(material: &Material, images: &[Image], is_foreign: bool) -> Vec<MtlStatement> {
     let mut lines = material.mtl.clone();
     lines.extend(is_foreign.then(|| color(material)));
