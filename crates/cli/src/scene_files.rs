@@ -21,8 +21,12 @@ pub fn write(
     writing: &WriteArgs,
     session: &Session,
 ) -> Result<(), Failure> {
-    let limits = scene.limits_of(check_output(path, session)?);
-    session.note(path, &remedied(scene, limits))?;
+    let format = check_output(path, session)?;
+    let mut notes = remedied(scene, scene.limits_of(format));
+    if is_pipe(path) {
+        notes.extend(scene.lone_file_limits(format));
+    }
+    session.note(path, &notes)?;
     write_noted(path, scene, writing, session)
 }
 

@@ -143,10 +143,21 @@ fn note_missing_images(scene: &mut Scene, folder: Option<&Path>) {
     );
     let mut note = Note::left_out(names.len(), one, many);
     if let Some(folder) = folder {
-        let place = folder.join(bare_name(first).unwrap_or(first));
-        note = note.remedied(format!("put an image at {}", place.display()));
+        note = note.remedied(image_remedy(first, folder));
     }
     scene.notes.push(note.named(names));
+}
+
+/// Says what to do about an image that a file in a folder names but that is not there.
+fn image_remedy(name: &str, folder: &Path) -> String {
+    if name.contains("://") {
+        return "images are not downloaded; save them beside the model, and name those".to_owned();
+    }
+    if ["<UDIM>", "<UVTILE>", "%(UDIM)d"].iter().any(|tiles| name.contains(tiles)) {
+        return "tiles of UDIM are not read; bake them into one image".to_owned();
+    }
+    let place = folder.join(bare_name(name).unwrap_or(name));
+    format!("put an image at {}", place.display())
 }
 
 /// Writes a scene as a mesh file, with the `.bin`, `.mtl` and image files that belong to it next to
@@ -156,8 +167,9 @@ fn note_missing_images(scene: &mut Scene, folder: Option<&Path>) {
 /// last, so that it never meets the files of another version: where the file there uses a buffer or
 /// library that differs, the new one is called `stem-2.bin` or `stem-2.mtl`, and the old one is
 /// removed at the end. PLY, STL, OFF and SMF store a single mesh: the result of [`Scene::flatten`].
-/// An existing image with different contents is not overwritten, nor are material libraries that
-/// already say what the scene does.
+/// An existing image with different contents is not overwritten: for OBJ and PLY, the new one is
+/// called `image-2.png` then; for glTF it is an error. Material libraries that already say what the
+/// scene does stay.
 ///
 /// # Errors
 /// One line that names the file: an unknown suffix, an error of the system, or the part of the

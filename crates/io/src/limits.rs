@@ -2,9 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use meshlod_mesh::{FaceLayerKind, Layer, LayerKind, Mesh};
+use meshlod_mesh::FaceLayerKind;
 
-use crate::{Format, Material, MeshInstance, Note, Scene};
+use crate::{Format, Material, Note, Scene};
+
+mod layers;
 
 impl Scene {
     /// Lists what a file of this format cannot hold of the scene, or holds in another form; empty if
@@ -61,6 +63,29 @@ impl Scene {
         notes
     }
 
+    /// Lists what a file of this format lacks if it is written alone, without the library and the
+    /// images that belong beside it.
+    pub fn lone_file_limits(&self, format: Format) -> Vec<Note> {
+        let looks = crate::obj::mtl::defined(self);
+        let of_colors = self.materials.iter().filter_map(|material| material.base_color_image);
+        let (looks, images): (_, BTreeSet<usize>) = match format {
+            Format::Obj => (looks, self.materials.iter().flat_map(Material::images).collect()),
+            Format::Ply => (Vec::new(), of_colors.collect()),
+            _ => return Vec::new(),
+        };
+        // Images that were not found are noted by the reader.
+        let images = images.iter().filter_map(|&image| self.images.get(image));
+        let images: Vec<&str> =
+            images.filter(|image| !image.bytes.is_empty()).map(|image| &*image.name).collect();
+        let remedy = "write to a file to get what belongs beside it";
+        let mut notes = vec![
+            Note::left_out(looks.len(), "material's look", "materials' looks").named(looks),
+            Note::left_out(images.len(), "texture", "textures").named(images),
+        ];
+        notes.retain(|note| note.count > 0);
+        notes.into_iter().map(|note| note.remedied(remedy)).collect()
+    }
+
     /// Lists what glTF lacks of a new scene whose meshes stay whole, as strips and compressed ones
     /// do: the names of their objects.
     pub fn whole_mesh_limits(&self) -> Vec<Note> {
@@ -108,6 +133,7 @@ impl Scene {
         let hidden = shown.iter().filter(|&&shown| !shown).count();
         let count = |array| self.source.as_ref().map_or(0, |source| source.count(array));
         let lights = self.source.as_ref().map_or(0, |source| source.lights());
+        let images = self.source.as_ref().map_or_else(Vec::new, |source| source.extension_images());
         let mut notes = vec![
             merged_instances(instances.len()),
             Note::left_out(hidden, "mesh that no node shows", "meshes that no node shows"),
@@ -115,6 +141,12 @@ impl Scene {
             Note::left_out(count("animations"), "animation", "animations"),
             Note::left_out(count("cameras"), "camera", "cameras"),
             Note::left_out(lights, "light", "lights"),
+            Note::left_out(
+                images.len(),
+                "texture that only an extension of glTF names",
+                "textures that only extensions of glTF name",
+            )
+            .named(images),
         ];
         notes.extend(self.source.iter().flat_map(|source| source.unheld_parts()));
         notes
@@ -154,32 +186,6 @@ impl Scene {
         ]
     }
 
-    fn layer_limits(&self, format: Format) -> Vec<Note> {
-        let shown = || self.instances().into_iter().map(|MeshInstance { mesh, .. }| mesh);
-        let shown: BTreeSet<usize> = shown().collect();
-        let meshes: Vec<&Mesh> = shown.iter().map(|&mesh| &self.meshes[mesh].mesh).collect();
-        let layers =
-            meshes.iter().filter_map(|mesh| mesh.attributes.as_ref()).flat_map(|a| &a.layers);
-        let lost: BTreeSet<String> =
-            layers.filter(|layer| !holds(format, layer)).map(title).collect();
-        let is_new = splits_seams(format) && !self.had_split_seams();
-        let split = if is_new { meshes.iter().map(|mesh| seams(mesh)).sum() } else { 0 };
-        vec![
-            Note::left_out(lost.len(), "vertex attribute", "vertex attributes").named(lost),
-            Note::changed(
-                split,
-                "vertex split at seams of its attributes",
-                "vertices split at seams of their attributes",
-            ),
-        ]
-    }
-
-    /// Reports whether vertices were split at seams in the file that the scene was read from, so
-    /// that to split them again changes nothing.
-    pub(crate) fn had_split_seams(&self) -> bool {
-        self.source.is_some() || self.has_split_seams
-    }
-
     pub(crate) fn object_names(&self) -> Vec<String> {
         let labels = self.meshes.iter().filter_map(|mesh| mesh.mesh.objects.as_ref());
         labels.flat_map(|labels| &labels.names).filter(|name| !name.is_empty()).cloned().collect()
@@ -190,52 +196,6 @@ impl Scene {
 pub fn merged_instances(count: usize) -> Note {
     let merged = if count > 1 { count } else { 0 };
     Note::changed(merged, "", "instances of meshes merged into one mesh")
-}
-
-/// Reports whether a format has a place for a layer.
-fn holds(format: Format, layer: &Layer) -> bool {
-    match format {
-        Format::Gltf | Format::Glb | Format::Ply => true,
-        Format::Stl => false,
-        Format::Obj | Format::Off | Format::Smf => {
-            matches!(layer.kind, LayerKind::Normal | LayerKind::Uv(0) | LayerKind::Color(0))
-        }
-    }
-}
-
-fn splits_seams(format: Format) -> bool {
-    matches!(format, Format::Off | Format::Smf)
-}
-
-/// Returns the name of a layer for people.
-fn title(layer: &Layer) -> String {
-    match layer.kind {
-        LayerKind::Normal => "normals".to_owned(),
-        LayerKind::Tangent => "tangents".to_owned(),
-        LayerKind::Uv(0) => "texture coordinates".to_owned(),
-        LayerKind::Color(0) => "colours".to_owned(),
-        LayerKind::Uv(set) => format!("texture coordinates {set}"),
-        LayerKind::Color(set) => format!("colours {set}"),
-        LayerKind::Joints(_) => "joints".to_owned(),
-        LayerKind::Weights(_) => "joint weights".to_owned(),
-        LayerKind::Other | LayerKind::Label => layer.name.clone(),
-    }
-}
-
-/// Counts the wedges in use beyond one for each vertex in use.
-fn seams(mesh: &Mesh) -> usize {
-    let Some(attributes) = &mesh.attributes else { return 0 };
-    if attributes.layers.is_empty() {
-        return 0;
-    }
-    let used = |count: usize, ids: &mut dyn Iterator<Item = usize>| {
-        let mut used = vec![false; count];
-        ids.for_each(|id| used[id] = true);
-        used.into_iter().filter(|&used| used).count()
-    };
-    let wedges = &mut attributes.corners.as_flattened().iter().map(|w| w.index());
-    let vertices = &mut mesh.faces.as_flattened().iter().map(|v| v.index());
-    used(attributes.wedge_count, wedges).saturating_sub(used(mesh.positions.len(), vertices))
 }
 
 #[cfg(test)]

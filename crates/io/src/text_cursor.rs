@@ -13,6 +13,8 @@ pub(crate) struct TextCursor<'a> {
     bytes: &'a [u8],
     at: usize,
     line: usize,
+    /// Attribute values that are not finite, so far.
+    not_finite: usize,
 }
 
 impl<'a> TextCursor<'a> {
@@ -31,7 +33,7 @@ impl<'a> TextCursor<'a> {
             return Err(ParseError::byte(at, "a zero byte: this is not a text file"));
         }
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
-        Ok(Self { bytes, at, line: 1 })
+        Ok(Self { bytes, at, line: 1, not_finite: 0 })
     }
 
     /// Returns the current line, counted from 1.
@@ -167,7 +169,7 @@ impl<'a> TextCursor<'a> {
         let start = self.at;
         let Some(x) = self.any_number(need)? else {
             self.at += self.here().len();
-            return Ok(0.0);
+            return Ok(self.zero());
         };
         let rounded = x as f32;
         if rounds_twice(x) {
@@ -175,7 +177,19 @@ impl<'a> TextCursor<'a> {
             let exact = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
             return Ok(exact.filter(|x: &f32| x.is_finite()).unwrap_or(rounded));
         }
-        Ok(if rounded.is_finite() { rounded } else { 0.0 })
+        Ok(if rounded.is_finite() { rounded } else { self.zero() })
+    }
+
+    /// Counts an attribute value that is not finite, and returns what it is taken for.
+    #[cold]
+    fn zero(&mut self) -> f32 {
+        self.not_finite += 1;
+        0.0
+    }
+
+    /// Returns the number of attribute values so far that are not finite, and were read as 0.
+    pub(crate) fn not_finite(&self) -> usize {
+        self.not_finite
     }
 
     /// Reads a finite number; returns `None`, without moving, for NaN and infinities.

@@ -33,6 +33,27 @@ fn every_format_but_gltf_goes_through_a_pipe() {
 }
 
 #[test]
+fn what_belongs_beside_a_file_is_noted_where_there_is_no_place_beside() {
+    let run = Run::new();
+    let object = "mtllib in.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl red\nf 1/1 2/1 3/1\n";
+    std::fs::write(run.path("in.obj"), object).unwrap();
+    std::fs::write(run.path("in.mtl"), "newmtl red\nKd 1 0 0\nmap_Kd t.png\n").unwrap();
+    std::fs::write(run.path("t.png"), b"\x89PNG\r\n\x1a\n").unwrap();
+    for (format, expected) in [
+        ("obj", "left out: 1 material's look (red), 1 texture (t.png)"),
+        ("ply", "1 texture (t.png)"),
+    ] {
+        let arguments = ["convert", "in.obj", "-", "--format", format];
+        let done = run.run(&arguments);
+        assert!(done.code == 0 && done.err.contains(expected), "{done:?}");
+        let strict = run.run(&[&arguments[..], &["--strict"]].concat());
+        assert!(strict.code == 1 && strict.out.is_empty(), "{strict:?}");
+    }
+    let glb = run.run(&["convert", "in.obj", "-", "--format", "glb", "--strict"]);
+    assert!(glb.code == 0 && !glb.err.contains("left out"), "an image is embedded: {glb:?}");
+}
+
+#[test]
 fn a_picture_goes_through_a_pipe() {
     let run = Run::new();
     run.sample("sphere", 100, "in.ply");

@@ -38,7 +38,8 @@ pub(super) fn stage_image(
 }
 
 /// Gives images whose names point outside the folder of `path`, and do not lead to them from there,
-/// bare file names, and sees to it that no two images have one name.
+/// bare file names, and numbers those whose names another image has, of the scene or in the folder:
+/// a file that is there may belong to another model.
 pub(super) fn use_own_names(path: &Path, images: &mut [Image]) {
     let mut taken: HashMap<PathBuf, usize> = HashMap::new();
     for i in 0..images.len() {
@@ -55,8 +56,6 @@ pub(super) fn use_own_names(path: &Path, images: &mut [Image]) {
         let Some(file) = inner.clone().or_else(bare) else { continue };
         let is_free = |name: &PathBuf| match taken.get(name) {
             Some(&other) => images[other].bytes == image.bytes,
-            // The name that an image has is not changed for a file that is there.
-            None if inner.as_ref() == Some(name) => true,
             None => {
                 let named = Image { name: name.to_string_lossy().into_owned(), ..image.clone() };
                 !path.with_file_name("").join(name).exists() || is_beside(path, &named)

@@ -21,51 +21,79 @@ pub(super) fn write_obj(path: &Path, scene: &Scene, precision: Precision) -> Res
     for image in images.iter().filter(|image| !image.bytes.is_empty()) {
         stage_image(path, image, &mut staged)?;
     }
-    let named = Scene { materials: scene.materials.clone(), images, ..Scene::default() };
-    let old = libraries_of(path);
+    let (materials, source) = (scene.materials.clone(), scene.source.clone());
+    let named = Scene { materials, images, source, ..Scene::default() };
+    let old = OldLibraries::of(path);
     let libraries = match named.materials.is_empty() {
         true => Vec::new(),
-        false if says_same(path, &old, &named) => old.clone(),
-        // Without their libraries, the materials are but names.
-        false if !old.is_empty() && mtl::says_nothing(&named) => old.clone(),
-        false => vec![stage_library(path, &named, &old, &mut staged)?],
+        false if old.say(&named) => old.lines.clone(),
+        false => stage_library(path, &named, &old, &mut staged)?,
     };
-    let replaced = old.into_iter().filter(|name| !libraries.contains(name));
-    let is_own = |name: &str| is_part_name(name, &stem(path), "mtl");
+    let used = names_in(&libraries);
     // A scene without materials says nothing of those of the file before.
-    let replaced: BTreeSet<String> = replaced.filter(|_| !libraries.is_empty()).collect();
+    let replaced = names_in(&old.lines).into_iter().filter(|_| !libraries.is_empty());
+    let replaced: BTreeSet<String> = replaced.filter(|name| !used.contains(name)).collect();
+    let is_own = |name: &str| is_part_name(name, &stem(path), "mtl");
     let obsolete = obsolete_parts(path, &replaced, is_own);
     staged.finish(path, |out| obj::write(scene, precision, out, &libraries), &obsolete)
 }
 
-/// Reports whether libraries that are there say what the materials of a scene are.
-fn says_same(path: &Path, libraries: &[String], scene: &Scene) -> bool {
-    let mut beside = Beside::of(path, Format::Obj);
-    let mut library = mtl::Library::default();
-    let mut read = libraries.iter().map(|names| library.add(names, &mut |name| beside.read(name)));
-    !libraries.is_empty() && read.all(|read| read.is_ok()) && mtl::same_library(&library, scene)
+/// Libraries of the file that is to be replaced.
+struct OldLibraries {
+    /// What each `mtllib` line names.
+    lines: Vec<String>,
+    known: mtl::Library,
 }
 
-/// Stages the library of a scene, unless it is already there, and returns its name.
+impl OldLibraries {
+    fn of(path: &Path) -> Self {
+        let lines = libraries_of(path);
+        let mut beside = Beside::of(path, Format::Obj);
+        let mut known = mtl::Library::default();
+        lines.iter().for_each(|names| known.add(names, &mut |name| beside.read(name)));
+        Self { lines, known }
+    }
+
+    /// Reports whether the libraries say what the materials of a scene are.
+    fn say(&self, scene: &Scene) -> bool {
+        // Without their libraries, the materials are but names.
+        !self.lines.is_empty()
+            && (mtl::same_library(&self.known, scene) || mtl::defined(scene).is_empty())
+    }
+}
+
+/// Lists all names that the lines `mtllib` of a file may mean.
+fn names_in(lines: &[String]) -> BTreeSet<String> {
+    let parts = lines.iter().flat_map(|line| mtl::library_names(line)).map(str::to_owned);
+    parts.chain(lines.iter().cloned()).collect()
+}
+
+/// Stages the library of a scene, unless it is already there, and returns its name; behind it those
+/// of libraries that were not found, if they may define what the scene has but names of.
 fn stage_library(
     path: &Path,
     scene: &Scene,
-    old: &[String],
+    old: &OldLibraries,
     staged: &mut StagedFiles,
-) -> Result<String, IoError> {
+) -> Result<Vec<String>, IoError> {
+    let own = mtl::own_definitions(&old.known, scene);
+    let is_partial = own.len() < scene.materials.len();
+    let unread: Vec<&str> = old.known.unread().filter(|_| is_partial).collect();
     let mut bytes = Vec::new();
-    obj::write_mtl(scene, &mut bytes).map_err(|error| IoError::system(path, error))?;
+    mtl::write_definitions(&own, &mut bytes).map_err(|error| IoError::system(path, error))?;
     let found = |name: &str| fs::read(path.with_file_name(name)).ok();
+    let used = names_in(&old.lines);
     let is_taken = |name: &str| {
         // A library that says more can take the place of one in use.
-        found(name).is_some_and(|found| !mtl::is_superset(&bytes, &found))
-            && (old.iter().any(|old| old == name) || is_mentioned(path, name))
+        unread.contains(&name)
+            || found(name).is_some_and(|found| !mtl::is_superset(&bytes, &found))
+                && (used.contains(name) || is_mentioned(path, name))
     };
     let name = part_name(&stem(path), "mtl", is_taken);
     if found(&name).as_deref() != Some(&bytes) {
         staged.add(&path.with_file_name(&name), |out| out.write_all(&bytes))?;
     }
-    Ok(name)
+    Ok(std::iter::once(name).chain(unread.into_iter().map(str::to_owned)).collect())
 }
 
 /// Returns what the `mtllib` lines of a file name, each once; nothing if there is no such file.

@@ -1,5 +1,7 @@
 //! Reading the materials and images of a glTF document.
 
+use std::collections::BTreeSet;
+
 use serde_json::Value;
 
 use super::document::{Document, missing};
@@ -112,15 +114,52 @@ fn is_richer(material: &Value) -> bool {
         pbr.and_then(|pbr| pbr.get("baseColorTexture")),
         pbr.and_then(|pbr| pbr.get("metallicRoughnessTexture")),
     ];
-    // Transforms and further sets of texture coordinates.
-    let is_moved = |texture: &Value| {
-        let is_other = |set: &Value| set.as_u64() != Some(0);
-        texture.get("extensions").is_some() || texture.get("texCoord").is_some_and(is_other)
-    };
+    // Transforms, and other texture coordinates than those of the base colour.
+    let own = texture_set(material);
+    let is_moved = |texture: &Value| texture.get("extensions").is_some() || set_of(texture) != own;
     has_more(Some(material), &OF_MATERIAL)
         || has_more(pbr, &OF_SURFACE)
         || has_more(material.get("extensions"), &[EMISSIVE_STRENGTH])
         || textures.into_iter().flatten().any(is_moved)
+}
+
+/// Returns the set of texture coordinates that the base colour of each material uses; 0 if it has no
+/// texture.
+pub(super) fn texture_sets(json: &Value) -> Vec<u8> {
+    let materials = json.get("materials").and_then(Value::as_array).into_iter().flatten();
+    materials.map(|material| u8::try_from(texture_set(material)).unwrap_or(0)).collect()
+}
+
+fn texture_set(material: &Value) -> u64 {
+    set_of(&material["pbrMetallicRoughness"]["baseColorTexture"])
+}
+
+fn set_of(texture: &Value) -> u64 {
+    texture["texCoord"].as_u64().unwrap_or(0)
+}
+
+/// Lists the images of textures that only an extension names, and one that [`materials`] does not
+/// read, by name or as `image 3`.
+pub(super) fn extension_images(json: &Value) -> Vec<String> {
+    let textures = json.get("textures").and_then(Value::as_array).into_iter().flatten();
+    let sources = textures.filter(|texture| is_extended(texture)).flat_map(|texture| {
+        let extensions = texture["extensions"].as_object().into_iter().flatten();
+        extensions.filter_map(|(_, extension)| extension["source"].as_u64())
+    });
+    let sources: BTreeSet<u64> = sources.collect();
+    let name = |index: u64| {
+        let image = &json["images"][index as usize];
+        // A data URI is no name.
+        let uri = image["uri"].as_str().filter(|uri| matches!(uri::parse(uri), Ok(Uri::File(_))));
+        uri.or(image["name"].as_str()).map_or_else(|| format!("image {index}"), str::to_owned)
+    };
+    sources.into_iter().map(name).collect()
+}
+
+fn is_extended(texture: &Value) -> bool {
+    let extensions = texture["extensions"].as_object();
+    texture.get("source").is_none()
+        && extensions.is_some_and(|all| !all.is_empty() && !all.contains_key(WEBP))
 }
 
 /// Reports whether a texture of a material has an image that only an extension names, and one that
@@ -133,12 +172,8 @@ fn has_other_image(json: &Value, material: &Value) -> bool {
         &pbr["baseColorTexture"],
         &pbr["metallicRoughnessTexture"],
     ];
-    textures.iter().filter_map(|texture| texture["index"].as_u64()).any(|index| {
-        let texture = &json["textures"][index as usize];
-        let extensions = texture["extensions"].as_object();
-        texture.get("source").is_none()
-            && extensions.is_some_and(|all| !all.is_empty() && !all.contains_key(WEBP))
-    })
+    let indices = textures.iter().filter_map(|texture| texture["index"].as_u64());
+    indices.into_iter().any(|index| is_extended(&json["textures"][index as usize]))
 }
 
 impl Texture {
@@ -169,6 +204,10 @@ pub(super) fn images(
             Some(Ok(Uri::File(name))) => {
                 let bytes = resolve(&name).filter(|bytes| mime_type(bytes).is_some());
                 Image { bytes: bytes.unwrap_or_default(), name }
+            }
+            // Named by its address, so that a note can show it.
+            Some(Err(_)) if image.uri.as_ref().is_some_and(|uri| uri.contains("://")) => {
+                Image { name: image.uri.unwrap_or_default(), bytes: Vec::new() }
             }
             Some(Err(_)) | None => Image { name: named(&[]), bytes: Vec::new() },
         })

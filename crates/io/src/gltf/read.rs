@@ -54,6 +54,16 @@ impl SourceDocument {
         materials::richer_materials(&self.0.json)
     }
 
+    /// Lists the images that only extensions of textures name, which scenes lack.
+    pub(crate) fn extension_images(&self) -> Vec<String> {
+        materials::extension_images(&self.0.json)
+    }
+
+    /// Returns the set of texture coordinates that the base colour of each material uses.
+    pub(crate) fn texture_sets(&self) -> Vec<u8> {
+        materials::texture_sets(&self.0.json)
+    }
+
     /// Lists what the document holds beside all that a scene's fields and notes account for.
     pub(crate) fn unheld_parts(&self) -> Vec<Note> {
         unheld::unheld_parts(&self.0.json)

@@ -6,6 +6,7 @@ use meshlod_mesh::{Mesh, VertexId};
 
 use super::labels::LabelRuns;
 use super::mtl::{Library, resolve_materials};
+use super::polypaint::Polypaint;
 use super::skipped::Skipped;
 use super::smoothing::SmoothingRuns;
 use super::wedges::{self, CornerIds, Pools};
@@ -17,8 +18,9 @@ use crate::{Node, ParseError, Scene, SceneMesh};
 /// textures, or returns `None` if there is no such file.
 ///
 /// Polygons are triangulated. A `v` gives three coordinates and, if present, a colour; a `vt` gives
-/// two coordinates. Values of `vt`, `vn` and colours that are not finite become 0, as do those of
-/// corners that lack what others have. Colours above 1 are taken to be out of 255. `o` wins over
+/// two coordinates. Values of `vt`, `vn` and colours that are not finite become 0, and are counted.
+/// Corners that lack what others have get 0, too. Colours above 1 are taken to be out of 255; those
+/// in comments `#MRGB`, the polypaint of ZBrush, hold where no vertex has another. `o` wins over
 /// `g`. A material whose library or image is missing keeps its name. Materials that no face uses come
 /// last. Lines, points, curves, faces with fewer than three corners and everything else that is not a
 /// face are counted in [`Scene::notes`].
@@ -70,6 +72,7 @@ struct ObjReader<'a> {
     has_object: bool,
     libraries: Vec<String>,
     skipped: Skipped,
+    polypaint: Polypaint,
     /// Error of the first face with too few corners, for a file without others.
     first_thin: Option<ParseError>,
     /// Current polygon, its vertices and its triangles.
@@ -93,6 +96,7 @@ impl<'a> ObjReader<'a> {
             has_object: false,
             libraries: Vec::new(),
             skipped: Skipped::default(),
+            polypaint: Polypaint::default(),
             first_thin: None,
             polygon: Vec::new(),
             outline: Vec::new(),
@@ -102,6 +106,9 @@ impl<'a> ObjReader<'a> {
 
     fn statement(&mut self) -> Result<(), ParseError> {
         if !self.text.more() {
+            if self.text.take_word(b"#MRGB ") {
+                self.polypaint.add(self.text.raw_line());
+            }
             return Ok(());
         }
         match self.text.word() {
@@ -309,11 +316,16 @@ impl<'a> ObjReader<'a> {
         let objects = self.objects.finish(self.faces.len());
         let materials = self.materials.finish(self.faces.len());
         let smoothing = self.smoothing.finish(self.faces.len());
+        self.skipped.not_finite = self.text.not_finite();
+        self.skipped.masks = self.polypaint.masked;
+        self.skipped.paint = self.pools.add_paint(self.polypaint.colors, self.positions.len());
+        // Vertices of one place with colours of their own can be told apart in no other way.
+        let has_split_seams = self.corners.is_empty();
         let attributes =
             wedges::attributes(self.positions.len(), &self.faces, &self.corners, self.pools);
         let mut library = Library::default();
         for name in &self.libraries {
-            library.add(name, resolve)?;
+            library.add(name, resolve);
         }
         let used = materials.as_ref().map_or(&[][..], |labels| &labels.names);
         let resolved = resolve_materials(used, &library, resolve);
@@ -332,6 +344,7 @@ impl<'a> ObjReader<'a> {
             roots: vec![0],
             materials: resolved.materials,
             images: resolved.images,
+            has_split_seams,
             notes,
             ..Scene::default()
         })

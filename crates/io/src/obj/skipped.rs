@@ -22,6 +22,12 @@ pub(super) struct Skipped {
     pub weights: usize,
     /// Opacities of vertices.
     pub opacities: usize,
+    /// Numbers of attributes that are not finite.
+    pub not_finite: usize,
+    /// Masks of vertices in polypaint.
+    pub masks: usize,
+    /// Colours of polypaint without a vertex, or where vertices have others.
+    pub paint: usize,
 }
 
 /// Statements of free-form curves and surfaces.
@@ -79,6 +85,13 @@ impl Skipped {
             note(self.weights, "weight of a vertex", "weights of vertices"),
             note(self.opacities, "opacity of a vertex", "opacities of vertices")
                 .remedied("export opacities as .ply or .glb"),
+            note(self.masks, "mask of a vertex", "masks of vertices"),
+            note(self.paint, "colour of polypaint", "colours of polypaint"),
+            Note::changed(
+                self.not_finite,
+                "value of an attribute that is not finite read as 0",
+                "values of attributes that are not finite read as 0",
+            ),
         ];
         notes.retain(|note| note.count > 0);
         notes

@@ -29,6 +29,18 @@ impl Pools {
         self.colors.push(color);
     }
 
+    /// Gives vertices the colours of comments, unless some have others; further ones are white.
+    /// Returns the number of colours that are not used.
+    pub(super) fn add_paint(&mut self, mut paint: Vec<[f32; 3]>, vertices: usize) -> usize {
+        if !self.colors.is_empty() {
+            return paint.len();
+        }
+        let unused = paint.len().saturating_sub(vertices);
+        paint.truncate(vertices);
+        self.colors = paint;
+        unused
+    }
+
     fn uv(&self, ids: CornerIds) -> [f32; 2] {
         ids.uv.map_or([0.0; 2], |id| self.uvs[id.get() as usize - 1])
     }

@@ -1,20 +1,22 @@
 //! Writing OBJ files, with one list each of positions, texture coordinates and normals.
 
-use std::collections::HashMap;
 use std::io::{self, Write};
 
 use meshlod_mesh::{Labels, LayerKind, Mesh};
 
+use super::colored_vertices::ColoredVertices;
 use super::mtl::{names, one_line};
+use super::value_numbers::{UvNumbers, ValueNumbers};
 use crate::line_writer::LineWriter;
 use crate::{Precision, Scene};
 
 /// Writes all meshes that a scene shows, in world space, as one OBJ file; `libraries` are the file
 /// names of the material libraries, such as the one that [`write_mtl`](super::write_mtl) writes.
 ///
-/// Equal uvs and equal normals are written once. Colours follow the positions; a vertex gets the
-/// colour of its first wedge. Objects become `o`, materials `usemtl`, with names made unique, and
-/// smoothing groups `s`.
+/// Equal uvs and equal normals are written once; the uvs of a face are those of the set that the
+/// texture of its base colour uses. Colours follow the positions, without opacity; a vertex whose
+/// faces see it in several colours is written once for each. Objects become `o`, materials `usemtl`,
+/// with names made unique, and smoothing groups `s`.
 /// Positions (at `F64`), uvs and normals read back bit for bit. Other layers are not written.
 ///
 /// # Errors
@@ -32,71 +34,39 @@ pub fn write(
         lines.word(name);
         lines.end()?;
     }
-    write_positions(&mesh, &mut lines)?;
-    let uvs = ValueNumbers::write(&mesh, LayerKind::Uv(0), "vt", &mut lines)?;
-    let normals = ValueNumbers::write(&mesh, LayerKind::Normal, "vn", &mut lines)?;
+    let colored = ColoredVertices::of(&mesh);
+    write_positions(&mesh, colored.as_ref(), &mut lines)?;
+    let uvs = UvNumbers::write(&mesh, &scene.texture_sets(), &mut lines)?;
+    let normals = ValueNumbers::write(&mesh, LayerKind::Normal, "vn", 0, &mut lines)?;
     let objects = Changes::new("o", mesh.objects.as_ref(), &[]);
     let materials = Changes::new("usemtl", mesh.materials.as_ref(), &names(&scene.materials));
     let changes = FaceChanges { labels: [objects, materials], smoothing: 0 };
-    write_faces(&mesh, [&uvs, &normals], changes, &mut lines)?;
+    let vertices = colored.as_ref().map(|colored| &colored.split.faces[..]);
+    write_faces(&mesh, vertices, &uvs, &normals, changes, &mut lines)?;
     lines.finish()
 }
 
-fn write_positions(mesh: &Mesh, lines: &mut LineWriter) -> io::Result<()> {
-    let colors = vertex_colors(mesh);
-    for (v, &position) in mesh.positions.iter().enumerate() {
-        lines.word("v");
-        lines.position(v, position)?;
-        if let Some(colors) = &colors {
-            lines.attributes(&colors[v]);
+fn write_positions(
+    mesh: &Mesh,
+    colored: Option<&ColoredVertices>,
+    lines: &mut LineWriter,
+) -> io::Result<()> {
+    let Some(ColoredVertices { colors, split }) = colored else {
+        for (v, &position) in mesh.positions.iter().enumerate() {
+            lines.word("v");
+            lines.position(v, position)?;
+            lines.end()?;
         }
+        return Ok(());
+    };
+    for row in &split.vertices {
+        lines.word("v");
+        lines.position(row.vertex.index(), mesh.positions[row.vertex.index()])?;
+        // White, if no face uses the vertex.
+        lines.attributes(row.wedge.map_or(&[1.0; 3][..], |wedge| colors.of(wedge)));
         lines.end()?;
     }
     Ok(())
-}
-
-/// Returns the colour of each vertex's first wedge, white for unused vertices.
-fn vertex_colors(mesh: &Mesh) -> Option<Vec<[f32; 3]>> {
-    let attributes = mesh.attributes.as_ref()?;
-    let layer = attributes.layer(LayerKind::Color(0))?;
-    let mut colors = vec![[1.0; 3]; mesh.positions.len()];
-    let corners = attributes.corners.as_flattened().iter().zip(mesh.faces.as_flattened());
-    for (&wedge, vertex) in corners.rev() {
-        if let [r, g, b, ..] = *layer.of(wedge) {
-            colors[vertex.index()] = [r, g, b];
-        }
-    }
-    Some(colors)
-}
-
-/// Numbers, from 1, of the distinct values of a layer, for each wedge.
-struct ValueNumbers {
-    of_wedge: Option<Vec<u32>>,
-}
-
-impl ValueNumbers {
-    /// Writes the distinct values of a layer, if the mesh has it.
-    fn write(mesh: &Mesh, kind: LayerKind, word: &str, lines: &mut LineWriter) -> io::Result<Self> {
-        let layer = mesh.attributes.as_ref().and_then(|attributes| attributes.layer(kind));
-        let Some(layer) = layer else { return Ok(Self { of_wedge: None }) };
-        let mut numbers: HashMap<[u32; 3], u32> = HashMap::new();
-        let mut of_wedge = Vec::with_capacity(layer.values.len() / layer.width);
-        for values in layer.values.chunks_exact(layer.width) {
-            let mut bits = [0; 3];
-            for (bits, value) in bits.iter_mut().zip(values) {
-                *bits = value.to_bits();
-            }
-            let next = numbers.len() as u32 + 1;
-            let number = *numbers.entry(bits).or_insert(next);
-            if number == next {
-                lines.word(word);
-                lines.attributes(values);
-                lines.end()?;
-            }
-            of_wedge.push(number);
-        }
-        Ok(Self { of_wedge: Some(of_wedge) })
-    }
 }
 
 /// Writer of a statement whenever the label changes.
@@ -160,18 +130,23 @@ impl FaceChanges<'_> {
     }
 }
 
+/// Writes the faces, over `vertices` in place of the mesh's own if these are split.
 fn write_faces(
     mesh: &Mesh,
-    [uvs, normals]: [&ValueNumbers; 2],
+    vertices: Option<&[[u32; 3]]>,
+    uvs: &UvNumbers,
+    normals: &ValueNumbers,
     mut changes: FaceChanges,
     lines: &mut LineWriter,
 ) -> io::Result<()> {
     let corners = mesh.attributes.as_ref().map(|attributes| &attributes.corners);
     for (i, face) in mesh.faces.iter().enumerate() {
         changes.write(mesh, i, lines)?;
+        let uvs = uvs.of_face(mesh, i);
         lines.word("f");
-        for (corner, vertex) in face.iter().enumerate() {
-            lines.integer(vertex.index() + 1);
+        let own = vertices.map_or(face.map(|v| v.0), |vertices| vertices[i]);
+        for (corner, vertex) in own.into_iter().enumerate() {
+            lines.integer(vertex as usize + 1);
             let number = |pool: &ValueNumbers| {
                 let wedge = corners?[i][corner];
                 Some(pool.of_wedge.as_ref()?[wedge.index()] as usize)

@@ -9,7 +9,7 @@ use super::extras::PlyExtras;
 use super::face_values::is_label;
 use super::scalar::Scalar;
 use crate::vertex_attributes::{distinct_wedges, has_seams};
-use crate::{Image, Note, Scene, Shading};
+use crate::{Image, Material, Note, Scene, Shading};
 
 /// Layout of a file. Faces hold what would split vertices, where PLY has a place for that.
 pub(super) struct Plan<'a> {
@@ -63,7 +63,7 @@ impl<'a> Plan<'a> {
             labels.of_face.iter().map(|label| texture(label).unwrap_or(-1)).collect::<Vec<i32>>()
         });
         let of_face = of_face.filter(|of_face| of_face.iter().any(|&texture| texture != 0));
-        Self::new(scene.shown_mesh(), names, of_face, &scene.ply)
+        Self::new(textured_mesh(scene), names, of_face, &scene.ply)
     }
 
     fn new(
@@ -109,6 +109,46 @@ impl<'a> Plan<'a> {
         let vertices = self.mesh.used_vertices().into_iter().filter(|&used| used).count();
         rows.saturating_sub(vertices)
     }
+}
+
+/// Returns what a scene shows, with the texture coordinates that its textures use in the first set;
+/// those that were there change places with them.
+fn textured_mesh(scene: &Scene) -> Cow<'_, Mesh> {
+    let mut mesh = scene.shown_mesh();
+    let set = main_texture_set(scene);
+    let find = |mesh: &Mesh, set: u8| {
+        let layers = &mesh.attributes.as_ref()?.layers;
+        layers.iter().position(|layer| layer.kind == LayerKind::Uv(set))
+    };
+    let pair = find(&mesh, 0).zip(find(&mesh, set)).filter(|(first, own)| first != own);
+    if let Some((first, own)) = pair
+        && let Some(attributes) = &mut mesh.to_mut().attributes
+    {
+        let layers = &mut attributes.layers;
+        let name = layers[first].name.clone();
+        layers[first].name = std::mem::replace(&mut layers[own].name, name);
+        layers[first].kind = LayerKind::Uv(set);
+        layers[own].kind = LayerKind::Uv(0);
+    }
+    mesh
+}
+
+/// Returns the set of texture coordinates that the first texture uses, as PLY has one for all.
+fn main_texture_set(scene: &Scene) -> u8 {
+    textured_sets(scene).first().map_or(0, |&(_, set)| set)
+}
+
+/// Lists the shown materials with textures, and the set of texture coordinates of each.
+fn textured_sets(scene: &Scene) -> Vec<(&Material, u8)> {
+    let sets = scene.texture_sets();
+    if sets.iter().all(|&set| set == 0) {
+        return Vec::new();
+    }
+    let shown = scene.shown_materials().map(|labels| labels.of_face).unwrap_or_default();
+    let shown: BTreeSet<u32> = shown.into_iter().collect();
+    let shown = shown.into_iter().map(|label| label as usize);
+    let textured = shown.filter_map(|label| Some((scene.materials.get(label)?, *sets.get(label)?)));
+    textured.filter(|(material, _)| material.base_color_image.is_some()).collect()
 }
 
 impl FaceLabels {
@@ -157,6 +197,9 @@ pub(crate) fn limits(scene: &Scene) -> Vec<Note> {
     });
     let colored: Vec<_> = with.iter().filter(|m| m.base_color != [1.0; 4]).collect();
     let richer: Vec<_> = with.iter().filter(|m| m.shading != Shading::default()).collect();
+    let main = main_texture_set(scene);
+    let other = textured_sets(scene).into_iter().filter(|&(_, set)| set != main);
+    let other: Vec<_> = other.map(|(material, _)| material).collect();
     let objects = if plan.labels.is_some() { Vec::new() } else { scene.object_names() };
     let split = if scene.had_split_seams() { 0 } else { plan.split() };
     vec![
@@ -174,6 +217,12 @@ pub(crate) fn limits(scene: &Scene) -> Vec<Note> {
             "materials' properties beside their textures",
         )
         .named(richer.iter().map(|m| &*m.name).filter(|name| !name.is_empty())),
+        Note::left_out(
+            other.len(),
+            "material with texture coordinates of its own",
+            "materials with texture coordinates of their own",
+        )
+        .named(other.iter().map(|m| &*m.name).filter(|name| !name.is_empty())),
         Note::left_out(objects.len(), "name of an object", "names of objects").named(objects),
         Note::changed(
             split,

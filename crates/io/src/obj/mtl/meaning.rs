@@ -1,5 +1,7 @@
 //! Meaning of the statements of an MTL library, in the terms that scenes have.
 
+use std::borrow::Cow;
+
 use super::statement::{self, MapOption};
 use crate::image_file::has_colors;
 use crate::text_cursor::TextCursor;
@@ -40,10 +42,18 @@ pub(super) struct Said {
 pub(super) fn meaning(statements: &[MtlStatement], images: &[Image]) -> Meaning {
     let mut said = Said::default();
     for line in statements {
-        // A library that was read has none that is refused.
-        let _ = said.add(&line.text, line.map.as_ref().map(|map| map.image));
+        // The library has noted what is refused.
+        let _ = said.add(&without_name(line), line.map.as_ref().map(|map| map.image));
     }
     said.meaning(images)
+}
+
+/// Returns a statement without the name of its image, as options may stand behind that.
+fn without_name(line: &MtlStatement) -> Cow<'_, str> {
+    match &line.map {
+        Some(map) if !map.rest.is_empty() => Cow::Owned(format!("{}{}", line.text, map.rest)),
+        _ => Cow::Borrowed(&line.text),
+    }
 }
 
 impl Said {
@@ -208,7 +218,8 @@ pub(crate) fn untold(material: &Material, images: &[Image]) -> Untold {
             _ if is_guess || arrives && word.ends_with("bump") => untold.changed.push(written),
             false => untold.left_out.push(written),
             true => {
-                let lost = lost_options(&line.text, &word).into_iter();
+                let text = without_name(line);
+                let lost = lost_options(&text, &word).into_iter();
                 untold.left_out.extend(lost.map(|option| format!("{written} {}", option.name)));
             }
         }

@@ -12,9 +12,9 @@ mod statement;
 mod write;
 
 pub(crate) use meaning::untold;
-pub(crate) use read::Library;
 pub(super) use read::resolve_materials;
+pub(crate) use read::{Library, library_names};
 pub(super) use write::names;
 pub(crate) use write::one_line;
 pub use write::write;
-pub(crate) use write::{is_superset, same_library, says_nothing};
+pub(crate) use write::{defined, is_superset, own_definitions, same_library, write_definitions};

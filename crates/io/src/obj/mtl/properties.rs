@@ -17,7 +17,7 @@ pub(super) const PROPERTIES: [MtlProperty; 11] = [
     MtlProperty {
         words: &["kd"],
         is_said: |said, own| said.base_color[..3] == own.base_color[..3],
-        write: |own| Some(values("Kd", &own.base_color[..3])),
+        write: |own| Some(color(own)),
     },
     MtlProperty {
         words: &["d", "tr"],
@@ -77,6 +77,11 @@ pub(super) const PROPERTIES: [MtlProperty; 11] = [
         },
     },
 ];
+
+/// Writes the colour of a material as a statement.
+pub(super) fn color(own: &Material) -> MtlStatement {
+    values("Kd", &own.base_color[..3])
+}
 
 fn values(word: &str, values: &[f32]) -> MtlStatement {
     let values: String = values.iter().map(|&value| format!(" {}", finite(value))).collect();

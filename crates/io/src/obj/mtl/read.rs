@@ -5,8 +5,8 @@ use std::collections::{HashMap, HashSet};
 use super::images::MtlImages;
 use super::lines::lines;
 use super::meaning::{Said, meaning};
-use super::statement::word_of;
-use crate::{FileLocation, Image, Material, MtlStatement, Note, ParseError};
+use super::statement::{split_word, word_of};
+use crate::{Image, Material, MtlStatement, Note};
 
 /// Materials of all libraries of a file.
 #[derive(Default)]
@@ -18,6 +18,10 @@ pub(crate) struct Library {
     /// Libraries that were asked for.
     asked: HashSet<String>,
     missing: Vec<String>,
+    /// Libraries that are no text, with the reasons.
+    unreadable: Vec<(String, String)>,
+    /// Statements that are kept but say nothing, with their places and the reasons.
+    malformed: Vec<String>,
     /// Materials defined again.
     repeated: Vec<String>,
 }
@@ -31,44 +35,39 @@ pub(crate) struct Resolved {
 }
 
 impl Library {
-    /// Loads the libraries of an `mtllib` line, which is one name with blanks or several names.
-    /// Missing files are noted; the first definition of a name wins.
-    pub fn add(
-        &mut self,
-        names: &str,
-        resolve: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
-    ) -> Result<(), ParseError> {
+    /// Loads the libraries of an `mtllib` line, which is one name with blanks or several names, in
+    /// quotes or not. Missing files are noted; the first definition of a name wins.
+    pub fn add(&mut self, names: &str, resolve: &mut dyn FnMut(&str) -> Option<Vec<u8>>) {
         if names.is_empty() || !self.asked.insert(names.to_owned()) {
-            return Ok(());
+            return;
         }
         if let Some(bytes) = resolve(names) {
             return self.parse(names, &bytes);
         }
+        let parts = library_names(names);
         let mut missing = Vec::new();
-        for name in names.split_ascii_whitespace() {
+        for &name in &parts {
             if name != names && !self.asked.insert(name.to_owned()) {
                 continue;
             }
             match resolve(name).filter(|_| name != names) {
-                Some(bytes) => self.parse(name, &bytes)?,
+                Some(bytes) => self.parse(name, &bytes),
                 None => missing.push(name.to_owned()),
             }
         }
         // A name with blanks of which no part is a file is more likely to be one.
-        if missing.len() == names.split_ascii_whitespace().count() {
+        if missing.len() == parts.len() && !names.contains('"') {
             missing = vec![names.to_owned()];
         }
         self.missing.extend(missing);
-        Ok(())
     }
 
-    /// Parses the library `name`, adding the name to errors.
-    pub fn parse(&mut self, name: &str, bytes: &[u8]) -> Result<(), ParseError> {
-        let located = |location: FileLocation, error: ParseError| ParseError {
-            location: FileLocation::Part(format!("{name}, {location}")),
-            ..error
+    /// Parses the library `name`. A statement that is malformed is kept, and noted.
+    pub fn parse(&mut self, name: &str, bytes: &[u8]) {
+        let found = match lines(bytes) {
+            Ok(found) => found,
+            Err(error) => return self.unreadable.push((name.to_owned(), error.reason)),
         };
-        let found = lines(bytes).map_err(|error| located(error.location.clone(), error))?;
         let mut current: Option<(String, Vec<String>)> = None;
         let mut said = Said::default();
         for line in found {
@@ -77,13 +76,25 @@ impl Library {
                 let name = line.text.trim_start().get("newmtl".len()..).unwrap_or_default();
                 current = Some((name.trim_ascii().to_owned(), Vec::new()));
             } else if let Some((_, definition)) = &mut current {
-                let read = said.add(&line.text, None);
-                read.map_err(|error| located(FileLocation::Line(line.number), error))?;
+                if let Err(error) = said.add(&line.text, None) {
+                    let place = format!("{name}, line {}: {}", line.number, error.reason);
+                    self.malformed.push(place);
+                }
                 definition.push(line.text);
             }
         }
         self.define(current);
-        Ok(())
+    }
+
+    /// Reports whether all libraries that were asked for have been read.
+    pub fn is_complete(&self) -> bool {
+        self.unread().next().is_none()
+    }
+
+    /// Lists the libraries that were not found or could not be read.
+    pub fn unread(&self) -> impl Iterator<Item = &str> {
+        let unreadable = self.unreadable.iter().map(|(name, _)| &**name);
+        self.missing.iter().map(|name| &**name).chain(unreadable)
     }
 
     fn define(&mut self, material: Option<(String, Vec<String>)>) {
@@ -113,7 +124,7 @@ impl Library {
             used.iter().filter(|name| !name.is_empty() && self.lines_of(name).is_none());
         let undefined: Vec<&String> = undefined.collect();
         // Without a library, names are all that the file has.
-        let is_told = !self.definitions.is_empty() && self.missing.is_empty();
+        let is_told = !self.definitions.is_empty() && self.is_complete();
         let count = if is_told { undefined.len() } else { 0 };
         let mut notes = vec![
             Note::left_out(
@@ -123,6 +134,19 @@ impl Library {
             )
             .named(self.missing.clone())
             .remedied("put it beside the model, or correct its mtllib line"),
+            Note::left_out(
+                self.unreadable.len(),
+                "material library that cannot be read",
+                "material libraries that cannot be read",
+            )
+            .named(self.unreadable.iter().map(|(name, reason)| format!("{name}: {reason}"))),
+            Note::left_out(
+                self.malformed.len(),
+                "MTL statement that cannot be understood",
+                "MTL statements that cannot be understood",
+            )
+            .named(self.malformed.clone())
+            .remedied("correct the library; until then, defaults hold"),
             Note::left_out(
                 count,
                 "material that no library defines",
@@ -141,6 +165,19 @@ impl Library {
         notes.retain(|note| note.count > 0);
         notes
     }
+}
+
+/// Lists the names that an `mtllib` line has if it has several, in quotes where they have blanks.
+pub(crate) fn library_names(line: &str) -> Vec<&str> {
+    let mut names = Vec::new();
+    let mut rest = line.trim_ascii();
+    while !rest.is_empty() {
+        let quoted = rest.strip_prefix('"').and_then(|rest| rest.split_once('"'));
+        let (name, behind) = quoted.unwrap_or_else(|| split_word(rest));
+        names.extend((!name.is_empty()).then_some(name));
+        rest = behind.trim_ascii_start();
+    }
+    names
 }
 
 /// Looks up the materials with these names, except "", then adds those that no face uses; loads all
@@ -195,10 +232,10 @@ mod tests {
     use super::*;
     use crate::MtlMap;
 
-    fn library(text: &str) -> Result<Library, ParseError> {
+    fn library(text: &str) -> Library {
         let mut library = Library::default();
-        library.add("a.mtl", &mut |name| (name == "a.mtl").then(|| text.as_bytes().to_vec()))?;
-        Ok(library)
+        library.add("a.mtl", &mut |name| (name == "a.mtl").then(|| text.as_bytes().to_vec()));
+        library
     }
 
     const PNG: &[u8] = b"\x89PNG";
@@ -209,7 +246,7 @@ mod tests {
                     map_Kd -s 2 2 -o 0 0 0 -clamp on wood grain.png\nnewmtl b\nTr 0.25\nKd 0.5";
         let names = ["red hot", "", "b", "nowhere"].map(str::to_owned);
         let mut asked = Vec::new();
-        let resolved = resolve_materials(&names, &library(text).unwrap(), &mut |name| {
+        let resolved = resolve_materials(&names, &library(text), &mut |name| {
             asked.push(name.to_owned());
             Some(PNG.to_vec())
         });
@@ -226,7 +263,7 @@ mod tests {
 
     #[test]
     fn a_material_that_no_face_uses_is_read_too() {
-        let library = library("newmtl a\nKd 1\nnewmtl b\nKs 1\nnewmtl a\nKd 0\n").unwrap();
+        let library = library("newmtl a\nKd 1\nnewmtl b\nKs 1\nnewmtl a\nKd 0\n");
         let resolved = resolve_materials(&["b".to_owned()], &library, &mut |_| None);
         let names: Vec<&str> = resolved.materials.iter().map(|m| &*m.name).collect();
         assert_eq!(names, ["b", "a"]);
@@ -236,7 +273,7 @@ mod tests {
 
     #[test]
     fn an_image_that_is_missing_or_none_keeps_its_name() {
-        let library = library("newmtl a\nmap_Kd maps\\a.png\nbump .\\maps/a.png # old").unwrap();
+        let library = library("newmtl a\nmap_Kd maps\\a.png\nbump .\\maps/a.png # old");
         for bytes in [None, Some(b"root:x:0:0".to_vec())] {
             let resolved = resolve_materials(&["a".to_owned()], &library, &mut |_| bytes.clone());
             let image = Image { name: "maps/a.png".to_owned(), bytes: Vec::new() };
@@ -253,9 +290,27 @@ mod tests {
     }
 
     #[test]
-    fn errors_name_the_library_and_its_line() {
-        let error = library("newmtl a\n\nKd 0,8 0,8 0,8\n").err().unwrap();
-        assert_eq!(error.to_string(), "a.mtl, line 3: \"0,8\" is not a number");
+    fn a_malformed_statement_is_named_and_says_nothing() {
+        let text = "newmtl a\n\nKd 0,8 0,8 0,8\nTr x\nKd 1 1 z\nd\n";
+        let resolved = resolve_materials(&["a".to_owned()], &library(text), &mut |_| None);
+        let note = &resolved.notes[0];
+        assert_eq!((note.count, resolved.notes.len()), (4, 1));
+        assert_eq!(note.names[0], "a.mtl, line 3: \"0,8\" is not a number");
+        assert_eq!(note.names[3], "a.mtl, line 6: d needs an opacity");
+        assert_eq!(resolved.materials[0].base_color, [0.8, 0.8, 0.8, 1.0]);
+        let note = &library("a\0b").notes(&[])[0];
+        assert!(note.names[0].starts_with("a.mtl: a zero byte"), "{note:?}");
+    }
+
+    #[test]
+    fn names_of_libraries_may_be_quoted() {
+        assert_eq!(library_names(" \"a b.mtl\"  c.mtl\t\"d"), ["a b.mtl", "c.mtl", "\"d"]);
+        let mut library = Library::default();
+        let found = |name: &str| name == "a b.mtl" || name == "c.mtl";
+        let file = |name: &str| found(name).then(|| format!("newmtl {name}").into_bytes());
+        library.add("\"a b.mtl\" \"not there.mtl\" c.mtl", &mut |name| file(name));
+        assert_eq!(library.definitions().count(), 2);
+        assert_eq!(library.missing, ["not there.mtl"]);
     }
 
     #[test]
@@ -267,12 +322,12 @@ mod tests {
                 .map(|name| format!("newmtl {name}").into_bytes())
         };
         for _ in 0..2 {
-            library.add("a.mtl gone.mtl b.mtl", &mut |name| file(name)).unwrap();
+            library.add("a.mtl gone.mtl b.mtl", &mut |name| file(name));
         }
         let names: Vec<&str> = library.definitions().map(|(name, _)| name).collect();
         assert_eq!(names, ["a", "b"]);
         assert_eq!(library.missing, ["gone.mtl"]);
-        library.add("not there.mtl", &mut |_| None).unwrap();
+        library.add("not there.mtl", &mut |_| None);
         assert_eq!(library.missing, ["gone.mtl", "not there.mtl"]);
         assert_eq!(library.repeated, [""; 0]);
     }

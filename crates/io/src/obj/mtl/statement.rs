@@ -35,14 +35,8 @@ pub(super) fn options(line: &str) -> (Vec<MapOption<'_>>, &str) {
     let mut options = Vec::new();
     while rest.starts_with('-') {
         let (name, start) = split_word(rest);
-        let (least, most) = match name {
-            "-mm" => (2, 2),
-            "-o" | "-s" | "-t" => (1, 3),
-            "-blendu" | "-blendv" | "-boost" | "-bm" | "-cc" | "-clamp" | "-imfchan"
-            | "-texres" | "-type" => (1, 1),
-            // Not an option but a name that begins with a dash.
-            _ => break,
-        };
+        // Otherwise it is not an option but a name that begins with a dash.
+        let Some([least, most]) = option_values(name) else { break };
         let mut behind = start;
         for count in 0..most {
             let (value, after) = split_word(behind);
@@ -57,13 +51,32 @@ pub(super) fn options(line: &str) -> (Vec<MapOption<'_>>, &str) {
     (options, rest)
 }
 
+/// Returns the least and largest number of values of an option; `None` if there is no such option.
+fn option_values(name: &str) -> Option<[usize; 2]> {
+    match name {
+        "-mm" => Some([2, 2]),
+        "-o" | "-s" | "-t" => Some([1, 3]),
+        "-blendu" | "-blendv" | "-boost" | "-bm" | "-cc" | "-clamp" | "-colorspace"
+        | "-imfchan" | "-texres" | "-type" => Some([1, 1]),
+        _ => None,
+    }
+}
+
 /// Lists the names that the end of a statement may mean, likeliest first: all of it, what is before
-/// a comment, what is in quotes.
+/// a comment, what is in quotes, what is before options that stand behind the name.
 pub(super) fn image_names(rest: &str) -> Vec<&str> {
     let whole = rest.trim_end();
     let commented = whole.split_once(" #").map(|(name, _)| name.trim_end());
     let quoted = whole.strip_prefix('"').and_then(|rest| Some(rest.split_once('"')?.0));
-    [Some(whole), commented, quoted].into_iter().flatten().filter(|name| !name.is_empty()).collect()
+    let optioned = whole.match_indices(" -").find_map(|(at, _)| {
+        let is_known = option_values(split_word(&whole[at + 1..]).0).is_some();
+        is_known.then(|| whole[..at].trim_end())
+    });
+    [Some(whole), commented, quoted, optioned]
+        .into_iter()
+        .flatten()
+        .filter(|name| !name.is_empty())
+        .collect()
 }
 
 #[cfg(test)]
@@ -86,6 +99,7 @@ mod tests {
     fn names_may_be_quoted_or_followed_by_a_comment() {
         assert_eq!(image_names("a.png # old"), ["a.png # old", "a.png"]);
         assert_eq!(image_names("\"a b.png\""), ["\"a b.png\"", "a b.png"]);
+        assert_eq!(image_names("a -b.png -bm 0.3"), ["a -b.png -bm 0.3", "a -b.png"]);
         assert!(image_names("  ").is_empty());
     }
 

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 
 use super::images::plain_slashes;
 use super::meaning::meaning;
-use super::properties::PROPERTIES;
+use super::properties::{PROPERTIES, color};
 use super::read::Library;
 use super::statement::word_of;
 use crate::{Image, Material, MtlStatement, Scene};
@@ -20,7 +20,15 @@ use crate::{Image, Material, MtlStatement, Scene};
 /// # Errors
 /// Errors of `out`.
 pub fn write(scene: &Scene, out: &mut dyn Write) -> io::Result<()> {
-    for (name, lines) in definitions(scene) {
+    write_definitions(&definitions(scene).collect::<Vec<_>>(), out)
+}
+
+/// Name of a material and the lines that define it.
+pub(crate) type Definition = (String, Vec<String>);
+
+/// Writes these materials as an MTL file.
+pub(crate) fn write_definitions(definitions: &[Definition], out: &mut dyn Write) -> io::Result<()> {
+    for (name, lines) in definitions {
         writeln!(out, "newmtl {name}")?;
         for line in lines {
             writeln!(out, "{line}")?;
@@ -30,23 +38,34 @@ pub fn write(scene: &Scene, out: &mut dyn Write) -> io::Result<()> {
 }
 
 /// Returns the names and the lines of the materials of a scene.
-fn definitions(scene: &Scene) -> impl Iterator<Item = (String, Vec<String>)> {
-    let lines = |material| statements(material, &scene.images).into_iter();
+fn definitions(scene: &Scene) -> impl Iterator<Item = Definition> {
+    let is_foreign = scene.source.is_some();
+    let lines = move |material| statements(material, &scene.images, is_foreign).into_iter();
     let text = |line| text_of(&line, &scene.images);
     let materials = scene.materials.iter();
     let materials = materials.map(move |material| lines(material).map(text).collect());
     names(&scene.materials).into_iter().zip(materials)
 }
 
-/// Reports whether the library of a scene would hold nothing but the names of its materials.
-pub(crate) fn says_nothing(scene: &Scene) -> bool {
-    definitions(scene).all(|(_, lines)| lines.is_empty())
+/// Lists the materials of which the library of a scene would hold more than the name.
+pub(crate) fn defined(scene: &Scene) -> Vec<String> {
+    let defined = definitions(scene).filter(|(_, lines)| !lines.is_empty());
+    defined.map(|(name, _)| name).collect()
 }
 
 /// Reports whether libraries say the same of the same materials as this scene, but for comments and
-/// blank lines.
+/// blank lines, and for materials that a library which was not found may define.
 pub(crate) fn same_library(library: &Library, scene: &Scene) -> bool {
-    library.definitions().count() == scene.materials.len() && holds(library, definitions(scene))
+    let own = own_definitions(library, scene);
+    library.definitions().count() == own.len() && holds(library, own.into_iter())
+}
+
+/// Returns the materials of a scene with the lines that define them, but for those of which it has
+/// the name alone and that a library which was not found may define.
+pub(crate) fn own_definitions(library: &Library, scene: &Scene) -> Vec<Definition> {
+    let is_elsewhere = |name: &str| !library.is_complete() && library.lines_of(name).is_none();
+    let own = |(name, lines): &Definition| !lines.is_empty() || !is_elsewhere(name);
+    definitions(scene).filter(own).collect()
 }
 
 /// Reports whether a library says the same of all materials of an older one, so that it may take its
@@ -58,10 +77,11 @@ pub(crate) fn is_superset(newer: &[u8], older: &[u8]) -> bool {
 
 fn parsed(bytes: &[u8]) -> Option<Library> {
     let mut library = Library::default();
-    library.parse("", bytes).ok().map(|()| library)
+    library.parse("", bytes);
+    library.is_complete().then_some(library)
 }
 
-fn holds(library: &Library, materials: impl Iterator<Item = (String, Vec<String>)>) -> bool {
+fn holds(library: &Library, materials: impl Iterator<Item = Definition>) -> bool {
     let says = |lines: &[String]| -> Vec<String> {
         let lines = lines.iter().filter(|line| !word_of(line).is_empty());
         lines.map(|line| line.trim().to_owned()).collect()
@@ -74,8 +94,12 @@ fn holds(library: &Library, materials: impl Iterator<Item = (String, Vec<String>
 
 /// Returns the statements that define a material: its own, less those that are no longer true, and
 /// those that are needed besides.
-fn statements(material: &Material, images: &[Image]) -> Vec<MtlStatement> {
+///
+/// The colour of a material that is not from a library is always said: not all readers take grey
+/// for one that is missing.
+fn statements(material: &Material, images: &[Image], is_foreign: bool) -> Vec<MtlStatement> {
     let mut lines = material.mtl.clone();
+    lines.extend(is_foreign.then(|| color(material)));
     // Twice, as what one statement says may depend on another: a map without a factor has 1.
     for _ in 0..2 {
         let said = meaning(&lines, images);
@@ -137,7 +161,7 @@ mod tests {
 
     fn read(text: &str) -> Scene {
         let mut library = Library::default();
-        library.parse("a.mtl", text.as_bytes()).unwrap();
+        library.parse("a.mtl", text.as_bytes());
         let resolved = resolve_materials(&[], &library, &mut |_| Some(PNG.to_vec()));
         Scene { materials: resolved.materials, images: resolved.images, ..Scene::default() }
     }

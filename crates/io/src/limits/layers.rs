@@ -1,0 +1,133 @@
+//! Limits of formats for attributes: layers that they lack, and seams that split vertices.
+
+use std::collections::BTreeSet;
+
+use meshlod_mesh::{Layer, LayerKind, Mesh};
+
+use crate::obj::color_splits;
+use crate::{Format, MeshInstance, Note, Scene, SceneMesh};
+
+impl Scene {
+    pub(super) fn layer_limits(&self, format: Format) -> Vec<Note> {
+        let shown = || self.instances().into_iter().map(|MeshInstance { mesh, .. }| mesh);
+        let shown: BTreeSet<usize> = shown().collect();
+        let meshes: Vec<&Mesh> = shown.iter().map(|&mesh| &self.meshes[mesh].mesh).collect();
+        let layers =
+            meshes.iter().filter_map(|mesh| mesh.attributes.as_ref()).flat_map(|a| &a.layers);
+        let lost: BTreeSet<String> =
+            layers.filter(|layer| !self.holds(format, layer)).map(title).collect();
+        let split = |splits: fn(&Mesh) -> usize| {
+            let is_new = !self.had_split_seams();
+            if is_new { meshes.iter().map(|mesh| splits(mesh)).sum() } else { 0 }
+        };
+        let all = if splits_seams(format) { split(seams) } else { 0 };
+        let of_colors = if format == Format::Obj { split(color_splits) } else { 0 };
+        let lacks_opacity = matches!(format, Format::Obj | Format::Smf);
+        let translucent = meshes.iter().map(|mesh| translucent_vertices(mesh));
+        let translucent = if lacks_opacity { translucent.sum() } else { 0 };
+        vec![
+            Note::left_out(lost.len(), "vertex attribute", "vertex attributes").named(lost),
+            Note::left_out(translucent, "opacity of a vertex", "opacities of vertices"),
+            Note::changed(
+                all,
+                "vertex split at seams of its attributes",
+                "vertices split at seams of their attributes",
+            ),
+            Note::changed(
+                of_colors,
+                "vertex split at seams of its colours",
+                "vertices split at seams of their colours",
+            ),
+        ]
+    }
+
+    /// Reports whether a format has a place for a layer.
+    fn holds(&self, format: Format, layer: &Layer) -> bool {
+        match (format, layer.kind) {
+            (Format::Gltf | Format::Glb | Format::Ply, _) => true,
+            (Format::Stl, _) => false,
+            (Format::Obj, LayerKind::Uv(set)) => self.shown_texture_sets().contains(&set),
+            (_, kind) => {
+                matches!(kind, LayerKind::Normal | LayerKind::Uv(0) | LayerKind::Color(0))
+            }
+        }
+    }
+
+    /// Returns the set of texture coordinates that the base colour of each material uses.
+    pub(crate) fn texture_sets(&self) -> Vec<u8> {
+        self.source.as_ref().map_or_else(Vec::new, |source| source.texture_sets())
+    }
+
+    /// Returns the sets of texture coordinates that an OBJ file has: those of the materials of the
+    /// meshes, and the first for faces without.
+    fn shown_texture_sets(&self) -> BTreeSet<u8> {
+        let sets = self.texture_sets();
+        let shown: BTreeSet<usize> = self.instances().iter().map(|i| i.mesh).collect();
+        let meshes = shown.iter().map(|&mesh| &self.meshes[mesh]);
+        let of_mesh = |mesh: &SceneMesh| -> Vec<u8> {
+            let has = |set: u8| {
+                let attributes = mesh.mesh.attributes.as_ref();
+                attributes.is_some_and(|own| own.layer(LayerKind::Uv(set)).is_some())
+            };
+            let set = |material: &Option<usize>| sets.get((*material)?).copied();
+            let of_materials = mesh.materials.iter().map(|material| set(material).unwrap_or(0));
+            of_materials.map(|set| if has(set) { set } else { 0 }).collect()
+        };
+        match sets.iter().all(|&set| set == 0) {
+            true => BTreeSet::from([0]),
+            false => meshes.flat_map(of_mesh).collect(),
+        }
+    }
+
+    /// Reports whether vertices were split at seams in the file that the scene was read from, so
+    /// that to split them again changes nothing.
+    pub(crate) fn had_split_seams(&self) -> bool {
+        self.source.is_some() || self.has_split_seams
+    }
+}
+
+fn splits_seams(format: Format) -> bool {
+    matches!(format, Format::Off | Format::Smf)
+}
+
+/// Returns the name of a layer for people.
+fn title(layer: &Layer) -> String {
+    match layer.kind {
+        LayerKind::Normal => "normals".to_owned(),
+        LayerKind::Tangent => "tangents".to_owned(),
+        LayerKind::Uv(0) => "texture coordinates".to_owned(),
+        LayerKind::Color(0) => "colours".to_owned(),
+        LayerKind::Uv(set) => format!("texture coordinates {set}"),
+        LayerKind::Color(set) => format!("colours {set}"),
+        LayerKind::Joints(_) => "joints".to_owned(),
+        LayerKind::Weights(_) => "joint weights".to_owned(),
+        LayerKind::Other | LayerKind::Label => layer.name.clone(),
+    }
+}
+
+/// Counts the vertices whose colour is not opaque for every face.
+fn translucent_vertices(mesh: &Mesh) -> usize {
+    let Some(attributes) = &mesh.attributes else { return 0 };
+    let Some(colors) = attributes.layer(LayerKind::Color(0)) else { return 0 };
+    let mut found = vec![false; mesh.positions.len()];
+    for (v, &wedge) in mesh.faces.as_flattened().iter().zip(attributes.corners.as_flattened()) {
+        found[v.index()] |= colors.of(wedge).get(3).is_some_and(|&opacity| opacity != 1.0);
+    }
+    found.into_iter().filter(|&found| found).count()
+}
+
+/// Counts the wedges in use beyond one for each vertex in use.
+fn seams(mesh: &Mesh) -> usize {
+    let Some(attributes) = &mesh.attributes else { return 0 };
+    if attributes.layers.is_empty() {
+        return 0;
+    }
+    let used = |count: usize, ids: &mut dyn Iterator<Item = usize>| {
+        let mut used = vec![false; count];
+        ids.for_each(|id| used[id] = true);
+        used.into_iter().filter(|&used| used).count()
+    };
+    let wedges = &mut attributes.corners.as_flattened().iter().map(|w| w.index());
+    let vertices = &mut mesh.faces.as_flattened().iter().map(|v| v.index());
+    used(attributes.wedge_count, wedges).saturating_sub(used(mesh.positions.len(), vertices))
+}
