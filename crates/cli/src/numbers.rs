@@ -28,6 +28,14 @@ pub fn value(number: f64) -> String {
     digits(number, 6)
 }
 
+/// Formats a coordinate with six significant digits, and with as many more as it takes to tell four
+/// of the extent of a mesh along its axis: 4649776.0094 where that is 0.0921.
+pub fn coordinate(number: f64, extent: f64) -> String {
+    let places = |x: f64| if x == 0.0 { 0 } else { x.abs().log10().floor() as i32 };
+    let more = if extent > 0.0 { places(number) - places(extent) + 4 } else { 0 };
+    digits(number, more.clamp(6, 17))
+}
+
 /// Formats a percentage with four significant digits: 0.01235%.
 pub fn percent(number: f64) -> String {
     if number.is_finite() { format!("{}%", digits(number, 4)) } else { "-".into() }
@@ -75,6 +83,15 @@ mod tests {
             ["0", "1", "-0.00123457", "12.3457", "871414", "1.50000e-9", "2.00000e15"]
         );
         assert_eq!(value(f64::NAN), "NaN");
+    }
+
+    #[test]
+    fn coordinates_tell_their_extent() {
+        let (from, to) = (4_649_776.0, 4_649_776.092_13);
+        assert_eq!(coordinate(from, to - from), "4649776");
+        assert_eq!(coordinate(to, to - from), "4649776.09213");
+        assert_eq!(coordinate(12.345_678, 20.0), "12.3457");
+        assert_eq!([coordinate(0.0, 1.0), coordinate(3.0, 0.0)], ["0", "3"]);
     }
 
     #[test]

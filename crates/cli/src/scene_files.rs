@@ -26,6 +26,7 @@ pub fn write(
     if is_pipe(path) {
         notes.extend(scene.lone_file_limits(format));
     }
+    notes.extend(scene.precision_limits(format, writing.options().precision));
     session.note(path, &notes)?;
     write_noted(path, scene, writing, session)
 }
@@ -64,7 +65,9 @@ pub fn write_chain(
         Note::merge(&mut notes, scene.limits_of(format));
         swap(scene, level);
     }
-    session.note(first, &remedied(scene, notes))?;
+    let mut notes = remedied(scene, notes);
+    notes.extend(scene.precision_limits(format, writing.options().precision));
+    session.note(first, &notes)?;
     write_noted(first, scene, writing, session)?;
     for (path, level) in &mut levels {
         swap(scene, level);
@@ -169,12 +172,11 @@ fn write_pipe(
     out: &mut impl Write,
 ) -> Result<(), Failure> {
     let precision = options.precision;
-    let flat = || scene.flatten();
     let written = match format {
         Format::Ply => ply::write_scene(scene, precision, out),
         Format::Stl => stl::write_scene(scene, precision, out),
-        Format::Off => off::write(&flat(), precision, out),
-        Format::Smf => smf::write(&flat(), precision, out),
+        Format::Off => off::write_scene(scene, precision, out),
+        Format::Smf => smf::write_scene(scene, precision, out),
         Format::Obj => obj::write(scene, precision, out, &[]),
         Format::Glb | Format::Gltf => {
             let bytes = gltf::write_glb(scene, &[]);

@@ -54,6 +54,15 @@ impl Note {
         Self::new(NoteKind::Changed, count, one, many)
     }
 
+    /// Creates the note that attributes of vertices which are not finite were read as 0.
+    pub(crate) fn not_finite(count: usize) -> Self {
+        Self::changed(
+            count,
+            "value of a vertex that is not finite read as 0",
+            "values of vertices that are not finite read as 0",
+        )
+    }
+
     fn new(kind: NoteKind, count: usize, one: &str, many: &str) -> Self {
         let what = if count == 1 { one } else { many };
         let (names, remedy) = (Vec::new(), None);

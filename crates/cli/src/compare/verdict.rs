@@ -13,6 +13,9 @@ use crate::parse::LevelSize;
 /// repeated within 0.2 %, and a time on an idle machine within one.
 const EQUAL: f64 = 0.01;
 
+/// Distance in percent of the diagonal below which methods are as exact as rounding lets them be.
+const EXACT: f64 = 1e-7;
+
 /// Ranking of the methods by their levels of one size.
 pub struct Verdict {
     size: LevelSize,
@@ -50,17 +53,16 @@ impl Verdict {
         }
     }
 
-    /// Returns the methods that won, with their figures, as JSON; `null` where none reached the size.
+    /// Returns the methods that won, with their figures, as JSON; `null` where none reached the size,
+    /// or several are exact.
     pub fn json(&self) -> Value {
-        let json = |contest: &Option<Contest>, unit: &str| {
-            contest
-                .as_ref()
-                .map(|Contest(order)| json!({ "method": order[0].0.name(), unit: order[0].1 }))
+        let json = |contest: Option<&Contest>, unit: &str| {
+            contest.map(|Contest(order)| json!({ "method": order[0].0.name(), unit: order[0].1 }))
         };
         json!({
             "size": self.size.to_string(),
-            "closest": json(&self.closest, "rms_percent"),
-            "fastest": json(&self.fastest, "simplify_seconds"),
+            "closest": json(self.closest.as_ref().filter(|of| of.exact() < 2), "rms_percent"),
+            "fastest": json(self.fastest.as_ref(), "simplify_seconds"),
             "sentence": self.sentence(),
         })
     }
@@ -81,7 +83,7 @@ impl Verdict {
                 named(*method)
             );
         }
-        let both = closest.0[0].0 == fastest.0[0].0;
+        let both = closest.exact() < 2 && closest.0[0].0 == fastest.0[0].0;
         let [closest, fastest] = [closest.closest(), fastest.fastest(both)];
         format!("At {size}, {closest}, and {fastest}.")
     }
@@ -101,8 +103,18 @@ impl Contest {
         rest.iter().find(|(method, _)| is_default(*method)).or(rest.first()).copied()
     }
 
+    /// Counts the methods whose distance is nothing but rounding.
+    fn exact(&self) -> usize {
+        self.0.iter().filter(|(_, rms)| *rms < EXACT).count()
+    }
+
     fn closest(&self) -> String {
         let (method, rms) = self.0[0];
+        let exact = self.exact();
+        if exact > 1 {
+            let who = if exact == self.0.len() { "all".into() } else { exact.to_string() };
+            return format!("{who} methods keep the shape up to rounding");
+        }
         let text = format!("{} is closest with an RMS error of {}%", named(method), digits(rms));
         match self.rival() {
             None => text,
@@ -186,9 +198,12 @@ mod tests {
             "At 10%, qem is closest with an RMS error of 1.00%, hardly less than lee-jang, and it is \
              also fastest with 1.00 s, about as long as lee-jang takes."
         );
-        // Nothing is nothing percent less than nothing.
-        let exact = [(Method::Qem, 0.0), (Method::LeeJang, 0.0)];
-        assert!(sentence(&exact, &exact).contains("hardly less"));
+        // Rounding is no victory either.
+        let mut exact = vec![(Method::Qem, 0.0), (Method::LeeJang, 2e-9)];
+        let text = sentence(&exact, &equal);
+        assert!(text.starts_with("At 10%, all methods keep the shape up to rounding, and qem is"));
+        exact.push((Method::Wu, 1.0));
+        assert!(sentence(&exact, &equal).contains("2 methods keep the shape up to rounding"));
     }
 
     #[test]

@@ -14,7 +14,7 @@ use crate::answer::Answer;
 use crate::args::ReadArgs;
 use crate::failure::Failure;
 use crate::files;
-use crate::numbers::{count, faces, value};
+use crate::numbers::{coordinate, count, faces, value};
 use crate::own_files::{self, OwnFormat};
 use crate::session::Session;
 use crate::table::aligned;
@@ -160,7 +160,9 @@ impl<'m> Facts<'m> {
     /// Formats bounds, attributes and materials, which do not fit into columns.
     fn lines(&self) -> String {
         let bounds = self.mesh.bounds();
-        let corner = |corner: [f64; 3]| corner.map(value).join(" ");
+        let corner = |corner: [f64; 3]| {
+            [0, 1, 2].map(|i| coordinate(corner[i], bounds.max[i] - bounds.min[i])).join(" ")
+        };
         let mut text = String::new();
         if !bounds.is_empty() {
             text += &format!("  from  {}\n  to    {}\n", corner(bounds.min), corner(bounds.max));

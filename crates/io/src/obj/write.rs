@@ -8,7 +8,7 @@ use super::colored_vertices::ColoredVertices;
 use super::mtl::{names, one_line};
 use super::value_numbers::{UvNumbers, ValueNumbers};
 use crate::line_writer::LineWriter;
-use crate::{Precision, Scene};
+use crate::{Precision, Scene, remarks};
 
 /// Writes all meshes that a scene shows, in world space, as one OBJ file; `libraries` are the file
 /// names of the material libraries, such as the one that [`write_mtl`](super::write_mtl) writes.
@@ -16,7 +16,8 @@ use crate::{Precision, Scene};
 /// Equal uvs and equal normals are written once; the uvs of a face are those of the set that the
 /// texture of its base colour uses. Colours follow the positions, without opacity; a vertex whose
 /// faces see it in several colours is written once for each. Objects become `o`, materials `usemtl`,
-/// with names made unique, and smoothing groups `s`.
+/// with names made unique, and smoothing groups `s`. Comments of a
+/// PLY file come first.
 /// Positions (at `F64`), uvs and normals read back bit for bit. Other layers are not written.
 ///
 /// # Errors
@@ -29,6 +30,7 @@ pub fn write(
 ) -> io::Result<()> {
     let mesh = scene.flatten();
     let mut lines = LineWriter::new(out, precision.width(&mesh));
+    remarks::write(&scene.ply.remarks, &mut lines)?;
     for name in libraries {
         lines.word("mtllib");
         lines.word(name);

@@ -20,6 +20,8 @@ pub(super) struct Body {
     pub vertices: Vertices,
     pub faces: Vec<[VertexId; 3]>,
     pub values: FaceValues,
+    /// Faces of fewer than three corners, which were dropped.
+    pub thin_faces: usize,
     /// Bytes behind the last row of the last element.
     pub bytes_left: usize,
 }
@@ -30,8 +32,8 @@ const MOST_FACE_COLORS: usize = 256;
 
 /// Builds the scene: one mesh under one node, and a material for each texture.
 pub(super) fn scene(header: Header, body: Body, resolve: Resolve<'_>) -> Scene {
-    let Body { vertices, faces, mut values, bytes_left } = body;
-    let mut notes = notes(&header, &vertices, &values, bytes_left);
+    let mut notes = notes(&header, &body);
+    let Body { vertices, faces, mut values, .. } = body;
     let mut types: BTreeMap<String, Scalar> = vertices.types.into_iter().collect();
     if let Some(kind) = values.color_kind.filter(|&kind| kind != Scalar::U8) {
         types.extend(["red", "green", "blue", "alpha"].map(|c| (format!("face {c}"), kind)));
@@ -59,12 +61,8 @@ pub(super) fn scene(header: Header, body: Body, resolve: Resolve<'_>) -> Scene {
 }
 
 /// Notes what the file holds and the scene does not.
-fn notes(
-    header: &Header,
-    vertices: &Vertices,
-    values: &FaceValues,
-    bytes_left: usize,
-) -> Vec<Note> {
+fn notes(header: &Header, body: &Body) -> Vec<Note> {
+    let Body { vertices, values, .. } = body;
     let skipped = |e: &&Element| e.name != "vertex" && !e.holds_faces() && e.count > 0;
     let skipped = || header.elements.iter().filter(skipped);
     let rows = skipped().map(|element| usize::try_from(element.count).unwrap_or(usize::MAX));
@@ -88,14 +86,25 @@ fn notes(
             "lists of texture coordinates that do not match their faces",
         )
         .remedied("a list needs two numbers for each corner of its face"),
-        Note::left_out(bytes_left, "byte behind the last row", "bytes behind the last row")
+        Note::left_out(
+            body.thin_faces,
+            "face of fewer than three corners",
+            "faces of fewer than three corners",
+        ),
+        Note::left_out(body.bytes_left, "byte behind the last row", "bytes behind the last row")
             .remedied("if they are rows, correct the counts in the header"),
         Note::changed(
             values.not_finite,
             "value of a face that is not finite read as 0",
             "values of faces that are not finite read as 0",
         ),
+        Note::not_finite(vertices.not_finite),
         Note::changed(vertices.rounded, "value rounded to 32 bits", "values rounded to 32 bits"),
+        Note::changed(
+            values.rounded,
+            "64-bit integer rounded to 53 bits",
+            "64-bit integers rounded to 53 bits",
+        ),
     ];
     notes.retain(|note| note.count > 0);
     notes

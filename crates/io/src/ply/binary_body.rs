@@ -67,6 +67,8 @@ impl<const BIG: bool> BodyReader for BinaryBody<'_, BIG> {
             Scalar::U16 => u16::from_le_bytes(self.take(row)?).into(),
             Scalar::I32 => i32::from_le_bytes(self.take(row)?).into(),
             Scalar::U32 => u32::from_le_bytes(self.take(row)?).into(),
+            Scalar::I64 => i64::from_le_bytes(self.take(row)?) as f64,
+            Scalar::U64 => u64::from_le_bytes(self.take(row)?) as f64,
             Scalar::F32 => f32::from_le_bytes(self.take(row)?).into(),
             Scalar::F64 => f64::from_le_bytes(self.take(row)?),
         })

@@ -30,7 +30,7 @@ pub(super) trait BodyReader: Clone {
     /// Must be called after the last number of a row.
     fn end_row(&mut self, row: Row) -> Result<(), ParseError>;
 
-    /// Reads the next number; every scalar type fits in `f64` exactly.
+    /// Reads the next number; 64-bit integers from 2^53 are rounded, all others exact.
     fn number(&mut self, kind: Scalar, row: Row) -> Result<f64, ParseError>;
 
     /// Skips `count` numbers of a type.

@@ -4,7 +4,7 @@
 use super::body::{BodyReader, Row};
 use super::face_scalars::FaceScalars;
 use super::header::{Element, Property, Shape};
-use super::layers::greatest;
+use super::layers::{OTHER_COLORS, greatest};
 use super::scalar::Scalar;
 use crate::ParseError;
 
@@ -81,6 +81,8 @@ pub(super) struct FaceValues {
     pub bad_lists: usize,
     /// Texture coordinates, colours and scalars that are not finite, read as 0.
     pub not_finite: usize,
+    /// Labels and scalars of 64-bit integers that may not be exact.
+    pub rounded: usize,
 }
 
 impl FaceValues {
@@ -100,9 +102,11 @@ impl FaceValues {
         if let Some(texture) = one("texnumber") {
             self.roles[texture] = Role::Texture;
         }
-        let colors = ["red", "green", "blue"].map(one);
-        if colors.iter().all(Option::is_some) {
-            for (i, at) in colors.into_iter().chain([one("alpha")]).enumerate() {
+        let usual: &[&str] = &["red", "green", "blue", "alpha"];
+        let colors = [usual].into_iter().chain(OTHER_COLORS);
+        let colors = colors.map(|names| names.iter().map(|&name| one(name)).collect::<Vec<_>>());
+        if let Some(found) = colors.into_iter().find(|of| of[..3].iter().all(Option::is_some)) {
+            for (i, at) in found.into_iter().enumerate() {
                 let Some(at) = at else { continue };
                 self.roles[at] = Role::Color(i, greatest(&properties[at]));
                 self.has_alpha |= i == 3;
@@ -161,9 +165,13 @@ impl FaceValues {
             (Role::Color(i, unit), Shape::One(kind)) => {
                 into.color[i] = self.finite(body.number(kind, row)? / unit);
             }
-            (Role::Label, Shape::One(kind)) => into.label = body.number(kind, row)?,
+            (Role::Label, Shape::One(kind)) => {
+                into.label = body.number(kind, row)?;
+                self.rounded += usize::from(kind.may_round(into.label));
+            }
             (Role::Scalar(column), Shape::One(kind)) => {
                 let value = body.number(kind, row)?;
+                self.rounded += usize::from(kind.may_round(value));
                 self.not_finite += usize::from(!value.is_finite());
                 self.scalars.push(column, if value.is_finite() { value } else { 0.0 });
             }

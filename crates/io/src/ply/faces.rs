@@ -16,6 +16,8 @@ const RESTART: u32 = u32::MAX;
 pub(super) struct Faces {
     pub triangles: Vec<[VertexId; 3]>,
     pub values: FaceValues,
+    /// Faces of fewer than three corners, which give no triangle.
+    pub thin: usize,
     row: FaceRow,
     list: Vec<u32>,
     corners: Vec<[u32; 3]>,
@@ -68,6 +70,7 @@ impl Faces {
             if is_strip {
                 self.add_strips()
             } else {
+                self.thin += usize::from(self.list.len() < 3);
                 self.add_polygon(positions)
             }
             self.values.end_row(before, self.triangles.len());

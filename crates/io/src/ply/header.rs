@@ -234,6 +234,8 @@ fn scalar(name: Option<&str>) -> Result<Scalar, String> {
         "ushort" | "uint16" => Scalar::U16,
         "int" | "int32" => Scalar::I32,
         "uint" | "uint32" => Scalar::U32,
+        "int64" => Scalar::I64,
+        "uint64" => Scalar::U64,
         "float" | "float32" => Scalar::F32,
         "double" | "float64" => Scalar::F64,
         _ => return Err(format!("unknown type \"{}\"", shown(name))),

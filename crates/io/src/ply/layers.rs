@@ -6,6 +6,15 @@ use meshlod_mesh::{Layer, LayerKind};
 
 use super::face_values::is_label;
 use super::header::{Property, Shape};
+use super::scalar::Scalar;
+
+/// Names that programs give the set which is written as "s t".
+const OTHER_UVS: [&[&str]; 4] =
+    [&["u", "v"], &["texture_u", "texture_v"], &["texture_s", "texture_t"], &["tex_u", "tex_v"]];
+
+/// Names that programs give "red green blue alpha".
+pub(super) const OTHER_COLORS: [&[&str]; 2] =
+    [&["diffuse_red", "diffuse_green", "diffuse_blue", "diffuse_alpha"], &["r", "g", "b", "a"]];
 
 /// Attribute layer with the properties that it is read from.
 #[derive(Debug, PartialEq)]
@@ -21,6 +30,8 @@ pub(super) struct LayerColumns {
 pub(super) struct Column {
     /// Index among the properties of the element.
     pub property: usize,
+    /// Type of the numbers in the file.
+    pub kind: Scalar,
     /// Divisor for the numbers in the file.
     pub unit: f64,
 }
@@ -39,7 +50,8 @@ pub(super) fn columns(properties: &[Property]) -> Vec<LayerColumns> {
             && let Some(mut columns) = take(&mut free, &names)
         {
             if let LayerKind::Color(set) = kind {
-                let alpha = numbered("alpha", set);
+                let other = OTHER_COLORS.iter().find(|other| other[0] == names[0]);
+                let alpha = other.map_or_else(|| numbered("alpha", set), |own| own[3].to_owned());
                 columns.extend(take(&mut free, &[alpha]).unwrap_or_default());
                 columns.iter_mut().for_each(|c| c.unit = greatest(&properties[c.property]));
             }
@@ -66,13 +78,14 @@ pub(super) fn columns(properties: &[Property]) -> Vec<LayerColumns> {
 }
 
 /// Collects the scalar properties by name, without the coordinates.
-fn free_numbers(properties: &[Property]) -> HashMap<&str, usize> {
-    properties
-        .iter()
-        .enumerate()
-        .filter(|(_, p)| matches!(p.shape, Shape::One(_)) && !is_coordinate(&p.name))
-        .map(|(i, p)| (p.name.as_str(), i))
-        .collect()
+fn free_numbers<'p>(properties: &'p [Property]) -> HashMap<&'p str, Column> {
+    let column = |(property, p): (usize, &'p Property)| match p.shape {
+        Shape::One(kind) if !is_coordinate(&p.name) => {
+            Some((p.name.as_str(), Column { property, kind, unit: 1.0 }))
+        }
+        _ => None,
+    };
+    properties.iter().enumerate().filter_map(column).collect()
 }
 
 fn is_coordinate(name: &str) -> bool {
@@ -80,11 +93,9 @@ fn is_coordinate(name: &str) -> bool {
 }
 
 /// Removes all these names from `free` and returns their columns; `None` if one is missing.
-fn take(free: &mut HashMap<&str, usize>, names: &[String]) -> Option<Vec<Column>> {
-    let columns = names
-        .iter()
-        .map(|name| free.get(name.as_str()).map(|&property| Column { property, unit: 1.0 }))
-        .collect::<Option<Vec<_>>>()?;
+fn take(free: &mut HashMap<&str, Column>, names: &[String]) -> Option<Vec<Column>> {
+    let columns: Vec<Column> =
+        names.iter().map(|name| free.get(name.as_str()).copied()).collect::<Option<_>>()?;
     for name in names {
         free.remove(name.as_str());
     }
@@ -93,13 +104,12 @@ fn take(free: &mut HashMap<&str, usize>, names: &[String]) -> Option<Vec<Column>
 
 /// Returns the kind and all names, without alpha, of the known set that begins with a name.
 fn known_set(first: &str) -> Option<(LayerKind, Vec<String>)> {
-    // Alternative names of the set that is written as "s t".
-    if let Some(second) = match first {
-        "u" => Some("v"),
-        "texture_u" => Some("texture_v"),
-        _ => None,
-    } {
-        return Some((LayerKind::Uv(0), vec![first.into(), second.into()]));
+    let owned = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect();
+    if let Some(names) = OTHER_UVS.iter().find(|names| names[0] == first) {
+        return Some((LayerKind::Uv(0), owned(names)));
+    }
+    if let Some(names) = OTHER_COLORS.iter().find(|names| names[0] == first) {
+        return Some((LayerKind::Color(0), owned(&names[..3])));
     }
     let digits = first.find(|c: char| c.is_ascii_digit()).unwrap_or(first.len());
     let (stem, number) = first.split_at(digits);
@@ -122,7 +132,7 @@ fn known_set(first: &str) -> Option<(LayerKind, Vec<String>)> {
 }
 
 /// Returns the names of a known set, without alpha; empty for other layers.
-fn set_names(kind: LayerKind) -> Vec<String> {
+pub(super) fn set_names(kind: LayerKind) -> Vec<String> {
     let several = |stems: &[&str], set| stems.iter().map(|stem| numbered(stem, set)).collect();
     let four = |stem: &str, set: u8| (0..4).map(|i| format!("{stem}{set}_{i}")).collect();
     match kind {
@@ -145,7 +155,7 @@ fn numbered(stem: &str, set: u8) -> String {
 }
 
 /// Returns the free names `name_0 name_1` … if `first` begins such a run, else `first` alone.
-fn run_from(first: &str, free: &HashMap<&str, usize>) -> Vec<String> {
+fn run_from(first: &str, free: &HashMap<&str, Column>) -> Vec<String> {
     let Some(base) = first.strip_suffix("_0") else { return vec![first.to_owned()] };
     let run = (0..).map(|i| format!("{base}_{i}"));
     let run: Vec<_> = run.take_while(|name| free.contains_key(name.as_str())).collect();
@@ -221,7 +231,6 @@ fn one_word(name: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::scalar::Scalar;
     use super::*;
 
     /// Kind, name and width of what float properties of these names become.
@@ -257,6 +266,21 @@ mod tests {
         for name in ["intensity", "quality", "id_", "covid"] {
             assert_eq!(kind(name, Scalar::U8), LayerKind::Other, "{name}");
         }
+    }
+
+    #[test]
+    fn other_programs_names_are_known() {
+        for uvs in ["u v", "s t", "texture_u texture_v", "texture_s texture_t", "tex_u tex_v"] {
+            assert_eq!(kinds(uvs), [(LayerKind::Uv(0), uvs.to_owned(), 2)]);
+        }
+        for colors in ["r g b", "r g b a", "diffuse_red diffuse_green diffuse_blue"] {
+            let width = colors.split(' ').count();
+            assert_eq!(kinds(colors), [(LayerKind::Color(0), colors.to_owned(), width)]);
+        }
+        assert_eq!(kinds("r g"), [other("r", 1), other("g", 1)]);
+        let both = kinds("r g b red green blue");
+        assert_eq!(both[0].0, LayerKind::Color(0));
+        assert_eq!(both[1..], ["red", "green", "blue"].map(|name| other(name, 1)));
     }
 
     #[test]

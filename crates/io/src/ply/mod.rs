@@ -7,8 +7,9 @@
 //! | properties | layer |
 //! |---|---|
 //! | `nx ny nz` | normal |
-//! | `u v`, `s t` or `texture_u texture_v` | uv 0; `s1 t1` … further sets |
+//! | `s t`, `u v`, `texture_u texture_v`, `texture_s texture_t` | uv 0; `s1 t1` … further sets |
 //! | `red green blue`, with `alpha` if present | colour 0; `red1` … further sets |
+//! | `diffuse_red` …, `r g b` | colour 0, in files without `red` |
 //! | `tx ty tz tw` | tangent |
 //! | `joint0_0` … `joint0_3`, `weight0_0` … `weight0_3` | joints, weights 0, and so on |
 //! | consecutive `name_0 name_1` … | another layer `name` of that width |
@@ -80,8 +81,8 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
 
 /// Parses a PLY file, text or binary, as one mesh under one node; `resolve` loads the textures.
 ///
-/// Attributes are `None` if vertices and faces have none. Faces with fewer than three corners and
-/// the degenerate triangles that join parts of a strip are dropped; a face that repeats a vertex is
+/// Attributes are `None` if vertices and faces have none. Faces with fewer than three corners
+/// are dropped, with a note, as are the degenerate triangles that join parts of a strip; a face that repeats a vertex is
 /// kept. Numbers in text are rounded to the type that the header declares, so that both encodings
 /// of a mesh read the same. What is skipped is in the notes of the scene. Memory: at most a small
 /// multiple of `bytes`, whatever the header claims, beside the textures.
@@ -148,5 +149,6 @@ fn read_body<B: BodyReader>(header: &Header, mut body: B) -> Result<Body, ParseE
             "more than 4,294,967,295 triangles are not supported",
         ));
     }
-    Ok(Body { vertices, faces: faces.triangles, values: faces.values, bytes_left })
+    let Faces { triangles, values, thin: thin_faces, .. } = faces;
+    Ok(Body { vertices, faces: triangles, values, thin_faces, bytes_left })
 }

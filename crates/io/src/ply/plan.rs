@@ -163,7 +163,7 @@ impl FaceLabels {
         let numbers: Vec<i64> = objects.names.iter().map(number).collect::<Option<_>>()?;
         let fits = |kind: &Scalar| {
             kind.whole_range().is_some_and(|(least, most)| {
-                numbers.iter().all(|number| (least..=most).contains(number))
+                numbers.iter().all(|&number| (least..=most).contains(&number.into()))
             })
         };
         let known = extras.kind(&format!("face {property}"), Scalar::I32);

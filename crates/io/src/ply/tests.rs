@@ -2,7 +2,7 @@ use meshlod_fixtures::{shared_mesh, tetrahedron};
 use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId};
 use proptest::prelude::*;
 
-use super::{read, write};
+use super::{read, read_scene, write, write_scene};
 use crate::Precision;
 
 const HEAD: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n\
@@ -332,13 +332,63 @@ fn what_is_missing_is_named() {
 }
 
 #[test]
-fn attributes_that_are_not_finite_are_named() {
-    let head = HEAD.replace("property float z\n", "property float z\nproperty double heat\n");
-    let body = "0 0 0 1\n1 0 0 1e60\n";
+fn attributes_that_are_not_finite_are_read_as_0_and_counted() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+        property float z\nproperty double heat\nproperty float nx\nproperty float ny\n\
+        property float nz\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n\
+        0 0 0 1 0 0 1\n1 0 0 1e60 0 nan 1\n0 1 0 nan 0 0 1\n3 0 1 2\n2 0 1\n";
+    let scene = read_scene(text.as_bytes(), &mut |_| None).unwrap();
+    let notes: Vec<String> = scene.notes.iter().map(|note| note.to_string()).collect();
     assert_eq!(
-        message(head + body),
-        "line 12: vertex 1 has a value of \"heat\" that is not finite as a 32-bit float: 1e60"
+        notes,
+        [
+            "1 face of fewer than three corners",
+            "2 values of vertices that are not finite read as 0",
+        ]
     );
+    let layers = scene.into_mesh().attributes.unwrap().layers;
+    assert_eq!(layers[0].values, [1.0, 0.0, 0.0]);
+    assert_eq!(layers[1].values, [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+}
+
+#[test]
+fn integers_of_64_bits_are_read_and_written_as_such() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+        property float z\nproperty int64 label\nproperty uint64 lab\nelement face 1\n\
+        property list uint64 int64 vertex_indices\nproperty int64 number\nend_header\n\
+        0 0 0 -1 1\n1 0 0 7 2\n0 1 0 7 3\n3 0 1 2 9007199254740993\n";
+    let scene = read_scene(text.as_bytes(), &mut |_| None).unwrap();
+    let notes: Vec<String> = scene.notes.iter().map(|note| note.to_string()).collect();
+    assert_eq!(notes, ["1 64-bit integer rounded to 53 bits"]);
+    let mut file = Vec::new();
+    write_scene(&scene, Precision::Auto, &mut file).unwrap();
+    let back = read_scene(&file, &mut |_| None).unwrap();
+    let header = String::from_utf8_lossy(&file).into_owned();
+    assert!(header.contains("property int64 label\nproperty uint64 lab\n"), "{header}");
+    let kinds: Vec<LayerKind> =
+        back.meshes[0].mesh.attributes.as_ref().unwrap().layers.iter().map(|l| l.kind).collect();
+    assert_eq!(kinds, [LayerKind::Label, LayerKind::Other]);
+    assert_eq!(back.into_mesh().attributes, scene.into_mesh().attributes);
+}
+
+#[test]
+fn colours_of_other_names_keep_their_type() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+        property float z\nproperty float r\nproperty float g\nproperty float b\nelement face 1\n\
+        property list uchar int vertex_indices\nproperty uchar diffuse_red\n\
+        property uchar diffuse_green\nproperty uchar diffuse_blue\nend_header\n\
+        0 0 0 .3 0 1\n1 0 0 .7 0 1\n0 1 0 .001 0 1\n3 0 1 2 255 0 51\n";
+    let scene = read_scene(text.as_bytes(), &mut |_| None).unwrap();
+    assert!(scene.notes[0].to_string().contains("colour of a face, as vertices have colours"));
+    let mut file = Vec::new();
+    write_scene(&scene, Precision::Auto, &mut file).unwrap();
+    let header = String::from_utf8_lossy(&file).into_owned();
+    assert!(header.contains("property float red\nproperty float green\n"), "{header}");
+    let at_faces = text.replace("property float r\n", "property float k\n");
+    let mesh = read_scene(at_faces.as_bytes(), &mut |_| None).unwrap().into_mesh();
+    let attributes = mesh.attributes.unwrap();
+    let color = attributes.layer(LayerKind::Color(0)).unwrap();
+    assert_eq!(color.of(attributes.corners[0][0]), [1.0, 0.0, 0.2]);
 }
 
 #[test]

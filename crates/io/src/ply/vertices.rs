@@ -20,6 +20,8 @@ pub(super) struct Vertices {
     pub lists: Vec<String>,
     /// Values of other layers that are not exact in 32 bits.
     pub rounded: usize,
+    /// Values of layers other than normals that are not finite in 32 bits, read as 0.
+    pub not_finite: usize,
 }
 
 /// Reads all rows of the element.
@@ -69,12 +71,12 @@ fn types(element: &Element, columns: &[LayerColumns]) -> Vec<(String, Scalar)> {
             LayerKind::Label => Scalar::I32,
             _ => continue,
         };
-        for column in &layer.columns {
-            let Property { name, shape } = &element.properties[column.property];
-            if let Shape::One(kind) = *shape
-                && kind != usual
-            {
-                types.push((name.clone(), kind));
+        // Colours are written under the usual names, whatever they were called.
+        let written = layers::set_names(layer.kind);
+        for (i, column) in layer.columns.iter().enumerate() {
+            if column.kind != usual {
+                let own = || element.properties[column.property].name.clone();
+                types.push((written.get(i).cloned().unwrap_or_else(own), column.kind));
             }
         }
     }
@@ -130,22 +132,35 @@ impl Vertices {
         self.positions.push(position);
         for (layer, columns) in self.layers.iter_mut().zip(columns) {
             for column in &columns.columns {
-                let value = (numbers[column.property] / column.unit) as f32;
-                if !value.is_finite() {
-                    return Err(body.wrong(format!(
-                        "vertex {vertex} has a value of \"{}\" that is not finite as a 32-bit float: \
-                         {:?}",
-                        layer.name, numbers[column.property]
-                    )));
-                }
-                if layer.kind.is_named() && f64::from(value) != numbers[column.property] {
+                let number = numbers[column.property];
+                let value = (number / column.unit) as f32;
+                let is_rounded = f64::from(value) != number || column.kind.may_round(number);
+                if value.is_finite() && layer.kind.is_named() && is_rounded {
                     self.rounded += 1;
                 }
                 layer.values.push(value);
             }
+            self.not_finite += make_finite(layer, columns.columns.len());
         }
         Ok(())
     }
+}
+
+/// Replaces what is not finite of the last `width` values of a layer by 0, and counts it. A normal
+/// becomes zero as a whole, so that it is computed, and counted, as those without a length are.
+fn make_finite(layer: &mut Layer, width: usize) -> usize {
+    let from = layer.values.len() - width;
+    let last = &mut layer.values[from..];
+    let odd = last.iter().filter(|x| !x.is_finite()).count();
+    if odd == 0 {
+        return 0;
+    }
+    if layer.kind == LayerKind::Normal {
+        last.fill(0.0);
+        return 0;
+    }
+    last.iter_mut().filter(|x| !x.is_finite()).for_each(|x| *x = 0.0);
+    odd
 }
 
 impl LayerColumns {
