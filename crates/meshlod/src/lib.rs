@@ -277,7 +277,7 @@ pub use meshlod_mesh::{Borders, Mesh};
 pub use meshlod_simplify::{Method, Options, Report, SimplifyError, Target, Topology};
 pub use model_scene::{
     LevelInstance, MissingParts, ModelScene, ModelSceneError, PackedScene, PlaceError, PlacedScene,
-    SceneCounts, SceneLayout, measured_poses, model_limits, place_scene,
+    SceneCounts, SceneLayout, SceneQueryError, measured_poses, model_limits, place_scene,
 };
 pub use place::{moved_at_most, rounding_of_level, shown_rounding, world_bounds};
 pub use posed::{PoseCounts, ScenePoses, posed_mesh};
