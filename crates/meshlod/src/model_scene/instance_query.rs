@@ -70,12 +70,12 @@ impl ModelScene {
     }
 
     /// Returns every place where a mesh of the levels is shown, without those where it is a point.
-    fn places(&self, instances: &[MeshInstance]) -> Vec<Place> {
+    fn places(&self, instances: &[MeshInstance]) -> Vec<InstancePlace> {
         let place = |instance: &MeshInstance| {
             let entry = self.head.meshes.get(instance.mesh)?.as_ref()?;
             let [placement, world] =
                 [entry.placement, instance.transform].map(|t| DMat4::from_cols_array_2d(&t));
-            let place = Place::new(instance.mesh, placement, world);
+            let place = InstancePlace::new(instance.mesh, placement, world);
             (place.growth > 0.0).then_some(place)
         };
         instances.iter().filter_map(place).collect()
@@ -83,7 +83,7 @@ impl ModelScene {
 }
 
 /// Place where the scene shows a mesh.
-struct Place {
+struct InstancePlace {
     mesh: usize,
     /// Transforms from the mesh's own space to that of the levels, and to that of the scene.
     placement: DMat4,
@@ -95,7 +95,7 @@ struct Place {
     growth_back: f64,
 }
 
-impl Place {
+impl InstancePlace {
     fn new(mesh: usize, placement: DMat4, world: DMat4) -> Self {
         let (out, to_levels) = match placement == world {
             true => (DMat4::IDENTITY, DMat4::IDENTITY),
@@ -160,7 +160,7 @@ impl Place {
 }
 
 /// Returns the union of a query in all places, each mesh for itself.
-fn in_all_places<'f>(meshes: &[&Mesh], places: &[Place], query: &Query<'f>) -> Query<'f> {
+fn in_all_places<'f>(meshes: &[&Mesh], places: &[InstancePlace], query: &Query<'f>) -> Query<'f> {
     let of_mesh = |(index, mesh): (usize, &&Mesh)| {
         let own = Some(mesh.bounds()).filter(|own| !own.is_empty())?;
         let mut here = places.iter().filter(|place| place.mesh == index).peekable();
@@ -209,12 +209,12 @@ fn tolerances(tolerance: &Tolerance<'_>, around: &Bounds) -> [f64; 2] {
 /// Returns a query for the point that the scene shows closest to another, and where the levels have it.
 fn at_point<'f>(
     meshes: &[&Mesh],
-    places: &[Place],
+    places: &[InstancePlace],
     query: &Query<'f>,
     (point, max_faces): ([f64; 3], Option<usize>),
 ) -> (Query<'f>, Option<[f64; 3]>) {
     let to = DVec3::from(point);
-    let mut best: Option<(f64, DVec3, &Place)> = None;
+    let mut best: Option<(f64, DVec3, &InstancePlace)> = None;
     for place in places.iter().filter(|place| place.to_levels.is_some()) {
         let mesh = meshes[place.mesh];
         for &face in &mesh.faces {

@@ -13,12 +13,12 @@ const SLACK: f64 = 1.0 + 1e-6;
 #[derive(Clone, Debug)]
 pub struct Limits {
     frame: Frame,
-    limit: Limit,
+    limit: LocalLimit,
 }
 
 /// Allowed distance in a region, in stored units.
 #[derive(Clone, Debug)]
-struct Limit {
+struct LocalLimit {
     region: Region,
     allowed: Allowed,
 }
@@ -32,7 +32,7 @@ enum Allowed {
         slope: f64,
     },
     /// The least of several, each in its own region.
-    Each(Vec<Limit>),
+    Each(Vec<LocalLimit>),
 }
 
 impl Limits {
@@ -41,7 +41,7 @@ impl Limits {
     /// An invalid query, or one whose tolerance is a field.
     pub(crate) fn new(query: &Query<'_>, frame: &Frame) -> Result<Self, QueryError> {
         query.validate()?;
-        Ok(Self { frame: *frame, limit: Limit::new(query, frame)? })
+        Ok(Self { frame: *frame, limit: LocalLimit::new(query, frame)? })
     }
 
     /// Returns the least distance that the query allows in a triangle, both in model units; infinity
@@ -50,7 +50,9 @@ impl Limits {
     /// Three equal corners ask for a point. Triangles outside but close to a segment or a frustum may
     /// count as inside.
     pub fn in_triangle(&self, corners: [[f64; 3]; 3]) -> f64 {
-        if let Limit { region: Region::Everything, allowed: Allowed::Uniform(most) } = self.limit {
+        if let LocalLimit { region: Region::Everything, allowed: Allowed::Uniform(most) } =
+            self.limit
+        {
             return self.frame.model_length(most);
         }
         let corners = corners.map(|corner| self.frame.local(corner));
@@ -75,7 +77,7 @@ impl Limits {
     }
 }
 
-impl Limit {
+impl LocalLimit {
     fn new(query: &Query<'_>, frame: &Frame) -> Result<Self, QueryError> {
         let allowed = match &query.tolerance {
             Tolerance::Uniform(most) => Allowed::Uniform(frame.local_length(*most)),

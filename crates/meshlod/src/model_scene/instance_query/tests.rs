@@ -100,7 +100,7 @@ fn a_point_is_the_closest_one_shown() {
     let model = ModelScene::read(archive).unwrap();
     let (finest, _) = cut(&file, &Query::finest());
     for (index, instance) in finest.instances().iter().enumerate() {
-        let place = Place::new(
+        let place = InstancePlace::new(
             instance.mesh,
             DMat4::from_cols_array_2d(
                 &model.head.meshes[instance.mesh].as_ref().unwrap().placement,
