@@ -1,9 +1,10 @@
 //! The error of a mesh that `extract` writes, asked for and known, as JSON and text.
 
-use meshlod::Verification;
 use meshlod::multires::Tolerance;
+use meshlod::{PoseCounts, Verification};
 use serde_json::{Value, json};
 
+use crate::model_file;
 use crate::numbers::{count, percent, plural, value};
 
 /// Error that was asked for.
@@ -20,11 +21,11 @@ pub enum Asked {
 
 impl Asked {
     pub fn of(tolerance: &Tolerance<'_>) -> Self {
-        match *tolerance {
+        match tolerance {
             _ if tolerance.is_finest() => Self::Finest,
-            Tolerance::Uniform(most) => Self::Length(most),
-            Tolerance::Pixels { pixels, .. } => Self::Pixels(pixels),
-            Tolerance::Field(_) => Self::Faces,
+            Tolerance::Uniform(most) => Self::Length(*most),
+            Tolerance::Pixels { pixels, .. } => Self::Pixels(*pixels),
+            Tolerance::Field(_) | Tolerance::Each(_) => Self::Faces,
         }
     }
 }
@@ -53,6 +54,26 @@ pub struct KeptError {
     pub moved: f64,
     /// Length of the diagonal of the finest mesh, in model units.
     pub diagonal: f64,
+    /// Error by what the file says in the poses in which it was measured, in model units; `None` if it
+    /// was measured in none, or is not known.
+    pub in_poses: Option<PosedError>,
+}
+
+/// Error of an extracted mesh in the poses in which the errors of its file were measured.
+#[derive(Clone, Copy)]
+pub struct PosedError {
+    pub poses: PoseCounts,
+    /// Greatest error that the file has for the mesh, in model units; `None` if that was not asked
+    /// for, or counts in a focus only.
+    pub stored: Option<f64>,
+}
+
+impl PosedError {
+    fn to_json(self) -> Value {
+        let mut json = model_file::poses_json(Some(self.poses));
+        json["error"] = self.stored.into();
+        json
+    }
 }
 
 impl KeptError {
@@ -145,6 +166,7 @@ impl KeptError {
             "proved_px": self.proved_px(),
             "kept": self.is_kept(),
             "in_focus": self.is_local,
+            "poses": self.in_poses.map(PosedError::to_json),
             "updates_added": proof.map(|proof| proof.added),
             "rounds": proof.map(|proof| proof.rounds),
         })
@@ -152,19 +174,34 @@ impl KeptError {
 
     pub fn to_text(self) -> String {
         let place = if self.is_local { " in the focus" } else { "" };
-        match self.known {
+        let pose = if self.in_poses.is_some() { " in the pose of the file" } else { "" };
+        let mut text = match self.known {
             Known::Stored => "error: by what the file says, not verified\n".into(),
             _ if !self.is_whole => "error: unknown, as the file is truncated\n".into(),
             Known::Measured(None) => "error: unknown, as it could not be measured\n".into(),
-            Known::Measured(Some(_)) => format!("error: at most {}, measured\n", self.bound()),
+            Known::Measured(Some(_)) => {
+                format!("error: at most {}{pose}, measured\n", self.bound())
+            }
             Known::Verified(_) if self.asked == Asked::Finest => {
-                format!("error: at most {}{place}: the finest mesh of the file\n", self.bound())
+                format!(
+                    "error: at most {}{place}{pose}: the finest mesh of the file\n",
+                    self.bound()
+                )
             }
             Known::Verified(Verification { added, .. }) => {
                 let more = format!("{} update{} added", count(added), plural(added));
-                format!("error: at most {}{place}, verified; {more}\n", self.bound())
+                format!("error: at most {}{place}{pose}, verified; {more}\n", self.bound())
             }
+        };
+        if let Some(PosedError { poses, stored: Some(stored) }) = self.in_poses {
+            text += &format!(
+                "error in poses: {} ({}) by what the file has, measured over {}\n",
+                value(stored),
+                percent(100.0 * stored / self.diagonal),
+                model_file::poses_text(poses),
+            );
         }
+        text
     }
 
     /// Describes the proven error.

@@ -140,6 +140,9 @@ pub fn errors_text(kind: &str, poses: Option<PoseCounts>) -> String {
 
 /// Names the poses in which errors were measured.
 pub fn poses_text(PoseCounts { poses, animations }: PoseCounts) -> String {
+    if animations == 0 {
+        return format!("{} pose{} of the nodes", count(poses as usize), plural(poses as usize));
+    }
     let [poses, animations] = [poses, animations].map(|number| number as usize);
     format!(
         "{} pose{} of {} animation{}",

@@ -167,6 +167,7 @@ impl QueryArgs {
             is_whole: model_file::is_whole(file),
             moved: 0.0,
             diagonal: file.diagonal(),
+            in_poses: None,
         }
     }
 }

@@ -4,8 +4,8 @@ use std::fs::File;
 use std::path::Path;
 
 use meshlod::io::{Note, merged_instances};
-use meshlod::multires::ModelFile;
-use meshlod::{Format, MissingParts, ModelScene, PoseCounts, Scene, SceneCounts};
+use meshlod::multires::{ModelFile, Query};
+use meshlod::{Format, MissingParts, ModelScene, PoseCounts, Scene, SceneCounts, SceneQueryError};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
@@ -150,13 +150,18 @@ pub fn note_merged(
     session.note(output, &[merged.remedied(".glb keeps them apart")])
 }
 
-/// Warns that errors that differ by place are not those of each instance of a mesh.
-pub fn warn_of_instances(path: &Path, model: &ModelScene, session: &Session) {
-    if !model.is_flat() {
-        let reason =
-            "focus and camera count for the largest instance of each mesh; others are the same";
-        session.warn(Failure::at(path, reason));
-    }
+/// Puts a query about the scene of a file to the levels of its meshes. Of a point, returns the place
+/// where the levels have the closest one that is shown.
+pub fn query<'f>(
+    path: &Path,
+    (file, model): (&ModelFile<File>, &ModelScene),
+    query: &Query<'f>,
+    max_faces: Option<usize>,
+) -> Result<(Query<'f>, Option<[f64; 3]>), Failure> {
+    model.query_of_levels(file, query, max_faces).map_err(|error| match error {
+        SceneQueryError::File(error) => model_file::failure(path, error),
+        SceneQueryError::Scene(error) => Failure::at(path, error),
+    })
 }
 
 pub fn is_gltf(format: Format) -> bool {

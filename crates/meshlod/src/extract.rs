@@ -5,7 +5,7 @@ use std::path::Path;
 
 use meshlod_io::IoError;
 use meshlod_mesh::Mesh;
-use meshlod_multires::{FileError, Focus, Level, ModelFile, Query};
+use meshlod_multires::{FileError, Level, ModelFile, Query};
 use meshlod_simplify::Digits;
 
 use crate::{CutVolumeError, LevelsError, Verification, conserve_cut_volume, extract_verified};
@@ -14,7 +14,8 @@ use crate::{CutVolumeError, LevelsError, Verification, conserve_cut_volume, extr
 #[derive(Clone, Debug)]
 pub struct ExtractOptions<'f> {
     /// Region to refine, and the largest error allowed there; by default the whole model, without
-    /// error. A point stands for the closest point of the finest surface.
+    /// error. A point stands for the closest point of the finest surface. All of that is where the file
+    /// has each mesh of its scene; [`query_of_levels`](crate::ModelScene::query_of_levels) leads there.
     pub query: Query<'f>,
     /// Largest number of faces of the mesh. If set, the query only decides where errors matter
     /// most.
@@ -128,8 +129,8 @@ fn level(
         Some(faces) => (file.extract_at_most(faces, &query)?.level, None),
     };
     let level_faces = level.faces.len();
-    let is_region = nearest.is_none() && !matches!(query.focus, Focus::Everything);
-    let within = if is_region { Some(level.within(&query.focus)?) } else { None };
+    let is_region = nearest.is_none() && !query.is_everywhere();
+    let within = if is_region { Some(level.where_asked(&query)?) } else { None };
     let meets_focus = within.as_ref().is_none_or(|within| !within.faces.is_empty());
     let level = match (nearest, within) {
         _ if !*crop => level,
@@ -142,6 +143,7 @@ fn level(
 
 #[cfg(test)]
 mod tests {
+    use meshlod_multires::Focus;
     use meshlod_samples as samples;
 
     use super::*;

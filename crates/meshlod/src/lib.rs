@@ -350,7 +350,7 @@ pub use meshlod_io::{Format, IoError, ReadOptions, Scene, WriteOptions, read, wr
 #[cfg(feature = "multires")]
 pub use model_scene::{
     LevelInstance, MissingParts, ModelScene, ModelSceneError, PackedScene, PlaceError, PlacedScene,
-    SceneCounts, SceneLayout, measured_poses, model_limits, place_scene,
+    SceneCounts, SceneLayout, SceneQueryError, measured_poses, model_limits, place_scene,
 };
 #[cfg(feature = "io")]
 pub use place::{moved_at_most, rounding_of_level, shown_rounding, world_bounds};

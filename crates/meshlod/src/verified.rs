@@ -9,7 +9,7 @@ mod check;
 use meshlod_measure::{CertifiedOptions, certified_distance};
 use meshlod_mesh::Mesh;
 use meshlod_multires::{
-    Archive, Cut, ErrorKind, Extract, FileError, Focus, ModelFile, Query, Source, Tolerance,
+    Archive, Cut, ErrorKind, Extract, FileError, ModelFile, Query, Source, Tolerance,
 };
 use meshlod_spatial::closest_point;
 
@@ -97,7 +97,7 @@ pub fn extract_verified<S: Source>(
     let is_proven = match file {
         ModelFile::HeightField(..) => true,
         ModelFile::Contractions(archive) => {
-            archive.error_kind() == ErrorKind::Bound && matches!(query.focus, Focus::Everything)
+            archive.error_kind() == ErrorKind::Bound && query.is_everywhere()
         }
     };
     match file {
@@ -137,10 +137,7 @@ fn refine<S: Source>(
     let surface = CutSurface::of(&finest);
     let least = surface.least_limit(&near.limits);
     let mut verification = Verification::within(least, rounding);
-    let is_below_rounding = |most: f64| most * (1.0 - RESERVE) <= rounding;
-    if query.tolerance.is_finest()
-        || matches!(query.tolerance, Tolerance::Uniform(most) if is_below_rounding(most))
-    {
+    if is_finest(&query.tolerance, rounding) {
         // Nothing in the file is finer.
         return Ok(VerifiedExtract { extract: near.extract(&finest)?, verification });
     }
@@ -160,10 +157,21 @@ fn refine<S: Source>(
     }
 }
 
+/// Returns true if nothing but the finest mesh of a file with this rounding can satisfy a tolerance.
+fn is_finest(tolerance: &Tolerance<'_>, rounding: f64) -> bool {
+    match tolerance {
+        Tolerance::Uniform(most) => *most == 0.0 || most * (1.0 - RESERVE) <= rounding,
+        Tolerance::Each(queries) => {
+            queries.iter().all(|query| is_finest(&query.tolerance, rounding))
+        }
+        Tolerance::Pixels { .. } | Tolerance::Field(_) => tolerance.is_finest(),
+    }
+}
+
 /// Returns the least distance that a query allows anywhere on a mesh, in model units.
 fn least_tolerance(query: &Query<'_>, mesh: &Mesh) -> f64 {
-    match query.tolerance {
-        Tolerance::Uniform(most) => most,
+    match &query.tolerance {
+        Tolerance::Uniform(most) => *most,
         Tolerance::Pixels { camera, pixels } => {
             let eye = camera.eye.into();
             let away = |face| closest_point(eye, &mesh.triangle(face)).distance(eye);
@@ -171,17 +179,15 @@ fn least_tolerance(query: &Query<'_>, mesh: &Mesh) -> f64 {
             allowed.fold(f64::INFINITY, f64::min)
         }
         Tolerance::Field(_) => 0.0,
+        Tolerance::Each(queries) => {
+            queries.iter().map(|query| least_tolerance(query, mesh)).fold(f64::INFINITY, f64::min)
+        }
     }
 }
 
 /// Returns a query for this part of a tolerance.
 fn scaled<'f>(query: &Query<'f>, part: f64) -> Query<'f> {
-    let tolerance = match query.tolerance {
-        Tolerance::Uniform(most) => Tolerance::Uniform(part * most),
-        Tolerance::Pixels { camera, pixels } => Tolerance::Pixels { camera, pixels: part * pixels },
-        Tolerance::Field(field) => Tolerance::Field(field),
-    };
-    Query { focus: query.focus.clone(), tolerance }
+    Query { focus: query.focus.clone(), tolerance: query.tolerance.scaled(part) }
 }
 
 /// Returns how far the finest mesh in a file may be from the mesh that it was built from, in model

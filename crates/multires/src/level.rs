@@ -5,8 +5,7 @@ use meshlod_mesh::{Frame, Mesh, VertexId};
 use meshlod_spatial::closest_point;
 
 use crate::pack::ExactPositions;
-use crate::query::Region;
-use crate::query::{Focus, QueryError};
+use crate::query::{Criterion, Focus, Query, QueryError, Region};
 use crate::wedges::LevelWedges;
 
 /// Cosine of the angle between two face normals below which their common edge counts as folded.
@@ -97,10 +96,24 @@ impl Level {
     pub fn within(&self, focus: &Focus) -> Result<Self, QueryError> {
         focus.validate()?;
         let region = Region::new(focus, &self.frame);
-        let corners = |face: &&[u32; 3]| face.map(|v| self.exact_stored(v));
-        let kept =
-            (0..self.faces.len()).filter(|&f| region.meets_triangle(corners(&&self.faces[f])));
-        let kept: Vec<usize> = kept.collect();
+        Ok(self.where_corners(|corners| region.meets_triangle(corners)))
+    }
+
+    /// Returns the faces that intersect the focus of a query, or where that is several queries, the
+    /// focus of one of these, with their vertices, like [`within`](Self::within).
+    ///
+    /// Cost: linear, for each of the queries.
+    /// # Errors
+    /// The query is invalid.
+    pub fn where_asked(&self, query: &Query<'_>) -> Result<Self, QueryError> {
+        let criterion = Criterion::new(query, &self.frame)?;
+        Ok(self.where_corners(|corners| criterion.meets_triangle(corners)))
+    }
+
+    fn where_corners(&self, keeps: impl Fn([DVec3; 3]) -> bool) -> Self {
+        let corners = |face: [u32; 3]| face.map(|v| self.exact_stored(v));
+        let kept: Vec<usize> =
+            (0..self.faces.len()).filter(|&f| keeps(corners(self.faces[f]))).collect();
         let faces = kept.iter().map(|&f| self.faces[f]).collect();
         let (count, place) = (self.positions.len(), |v: u32| self.positions[v as usize]);
         let mut level = Self::from_nodes(self.frame, count, place, faces).with_exact(&self.exact);
@@ -110,7 +123,7 @@ impl Level {
         });
         // The faces were numbered by vertices of this level.
         level.nodes.iter_mut().for_each(|node| *node = self.nodes[*node as usize]);
-        Ok(level)
+        level
     }
 
     /// Returns the point of the level that is closest to a point in model units; `None` if the level

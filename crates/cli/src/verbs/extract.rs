@@ -17,6 +17,7 @@ use crate::answer::{Answer, Outcome};
 use crate::args::WriteArgs;
 use crate::failure::Failure;
 use crate::files;
+use crate::kept_error::{KeptError, PosedError};
 use crate::model_file;
 use crate::model_query::QueryArgs;
 use crate::model_scene;
@@ -61,7 +62,8 @@ impl Extract {
         self.query.check_target()?;
         let start = Instant::now();
         let file = model_file::open(&self.input, session)?;
-        let mut taken = self.take(&file, session)?;
+        let model = model_scene::read(&self.input, &file, session)?;
+        let mut taken = self.take(&file, &model, session)?;
         let mut time = start.elapsed();
         let mesh = taken.level.mesh();
         if mesh.faces.is_empty() {
@@ -69,8 +71,7 @@ impl Extract {
         }
         let counts = [mesh.positions.len(), mesh.faces.len()];
         let reached = self.query.reaches(&self.input, taken.whole_faces, "extracted", session);
-        let model = model_scene::read(&self.input, &file, session)?;
-        self.warn_of_instances(&model, format, session);
+        self.warn_of_moved_meshes(&model, format, session);
         let mut scene = model.flat_scene(files::stem(&self.input), mesh);
         let spare = taken.error.spare(taken.rounding);
         let writing = self.writing.within(spare, &scene, format).of(&scene);
@@ -103,8 +104,9 @@ impl Extract {
         let mut json = taken.to_json(&asked, counts);
         json["volume_residual"] = restored.map(|restored| restored.after.abs()).into();
         json["volume_moved"] = restored.map(|restored| restored.farthest).into();
-        json["shown_faces"] = model_scene::shown_faces(&scene).into();
-        let mut text = taken.to_text(&asked, counts);
+        let shown = model_scene::shown_faces(&scene);
+        json["shown_faces"] = shown.into();
+        let mut text = taken.to_text(&asked, counts, shown);
         if let Some(restored) = &restored {
             text += &volume_text(restored, taken.lossless);
         }
@@ -116,12 +118,19 @@ impl Extract {
         })
     }
 
-    fn take(&self, file: &ModelFile<File>, session: &Session) -> Result<Extracted, Failure> {
+    fn take(
+        &self,
+        file: &ModelFile<File>,
+        model: &ModelScene,
+        session: &Session,
+    ) -> Result<Extracted, Failure> {
         let failed = |error: FileError| model_file::failure(&self.input, error);
-        let query = self.query.query(file)?;
-        let (query, nearest) = file.at_surface(&query, self.query.target.faces).map_err(failed)?;
+        let asked = self.query.query(file)?;
+        let most = self.query.target.faces;
+        let (query, nearest) = model_scene::query(&self.input, (file, model), &asked, most)?;
         let (taken, known) =
             self.query.answer(file, &query, self.unverified, session).map_err(failed)?;
+        let in_poses = self.in_poses((file, model), &taken.level, session).map_err(failed)?;
         let (rounding, lossless, error_kind) = match file {
             ModelFile::Contractions(archive) => (
                 model_file::rounding(archive),
@@ -137,11 +146,30 @@ impl Extract {
             rounding,
             lossless,
             error_kind,
-            error: self.query.kept_error(file, &query, known),
+            error: KeptError { in_poses, ..self.query.kept_error(file, &asked, known) },
             chunks: [taken.chunks, there, all],
             updates: taken.updates,
             bytes: taken.bytes,
         })
+    }
+
+    /// Returns the error of a cut in the poses in which errors were measured, by what the file says.
+    fn in_poses(
+        &self,
+        (file, model): (&ModelFile<File>, &ModelScene),
+        level: &Level,
+        session: &Session,
+    ) -> Result<Option<PosedError>, FileError> {
+        let (ModelFile::Contractions(archive), Some(poses)) = (file, model.poses()) else {
+            return Ok(None);
+        };
+        if self.unverified || self.query.is_local() {
+            return Ok(Some(PosedError { poses, stored: None }));
+        }
+        session.progress.stage("reading errors in poses");
+        let rounding = if archive.is_lossless() { 0.0 } else { archive.rounding() };
+        let stored = archive.error_of(level)? + rounding;
+        Ok(Some(PosedError { poses, stored: Some(stored) }))
     }
 
     /// Gives the closed parts of a cut the volume that they have in the finest cut; warns if that
@@ -164,11 +192,8 @@ impl Extract {
         }
     }
 
-    /// Warns of what does not hold for each instance of a mesh, or not in its own space.
-    fn warn_of_instances(&self, model: &ModelScene, format: Format, session: &Session) {
-        if self.query.is_local() {
-            model_scene::warn_of_instances(&self.input, model, session);
-        }
+    /// Warns of what does not hold in a mesh's own space.
+    fn warn_of_moved_meshes(&self, model: &ModelScene, format: Format, session: &Session) {
         if self.exact_volume && model_scene::is_gltf(format) && !model.is_unmoved() {
             session.warn(
                 "--exact-volume: nodes move, turn or scale meshes, whose coordinates are rounded again",
@@ -186,7 +211,7 @@ impl Extract {
         match nearest {
             _ if !self.only => {
                 let has_focus = self.query.focus.is_some() && nearest.is_none();
-                let missed = || level.within(&query.focus).map(|near| near.faces.is_empty());
+                let missed = || level.where_asked(query).map(|near| near.faces.is_empty());
                 if has_focus && missed().map_err(Failure::usage)? {
                     session.warn(Failure::at(
                         &self.input,
@@ -196,7 +221,7 @@ impl Extract {
                 Ok(level)
             }
             Some(point) => level.nearest(point).map_err(Failure::usage),
-            None => level.within(&query.focus).map_err(Failure::usage),
+            None => level.where_asked(query).map_err(Failure::usage),
         }
     }
 }

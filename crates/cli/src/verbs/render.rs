@@ -25,6 +25,8 @@ use crate::session::Session;
 use crate::view::still;
 
 /// Render a picture of a mesh
+///
+/// Nodes are where the file has them; skins, morph targets and animations are not applied.
 #[derive(Args)]
 pub struct Render {
     /// Mesh to read, or -

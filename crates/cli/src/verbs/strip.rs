@@ -15,7 +15,7 @@ use meshlod::mesh::{Connectivity, VertexId};
 use meshlod::strip::{
     self, Difference, Filter, MergeTree, SkipStrip, StripOptions, StripStatistics, Strips,
 };
-use meshlod::{Options, SimplifyError};
+use meshlod::{Options, Scene, SimplifyError};
 use serde_json::{Value, json};
 
 use crate::answer::{Answer, Outcome};
@@ -26,6 +26,7 @@ use crate::files;
 use crate::fuse;
 use crate::kept_error::KeptError;
 use crate::model_query::QueryArgs;
+use crate::model_scene;
 use crate::numbers;
 use crate::parse::{self, LevelSize};
 use crate::query_args::{self, ErrorLimit};
@@ -76,6 +77,9 @@ pub struct Strip {
     reading: ReadArgs,
 }
 
+/// Multiple of the faces of meshes from which on a scene that shows them is warned of.
+const MANY_COPIES: usize = 2;
+
 /// Strips of a level with their statistics.
 struct StrippedLevel {
     size: LevelSize,
@@ -115,6 +119,7 @@ impl Strip {
         } else {
             self.constraints.read_fused(&self.input, &self.reading, session)?
         };
+        self.warn_of_copies(&read.0, session);
         let output = self.out.as_deref().map(|out| StripOutput::new(out, &read.0));
         let place = (&*self.input, &self.reading);
         let input = self.constraints.flatten(read, place, Options::default(), session)?;
@@ -158,6 +163,25 @@ impl Strip {
             false => Outcome::Missed.when(session.strict && missed),
         };
         Ok(Answer { outcome, ..Answer::new(json, text) })
+    }
+
+    /// Warns of meshes that several nodes show, since each of these gets strips of its own.
+    fn warn_of_copies(&self, scene: &Scene, session: &Session) {
+        let mut is_shown = vec![false; scene.meshes.len()];
+        scene.instances().iter().for_each(|instance| is_shown[instance.mesh] = true);
+        let own = scene.meshes.iter().zip(is_shown).filter(|(_, is_shown)| *is_shown);
+        let own: usize = own.map(|(mesh, _)| mesh.mesh.faces.len()).sum();
+        let shown = model_scene::shown_faces(scene);
+        if own > 0 && shown >= MANY_COPIES * own {
+            let reason = format_args!(
+                "its nodes show {} of meshes with {}: every copy is stripped and written by itself, \
+                 which takes {} times the time and bytes; strip the meshes alone to share them",
+                numbers::faces(shown),
+                numbers::faces(own),
+                shown / own
+            );
+            session.warn(Failure::at(&self.input, reason));
+        }
     }
 
     /// Records the contractions down to the coarsest level, and strips the whole mesh for a filter.

@@ -158,9 +158,57 @@ fn instances_are_stored_once_and_shown_by_all() {
     let measured = run.json(&["measure", "b.glb", "b.obj", "--samples", "2000"]);
     let far = measured["max"].as_f64().unwrap();
     assert!(far < 1e-5, "{far}");
-    let seen = ["--error", "1px", "--camera", "eye=9,2,9 look=0,1,0 fov=40 640x480"];
-    let told = run.run(&[&["extract", "a.mlod", "c.glb"], &seen[..]].concat());
-    assert!(told.code == 0 && told.err.contains("largest instance"), "{told:?}");
+}
+
+/// Writes a scene that shows a sphere at these places along z.
+fn spheres(run: &Run, name: &str, places: &[f64]) {
+    let mut scene = Scene::from_mesh("sphere", meshlod::samples::sphere(6000));
+    let node = scene.nodes[0].clone();
+    let place = |&z: &f64| {
+        let mut node = node.clone();
+        node.transform[3][2] = z;
+        node
+    };
+    scene.nodes = places.iter().map(place).collect();
+    scene.roots = (0..places.len()).collect();
+    write(run, name, &meshlod::io::gltf::write_glb(&scene, &[]).unwrap());
+}
+
+#[test]
+fn cameras_and_regions_count_for_every_instance() {
+    let run = Run::new();
+    let camera = ["--error", "1px", "--camera", "eye=0,0,4 look=0,0,0 fov=45 1920x1080"];
+    let only = ["--error", "0.01%", "--focus", "sphere=0,0,0,1.5", "--only"];
+    let point = ["--error", "0.01%", "--focus", "point=0,0,2", "--only"];
+    for query in [&camera[..], &only[..], &point[..]] {
+        let faces = |places: &[f64]| {
+            spheres(&run, "in.glb", places);
+            run.json(&["build", "in.glb", "a.mlod", "--lossless"]);
+            let found = extract(&run, "a.mlod", "b.glb", query);
+            assert_ne!(found["error"]["kept"], false, "{found}");
+            number(&found["faces"])
+        };
+        let [alone, near, far] = [&[0.0][..], &[0.0, -1000.0], &[-1000.0, 0.0]].map(faces);
+        assert!(alone == near && alone == far && alone > 0, "{query:?}: {alone} {near} {far}");
+    }
+}
+
+#[test]
+fn nodes_of_meshes_that_are_cut_away_show_nothing() {
+    let run = Run::new();
+    let mut scene = Scene::from_mesh("near", meshlod::samples::sphere(300));
+    scene.nodes.push(scene.nodes[0].clone());
+    scene.meshes.push(scene.meshes[0].clone());
+    scene.nodes[1].mesh = Some(1);
+    scene.nodes[1].transform[3][0] = 9.0;
+    scene.roots.push(1);
+    write(&run, "in.glb", &meshlod::io::gltf::write_glb(&scene, &[]).unwrap());
+    run.json(&["build", "in.glb", "a.mlod"]);
+    let only = ["--error", "0", "--focus", "sphere=0,0,0,1.2", "--only"];
+    let found = extract(&run, "a.mlod", "b.glb", &only);
+    let nodes = &document(&run.path("b.glb"))["nodes"];
+    assert!(nodes[0]["mesh"] == 0 && nodes[1].get("mesh").is_none(), "{nodes}");
+    assert_eq!(run.json(&["info", "b.glb"])["faces"], found["faces"]);
 }
 
 #[test]
@@ -189,6 +237,21 @@ fn errors_are_measured_over_the_poses_of_animations() {
     let poses = serde_json::json!({ "measured": 6, "animations": 1 });
     assert_eq!(run.json(&["build", "strip.glb", "a.mlod"])["poses"], poses);
     assert_eq!(run.json(&["check", "a.mlod"])["poses"], poses);
+    let few = extract(&run, "a.mlod", "few.glb", &["--faces", "30"]);
+    let stored = few["error"]["poses"]["error"].as_f64().unwrap();
+    let apart = run.json(&["measure", "strip.glb", "few.glb", "--poses", "32"]);
+    let far = apart["max"].as_f64().unwrap();
+    assert!(stored >= 0.5 * far && stored <= 4.0 * far + 1e-3, "{stored}, measured {far}");
+    let told = run.run(&["extract", "a.mlod", "few.glb", "--faces", "30"]);
+    assert!(told.text().contains("in the pose of the file, measured"), "{told:?}");
+    assert!(told.text().contains("over 6 poses of 1 animation"), "{told:?}");
+    // Without animations, the pose of its nodes counts.
+    let mut still = strip.clone();
+    let at = still.windows(12).position(|bytes| bytes == b"\"animations\"").unwrap();
+    still[at + 1] = b'x';
+    write(&run, "still.glb", &still);
+    let poses = serde_json::json!({ "measured": 1, "animations": 0 });
+    assert_eq!(run.json(&["build", "still.glb", "s.mlod"])["poses"], poses);
     for kind in ["--estimates", "--bounds"] {
         let built = run.json(&["build", "strip.glb", "b.mlod", kind]);
         assert!(built["poses"].is_null(), "{kind}: {built}");

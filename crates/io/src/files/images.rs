@@ -54,6 +54,7 @@ pub(super) fn use_own_names(path: &Path, images: &mut [Image]) {
         let last = || Path::new(&image.name).file_name().map(PathBuf::from);
         let bare = || bare_name(&image.name).map(PathBuf::from).or_else(last);
         let Some(file) = inner.clone().or_else(bare) else { continue };
+        let file = if is_beside(path, image) { file } else { shortened(file) };
         let is_free = |name: &PathBuf| match taken.get(name) {
             Some(&other) => images[other].bytes == image.bytes,
             None => {
@@ -71,6 +72,23 @@ pub(super) fn use_own_names(path: &Path, images: &mut [Image]) {
     }
 }
 
+/// Longest name of a file, in bytes, which leaves room for a number and for what is added while it is
+/// written: most file systems allow 255.
+const MOST_NAME: usize = 180;
+
+/// Cuts off the end of a stem that makes a file name too long.
+fn shortened(file: PathBuf) -> PathBuf {
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    if name.len() <= MOST_NAME {
+        return file;
+    }
+    let dot = name.rfind('.').filter(|&dot| dot > 0 && name.len() - dot <= MOST_NAME / 2);
+    let (stem, suffix) = name.split_at(dot.unwrap_or(name.len()));
+    let most = MOST_NAME - suffix.len();
+    let end = (0..=most).rev().find(|&end| stem.is_char_boundary(end)).unwrap_or(0);
+    file.with_file_name(format!("{}{suffix}", &stem[..end]))
+}
+
 /// Adds a number to the stem of a file name, as in `wood-2.png`.
 fn with_number(file: &Path, number: u32) -> PathBuf {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy();
@@ -83,4 +101,20 @@ fn with_number(file: &Path, number: u32) -> PathBuf {
 fn is_beside(path: &Path, image: &Image) -> bool {
     let found = Beside::of(path, Format::Obj).find(&image.name);
     found.is_some_and(|file| fs::read(file).is_ok_and(|found| found == image.bytes))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_names_keep_their_suffix() {
+        let short = |name: &str| shortened(name.into()).to_string_lossy().into_owned();
+        assert_eq!(short("maps/wood.png"), "maps/wood.png");
+        let long = short(&format!("maps/{}.png", "é".repeat(150)));
+        assert!(long.len() <= MOST_NAME + 5 && long.starts_with("maps/éé"), "{long}");
+        assert!(long.ends_with("é.png"), "{long}");
+        assert_eq!(short(&"a".repeat(300)).len(), MOST_NAME);
+        assert_eq!(short(&format!("a.{}", "b".repeat(300))).len(), MOST_NAME);
+    }
 }

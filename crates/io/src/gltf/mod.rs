@@ -9,6 +9,7 @@ mod container;
 mod decompress;
 mod dequantize_nodes;
 mod dequantize_skins;
+mod detached;
 mod document;
 mod draco;
 #[cfg(feature = "draco")]

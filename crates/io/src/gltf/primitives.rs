@@ -33,7 +33,7 @@ impl<'a> Replacer<'a> {
     ///
     /// Primitives keep everything but their arrays. Each gets the attributes that it had, and those
     /// that no primitive had. A primitive left without faces is dropped; a mesh left without faces
-    /// keeps one degenerate primitive. Positions are quantized to the grid, if there is one.
+    /// keeps one degenerate primitive, and true comes back. Positions are quantized to the grid, if there is one.
     ///
     /// # Errors
     /// If the mesh is invalid or a face's label is not a triangle primitive; also those of
@@ -43,7 +43,7 @@ impl<'a> Replacer<'a> {
         json: &mut Value,
         mesh: &Mesh,
         grid: Option<&QuantizationGrid>,
-    ) -> Result<(), Unsupported> {
+    ) -> Result<bool, Unsupported> {
         let numbers = Numbers { compression: self.compression, grid };
         let name = json.get("name").and_then(Value::as_str).unwrap_or_default().to_owned();
         let wrong = |reason: String| Unsupported::new(format!("mesh {name:?}"), reason);
@@ -62,11 +62,12 @@ impl<'a> Replacer<'a> {
                 new.extend(self.with_arrays(primitive, arrays, &names));
             }
         }
-        if new.is_empty() {
+        let is_empty = new.is_empty();
+        if is_empty {
             new = self.nothing(mesh, &old)?;
         }
         json["primitives"] = new.into();
-        Ok(())
+        Ok(is_empty)
     }
 
     /// Returns the layers that a primitive gets, with the names of their attributes: those that it

@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 
+use super::new_document::WEBP;
 use super::{document, lod};
 use crate::ParseError;
 use crate::image_file::mime_type;
@@ -49,6 +50,7 @@ pub(super) fn attach_images(
     buffers: &mut Vec<Vec<u8>>,
 ) -> Result<Vec<SkeletonImage>, ParseError> {
     let mut files = vec![SkeletonImage::default(); images.len()];
+    let mut replaced = vec![false; images.len()];
     for (index, SkeletonImage { mut bytes, is_preview }) in images.into_iter().enumerate() {
         let image = &mut json["images"][index];
         let kind = mime_type(&bytes);
@@ -60,6 +62,7 @@ pub(super) fn attach_images(
             }
             continue;
         }
+        replaced[index] = is_preview || bytes.is_empty();
         if bytes.is_empty() {
             // No valid document has an embedded image without bytes.
             bytes = NO_IMAGE.to_vec();
@@ -81,7 +84,52 @@ pub(super) fn attach_images(
             image.insert("mimeType".into(), kind.into());
         }
     }
+    refer_to_png(json, &replaced);
     Ok(files)
+}
+
+/// Extensions for textures whose image is neither PNG nor JPEG.
+const OTHER_FORMATS: [&str; 4] =
+    [WEBP, "EXT_texture_avif", "KHR_texture_basisu", "MSFT_texture_dds"];
+
+/// Makes textures refer to the marked images, which have become PNGs, without the extensions for other
+/// formats, and drops extensions of the document that no texture has any more.
+fn refer_to_png(json: &mut Value, replaced: &[bool]) {
+    if !replaced.contains(&true) {
+        return;
+    }
+    let textures = json.get_mut("textures").and_then(Value::as_array_mut);
+    for texture in textures.into_iter().flatten().filter_map(Value::as_object_mut) {
+        let Some(own) = texture.get_mut("extensions").and_then(Value::as_object_mut) else {
+            continue;
+        };
+        let mut found = None;
+        for name in OTHER_FORMATS {
+            let image = own.get(name).and_then(|other| other["source"].as_u64());
+            if image.is_some_and(|image| replaced.get(image as usize) == Some(&true)) {
+                own.shift_remove(name);
+                found = found.or(image);
+            }
+        }
+        if own.is_empty() {
+            texture.shift_remove("extensions");
+        }
+        if let Some(image) = found {
+            texture.insert("source".into(), image.into());
+        }
+    }
+    let is_left = |name: &str| {
+        let textures = json["textures"].as_array().into_iter().flatten();
+        textures.into_iter().any(|texture| texture["extensions"].get(name).is_some())
+    };
+    let unused: Vec<&str> = OTHER_FORMATS.into_iter().filter(|name| !is_left(name)).collect();
+    for key in ["extensionsUsed", "extensionsRequired"] {
+        let Some(listed) = json.get_mut(key).and_then(Value::as_array_mut) else { continue };
+        listed.retain(|name| !name.as_str().is_some_and(|name| unused.contains(&name)));
+        if let (true, Some(json)) = (listed.is_empty(), json.as_object_mut()) {
+            json.shift_remove(key);
+        }
+    }
 }
 
 /// Returns the name of a preview of an image file.

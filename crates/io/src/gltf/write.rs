@@ -7,6 +7,7 @@ use super::accessor_use::free_accessors_with;
 use super::animation::packing::PackedAnimations;
 use super::buffer_builder::BufferBuilder;
 use super::compress::{Compression, CompressionReport, Grids};
+use super::detached::detach_meshes;
 use super::document::Document;
 use super::instancing::with_copies_as_nodes;
 use super::local_space::localized;
@@ -39,7 +40,7 @@ pub struct GltfFiles {
 /// nodes, materials and images, in which each object of a mesh is a node and a mesh; meshes whose
 /// coordinates 32 bits would round are stored relative to a centre, from which their nodes move them
 /// back. A mesh without faces keeps one degenerate triangle, as glTF
-/// does not allow empty meshes.
+/// does not allow empty meshes, and no node shows it unless there are levels.
 ///
 /// With levels, every node with a mesh is named `…_LOD0` and linked by the extension `MSFT_lod` to
 /// nodes `…_LOD1`, `…_LOD2` and so on, and its `extras.MSFT_screencoverage` holds the coverage at
@@ -235,12 +236,17 @@ impl Output {
             }
             animations.enter(&mut json, &mut replacer.builder);
         }
+        let mut gone = Vec::new();
         for (index, mesh) in scene.meshes.iter().enumerate().filter(|&(index, _)| changed[index]) {
             let mut new = templates[index].clone();
-            replacer.replace(&mut new, &mesh.mesh, grids[index].as_ref())?;
+            if replacer.replace(&mut new, &mesh.mesh, grids[index].as_ref())? {
+                gone.push(index);
+            }
             json["meshes"][index] = new;
         }
-        if !levels.levels.is_empty() {
+        if levels.levels.is_empty() {
+            detach_meshes(&mut json, &gone);
+        } else {
             lod::add(&mut json, &templates, &grids, levels, &mut replacer)?;
         }
         let report = replacer.report(kept);

@@ -9,6 +9,7 @@
 mod counts;
 mod head;
 mod image_versions;
+mod instance_query;
 mod layout;
 mod limits;
 mod parts;
@@ -25,6 +26,7 @@ mod tests;
 mod weights;
 
 pub use counts::SceneCounts;
+pub use instance_query::SceneQueryError;
 pub use layout::{LevelInstance, SceneLayout};
 pub use limits::model_limits;
 pub use place::{PackedScene, PlaceError, PlacedScene, place_scene};

@@ -136,7 +136,7 @@ impl PackedScene {
     }
 
     /// Chooses poses of the scene's animations, in which the errors of levels of its merged mesh can
-    /// be measured; `None` if it has no animations.
+    /// be measured; `None` if it has no animations, and its nodes bend no mesh.
     ///
     /// Cost: linear in the mesh, for each pose.
     pub fn poses(&self, mesh: &Mesh) -> Option<ScenePoses> {

@@ -67,7 +67,7 @@ fn placement(transforms: &[DMat4], middle: DVec3) -> Placement {
 
 /// Returns a bound of how much a transform stretches any vector. It is exact for rotations with one
 /// scale, and for axes scaled apart.
-fn stretch(transform: DMat4) -> f64 {
+pub(super) fn stretch(transform: DMat4) -> f64 {
     let linear = DMat3::from_mat4(transform);
     // The greatest sum of a row bounds the greatest eigenvalue.
     let squared = (linear.transpose() * linear).to_cols_array_2d();

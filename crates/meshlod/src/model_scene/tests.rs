@@ -54,7 +54,7 @@ fn moving(mesh: &mut Mesh) {
 
 /// A scene of three meshes: a torus with three primitives, two of one material; a sphere shown three
 /// times, once mirrored and once within another node; and a knot that nothing moves.
-fn scene() -> Scene {
+pub(super) fn scene() -> Scene {
     let mut torus = samples::torus(400);
     let of_face = (0..torus.faces.len()).map(|face| (face * 3 / torus.faces.len()) as u32);
     let names = ["a", "b", "a"].map(String::from).to_vec();
@@ -101,6 +101,11 @@ fn scene() -> Scene {
 fn as_gltf(scene: &Scene) -> Scene {
     let glb = gltf::write_glb(scene, &[]).unwrap();
     gltf::read(&glb, &mut |_| None, ReadOptions::default().weld).unwrap()
+}
+
+/// Returns a file of a glTF scene that keeps its vertices.
+pub(super) fn lossless_file(scene: Scene) -> Vec<u8> {
+    file(as_gltf(&scene), true)
 }
 
 /// Returns a file of a scene, in chunks of 40 updates.

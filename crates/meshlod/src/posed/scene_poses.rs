@@ -58,7 +58,7 @@ const FAR: f64 = 1e6;
 
 impl ScenePoses {
     /// Chooses poses of a scene, of whose meshes the levels are made of `mesh`; `None` if it has no
-    /// animations.
+    /// animations, and its nodes bend no mesh.
     ///
     /// Cost: linear in the mesh, for each pose.
     pub(crate) fn new(scene: &Scene, meshes: &[Option<PosedMesh>], mesh: &Mesh) -> Option<Self> {
@@ -85,6 +85,9 @@ impl ScenePoses {
         animations.dedup();
         for moment in std::iter::once(None).chain(moments.into_iter().map(Some)) {
             this.add(moment, variants, (&corners, layers));
+        }
+        if this.poses.is_empty() && this.notes.is_empty() && this.animator.animation_count() == 0 {
+            return None;
         }
         this.counts = PoseCounts {
             poses: this.poses.len() as u32,

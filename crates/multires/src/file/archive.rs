@@ -270,6 +270,18 @@ impl<S: Source> Archive<S> {
         Ok(Extract { level, chunks: chunks.len(), updates, bytes })
     }
 
+    /// Returns the error that the file has for one of its levels, in model units: the greatest of the
+    /// updates that are not applied in it. It is of the [kind](Self::error_kind) of all errors in the
+    /// file, and excludes rounding. Reads the whole file.
+    /// # Errors
+    /// A damaged file.
+    pub fn error_of(&self, level: &Level) -> Result<f64, FileError> {
+        let (model, _) = self.read()?;
+        let is_known = |&node: &u32| (node as usize) < model.node_count();
+        let nodes: Vec<u32> = level.nodes.iter().copied().filter(is_known).collect();
+        Ok(model.frame().model_length(model.greatest_error_below(&nodes)))
+    }
+
     /// Returns the point of the finest surface in the file that is closest to a point in model
     /// units; `None` if the surface is empty. Only chunks around the point are read.
     /// # Errors

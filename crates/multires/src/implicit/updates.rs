@@ -81,6 +81,12 @@ impl Implicit {
         made.map(|update| self.error(update)).min().unwrap_or(Length16::INFINITE)
     }
 
+    /// Returns the greatest error of the updates that split the given nodes; 0 if all are leaves.
+    pub(crate) fn greatest_error_below(&self, nodes: &[u32]) -> f64 {
+        let split = nodes.iter().filter_map(|&node| self.update_of(node));
+        split.map(|update| self.error(update).get()).fold(0.0, f64::max)
+    }
+
     /// Returns the stage of an update; `None` if stages are unknown.
     pub(crate) fn stage(&self, update: u32) -> Option<Stage> {
         self.stages.at(update as usize).and_then(|number| Stage::new(number as u32))

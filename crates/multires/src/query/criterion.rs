@@ -78,6 +78,8 @@ enum StoredTolerance<'f> {
         part: f64,
         frame: Frame,
     },
+    /// The least of several, each in its own region.
+    Each(Vec<Criterion<'f>>),
 }
 
 /// The part of a camera that determines how large an error appears.
@@ -88,7 +90,7 @@ pub(crate) struct Viewpoint {
     pub(crate) slope: f64,
 }
 
-/// Identity of a query, to recognize it when it comes again. Fields have none.
+/// Identity of a query, to recognize it when it comes again. Fields and several queries have none.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct QueryKey {
     region: Region,
@@ -100,13 +102,19 @@ impl<'f> Criterion<'f> {
     pub(crate) fn new(query: &Query<'f>, frame: &Frame) -> Result<Self, QueryError> {
         query.validate()?;
         let region = Region::new(&query.focus, frame);
-        let tolerance = match query.tolerance {
-            Tolerance::Uniform(most) => StoredTolerance::Uniform(frame.local_length(most)),
+        let tolerance = match &query.tolerance {
+            Tolerance::Uniform(most) => StoredTolerance::Uniform(frame.local_length(*most)),
             Tolerance::Pixels { camera, pixels } => StoredTolerance::Perspective(Viewpoint {
                 at: frame.local(camera.eye),
                 slope: pixels * camera.pixel(),
             }),
-            Tolerance::Field(field) => StoredTolerance::Field { field, part: 1.0, frame: *frame },
+            Tolerance::Field(field) => {
+                StoredTolerance::Field { field: *field, part: 1.0, frame: *frame }
+            }
+            Tolerance::Each(queries) => {
+                let each = queries.iter().map(|query| Self::new(query, frame));
+                StoredTolerance::Each(each.collect::<Result<_, _>>()?)
+            }
         };
         Ok(Self { region, tolerance })
     }
@@ -134,7 +142,13 @@ impl<'f> Criterion<'f> {
     }
 
     fn priority(&self, ball: &Ball) -> f32 {
-        if self.meets(ball) { times(ball.error, self.least(ball)) } else { 0.0 }
+        match &self.tolerance {
+            _ if !self.meets(ball) => 0.0,
+            StoredTolerance::Each(each) => {
+                each.iter().map(|one| one.priority(ball)).fold(0.0, f32::max)
+            }
+            _ => times(ball.error, self.least(ball)),
+        }
     }
 
     /// Returns the least tolerance within a ball.
@@ -147,6 +161,10 @@ impl<'f> Criterion<'f> {
                 let most = field(center, frame.model_length(ball.radius));
                 // An invalid tolerance counts as 0: `max` prefers the number over NaN.
                 frame.local_length(part * most.max(0.0))
+            }
+            StoredTolerance::Each(each) => {
+                let met = each.iter().filter(|one| one.meets(ball));
+                met.map(|one| one.least(ball)).fold(f64::INFINITY, f64::min)
             }
         }
     }
@@ -162,6 +180,7 @@ impl<'f> Criterion<'f> {
                 slope == 0.0 || slope * slope * squared(viewpoint.at) < error * error
             }
             StoredTolerance::Uniform(_) | StoredTolerance::Field { .. } => self.exceeds(&ball),
+            StoredTolerance::Each(each) => each.iter().any(|one| one.may_require_in(area)),
         };
         exceeds
             && self.meets(&ball)
@@ -180,7 +199,17 @@ impl<'f> Criterion<'f> {
             StoredTolerance::Uniform(most) => is_exceeded(*most, ball),
             StoredTolerance::Perspective(viewpoint) => viewpoint.exceeded_by(ball),
             StoredTolerance::Field { .. } => is_exceeded(self.least(ball), ball),
+            StoredTolerance::Each(each) => each.iter().any(|one| one.requires(ball)),
         }
+    }
+
+    /// Returns true if a triangle, in stored units, intersects the focus.
+    pub(crate) fn meets_triangle(&self, corners: [DVec3; 3]) -> bool {
+        self.region.meets_triangle(corners)
+            && match &self.tolerance {
+                StoredTolerance::Each(each) => each.iter().any(|one| one.meets_triangle(corners)),
+                _ => true,
+            }
     }
 
     #[inline]
@@ -194,16 +223,19 @@ impl<'f> Criterion<'f> {
             StoredTolerance::Uniform(most) => *most *= by,
             StoredTolerance::Perspective(viewpoint) => viewpoint.slope *= by,
             StoredTolerance::Field { part, .. } => *part *= by,
+            StoredTolerance::Each(each) => {
+                *each = std::mem::take(each).into_iter().map(|one| one.scaled(by)).collect();
+            }
         }
         self
     }
 
-    /// Returns the identity of the query, or `None` for a field.
+    /// Returns the identity of the query, or `None` for a field and for several queries.
     pub(crate) fn key(&self) -> Option<QueryKey> {
         let (uniform, viewpoint) = match self.tolerance {
             StoredTolerance::Uniform(most) => (Some(most), None),
             StoredTolerance::Perspective(viewpoint) => (None, Some(viewpoint)),
-            StoredTolerance::Field { .. } => return None,
+            StoredTolerance::Field { .. } | StoredTolerance::Each(_) => return None,
         };
         Some(QueryKey { region: self.region.clone(), uniform, viewpoint })
     }

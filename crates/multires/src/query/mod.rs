@@ -7,6 +7,7 @@ mod limits;
 mod region;
 
 use glam::DVec3;
+use meshlod_mesh::{Bounds, Frame};
 use thiserror::Error;
 
 pub(crate) use closest::closest_point;
@@ -75,6 +76,9 @@ pub enum Tolerance<'f> {
     /// It must not decrease from a ball to a ball inside it. Negative values and NaN count as 0,
     /// the finest level.
     Field(&'f dyn Fn([f64; 3], f64) -> f64),
+    /// The least tolerance of several queries, each in its own focus, as where a mesh is shown in
+    /// several places. What is in none of these is as coarse as possible.
+    Each(Vec<Query<'f>>),
 }
 
 /// A perspective camera.
@@ -133,13 +137,32 @@ pub enum QueryError {
     Blind(&'static str),
 }
 
-impl Tolerance<'_> {
+impl<'f> Tolerance<'f> {
     /// Returns true if the tolerance is 0 everywhere, which asks for the finest mesh.
     pub fn is_finest(&self) -> bool {
-        match *self {
-            Self::Uniform(most) => most == 0.0,
-            Self::Pixels { pixels, .. } => pixels == 0.0,
+        match self {
+            Self::Uniform(most) => *most == 0.0,
+            Self::Pixels { pixels, .. } => *pixels == 0.0,
             Self::Field(_) => false,
+            Self::Each(queries) => queries.iter().all(|query| query.tolerance.is_finest()),
+        }
+    }
+
+    /// Returns the tolerance multiplied by `part`. A field stays as it is.
+    pub fn scaled(&self, part: f64) -> Self {
+        match self {
+            Self::Uniform(most) => Self::Uniform(part * most),
+            Self::Pixels { camera, pixels } => {
+                Self::Pixels { camera: *camera, pixels: part * pixels }
+            }
+            Self::Field(field) => Self::Field(*field),
+            Self::Each(queries) => {
+                let scaled = |query: &Query<'f>| Query {
+                    focus: query.focus.clone(),
+                    tolerance: query.tolerance.scaled(part),
+                };
+                Self::Each(queries.iter().map(scaled).collect())
+            }
         }
     }
 }
@@ -175,11 +198,31 @@ impl Query<'_> {
                 length("the tolerance", *pixels)
             }
             Tolerance::Field(_) => Ok(()),
+            Tolerance::Each(queries) => queries.iter().try_for_each(Query::validate),
         }
+    }
+
+    /// Returns true if the query asks for something everywhere, and not only in some region.
+    pub fn is_everywhere(&self) -> bool {
+        let is_each = match &self.tolerance {
+            Tolerance::Each(queries) => queries.iter().any(Query::is_everywhere),
+            _ => true,
+        };
+        is_each && matches!(self.focus, Focus::Everything)
     }
 }
 
 impl Focus {
+    /// Returns false only if the focus misses the ball around a box, in model units.
+    ///
+    /// The focus must be valid.
+    pub fn may_meet(&self, bounds: &Bounds) -> bool {
+        let frame = Frame::of_diagonal(bounds);
+        let [min, max] = [bounds.min, bounds.max].map(|corner| frame.local(corner));
+        let (center, radius) = (0.5 * (min + max), 0.5 * min.distance(max));
+        Region::new(self, &frame).meets_ball(center, SLACK * radius)
+    }
+
     /// Checks that the focus is valid.
     pub(crate) fn validate(&self) -> Result<(), QueryError> {
         match self {
@@ -254,6 +297,7 @@ impl std::fmt::Debug for Tolerance<'_> {
                 f.debug_struct("Pixels").field("camera", camera).field("pixels", pixels).finish()
             }
             Self::Field(_) => f.write_str("Field"),
+            Self::Each(queries) => f.debug_tuple("Each").field(queries).finish(),
         }
     }
 }

@@ -54,10 +54,19 @@ impl Extracted {
         })
     }
 
-    pub fn to_text(&self, asked: &Request<'_>, [vertices, all]: [usize; 2]) -> String {
+    pub fn to_text(
+        &self,
+        asked: &Request<'_>,
+        [vertices, all]: [usize; 2],
+        shown: usize,
+    ) -> String {
+        let shown = match shown == all {
+            true => String::new(),
+            false => format!(", shown as {}", count(shown)),
+        };
         let [read, _, chunks] = self.chunks;
         format!(
-            "{}: {} vertices, {}\nread {read} of {chunks} chunk{}, {} bytes\n{}extract_seconds: {}\n",
+            "{}: {} vertices, {}{shown}\nread {read} of {chunks} chunk{}, {} bytes\n{}extract_seconds: {}\n",
             files::name(asked.output),
             count(vertices),
             faces(all),

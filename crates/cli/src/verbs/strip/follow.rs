@@ -54,9 +54,7 @@ impl Strip {
         for &error in &self.follow {
             session.progress.stage("following");
             let query = self.query.query_for(error, &file)?;
-            let (query, _) = file
-                .at_surface(&query, None)
-                .map_err(|error| model_file::failure(&self.input, error))?;
+            let (query, _) = model_scene::query(&self.input, (&file, &scene), &query, None)?;
             let start = Instant::now();
             cut.update(&query, &UpdateLimits::default()).map_err(Failure::usage)?;
             let changed = self.update(&model, &cut, &mut strips);

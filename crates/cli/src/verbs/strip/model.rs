@@ -49,20 +49,17 @@ impl Strip {
         self.query.check_target()?;
         let file = model_file::open(&self.input, session)?;
         let failed = |error: FileError| model_file::failure(&self.input, error);
-        let query = self.query.query(&file)?;
+        let model = model_scene::read(&self.input, &file, session)?;
+        let asked = self.query.query(&file)?;
         let most = self.query.target.faces;
-        let (query, _) = file.at_surface(&query, most).map_err(failed)?;
+        let (query, _) = model_scene::query(&self.input, (&file, &model), &asked, most)?;
         // The distance of the best mesh of some number of faces is a question for `extract`.
         let answer = self.query.answer(&file, &query, most.is_some(), session);
         let (taken, known) = answer.map_err(failed)?;
-        let mut error = self.query.kept_error(&file, &query, known);
+        let mut error = self.query.kept_error(&file, &asked, known);
         error.warning().into_iter().for_each(|text| session.warn(Failure::at(&self.input, text)));
         let found = taken.level.faces.len();
         let reached = self.query.reaches(&self.input, found, "stripped", session);
-        let model = model_scene::read(&self.input, &file, session)?;
-        if self.query.is_local() {
-            model_scene::warn_of_instances(&self.input, &model, session);
-        }
         let flat = model.flat_scene(files::stem(&self.input), taken.level.mesh());
         let scene = model_scene::restored(&self.input, model, flat, Format::Glb)?;
         if self.out.as_deref().is_some_and(output::holds_scene) {

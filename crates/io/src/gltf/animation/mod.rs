@@ -81,7 +81,7 @@ struct AnimatedChannel {
 }
 
 impl Animator {
-    /// Reads the animations and skins of a scene; `None` if it has no animations.
+    /// Reads the animations and skins of a scene; `None` if it has no glTF document.
     ///
     /// Supported: translations, rotations, scales and weights of morph targets, by steps, linear or
     /// by splines. Other channels, as of `KHR_animation_pointer`, are left out with a note, and an
@@ -92,11 +92,11 @@ impl Animator {
     /// [Kap20], Animations and appendix C.
     pub fn new(scene: &Scene) -> Option<Self> {
         let contents = &scene.source.as_ref()?.0;
-        let animations = contents.json.get("animations")?.as_array().filter(|a| !a.is_empty())?;
+        let animations = contents.json["animations"].as_array();
         let document = Document::new(&contents.json, &contents.buffers).ok()?;
         let mut this = Self::default();
         this.read_nodes(&document, scene);
-        for (number, animation) in animations.iter().enumerate() {
+        for (number, animation) in animations.into_iter().flatten().enumerate() {
             match this.clip(&document, number, animation) {
                 Ok(clip) if clip.channels.is_empty() => {}
                 Ok(clip) => this.clips.push(clip),

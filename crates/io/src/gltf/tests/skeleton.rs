@@ -173,6 +173,37 @@ fn previews_are_embedded_and_files_stay_files() {
 }
 
 #[test]
+fn textures_with_previews_need_no_extension() {
+    let (mut json, buffer) = square();
+    let webp = |source: u32| json!({ "EXT_texture_webp": { "source": source } });
+    json["images"] = json!([{ "uri": "a.webp" }, { "uri": "b.webp" }, { "uri": "c.png" }]);
+    json["textures"] = json!([
+        { "extensions": webp(0) }, { "extensions": webp(1), "source": 2 }, { "source": 2 }
+    ]);
+    json["extensionsUsed"] = json!(["EXT_texture_webp", "KHR_texture_transform"]);
+    json["extensionsRequired"] = json!(["EXT_texture_webp"]);
+    let scene = read_parts(&json, &buffer).unwrap();
+    let skeleton = Skeleton::of(&scene, vec![true]).unwrap();
+    let image = |is_preview| {
+        let bytes: &[u8] = if is_preview { b"\x89PNG" } else { b"RIFF\x04\0\0\0WEBPVP8L" };
+        SkeletonImage { bytes: bytes.to_vec(), is_preview }
+    };
+    let of = |previews: [bool; 3]| {
+        let scene = skeleton.clone().into_scene(previews.map(image).to_vec(), true).unwrap();
+        scene.source.as_ref().unwrap().0.json.clone()
+    };
+    let half = of([true, false, true]);
+    assert_eq!(half["textures"][0], json!({ "source": 0 }));
+    assert_eq!(half["textures"][1], json["textures"][1]);
+    assert_eq!(half["extensionsRequired"], json["extensionsRequired"]);
+    let none = of([true; 3]);
+    assert_eq!(none["textures"], json!([{ "source": 0 }, { "source": 1 }, { "source": 2 }]));
+    assert_eq!(none["extensionsUsed"], json!(["KHR_texture_transform"]));
+    assert!(none.get("extensionsRequired").is_none());
+    assert_eq!(of([false; 3])["textures"], json["textures"]);
+}
+
+#[test]
 fn scenes_of_other_formats_come_back() {
     let node = |mesh, children| Node { name: "n".into(), mesh, children, ..Node::default() };
     let mut nodes = vec![node(None, vec![1, 2]), node(Some(0), vec![]), node(Some(0), vec![])];
