@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use meshlod_mesh::FaceLayerKind;
+use meshlod_mesh::{FaceLayerKind, Mesh};
 
 use crate::{Format, Material, Note, Scene};
 
