@@ -1,5 +1,6 @@
 //! Texture coordinates and normals of an OBJ file, each distinct value with a number.
 
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, HashMap};
 use std::io;
 
@@ -67,10 +68,10 @@ impl UvNumbers {
         let mut last = 0;
         for face in 0..mesh.faces.len() {
             let set = numbers.set_of(mesh, face);
-            if !numbers.sets.contains_key(&set) {
+            if let Entry::Vacant(free) = numbers.sets.entry(set) {
                 let values = ValueNumbers::write(mesh, LayerKind::Uv(set), "vt", last, lines)?;
                 last = values.last;
-                numbers.sets.insert(set, values);
+                free.insert(values);
             }
         }
         Ok(numbers)
