@@ -21,8 +21,10 @@ pub fn write(
     writing: &WriteArgs,
     session: &Session,
 ) -> Result<(), Failure> {
-    let limits = scene.limits_of(check_output(path, session)?);
-    session.note(path, &remedied(scene, limits))?;
+    let format = check_output(path, session)?;
+    let mut notes = remedied(scene, scene.limits_of(format));
+    notes.extend(scene.precision_limits(format, writing.options().precision));
+    session.note(path, &notes)?;
     write_noted(path, scene, writing, session)
 }
 
@@ -56,6 +58,7 @@ pub fn write_chain(
         Note::merge(&mut notes, scene.limits_of(format));
         swap(scene, level);
     }
+    notes.extend(scene.precision_limits(format, writing.options().precision));
     session.note(first, &notes)?;
     write_noted(first, scene, writing, session)?;
     for (path, level) in &mut levels {
@@ -161,12 +164,11 @@ fn write_pipe(
     out: &mut impl Write,
 ) -> Result<(), Failure> {
     let precision = options.precision;
-    let flat = || scene.flatten();
     let written = match format {
         Format::Ply => ply::write_scene(scene, precision, out),
-        Format::Stl => stl::write(&flat(), out),
-        Format::Off => off::write(&flat(), precision, out),
-        Format::Smf => smf::write(&flat(), precision, out),
+        Format::Stl => stl::write(&scene.flatten(), out),
+        Format::Off => off::write_scene(scene, precision, out),
+        Format::Smf => smf::write_scene(scene, precision, out),
         Format::Obj => obj::write(scene, precision, out, &[]),
         Format::Glb | Format::Gltf => {
             let bytes = gltf::write_glb(scene, &[]);

@@ -15,7 +15,7 @@ use crate::gltf::{Levels, LodLayout};
 use crate::replace::replace;
 use crate::{
     Format, IoError, Note, ParseError, Precision, Scene, Unsupported, gltf, influences, normals,
-    obj, off, ply, smf, stl, weld,
+    obj, off, ply, remarks, smf, stl, weld,
 };
 
 mod beside;
@@ -117,6 +117,9 @@ fn parse(
         Format::Off => off::read_scene(bytes)?,
         Format::Smf => Scene::from_mesh("", smf::read(bytes)?),
     };
+    if matches!(format, Format::Obj | Format::Off | Format::Smf) {
+        scene.ply.remarks = remarks::of_text(bytes);
+    }
     // glTF was welded as it was read: its document depends on it.
     let meshes = if is_gltf { &mut [][..] } else { &mut scene.meshes };
     for mesh in meshes {
@@ -169,8 +172,8 @@ pub fn write(path: &Path, scene: &Scene, options: &WriteOptions) -> Result<(), I
         Format::Obj => write_obj(path, scene, precision),
         Format::Ply => write_ply(path, scene, precision),
         Format::Stl => write_one(path, |out| stl::write(&scene.shown_mesh(), out)),
-        Format::Off => write_one(path, |out| off::write(&scene.shown_mesh(), precision, out)),
-        Format::Smf => write_one(path, |out| smf::write(&scene.shown_mesh(), precision, out)),
+        Format::Off => write_one(path, |out| off::write_scene(scene, precision, out)),
+        Format::Smf => write_one(path, |out| smf::write_scene(scene, precision, out)),
     }
 }
 

@@ -5,8 +5,9 @@ use std::borrow::Cow;
 use glam::{DMat3, DMat4, DVec3};
 use meshlod_mesh::{Attributes, FaceLayer, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId};
 
-use crate::Scene;
 use crate::scene::IDENTITY;
+use crate::vertex_attributes::pad;
+use crate::{Scene, normals};
 
 /// One appearance of a mesh in a scene, with its transform to world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,8 +63,8 @@ impl Scene {
     /// Merges all meshes that the scene shows into a single mesh in world space.
     ///
     /// Normals are transformed by the inverse transpose and stay unit vectors; a mirroring node
-    /// flips winding and tangents. The layers are the union over all meshes, with zeros where a
-    /// mesh lacks one. Material label `i` is `Scene::materials[i]`; faces without a material share
+    /// flips winding and tangents. The layers are the union over all meshes. Where a mesh lacks one,
+    /// colours are white, normals those of the faces around, and other values 0. Material label `i` is `Scene::materials[i]`; faces without a material share
     /// one more label, named "". Objects are taken from the mesh, or else each node becomes one; a
     /// single node without a name gives no objects.
     ///
@@ -76,6 +77,9 @@ impl Scene {
         }
         let shown = || instances.iter().map(|instance| &self.meshes[instance.mesh].mesh);
         flat.attributes = self.flat_attributes(&instances, flat.positions.len());
+        if shown().any(|mesh| !has_normals(mesh)) {
+            normals::compute_missing(&mut flat);
+        }
         flat.materials = self.flat_materials(&instances);
         if instances.len() > 1
             || shown().any(|mesh| mesh.objects.is_some())
@@ -257,6 +261,10 @@ fn union_of_layers<'a>(meshes: impl Iterator<Item = &'a Mesh>) -> Vec<Layer> {
     union
 }
 
+fn has_normals(mesh: &Mesh) -> bool {
+    mesh.attributes.as_ref().is_some_and(|own| own.layer(LayerKind::Normal).is_some())
+}
+
 fn same_meaning(a: &Layer, b: &Layer) -> bool {
     a.kind == b.kind && (!a.kind.is_named() || (a.name == b.name && a.width == b.width))
 }
@@ -273,7 +281,7 @@ fn append_attributes(flat: &mut Attributes, mesh: &Mesh, instance: &MeshInstance
             own.corners.iter().for_each(|corners| push(corners.map(WedgeId::index)));
             own.wedge_count
         }
-        // Zero values need wedges too, and no two vertices share a wedge.
+        // Values that the mesh lacks need wedges too, and no two vertices share a wedge.
         None => {
             mesh.faces.iter().for_each(|face| push(face.map(VertexId::index)));
             mesh.positions.len()
@@ -290,7 +298,7 @@ fn append_attributes(flat: &mut Attributes, mesh: &Mesh, instance: &MeshInstance
                 moved.turn(layer.kind, layer.width, &mut layer.values[from..]);
             }
         }
-        layer.values.resize(flat.wedge_count * layer.width, 0.0);
+        pad(layer, flat.wedge_count);
     }
 }
 
@@ -416,13 +424,13 @@ mod tests {
     }
 
     #[test]
-    fn meshes_without_a_layer_get_zeros_and_every_face_its_material_and_object() {
+    fn meshes_without_a_layer_get_neutral_values_and_every_face_its_material_and_object() {
         let bare = Mesh { attributes: None, ..triangle([0.0; 3]) };
         let child = |name: &str, mesh| Node { name: name.into(), mesh, ..Node::default() };
         let scene = Scene {
             meshes: vec![
                 SceneMesh { mesh: bare, materials: vec![Some(1)], ..SceneMesh::default() },
-                SceneMesh { mesh: triangle([0.0, 0.0, 1.0]), ..SceneMesh::default() },
+                SceneMesh { mesh: triangle([0.0, 1.0, 0.0]), ..SceneMesh::default() },
             ],
             nodes: vec![
                 Node { children: vec![1, 2, 3], ..Node::default() },
@@ -448,8 +456,10 @@ mod tests {
         assert_eq!(materials.names, ["red", "blue", ""]);
         let attributes = flat.attributes.as_ref().unwrap();
         let normals = attributes.layer(LayerKind::Normal).unwrap();
-        assert_eq!(normals.of(attributes.corners[0][0]), [0.0; 3]);
-        assert_eq!(normals.of(attributes.corners[1][0]), [0.0, 0.0, 1.0]);
+        assert_eq!(normals.of(attributes.corners[0][0]), [0.0, 0.0, 1.0], "that of the face");
+        assert_eq!(normals.of(attributes.corners[1][0]), [0.0, 1.0, 0.0], "that of the mesh");
+        let tangents = attributes.layer(LayerKind::Tangent).unwrap();
+        assert_eq!(tangents.of(attributes.corners[0][0]), [1.0, 0.0, 0.0, 1.0]);
     }
 
     #[test]

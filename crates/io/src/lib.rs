@@ -36,6 +36,7 @@ pub mod off;
 pub mod ply;
 mod polygon;
 mod precision;
+mod remarks;
 mod replace;
 mod scene;
 pub mod smf;

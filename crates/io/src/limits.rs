@@ -17,18 +17,23 @@ impl Scene {
         let mut notes = match format {
             Format::Gltf | Format::Glb if self.source.is_some() => Vec::new(),
             Format::Gltf | Format::Glb => {
-                [crate::gltf::new_document_limits(self), self.ply_limits(), self.obj_limits()]
-                    .concat()
+                let own = vec![self.unused_vertices(), self.face_scalar_limits()];
+                [crate::gltf::new_document_limits(self), own, self.obj_limits()].concat()
             }
             Format::Obj => {
-                let parts = [self.graph_limits(), self.mtl_limits(), self.ply_limits()].concat();
+                let scalars = vec![self.face_scalar_limits()];
+                let parts = [self.graph_limits(), self.mtl_limits(), scalars].concat();
                 [parts, self.layer_limits(format)].concat()
             }
             Format::Ply => {
                 [self.graph_limits(), self.obj_limits(), crate::ply::limits(self)].concat()
             }
             Format::Stl | Format::Off | Format::Smf => {
-                let parts = [self.graph_limits(), self.single_mesh_limits(), self.ply_limits()];
+                let own = match format {
+                    Format::Stl => [self.ply_limits(), vec![self.unused_vertices()]].concat(),
+                    _ => vec![self.face_scalar_limits()],
+                };
+                let parts = [self.graph_limits(), self.single_mesh_limits(), own];
                 [parts.concat(), self.obj_limits(), self.layer_limits(format)].concat()
             }
         };
@@ -67,7 +72,14 @@ impl Scene {
         vec![note.named(names)]
     }
 
-    /// Lists what formats other than PLY lack of a scene that was read from there.
+    /// Counts the vertices that no face uses, which formats of faces alone lack.
+    fn unused_vertices(&self) -> Note {
+        let unused = |mesh: &Mesh| mesh.used_vertices().iter().filter(|&&used| !used).count();
+        let count = self.meshes.iter().map(|mesh| unused(&mesh.mesh)).sum();
+        Note::left_out(count, "unused vertex", "unused vertices")
+    }
+
+    /// Lists what formats without comments lack of a scene that was read from PLY.
     pub fn ply_limits(&self) -> Vec<Note> {
         let words = |word: &'static str| {
             self.ply.remarks.iter().filter(move |line| line.starts_with(word)).count()
@@ -266,6 +278,16 @@ mod tests {
         assert_eq!(limits(&scene, Format::Off), [&parts[..], &[seam]].concat());
         let layers = "2 vertex attributes (normals, texture coordinates)";
         assert_eq!(limits(&scene, Format::Stl), [&parts[..], &[layers]].concat());
+    }
+
+    #[test]
+    fn unused_vertices_are_noted_where_they_go() {
+        let scene = obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nv 6 6 6\nf 1 2 3\n");
+        for (_, format) in Format::ALL {
+            let goes = matches!(format, Format::Gltf | Format::Glb | Format::Stl);
+            let expected: &[&str] = if goes { &["2 unused vertices"] } else { &[] };
+            assert_eq!(limits(&scene, format), expected, "{format:?}");
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Normals made unit as files are read: errors at normals, and pictures, count on their length.
 
 use glam::DVec3;
-use meshlod_mesh::{LayerKind, Mesh, WedgeId};
+use meshlod_mesh::{Layer, LayerKind, Mesh, WedgeId};
 
 use crate::{Note, Scene};
 
@@ -37,6 +37,20 @@ pub(crate) fn make_unit(scene: &mut Scene) {
     scene.notes.extend(notes.into_iter().filter(|note| note.count > 0));
 }
 
+/// Computes the normals of length 0 from the faces around them.
+///
+/// Cost: linear.
+pub(crate) fn compute_missing(mesh: &mut Mesh) {
+    let Some(mut attributes) = mesh.attributes.take() else { return };
+    for layer in attributes.layers.iter_mut().filter(|layer| layer.kind == LayerKind::Normal) {
+        let normals = layer.values.as_chunks::<3>().0.iter().enumerate();
+        let missing: Vec<usize> =
+            normals.filter(|(_, normal)| **normal == [0.0; 3]).map(|(wedge, _)| wedge).collect();
+        put_face_normals(mesh, &attributes.corners, &missing, layer);
+    }
+    mesh.attributes = Some(attributes);
+}
+
 #[derive(Default)]
 struct Counts {
     scaled: usize,
@@ -68,8 +82,7 @@ fn make_mesh_unit(mesh: &mut Mesh, rounding: f64, bare: &[bool]) -> Counts {
             continue;
         }
         let is_of_file = wedges_of_file(mesh, &attributes.corners, attributes.wedge_count, bare);
-        for (wedge, normal) in face_normals(mesh, &attributes.corners, &missing) {
-            layer.of_mut(wedge).copy_from_slice(&normal.to_array().map(|x| x as f32));
+        for wedge in put_face_normals(mesh, &attributes.corners, &missing, layer) {
             counts.computed += usize::from(is_of_file[wedge.index()]);
         }
     }
@@ -92,6 +105,21 @@ fn wedges_of_file(
         }
     }
     marks
+}
+
+/// Gives those of these wedges that are in use the normals of the faces around them, and returns
+/// them.
+fn put_face_normals(
+    mesh: &Mesh,
+    corners: &[[WedgeId; 3]],
+    missing: &[usize],
+    layer: &mut Layer,
+) -> Vec<WedgeId> {
+    let computed = face_normals(mesh, corners, missing).into_iter().map(|(wedge, normal)| {
+        layer.of_mut(wedge).copy_from_slice(&normal.to_array().map(|x| x as f32));
+        wedge
+    });
+    computed.collect()
 }
 
 /// Returns the mean normal of the faces at each of these wedges that is in use, weighted by area:

@@ -4,7 +4,7 @@ use glam::DVec3;
 use meshlod_mesh::Mesh;
 use rustc_hash::FxHashMap;
 
-use crate::{Format, Scene, gltf};
+use crate::{Format, Note, Scene, gltf};
 
 /// Precision of the floating-point coordinates in a written file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -85,14 +85,19 @@ impl Scene {
         rounding(&local)
     }
 
+    /// Notes the vertices that a precision that was asked for moves in a format that could keep them,
+    /// if that changes the shape.
+    pub fn precision_limits(&self, format: Format, precision: Precision) -> Option<Note> {
+        let has_both = matches!(format, Format::Ply | Format::Obj | Format::Off | Format::Smf);
+        let (most, count) = changes(&self.shown_mesh()).filter(|_| has_both)?;
+        let why = format!(" by up to {most:.1e}");
+        let note = Note::changed(count, "vertex rounded", "vertices rounded").detailed(&why);
+        (precision == Precision::F32).then(|| note.remedied("--precision auto or f64 keeps them"))
+    }
+
     /// Returns the largest change of a coordinate in a format that has 32 bits alone, if those
     /// change the shape, and the number of vertices it moves.
     pub(crate) fn unavoidable_rounding(&self, format: Format) -> Option<(f64, usize)> {
-        let changes = |mesh: &Mesh| {
-            let is_inexact = |p: &&[f64; 3]| p.iter().any(|&x| f64::from(x as f32) != x);
-            let count = mesh.positions.iter().filter(is_inexact).count();
-            (!fits_f32(mesh)).then(|| (rounding(mesh), count))
-        };
         let all: Vec<(f64, usize)> = match format {
             Format::Stl => changes(&self.shown_mesh()).into_iter().collect(),
             Format::Gltf | Format::Glb => {
@@ -110,6 +115,14 @@ impl Scene {
         };
         all.into_iter().reduce(|(a, n), (b, m)| (a.max(b), n + m))
     }
+}
+
+/// Returns the largest change of a coordinate of a mesh in 32 bits, if those change its shape, and
+/// the number of vertices that they move.
+fn changes(mesh: &Mesh) -> Option<(f64, usize)> {
+    let is_inexact = |p: &&[f64; 3]| p.iter().any(|&x| f64::from(x as f32) != x);
+    let count = mesh.positions.iter().filter(is_inexact).count();
+    (!fits_f32(mesh)).then(|| (rounding(mesh), count))
 }
 
 /// Returns the largest change of a coordinate of a mesh in 32 bits, in model units; infinite for a
@@ -175,6 +188,19 @@ mod tests {
         // Exact in 32 bits.
         assert_eq!(Precision::Auto.of([&at(grid(3), 0.5, utm)]), Precision::F32);
         assert_eq!(Precision::F32.of([&at(grid(3), 0.01, utm)]), Precision::F32);
+    }
+
+    #[test]
+    fn rounding_that_was_asked_for_is_noted_where_it_changes_the_shape() {
+        let note = |scale, format, precision| {
+            let scene = Scene::from_mesh("", at(grid(3), scale, [500_000.0, 5_400_000.0, 100.0]));
+            scene.precision_limits(format, precision).map(|note| note.to_string())
+        };
+        let text = note(0.013, Format::Ply, Precision::F32).unwrap();
+        assert!(text.contains("vertices rounded by up to 3.9e-2"), "{text}");
+        assert_eq!(note(0.013, Format::Ply, Precision::Auto), None);
+        assert_eq!(note(0.013, Format::Glb, Precision::F32), None);
+        assert_eq!(note(0.5, Format::Ply, Precision::F32), None);
     }
 
     #[test]

@@ -24,6 +24,19 @@ pub(crate) fn named_layer(kind: LayerKind, width: usize, values: Vec<f32>) -> La
     Layer { kind, name: name.to_owned(), width, values }
 }
 
+/// Extends a layer to this many wedges, with the values of a mesh that has no such layer: white and
+/// opaque for colours, a unit vector for tangents, else 0.
+pub(crate) fn pad(layer: &mut Layer, wedges: usize) {
+    let value: Vec<f32> = match layer.kind {
+        LayerKind::Color(_) => vec![1.0; layer.width],
+        LayerKind::Tangent => vec![1.0, 0.0, 0.0, 1.0],
+        _ => vec![0.0; layer.width],
+    };
+    while layer.values.len() < wedges * layer.width {
+        layer.values.extend_from_slice(&value);
+    }
+}
+
 /// Scales colours to [0, 1]: if any component exceeds 1, all are taken to be out of 255.
 pub(crate) fn normalize_colors(colors: &mut [f32]) {
     if colors.iter().any(|&c| c > 1.0) {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use meshlod::Scene;
+use meshlod::{Format, Mesh, Scene};
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
@@ -35,21 +35,27 @@ impl Convert {
         files::check_output(&self.output, session)?;
         let scene = files::read(&self.input, &self.reading, session)?;
         scene_files::write(&self.output, &scene, &self.writing, session)?;
-        let (json, text) = (self.json(&scene), self.text(&scene));
+        let keeps_unused = match files::check_output(&self.output, session)? {
+            Format::Stl => false,
+            Format::Gltf | Format::Glb => scene.source.is_some(),
+            _ => true,
+        };
+        let vertices = vertices(&scene, keeps_unused);
+        let (json, text) = (self.json(&scene, vertices), self.text(&scene, vertices));
         Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
     }
 
-    fn json(&self, scene: &Scene) -> Value {
+    fn json(&self, scene: &Scene, vertices: usize) -> Value {
         json!({
             "file": files::name(&self.output),
             "meshes": scene.meshes.len(),
-            "vertices": vertices(scene),
+            "vertices": vertices,
             "faces": of_meshes(scene),
             "shown_faces": shown_faces(scene),
         })
     }
 
-    fn text(&self, scene: &Scene) -> String {
+    fn text(&self, scene: &Scene, vertices: usize) -> String {
         let meshes = scene.meshes.len();
         let shown = match shown_faces(scene) {
             shown if shown == of_meshes(scene) => String::new(),
@@ -59,14 +65,17 @@ impl Convert {
             "{}: {meshes} mesh{}, {} vertices, {}{shown}\n",
             files::name(&self.output),
             if meshes == 1 { "" } else { "es" },
-            count(vertices(scene)),
+            count(vertices),
             faces(of_meshes(scene)),
         )
     }
 }
 
-fn vertices(scene: &Scene) -> usize {
-    scene.meshes.iter().map(|mesh| mesh.mesh.positions.len()).sum()
+/// Counts the vertices that are written.
+fn vertices(scene: &Scene, keeps_unused: bool) -> usize {
+    let is_written = |&&is_used: &&bool| is_used || keeps_unused;
+    let written = |mesh: &Mesh| mesh.used_vertices().iter().filter(is_written).count();
+    scene.meshes.iter().map(|mesh| written(&mesh.mesh)).sum()
 }
 
 /// Returns the number of faces of all meshes, each counted once.

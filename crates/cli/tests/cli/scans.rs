@@ -65,3 +65,13 @@ fn stl_warns_of_the_step_of_its_coordinates() {
     let done = run.run(&["simplify", "in.obj", "out.stl", "--ratio", "100%"]);
     assert!(done.err.contains("rounded by up to 2."), "{}", done.err);
 }
+
+#[test]
+fn rounding_that_was_asked_for_is_noted() {
+    let run = Run::new();
+    survey(&run);
+    let done = run.run(&["convert", "in.obj", "out.ply", "--precision", "f32"]);
+    assert!(done.err.contains("rounded by up to 2."), "{}", done.err);
+    let done = run.run(&["convert", "in.obj", "out.ply"]);
+    assert!(done.err.is_empty(), "{}", done.err);
+}

@@ -43,15 +43,21 @@ impl Values {
 impl Document<'_> {
     /// Reads an accessor of any type as floats, all of them finite.
     pub fn floats(&self, index: usize) -> Result<Values, ParseError> {
-        let PackedElements { accessor, width, bytes } = self.packed(index)?;
-        let values = numbers(&bytes, accessor.component_type, accessor.normalized);
-        match values.iter().position(|x| !x.is_finite()) {
-            None => Ok(Values { width, values }),
+        let read = self.stored_floats(index)?;
+        match read.values.iter().position(|x| !x.is_finite()) {
+            None => Ok(read),
             Some(i) => {
-                let reason = format!("element {} is not finite: {}", i / width, values[i]);
-                Err(wrong(index, reason))
+                let (element, value) = (i / read.width, read.values[i]);
+                Err(wrong(index, format!("element {element} is not finite: {value}")))
             }
         }
+    }
+
+    /// Reads an accessor of any type as floats, which need not be finite.
+    pub fn stored_floats(&self, index: usize) -> Result<Values, ParseError> {
+        let PackedElements { accessor, width, bytes } = self.packed(index)?;
+        let values = numbers(&bytes, accessor.component_type, accessor.normalized);
+        Ok(Values { width, values })
     }
 
     /// Reads an accessor of any type as the numbers that are stored, with the number of

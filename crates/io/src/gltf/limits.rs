@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::new_document::holds_image;
+use super::unmapped::UnmappedMaterials;
 use crate::obj::mtl::untold;
 use crate::{Material, Note, Scene, Shading};
 
@@ -27,6 +28,7 @@ pub(crate) fn new_document_limits(scene: &Scene) -> Vec<Note> {
         apart,
         separate,
         opacity,
+        UnmappedMaterials::of(scene).note(scene),
         Note::left_out(
             names.len(),
             "image that is no PNG, JPEG or WebP",

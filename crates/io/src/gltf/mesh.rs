@@ -6,14 +6,19 @@ use rustc_hash::FxHashMap;
 use super::accessor::Values;
 use super::document::Document;
 use super::schema::Primitive;
+use crate::vertex_attributes::pad;
 use crate::{ParseError, Weld};
 
 /// Reads mesh `index` with all its triangle primitives; the material label of a face is the number
 /// of its primitive. Points and lines get a label but no faces.
 ///
 /// Primitives with the same POSITION accessor share their vertices, and those with all accessors in
-/// common share their wedges.
-pub(super) fn read(document: &Document<'_>, index: usize, how: Weld) -> Result<Mesh, ParseError> {
+/// common share their wedges. Attributes that are not finite are replaced, and counted.
+pub(super) fn read(
+    document: &Document<'_>,
+    index: usize,
+    how: Weld,
+) -> Result<(Mesh, Replaced), ParseError> {
     let mut builder = Builder::default();
     for (p, primitive) in document.meshes[index].primitives.iter().enumerate() {
         builder.labels.names.push(format!("primitive {p}"));
@@ -21,13 +26,14 @@ pub(super) fn read(document: &Document<'_>, index: usize, how: Weld) -> Result<M
             builder.add(document, primitive, &format!("mesh {index}, primitive {p}"))?;
         }
     }
+    let replaced = builder.replaced;
     let mut mesh = builder.finish(document, &format!("mesh {index}"))?;
     match how {
         Weld::Off => 0,
         Weld::Exact => weld(&mut mesh, 0.0),
         Weld::Within(epsilon) => weld(&mut mesh, epsilon),
     };
-    Ok(mesh)
+    Ok((mesh, replaced))
 }
 
 /// Returns the layer kind of an attribute.
@@ -71,6 +77,46 @@ struct Builder {
     vertex_pools: FxHashMap<usize, usize>,
     /// All accessors of a primitive → its first wedge.
     wedge_pools: FxHashMap<Vec<(String, usize)>, usize>,
+    replaced: Replaced,
+}
+
+/// Number of attributes that are not finite in a file, and were replaced.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Replaced {
+    /// Normals, which become zero, so that they are computed from the faces.
+    pub normals: usize,
+    /// Components of other attributes, which become 0.
+    pub values: usize,
+}
+
+impl Replaced {
+    pub fn is_empty(self) -> bool {
+        self.normals == 0 && self.values == 0
+    }
+
+    fn add(&mut self, other: Self) {
+        self.normals += other.normals;
+        self.values += other.values;
+    }
+}
+
+/// Replaces what is not finite, and counts it.
+fn make_finite(kind: LayerKind, of: &mut Values) -> Replaced {
+    let mut replaced = Replaced::default();
+    for element in of.values.chunks_exact_mut(of.width) {
+        let odd = element.iter().filter(|x| !x.is_finite()).count();
+        if odd == 0 {
+            continue;
+        }
+        if kind == LayerKind::Normal {
+            element.fill(0.0);
+            replaced.normals += 1;
+        } else {
+            element.iter_mut().filter(|x| !x.is_finite()).for_each(|x| *x = 0.0);
+            replaced.values += odd;
+        }
+    }
+    replaced
 }
 
 impl Builder {
@@ -134,7 +180,7 @@ impl Builder {
     ) -> Result<usize, ParseError> {
         let first = self.wedge_count;
         for (name, accessor) in accessors.iter().filter(|(name, _)| name != "POSITION") {
-            let values = document.floats(*accessor)?;
+            let values = document.stored_floats(*accessor)?;
             if values.count() != count {
                 let found = values.count();
                 let reason = format!("{name} has {found} elements, but POSITION has {count}");
@@ -149,20 +195,24 @@ impl Builder {
         Ok(first)
     }
 
-    /// Appends values to the layer of that name, padding it with zeros up to wedge `first`.
+    /// Appends values to the layer of that name; wedges before `first` that have none get those of
+    /// [`pad`].
     fn add_values(&mut self, name: &str, mut new: Values, first: usize) -> Result<(), String> {
         let kind = kind(name);
         if !fits(kind, new.width) {
             return Err(format!("{name} cannot have {} components", new.width));
         }
+        self.replaced.add(make_finite(kind, &mut new));
         if matches!(kind, LayerKind::Uv(_)) {
             flip_v(&mut new.values);
         }
         let Some(&known) = self.layer_by_name.get(name) else {
-            let mut values = vec![0.0; first * new.width];
-            values.append(&mut new.values);
-            self.layer_by_name.insert(name.to_owned(), self.layers.len());
-            self.layers.push(Layer { kind, name: name.to_owned(), width: new.width, values });
+            let (name, width) = (name.to_owned(), new.width);
+            self.layer_by_name.insert(name.clone(), self.layers.len());
+            let mut layer = Layer { kind, name, width, values: Vec::new() };
+            pad(&mut layer, first);
+            layer.values.append(&mut new.values);
+            self.layers.push(layer);
             return Ok(());
         };
         let layer = &mut self.layers[known];
@@ -176,7 +226,7 @@ impl Builder {
                 "{name} has {width} components, but {known} in an earlier primitive"
             ));
         }
-        layer.values.resize(first * layer.width, 0.0);
+        pad(layer, first);
         layer.values.append(&mut new.values);
         Ok(())
     }
@@ -185,7 +235,7 @@ impl Builder {
         let width: usize = self.layers.iter().map(|layer| layer.width).sum();
         document.spend(part, width.saturating_mul(self.wedge_count))?;
         for layer in &mut self.layers {
-            layer.values.resize(self.wedge_count * layer.width, 0.0);
+            pad(layer, self.wedge_count);
         }
         if !self.layers.is_empty() {
             let Self { corners, wedge_count, layers, .. } = self;
@@ -243,6 +293,19 @@ fn triangles(mode: u32, indices: &[u32]) -> impl Iterator<Item = [u32; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_not_finite_is_replaced_and_counted() {
+        let (nan, inf) = (f32::NAN, f32::INFINITY);
+        let mut normals = Values { width: 3, values: vec![0.0, nan, 1.0, 1.0, 0.0, 0.0] };
+        let replaced = make_finite(LayerKind::Normal, &mut normals);
+        assert_eq!((replaced.normals, replaced.values), (1, 0));
+        assert_eq!(normals.values, [0.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+        let mut uvs = Values { width: 2, values: vec![nan, inf, 0.5, -inf] };
+        let replaced = make_finite(LayerKind::Uv(0), &mut uvs);
+        assert_eq!((replaced.normals, replaced.values), (0, 3));
+        assert_eq!(uvs.values, [0.0, 0.0, 0.5, 0.0]);
+    }
 
     #[test]
     fn lists_strips_and_fans_give_their_triangles() {

@@ -42,6 +42,7 @@ mod strips;
 #[cfg(test)]
 mod tests;
 mod unheld;
+mod unmapped;
 mod uri;
 mod vertex_cache;
 mod write;

@@ -1,5 +1,7 @@
 //! New glTF documents, for scenes that were read from another format.
 
+use std::collections::BTreeMap;
+
 use serde_json::{Map, Value, json};
 
 use super::buffer_builder::BufferBuilder;
@@ -7,18 +9,36 @@ use super::instancing::with_copies_as_nodes;
 use super::lod::list_extension;
 use super::materials::EMISSIVE_STRENGTH;
 use super::new_material;
+use super::unmapped::{UnmappedMaterials, is_mapped};
 use crate::image_file::mime_type;
 use crate::scene::IDENTITY;
-use crate::{Image, Node, Scene, SceneMesh};
+use crate::{Image, Node, Scene, SceneMesh, remarks};
 
 /// Builds the JSON of a scene with these images, without geometry; each mesh has an empty primitive
-/// per material label.
+/// per material label. Materials have no textures on meshes without texture coordinates.
 pub(super) fn document(scene: &Scene, all: &[Image], builder: &mut BufferBuilder) -> Value {
     let mut images = Images::default();
-    let mut texture = |image| images.texture(image, all, builder);
-    let materials: Vec<Value> =
-        scene.materials.iter().map(|m| new_material::material(m, &mut texture)).collect();
-    with_nodes(scene, materials, images.json)
+    let unmapped = UnmappedMaterials::of(scene);
+    let mut json = |(index, own)| match unmapped.is_nowhere_mapped(index) {
+        true => new_material::material(own, &mut |_| None),
+        false => new_material::material(own, &mut |image| images.texture(image, all, builder)),
+    };
+    let mut materials: Vec<Value> = scene.materials.iter().enumerate().map(&mut json).collect();
+    let mut plain = BTreeMap::new();
+    for index in unmapped.elsewhere_mapped() {
+        plain.insert(index, materials.len());
+        materials.push(new_material::material(&scene.materials[index], &mut |_| None));
+    }
+    let mut json = with_nodes(scene, materials, images.json);
+    for (index, mesh) in scene.meshes.iter().enumerate().filter(|(_, m)| !is_mapped(&m.mesh)) {
+        for (label, material) in mesh.materials.iter().enumerate() {
+            if let Some(plain) = material.and_then(|material| plain.get(&material)) {
+                json["meshes"][index]["primitives"][label]["material"] = (*plain).into();
+            }
+        }
+    }
+    remarks::put(&scene.ply.remarks, &mut json);
+    json
 }
 
 /// Builds the JSON of a scene as one that only [`Skeleton`](super::Skeleton) reads: with all images,
@@ -98,7 +118,7 @@ pub(super) fn holds_image(bytes: &[u8]) -> bool {
 struct Images {
     json: Vec<Value>,
     /// Image of the scene → texture.
-    of_scene: std::collections::BTreeMap<usize, usize>,
+    of_scene: BTreeMap<usize, usize>,
 }
 
 impl Images {

@@ -25,6 +25,7 @@ pub(super) fn split_objects(scene: &Scene, levels: &[Level]) -> Option<ObjectNod
             nodes: scene.nodes.clone(),
             roots: scene.roots.clone(),
             materials: scene.materials.clone(),
+            ply: scene.ply.clone(),
             ..Scene::default()
         },
         levels: levels

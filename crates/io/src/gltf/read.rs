@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::document::{self, Buffers, Document};
 use super::facts::{AnimationFacts, FileFacts};
 use super::{container, decompress, draco, facts, materials, mesh, nodes, unheld};
-use crate::{Note, ParseError, Resolve, Scene, SceneMesh, Weld};
+use crate::{Note, ParseError, Resolve, Scene, SceneMesh, Weld, remarks};
 
 /// glTF document that a scene was read from; when the scene is written, all but the geometry is
 /// copied from it.
@@ -95,7 +95,8 @@ pub(super) struct Contents {
 ///
 /// # Errors
 /// The location (`accessor 7`, `bufferView 3`) and the reason. Draco streams without the feature and
-/// unknown required extensions are rejected by name, as are coordinates that are not finite.
+/// unknown required extensions are rejected by name, as are positions that are not finite; other
+/// attributes become 0 there, with a note, and normals are computed.
 /// # References
 /// [Kap20]; [KS21] and [KSL25], in [`crate::meshopt`].
 pub fn read(bytes: &[u8], resolve: Resolve<'_>, weld: Weld) -> Result<Scene, ParseError> {
@@ -112,10 +113,15 @@ pub fn read(bytes: &[u8], resolve: Resolve<'_>, weld: Weld) -> Result<Scene, Par
     let document = Document::new(&json, &buffers)?;
     scene.images = materials::images(&document, resolve)?;
     scene.materials = materials::materials(&json, scene.images.len())?;
+    let mut replaced = 0;
     for index in 0..document.meshes.len() {
-        scene.meshes.push(scene_mesh(&document, index, weld, &scene)?);
+        let (mesh, odd) = scene_mesh(&document, index, weld, &scene)?;
+        scene.meshes.push(mesh);
+        replaced += odd.values;
     }
+    scene.notes.extend(Some(Note::not_finite(replaced)).filter(|note| note.count > 0));
     nodes::read(&document, &mut scene)?;
+    scene.ply.remarks = remarks::of_document(&json);
     forget_uris(&mut json);
     let contents = Contents { json, buffers, weld, emptied: Vec::new(), facts };
     scene.source = Some(SourceDocument(Arc::new(contents)));
@@ -127,7 +133,7 @@ fn scene_mesh(
     index: usize,
     weld: Weld,
     scene: &Scene,
-) -> Result<SceneMesh, ParseError> {
+) -> Result<(SceneMesh, mesh::Replaced), ParseError> {
     let read = &document.meshes[index];
     let materials: Vec<Option<usize>> = read.primitives.iter().map(|p| p.material).collect();
     let count = scene.materials.len();
@@ -135,7 +141,8 @@ fn scene_mesh(
         return Err(document::missing("material", material, count));
     }
     let name = read.name.clone().unwrap_or_default();
-    Ok(SceneMesh { name, mesh: mesh::read(document, index, weld)?, materials })
+    let (mesh, replaced) = mesh::read(document, index, weld)?;
+    Ok((SceneMesh { name, mesh, materials }, replaced))
 }
 
 /// Removes the URIs of buffers, often most of the document, as their bytes have been loaded.

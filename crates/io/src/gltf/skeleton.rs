@@ -222,7 +222,7 @@ fn scene_mesh(
         let names = (0..materials.len()).map(|p| format!("primitive {p}")).collect();
         mesh.materials = Some(Labels { names, of_face: Vec::new() });
     } else {
-        mesh = mesh::read(document, index, Weld::Off)?;
+        (mesh, _) = mesh::read(document, index, Weld::Off)?;
     }
     Ok(SceneMesh { name: read.name.clone().unwrap_or_default(), mesh, materials })
 }

@@ -192,8 +192,9 @@ impl Output {
         for (index, mesh) in scene.meshes.iter().enumerate() {
             let is_empty = || source.emptied.get(index) == Some(&true);
             let differs = || {
-                let old = mesh::read(&document, index, source.weld).map_err(unreadable)?;
-                Ok(!same_geometry(&old, &mesh.mesh))
+                let (old, replaced) =
+                    mesh::read(&document, index, source.weld).map_err(unreadable)?;
+                Ok(!replaced.is_empty() || !same_geometry(&old, &mesh.mesh))
             };
             changed.push(compression.is_some() || is_empty() || differs()?);
         }

@@ -7,14 +7,14 @@ use meshlod_mesh::{Labels, LayerKind, Mesh};
 
 use super::mtl::{names, one_line};
 use crate::line_writer::LineWriter;
-use crate::{Precision, Scene};
+use crate::{Precision, Scene, remarks};
 
 /// Writes all meshes that a scene shows, in world space, as one OBJ file; `libraries` are the file
 /// names of the material libraries, such as the one that [`write_mtl`](super::write_mtl) writes.
 ///
 /// Equal uvs and equal normals are written once. Colours follow the positions; a vertex gets the
 /// colour of its first wedge. Objects become `o`, materials `usemtl`, with names made unique, and
-/// smoothing groups `s`.
+/// smoothing groups `s`. Comments of a PLY file come first.
 /// Positions (at `F64`), uvs and normals read back bit for bit. Other layers are not written.
 ///
 /// # Errors
@@ -27,6 +27,7 @@ pub fn write(
 ) -> io::Result<()> {
     let mesh = scene.flatten();
     let mut lines = LineWriter::new(out, precision.width(&mesh));
+    remarks::write(&scene.ply.remarks, &mut lines)?;
     for name in libraries {
         lines.word("mtllib");
         lines.word(name);

@@ -2,7 +2,8 @@
 //! (COFF), texture coordinates (STOFF) or several of them.
 
 mod read;
+mod vertex_format;
 mod write;
 
 pub use read::{read, read_scene};
-pub use write::write;
+pub use write::{write, write_scene};

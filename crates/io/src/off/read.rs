@@ -2,6 +2,7 @@
 
 use meshlod_mesh::{Attributes, LayerKind, Mesh, VertexId};
 
+use super::vertex_format::VertexFormat;
 use crate::polygon::triangulate;
 use crate::text_cursor::TextCursor;
 use crate::vertex_attributes::{named_layer, normalize_colors, per_vertex};
@@ -18,31 +19,36 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
 /// Parses an OFF file in text form, as one mesh under one node.
 ///
 /// The header may be missing or run into the counts without a blank; comments may appear anywhere.
-/// Polygons are triangulated, and face colours left out with a note. Vertex colours have three or
+/// Polygons are triangulated; faces of one or two corners and face colours are left out with a
+/// note. If the header names no attributes, but all vertices have three or four numbers more, those
+/// are colours, or unit normals. Vertex colours have three or
 /// four components; if any exceeds 1, all are taken to be out of 255. Normals, colours and texture
 /// coordinates that are not finite become 0.
 ///
 /// Cost: O(n), n = bytes, plus that of triangulating concave polygons.
 /// # Errors
 /// The line and the reason: counts that exceed the file, an invalid number, a coordinate that is
-/// not finite, an index out of range, a face with fewer than three corners. Also files without
+/// not finite, an index out of range, a face without corners. Also files without
 /// faces, binary files, and dimensions other than three.
 /// # References
 /// [PLM93], section OFF of its manual.
 pub fn read_scene(bytes: &[u8]) -> Result<Scene, ParseError> {
-    let (mesh, note) = read_noted(bytes)?;
-    let notes = Vec::from_iter((note.count > 0).then_some(note));
+    let (mesh, mut notes) = read_noted(bytes)?;
+    notes.retain(|note| note.count > 0);
     Ok(Scene { has_split_seams: true, notes, ..Scene::from_mesh("", mesh) })
 }
 
-/// Parses a file, and notes the faces whose colours are left out.
-fn read_noted(bytes: &[u8]) -> Result<(Mesh, Note), ParseError> {
+/// Parses a file, and notes the faces that are left out, and those whose colours are.
+fn read_noted(bytes: &[u8]) -> Result<(Mesh, Vec<Note>), ParseError> {
     let mut text = TextCursor::new(bytes)?;
     if !text.more_anywhere() {
         return Err(text.error("the file is empty"));
     }
     let mut layout = header(&mut text)?;
     let [vertices, faces] = counts(&mut text)?;
+    if layout.is_plain() {
+        layout = VertexFormat::of_lines(&text, vertices, faces)?;
+    }
     let mut columns = Columns::default();
     for v in 0..vertices {
         need(&mut text, v, vertices, "vertices")?;
@@ -58,42 +64,18 @@ fn read_noted(bytes: &[u8]) -> Result<(Mesh, Note), ParseError> {
         scratch.face(&columns.positions, &mut text, &mut triangles)?;
     }
     if triangles.is_empty() {
-        return Err(text.error("the file has no faces"));
+        return Err(text.error("the file has no faces of three corners or more"));
     }
     let attributes = columns.attributes(layout, &triangles);
-    let note = Note::left_out(scratch.colored, "colour of a face", "colours of faces");
-    Ok((Mesh { attributes, ..Mesh::new(columns.positions, triangles) }, note))
-}
-
-/// Attributes that follow each vertex position, in this order.
-#[derive(Clone, Copy, Default)]
-struct VertexFormat {
-    has_normal: bool,
-    /// Colour components: 0 without colours, 3 until the first vertex is seen.
-    color_width: usize,
-    has_uv: bool,
-}
-
-impl VertexFormat {
-    /// Derives the number of colour components from the numbers on the line of the first vertex.
-    fn measure_color(&mut self, text: &TextCursor) -> Result<(), ParseError> {
-        if self.color_width == 0 {
-            return Ok(());
-        }
-        let others = 3 + if self.has_normal { 3 } else { 0 } + if self.has_uv { 2 } else { 0 };
-        let words = text.clone().words_left();
-        match words.checked_sub(others) {
-            Some(width @ (3 | 4)) => {
-                self.color_width = width;
-                Ok(())
-            }
-            _ => Err(text.error(format!(
-                "this header calls for {} or {} numbers per vertex, but this line has {words}",
-                others + 3,
-                others + 4
-            ))),
-        }
-    }
+    let notes = vec![
+        Note::left_out(scratch.colored, "colour of a face", "colours of faces"),
+        Note::left_out(
+            scratch.thin,
+            "face of fewer than three corners",
+            "faces of fewer than three corners",
+        ),
+    ];
+    Ok((Mesh { attributes, ..Mesh::new(columns.positions, triangles) }, notes))
 }
 
 /// Reads the header word, if there is one, up to the first count.
@@ -107,8 +89,10 @@ fn header(text: &mut TextCursor) -> Result<VertexFormat, ParseError> {
     }
     let start = text.clone();
     let has_uv = text.take_word(b"ST");
+    // Some programs write NC, with the same order of the values.
+    let is_first = text.take(b'N');
     let color_width = if text.take(b'C') { 3 } else { 0 };
-    let has_normal = text.take(b'N');
+    let has_normal = is_first || text.take(b'N');
     if text.comes(b'4') || text.comes(b'n') {
         return Err(text.error("only three-dimensional OFF is supported"));
     }
@@ -208,6 +192,8 @@ struct Scratch {
     triangles: Vec<[u32; 3]>,
     /// Number of faces with more on their line than corners.
     colored: usize,
+    /// Number of faces with one or two corners.
+    thin: usize,
 }
 
 impl Scratch {
@@ -219,9 +205,10 @@ impl Scratch {
         out: &mut Vec<[VertexId; 3]>,
     ) -> Result<(), ParseError> {
         let corners = text.integer("a face is missing")?;
-        if corners < 3 {
+        if corners < 1 {
             return Err(text.error(format!(
-                "a face needs at least three corners, but this one has {corners}"
+                "a face begins with the number of its corners, not {corners}; check the counts in \
+                 the header, and that each vertex has the numbers that the header calls for"
             )));
         }
         self.polygon.clear();
@@ -236,6 +223,7 @@ impl Scratch {
             self.polygon.push(index as u32);
         }
         self.colored += usize::from(text.words_left() > 0);
+        self.thin += usize::from(corners < 3);
         self.triangles.clear();
         triangulate(positions, &self.polygon, &mut self.triangles);
         let corner = |i: u32| VertexId(self.polygon[i as usize]);
@@ -261,6 +249,16 @@ mod tests {
         let colored = TETRAHEDRON.replace("3 0 2 1\n", "3 0 2 1 255 0 0\n");
         let found = notes(format!("OFF\n4 4 6\n{}", colored.replace("1 2 3\n", "1 2 3 7 # map\n")));
         assert_eq!(found[0].to_string(), "2 colours of faces");
+    }
+
+    #[test]
+    fn faces_of_two_corners_are_noted() {
+        let text = TETRAHEDRON.replace("3 0 2 1\n", "2 0 1\n3 0 2 1\n");
+        let scene = read_scene(format!("OFF\n4 5 6\n{text}").as_bytes()).unwrap();
+        assert_eq!(scene.notes[0].to_string(), "1 face of fewer than three corners");
+        assert_eq!(scene.meshes[0].mesh.faces.len(), 4);
+        let none = error("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n0 1 2\n");
+        assert!(none.contains("a face begins with the number of its corners, not 0"), "{none}");
     }
 
     #[test]
@@ -297,6 +295,7 @@ mod tests {
                     0 0 0  0 0 1  255 0 0 51  0.5 0.25\n\
                     1 0 0  0 nan 1  0 255 0 51  1 0\n\
                     0 1 0  0 0 1  0 0 255 51  0 1\n3 0 1 2 0.5 0.5 0.5\n";
+        assert_eq!(read(text.replace("CN", "NC").as_bytes()), read(text.as_bytes()));
         let attributes = read(text.as_bytes()).unwrap().attributes.unwrap();
         let values = |kind| attributes.layer(kind).unwrap().values.clone();
         assert_eq!(values(LayerKind::Normal), [0., 0., 1., 0., 0., 1., 0., 0., 1.]);
@@ -344,7 +343,10 @@ mod tests {
                 "OFF BINARY\n",
                 "line 1: binary OFF is not supported; convert the file to text or to PLY",
             ),
-            ("OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", "line 5: the file has no faces"),
+            (
+                "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n",
+                "line 5: the file has no faces of three corners or more",
+            ),
             (
                 "OFF\n3 1 0\n0 0 0\n1 0 inf\n0 1 0\n3 0 1 2\n",
                 "line 4: \"inf\" is not a finite number",
@@ -355,7 +357,7 @@ mod tests {
             ),
             (
                 "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1   \n",
-                "line 6: a face needs at least three corners, but this one has 2",
+                "line 6: the file has no faces of three corners or more",
             ),
             (
                 "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 0 0 0 0 0",

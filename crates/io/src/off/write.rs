@@ -4,9 +4,9 @@ use std::io::{self, Write};
 
 use meshlod_mesh::{Attributes, LayerKind, Mesh};
 
-use crate::Precision;
 use crate::line_writer::LineWriter;
 use crate::vertex_attributes::split_at_seams;
+use crate::{Precision, Scene, remarks};
 
 /// Writes a mesh as a text OFF file, with the normals, the first colours and the texture
 /// coordinates of its vertices, if it has them.
@@ -18,6 +18,24 @@ use crate::vertex_attributes::split_at_seams;
 /// # Errors
 /// Errors of `out`, and a position that `precision` cannot hold.
 pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> io::Result<()> {
+    write_commented(mesh, &[], precision, out)
+}
+
+/// Writes what a scene shows as [`write`] does, with the comments of a PLY file that it was read
+/// from.
+///
+/// # Errors
+/// Errors of [`write`].
+pub fn write_scene(scene: &Scene, precision: Precision, out: &mut dyn Write) -> io::Result<()> {
+    write_commented(&scene.shown_mesh(), &scene.ply.remarks, precision, out)
+}
+
+fn write_commented(
+    mesh: &Mesh,
+    remarks: &[String],
+    precision: Precision,
+    out: &mut dyn Write,
+) -> io::Result<()> {
     const LAYERS: [LayerKind; 3] = [LayerKind::Normal, LayerKind::Color(0), LayerKind::Uv(0)];
     let find = |kind| mesh.attributes.as_ref().and_then(|a: &Attributes| a.layer(kind));
     let [normals, colors, uvs] = LAYERS.map(find);
@@ -27,6 +45,7 @@ pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> io::Resu
     let present = letters.iter().filter(|(layer, _)| layer.is_some());
     lines.word(&(present.map(|&(_, letter)| letter).collect::<String>() + "OFF"));
     lines.end()?;
+    remarks::write(remarks, &mut lines)?;
     for count in [split.vertices.len(), split.faces.len(), 0] {
         lines.integer(count);
     }

@@ -6,4 +6,4 @@ mod scope;
 mod write;
 
 pub use read::read;
-pub use write::write;
+pub use write::{write, write_scene};

@@ -4,9 +4,9 @@ use std::io::{self, Write};
 
 use meshlod_mesh::{LayerKind, Mesh};
 
-use crate::Precision;
 use crate::line_writer::LineWriter;
 use crate::vertex_attributes::split_at_seams;
+use crate::{Precision, Scene, remarks};
 
 /// Writes a mesh as an SMF file, with the first colours, the normals and the texture coordinates of
 /// its vertices, if it has them.
@@ -18,6 +18,24 @@ use crate::vertex_attributes::split_at_seams;
 /// # Errors
 /// Errors of `out`, and a position that `precision` cannot hold.
 pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> io::Result<()> {
+    write_commented(mesh, &[], precision, out)
+}
+
+/// Writes what a scene shows as [`write`] does, with the comments of a PLY file that it was read
+/// from.
+///
+/// # Errors
+/// Errors of [`write`].
+pub fn write_scene(scene: &Scene, precision: Precision, out: &mut dyn Write) -> io::Result<()> {
+    write_commented(&scene.shown_mesh(), &scene.ply.remarks, precision, out)
+}
+
+fn write_commented(
+    mesh: &Mesh,
+    remarks: &[String],
+    precision: Precision,
+    out: &mut dyn Write,
+) -> io::Result<()> {
     let split = split_at_seams(mesh);
     let mut lines = LineWriter::new(out, precision.width(mesh));
     for header in [
@@ -28,6 +46,7 @@ pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> io::Resu
         lines.word(&header);
         lines.end()?;
     }
+    remarks::write(remarks, &mut lines)?;
     for vertex in &split.vertices {
         lines.word("v");
         lines.position(vertex.vertex.index(), mesh.positions[vertex.vertex.index()])?;

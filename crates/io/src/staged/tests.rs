@@ -2,9 +2,11 @@ use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 
 use meshlod_fixtures::{cube, tetrahedron};
+use meshlod_mesh::{Labels, LayerKind};
 use tempfile::tempdir;
 
 use super::*;
+use crate::vertex_attributes::{named_layer, per_vertex};
 use crate::{Image, Material, ReadOptions, Scene, WriteOptions, read, write};
 
 type Hook = Box<dyn FnMut() -> bool>;
@@ -98,8 +100,11 @@ fn versions() -> [Scene; 2] {
     versions.iter_mut().for_each(|scene| {
         let faces = scene.meshes[0].mesh.faces.len();
         let names = vec!["paint".to_owned()];
-        scene.meshes[0].mesh.materials =
-            Some(meshlod_mesh::Labels { names, of_face: vec![0; faces] });
+        let mesh = &mut scene.meshes[0].mesh;
+        mesh.materials = Some(Labels { names, of_face: vec![0; faces] });
+        let count = mesh.positions.len();
+        let uvs = named_layer(LayerKind::Uv(0), 2, vec![0.5; 2 * count]);
+        mesh.attributes = per_vertex(count, &mesh.faces, vec![uvs]);
     });
     versions
 }

@@ -1,6 +1,7 @@
 //! Compressed `.glb` files for other programs.
 
 use meshlod::codec::parts_for;
+use meshlod::io::Note;
 use meshlod::io::gltf::{
     Compression, CompressionReport, QuantizedPart, write_compressed_glb, write_parts_glb,
 };
@@ -80,7 +81,7 @@ impl Compress {
         let bytes = write_parts_glb(&quantized).map_err(|error| self.failed(error))?;
         let faces = parts.parts().iter().map(|part| part.faces.len()).sum();
         let mut notes = limits;
-        notes.extend(unused_parts(&mesh, faces));
+        Note::merge(&mut notes, unused_parts(&mesh, faces));
         // Positions are padded to four bytes, and each part has a matrix.
         let positions: usize =
             quantized.iter().map(|part| 4 * part.positions.len() + size_of_val(&part.matrix)).sum();

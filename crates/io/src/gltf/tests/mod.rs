@@ -7,6 +7,7 @@ mod carried;
 #[cfg(feature = "draco")]
 mod draco;
 mod instances;
+mod lacking;
 mod levels;
 mod mutated;
 mod packed;
