@@ -4,7 +4,7 @@ use clap::{Args, ValueEnum};
 use meshlod::io::{Precision, Weld};
 use meshlod::mesh::AttributeBounds;
 use meshlod::picture::{UpAxis, View};
-use meshlod::{ReadOptions, Scene, WriteOptions};
+use meshlod::{Format, ReadOptions, Scene, WriteOptions};
 
 use crate::parse::{self, Suffix, ViewDirection};
 

@@ -30,7 +30,7 @@ pub struct Cli {
 #[derive(Subcommand)]
 pub enum Task {
     #[command(flatten)]
-    Verb(Verb),
+    Verb(Box<Verb>),
     Batch(batch::Batch),
     Run(run::Run),
 }

@@ -161,7 +161,7 @@ pub fn end_at_signals() {
 
 fn perform(name: &str, cli: Cli, session: &mut Session) -> Result<Answer, Failure> {
     let (name, mut answer) = match cli.task {
-        Task::Verb(verb) => (name.to_owned(), answer(verb, session)?),
+        Task::Verb(verb) => (name.to_owned(), answer(*verb, session)?),
         Task::Batch(batch) => (name.to_owned(), batch::run(&batch, cli.global, session)?),
         Task::Run(run) => {
             let recipe = run.recipe()?;

@@ -53,8 +53,14 @@ fn row(path: &Path) -> Result<(), Failure> {
 /// level is.
 fn times(mesh: &Mesh) -> Result<[f64; 2], Failure> {
     let (file, _) = Archive::write(&Forest::new(mesh, &Options::default())?, &Storage::default())?;
-    let read = || Ok(drop(Archive::open(file.clone())?.read()?));
-    let extract = || Ok(drop(Archive::open(file.clone())?.extract(&Query::uniform(0.0))?));
+    let read = || {
+        Archive::open(file.clone())?.read()?;
+        Ok(())
+    };
+    let extract = || {
+        Archive::open(file.clone())?.extract(&Query::uniform(0.0))?;
+        Ok(())
+    };
     Ok([best(read)?, best(extract)?])
 }
 

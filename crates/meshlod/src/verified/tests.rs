@@ -4,7 +4,9 @@ use meshlod_fixtures::{
 };
 use meshlod_measure::{CertifiedOptions, PreparedSurface, certified_distance, faces_beyond};
 use meshlod_mesh::Mesh;
-use meshlod_multires::{Forest, HeightField, HeightPrecision, QueryError, Storage, ViewCamera};
+use meshlod_multires::{
+    Focus, Forest, HeightField, HeightPrecision, QueryError, Storage, ViewCamera,
+};
 use meshlod_samples as samples;
 use meshlod_simplify::Options;
 
