@@ -23,12 +23,12 @@ pub struct Cli {
     #[command(flatten)]
     pub global: GlobalArgs,
     #[command(subcommand)]
-    pub task: Task,
+    pub work: Work,
 }
 
 /// One verb, or several runs of verbs.
 #[derive(Subcommand)]
-pub enum Task {
+pub enum Work {
     #[command(flatten)]
     Verb(Box<Verb>),
     Batch(batch::Batch),

@@ -52,7 +52,7 @@ use clap::{CommandFactory, FromArgMatches};
 use serde_json::Value;
 
 use crate::answer::Answer;
-use crate::command::{Cli, Task, Verb};
+use crate::command::{Cli, Verb, Work};
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::session::Session;
@@ -160,10 +160,10 @@ pub fn end_at_signals() {
 }
 
 fn perform(name: &str, cli: Cli, session: &mut Session) -> Result<Answer, Failure> {
-    let (name, mut answer) = match cli.task {
-        Task::Verb(verb) => (name.to_owned(), answer(*verb, session)?),
-        Task::Batch(batch) => (name.to_owned(), batch::run(&batch, cli.global, session)?),
-        Task::Run(run) => {
+    let (name, mut answer) = match cli.work {
+        Work::Verb(verb) => (name.to_owned(), answer(*verb, session)?),
+        Work::Batch(batch) => (name.to_owned(), batch::run(&batch, cli.global, session)?),
+        Work::Run(run) => {
             let recipe = run.recipe()?;
             let line = recipe.line(&run.paths)?;
             session.ask(cli.global.or(line.global));

@@ -1,4 +1,4 @@
-//! What OBJ files and their libraries hold comes through, or a note counts it.
+//! Contents of OBJ files and their libraries: they come through, or a note counts them.
 
 use std::fs;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! What a batch has made, one line for each file, beside the outputs.
+//! Journal of a batch: one line for each file that it has made, beside the outputs.
 //!
 //! A line is written once its output is complete and in its place. It holds the recipe and the
 //! states of input and output; an output counts as there while all of these are as they were. A line

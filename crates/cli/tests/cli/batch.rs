@@ -9,7 +9,7 @@ use crate::run::{Done, Run};
 
 const JOURNAL: &str = ".meshlod-batch.jsonl";
 
-/// Creates a folder of meshes with one that is broken and one that is none.
+/// Creates a folder of meshes, with one that is broken and a file of another kind.
 fn meshes() -> Run {
     let run = Run::new();
     fs::create_dir_all(run.path("in/a/b")).unwrap();

@@ -46,7 +46,7 @@ fn solids_of_a_text_file_keep_their_names_and_bits() {
     assert_eq!(run.run(&["convert", "in.stl", "out.stl", "--strict"]).code, 0);
     assert_eq!(std::fs::read_to_string(run.path("out.stl")).unwrap(), solids);
     let done = run.run(&["convert", "in.stl", "-", "--format", "stl", "--strict"]);
-    assert_eq!((done.code, done.out), (0, solids));
+    assert_eq!((done.code, done.out), (0, solids.clone().into_bytes()));
     assert_eq!(run.run(&["convert", "in.stl", "out.obj"]).code, 0);
     let done = run.run(&["convert", "out.obj", "out.stl"]);
     assert!(done.err.contains("left out: 2 names of objects (left part, right)"), "{done:?}");

@@ -40,7 +40,7 @@ pub(super) fn write_obj(path: &Path, scene: &Scene, precision: Precision) -> Res
 
 /// Libraries of the file that is to be replaced.
 struct OldLibraries {
-    /// What each `mtllib` line names.
+    /// Files that each `mtllib` line names.
     lines: Vec<String>,
     known: mtl::Library,
 }

@@ -1,4 +1,4 @@
-//! What queries about a scene give for every instance of its meshes.
+//! Queries about a scene, for every instance of its meshes.
 
 use meshlod_io::Scene;
 
