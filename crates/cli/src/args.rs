@@ -1,6 +1,7 @@
 //! Groups of command-line options that several commands share.
 
 use clap::{Args, ValueEnum};
+use meshlod::io::gltf::SourceDocument;
 use meshlod::io::{Precision, Weld};
 use meshlod::mesh::AttributeBounds;
 use meshlod::picture::{UpAxis, View};
@@ -130,6 +131,15 @@ pub struct AttributeErrorArgs {
 }
 
 impl AttributeErrorArgs {
+    /// Makes the bound of texture coordinates hold for textures that a material repeats by scaling
+    /// the coordinates.
+    pub fn refine_for(&mut self, scene: &Scene) {
+        let scale = scene.source.as_ref().map_or(1.0, SourceDocument::largest_texture_scale);
+        if scale > 1.0 {
+            self.uv_error = Some(self.bounds().uv / scale);
+        }
+    }
+
     /// Returns the bounds, with the defaults for those not given.
     pub fn bounds(&self) -> AttributeBounds {
         let default = AttributeBounds::default();

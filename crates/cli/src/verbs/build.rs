@@ -119,6 +119,7 @@ impl Build {
         }
         let options = Options { method: self.method, ..Options::default() };
         let (scene, fused) = self.constraints.read_fused(&self.input, &self.reading, session)?;
+        self.attributes.refine_for(&scene);
         let (PlacedScene { mesh, options, mut rest, counts }, mut notes) = match self.model {
             ModelArg::Contractions => {
                 let notes = model_limits(&scene);

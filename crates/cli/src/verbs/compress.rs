@@ -118,6 +118,7 @@ impl Compress {
         files::check_apart(&output, &[&self.input])?;
         let mut scene = files::read_surface(&self.input, &self.reading, session)?;
         self.check_scene(kind, &scene)?;
+        self.attributes.refine_for(&scene);
         let fused = self.constraints.fuse.apply(&mut scene, session);
         session.progress.stage("compressing");
         let start = Instant::now();
@@ -178,6 +179,7 @@ impl Compress {
             _ => self.transport(&mesh, &rest)?,
         };
         notes.append(&mut packed.notes);
+        notes.push(packed.missed_bounds(&self.attributes.bounds()));
         packed.notes = notes;
         Ok((packed, counts))
     }

@@ -321,3 +321,20 @@ fn odd_meshes_have_clear_outcomes() {
         }
     }
 }
+
+#[test]
+fn an_error_bound_that_a_stray_value_breaks_is_noted() {
+    let run = Run::new();
+    let uvs = [[0.1, 0.2], [0.3, 0.2], [0.3, 0.4], [1e9, 0.4]];
+    let mut text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n".to_owned();
+    uvs.iter().for_each(|[u, v]| text += &format!("vt {u} {v}\n"));
+    std::fs::write(run.path("in.obj"), text + "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n").unwrap();
+    for to in ["in.mlz", "in.mlq"] {
+        let done = run.run(&["compress", "in.obj", to]);
+        assert_eq!(done.code, 0, "{done:?}");
+        assert!(done.err.contains("left out: 1 error bound of an attribute"), "{done:?}");
+        std::fs::remove_file(run.path(to)).unwrap();
+        assert_eq!(run.run(&["compress", "in.obj", to, "--strict"]).code, 1);
+        assert!(!run.path(to).exists());
+    }
+}

@@ -22,6 +22,12 @@ impl SourceDocument {
         self.0.json.get(array).and_then(Value::as_array).map_or(0, Vec::len)
     }
 
+    /// Returns the greatest factor by which a material scales texture coordinates, by
+    /// `KHR_texture_transform`; at least 1.
+    pub fn largest_texture_scale(&self) -> f64 {
+        self.0.json.get("materials").map_or(1.0, largest_texture_scale)
+    }
+
     /// Reports whether the document may hold normals in bytes.
     pub(crate) fn is_quantized(&self) -> bool {
         let used = self.0.json.get("extensionsUsed").and_then(Value::as_array);
@@ -136,6 +142,20 @@ pub fn read(bytes: &[u8], resolve: Resolve<'_>, weld: Weld) -> Result<Scene, Par
     let contents = Contents { json, buffers, weld, emptied: Vec::new(), facts };
     scene.source = Some(SourceDocument(Arc::new(contents)));
     Ok(scene)
+}
+
+/// Returns the greatest factor among all texture transforms within a value; at least 1.
+fn largest_texture_scale(value: &Value) -> f64 {
+    let (within, own): (Vec<&Value>, _) = match value {
+        Value::Array(values) => (values.iter().collect(), None),
+        Value::Object(entries) => {
+            (entries.values().collect(), entries.get("KHR_texture_transform"))
+        }
+        _ => return 1.0,
+    };
+    let own = own.and_then(|transform| transform["scale"].as_array()).into_iter().flatten();
+    let factors = own.filter_map(Value::as_f64).map(f64::abs).filter(|factor| factor.is_finite());
+    factors.chain(within.into_iter().map(largest_texture_scale)).fold(1.0, f64::max)
 }
 
 fn scene_mesh(

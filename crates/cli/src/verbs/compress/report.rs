@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use meshlod::codec::LayerReport;
 use meshlod::io::Note;
+use meshlod::mesh::{AttributeBounds, LayerKind};
 use serde_json::{Value, json};
 
 use crate::files;
@@ -41,6 +42,26 @@ pub struct StripCounts {
 }
 
 impl CompressedFile {
+    /// Notes the layers whose values are farther off than they may be, because integers cannot count
+    /// the steps up to the greatest one.
+    pub fn missed_bounds(&self, bounds: &AttributeBounds) -> Note {
+        let missed = self.layers.iter().filter_map(|layer| {
+            let bound = match layer.kind {
+                LayerKind::Uv(_) => bounds.uv,
+                LayerKind::Color(_) => bounds.color,
+                LayerKind::Weights(_) => bounds.weight,
+                _ => return None,
+            };
+            let off = || format!("{} is off by up to {}", layer.name, value(layer.max_error));
+            (layer.max_error > bound).then(off)
+        });
+        let missed: Vec<String> = missed.collect();
+        let (one, many) = ("error bound of an attribute", "error bounds of attributes");
+        Note::left_out(missed.len(), one, many).named(missed).remedied(
+            "correct values that are far from all others, or build --lossless an .mlod file",
+        )
+    }
+
     pub fn json(&self, output: &Path, time: Duration) -> Value {
         let [positions, connectivity, attributes] = self.sizes;
         let mut json = json!({

@@ -76,3 +76,19 @@ fn square() -> (Value, Vec<u8>) {
     });
     (json, buffer)
 }
+
+#[test]
+fn the_largest_scale_of_textures_is_known() {
+    let (mut json, buffer) = square();
+    let scale =
+        |json: &Value| read_parts(json, &buffer).unwrap().source.unwrap().largest_texture_scale();
+    assert_eq!(scale(&json), 1.0);
+    let texture = |scale: [f64; 2]| json!({ "index": 0, "extensions": { "KHR_texture_transform": { "scale": scale } } });
+    json["images"] = json!([{ "uri": "data:image/png;base64,iVBORw0KGgo=" }]);
+    json["textures"] = json!([{ "source": 0 }]);
+    json["materials"] = json!([
+        { "normalTexture": texture([0.5, 3.0]) },
+        { "pbrMetallicRoughness": { "baseColorTexture": texture([-200.0, 1.0]) } },
+    ]);
+    assert_eq!(scale(&json), 200.0);
+}
