@@ -21,7 +21,7 @@ fn check(run: &Run, arguments: &[&str], input: &Path, out: &str) -> Done {
                 matches!(lines[..], [line] if line.starts_with("meshlod: ")),
                 "{name}: {done:?}"
             );
-            assert!(done.out.is_empty() && run.files().is_empty(), "{name}: {:?}", run.files());
+            assert!(done.has_no_answer() && run.files().is_empty(), "{name}: {:?}", run.files());
         }
         code => panic!("{name}: exit code {code}: {done:?}"),
     }

@@ -92,6 +92,11 @@ impl Done {
         value
     }
 
+    /// Returns true if standard output is empty or, with `--json`, has the object of a failure.
+    pub fn has_no_answer(&self) -> bool {
+        self.out.is_empty() || self.json()["failure"].is_object()
+    }
+
     /// Returns the only line on standard error.
     pub fn only_line(&self) -> &str {
         let line = self.err.strip_suffix('\n').expect("a whole line");

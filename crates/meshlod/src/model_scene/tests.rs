@@ -33,7 +33,7 @@ fn moving(mesh: &mut Mesh) {
     let count = mesh.positions.len();
     let weights = mesh.positions.iter().map(|p| (0.5 + 0.3 * p[0].sin()) as f32);
     let layer = |kind, name: &str, width, values| Layer { kind, name: name.into(), width, values };
-    let layers = vec![
+    let layers = [
         layer(LayerKind::Joints(0), "JOINTS_0", 4, [1.0, 2.0, 0.0, 0.0].repeat(count)),
         layer(
             LayerKind::Weights(0),
@@ -48,18 +48,28 @@ fn moving(mesh: &mut Mesh) {
             mesh.positions.iter().flatten().map(|&x| (0.1 * x) as f32).collect(),
         ),
     ];
-    let corners = mesh.faces.iter().map(|face| face.map(|v| WedgeId(v.0))).collect();
-    mesh.attributes = Some(Attributes { corners, wedge_count: count, layers });
+    mesh.attributes.as_mut().unwrap().layers.extend(layers);
+}
+
+/// Gives a mesh texture coordinates, without seams.
+fn mapped(mut mesh: Mesh) -> Mesh {
+    let values = mesh.positions.iter().flat_map(|p| [p[0] as f32, p[1] as f32]).collect();
+    mesh.attributes = Some(Attributes {
+        corners: mesh.faces.iter().map(|face| face.map(|v| WedgeId(v.0))).collect(),
+        wedge_count: mesh.positions.len(),
+        layers: vec![Layer { kind: LayerKind::Uv(0), name: "uv".into(), width: 2, values }],
+    });
+    mesh
 }
 
 /// A scene of three meshes: a torus with three primitives, two of one material; a sphere shown three
 /// times, once mirrored and once within another node; and a knot that nothing moves.
 pub(super) fn scene() -> Scene {
-    let mut torus = samples::torus(400);
+    let mut torus = mapped(samples::torus(400));
     let of_face = (0..torus.faces.len()).map(|face| (face * 3 / torus.faces.len()) as u32);
     let names = ["a", "b", "a"].map(String::from).to_vec();
     torus.materials = Some(Labels { names, of_face: of_face.collect() });
-    let mut sphere = samples::sphere(300);
+    let mut sphere = mapped(samples::sphere(300));
     moving(&mut sphere);
     let mesh = |name: &str, mesh, materials| SceneMesh { name: name.into(), mesh, materials };
     let node = |name: &str, transform, mesh, children| Node {
