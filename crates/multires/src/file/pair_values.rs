@@ -4,6 +4,7 @@
 use std::ops::Range;
 
 use glam::DVec3;
+use meshlod_mesh::LayerKind;
 
 use super::fixed_order::dot;
 use super::lineage::Lineage;
@@ -78,7 +79,7 @@ impl Values<'_> {
 
     /// Replaces the values of a pair's parent by those that a file can hold.
     ///
-    /// They stay within the ranges of their columns, so that no colour is brighter than 1.
+    /// Colours stay within the ranges of their columns, so that none is brighter than 1.
     pub(super) fn derive_parent(
         &mut self,
         pair: &Pair,
@@ -107,7 +108,11 @@ impl Values<'_> {
                 let step = self.leeways[column].step(difference);
                 let off = nearest(p.wrapping_sub(a).wrapping_sub(between), step);
                 let p = a.wrapping_add(between).wrapping_add(off.wrapping_mul(step));
-                self.set(pair.wedges[1], column, back_within(p, step, ranges[column]));
+                let p = match layer.kind {
+                    LayerKind::Color(_) => back_within(p, step, ranges[column]),
+                    _ => p,
+                };
+                self.set(pair.wedges[1], column, p);
             }
         }
     }
