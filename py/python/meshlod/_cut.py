@@ -15,6 +15,10 @@ from ._mesh import Mesh
 from ._query import Camera, Focus, query
 
 
+#: Seconds from which on a limit is none.
+LONGEST = 1e9
+
+
 @dataclass(frozen=True)
 class CutChange:
     """Triangles that an update of a :class:`Cut` has changed."""
@@ -82,6 +86,8 @@ class Cut:
         time = None if seconds is None else number("seconds", seconds)
         if time is not None and not time >= 0:
             raise MeshlodError(f"seconds must be at least 0, not {seconds!r}")
+        if time is not None and time > LONGEST:
+            time = None
         return CutChange(*self._native.update(*asked, most, time))
 
     @property
