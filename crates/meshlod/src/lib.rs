@@ -209,7 +209,7 @@
 //! [`spatial`] has the search structures behind these: the exact closest point of a surface.
 //!
 //! # Features
-//! All are on by default. With `default-features = false` there are [`mesh`], [`simplify`],
+//! All are on by default. With `default-features = false` there are [`mesh`], [`simplify`](mod@simplify),
 //! [`measure`] and [`spatial`], with 18 crates below this one and no C.
 //!
 //! | feature | adds | and needs |

@@ -21,11 +21,11 @@ pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> io::Resu
     write_commented(mesh, &[], precision, out)
 }
 
-/// Writes what a scene shows as [`write`] does, with the comments of a PLY file that it was read
+/// Writes what a scene shows as [`write()`] does, with the comments of a PLY file that it was read
 /// from.
 ///
 /// # Errors
-/// Errors of [`write`].
+/// Errors of [`write()`].
 pub fn write_scene(scene: &Scene, precision: Precision, out: &mut dyn Write) -> io::Result<()> {
     write_commented(&scene.shown_mesh(), &scene.ply.remarks, precision, out)
 }
