@@ -84,8 +84,8 @@ impl ReadArgs {
 #[derive(Clone, Copy, Args)]
 #[command(next_help_heading = "Files")]
 pub struct WriteArgs {
-    /// Coordinate type in PLY, OBJ, OFF and SMF: f32, f64, or auto, which is f32 where that keeps
-    /// vertices apart and moves none by more than a thousandth of the mean edge
+    /// Coordinate type in PLY, OBJ, OFF, SMF and text STL: f32, f64, or auto, which is f32 where that
+    /// keeps vertices apart and moves none by more than a thousandth of the mean edge
     #[arg(long, value_name = "TYPE", default_value = "auto")]
     precision: Precision,
 }

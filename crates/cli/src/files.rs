@@ -188,5 +188,5 @@ fn check_stdout(session: &Session) -> Result<(), Failure> {
 pub fn pipe_format(session: &Session) -> Result<Format, Failure> {
     session
         .format
-        .ok_or_else(|| Failure::usage("-: standard input and output have no suffix; give --format"))
+        .ok_or_else(|| Failure::usage("-: give --format with the suffix of a mesh, such as ply"))
 }

@@ -67,12 +67,12 @@ const INTERRUPTED: i32 = 130;
 /// are returned as exit codes, too. Signals are left alone; see [`end_at_signals`].
 pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> u8 {
     let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
-    let (verb, cli) = match parse(&arguments) {
+    let (mut verb, cli) = match parse(&arguments) {
         Ok(parsed) => parsed,
         Err(usage) => return refuse(&usage, arguments.iter().any(|argument| argument == "--json")),
     };
     let mut session = Session::new(cli.global.clone());
-    let done = perform(&verb, cli, &mut session);
+    let done = perform(&mut verb, cli, &mut session);
     session.progress.clear();
     match done.and_then(|answer| answer.print(&session)) {
         Ok(code) => code,
@@ -100,10 +100,7 @@ fn refuse(usage: &clap::Error, json: bool) -> u8 {
     // If the stream is closed, nobody is left to tell.
     let _ = usage.print();
     if json && usage.use_stderr() {
-        let text = usage.to_string();
-        let reason = text.split("\n\nUsage:").next().unwrap_or_default();
-        let words: Vec<&str> = reason.trim_start_matches("error: ").split_whitespace().collect();
-        let failure = Failure::usage(words.join(" "));
+        let failure = Failure::usage(recipe::one_line(usage));
         answer::print_json(&report_head::of_failure(None, &failure));
     }
     u8::try_from(usage.exit_code()).unwrap_or(2)
@@ -121,10 +118,10 @@ pub fn answer_of<A: Into<OsString> + Clone>(
     listener: impl Fn(usize, usize) + Send + Sync + 'static,
 ) -> Result<String, String> {
     let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
-    let (verb, cli) = parse(&arguments).map_err(|usage| recipe::one_line(&usage))?;
+    let (mut verb, cli) = parse(&arguments).map_err(|usage| recipe::one_line(&usage))?;
     let progress = Progress::told(Box::new(listener));
     let mut session = Session::heard(cli.global.clone(), progress);
-    let done = perform(&verb, cli, &mut session).map_err(|failure| failure.to_string())?;
+    let done = perform(&mut verb, cli, &mut session).map_err(|failure| failure.to_string())?;
     Ok(done.json.to_string())
 }
 
@@ -159,18 +156,20 @@ pub fn end_at_signals() {
     });
 }
 
-fn perform(name: &str, cli: Cli, session: &mut Session) -> Result<Answer, Failure> {
-    let (name, mut answer) = match cli.work {
-        Work::Verb(verb) => (name.to_owned(), answer(*verb, session)?),
-        Work::Batch(batch) => (name.to_owned(), batch::run(&batch, cli.global, session)?),
+/// Does the work; `name` becomes that of the verb that a recipe names.
+fn perform(name: &mut String, cli: Cli, session: &mut Session) -> Result<Answer, Failure> {
+    let mut answer = match cli.work {
+        Work::Verb(verb) => answer(*verb, session)?,
+        Work::Batch(batch) => batch::run(&batch, cli.global, session)?,
         Work::Run(run) => {
             let recipe = run.recipe()?;
             let line = recipe.line(&run.paths)?;
+            *name = recipe.verb;
             session.ask(cli.global.or(line.global));
-            (recipe.verb, answer(line.verb, session)?)
+            answer(line.verb, session)?
         }
     };
-    answer.json = report_head::with_head(&name, answer.json);
+    answer.json = report_head::with_head(name, answer.json);
     Ok(answer)
 }
 

@@ -3,6 +3,7 @@
 
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use meshlod::io::gltf::{Level, LodLayout, StripMesh};
 use meshlod::io::{Note, gltf, obj, off, ply, read_bytes, smf, stl};
@@ -87,7 +88,15 @@ pub fn write_levels(
     let format = check_output(path, session)?;
     session.note(path, &scene.limits_of(format))?;
     session.progress.stage(&format!("writing {}", name(path)));
+    let _naming = naming();
     Ok(write_lods(path, scene, levels, layout)?)
+}
+
+/// Has one thread at a time write scenes: an image gets a name that is free, and takes it only once
+/// it is complete.
+fn naming() -> MutexGuard<'static, ()> {
+    static NAMING: Mutex<()> = Mutex::new(());
+    NAMING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Writes a scene to a glTF file, with these strips for faces.
@@ -157,6 +166,7 @@ fn write_noted(
 ) -> Result<(), Failure> {
     session.progress.stage(&format!("writing {}", name(path)));
     if !is_pipe(path) {
+        let _naming = naming();
         return Ok(meshlod::write(path, scene, &writing.options())?);
     }
     let format = check_output(path, session)?;

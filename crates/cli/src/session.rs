@@ -72,6 +72,9 @@ impl Session {
     /// Takes over options, those of a recipe with those of its run.
     pub fn ask(&mut self, global: GlobalArgs) {
         let GlobalArgs { json, strict, quiet, threads, format } = global;
+        if quiet && self.kept_warnings.is_none() {
+            self.progress = Progress::new(true);
+        }
         (self.json, self.strict, self.quiet, self.threads) = (json, strict, quiet, threads);
         self.format = format.and_then(|suffix| suffix.mesh);
     }
@@ -105,7 +108,8 @@ impl Session {
             Some(kept) => {
                 kept.lock().unwrap_or_else(PoisonError::into_inner).push(line.to_string())
             }
-            None if self.quiet => {}
+            // With `--strict`, a warning may be why the run fails.
+            None if self.quiet && !self.strict => {}
             None => self.progress.suspend(|| say(format_args!("warning: {line}"))),
         }
     }

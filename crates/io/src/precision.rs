@@ -105,11 +105,18 @@ impl Scene {
     /// Notes the vertices that a precision that was asked for moves in a format that could keep them,
     /// if that changes the shape.
     pub fn precision_limits(&self, format: Format, precision: Precision) -> Option<Note> {
-        let has_both = matches!(format, Format::Ply | Format::Obj | Format::Off | Format::Smf);
-        let (most, count) = changes(&self.shown_mesh()).filter(|_| has_both)?;
+        let has_both = match format {
+            Format::Ply | Format::Obj | Format::Off | Format::Smf => true,
+            Format::Stl => self.has_solids,
+            Format::Gltf | Format::Glb => false,
+        };
+        if precision != Precision::F32 || !has_both {
+            return None;
+        }
+        let (most, count) = changes(&self.shown_mesh())?;
         let why = format!(" by up to {most:.1e}");
         let note = Note::changed(count, "vertex rounded", "vertices rounded").detailed(&why);
-        (precision == Precision::F32).then(|| note.remedied("--precision auto or f64 keeps them"))
+        Some(note.remedied("--precision auto or f64 keeps them"))
     }
 
     /// Returns the largest change of a coordinate in a format that has 32 bits alone, if those

@@ -31,7 +31,7 @@ pub fn abandon_files() {
 
 /// Removes temporary files that processes which were killed have left beside these paths.
 ///
-/// For callers who know that no other process is writing to them. Cost: reads each folder once.
+/// Those of processes that are alive stay, where `/proc` tells of them. Cost: reads each folder once.
 pub fn remove_abandoned<'p>(paths: impl IntoIterator<Item = &'p Path>) {
     let mut folders: BTreeMap<&Path, BTreeSet<&str>> = BTreeMap::new();
     for path in paths {
@@ -42,7 +42,8 @@ pub fn remove_abandoned<'p>(paths: impl IntoIterator<Item = &'p Path>) {
     for (folder, names) in folders {
         for file in fs::read_dir(folder).into_iter().flatten().flatten() {
             let found = file.file_name();
-            if found.to_str().and_then(target_of).is_some_and(|target| names.contains(target)) {
+            let Some((target, process)) = found.to_str().and_then(target_of) else { continue };
+            if names.contains(target) && !Path::new("/proc").join(process).exists() {
                 // What cannot be removed does no harm.
                 let _ = fs::remove_file(file.path());
             }
@@ -50,12 +51,12 @@ pub fn remove_abandoned<'p>(paths: impl IntoIterator<Item = &'p Path>) {
     }
 }
 
-/// Returns the name that a temporary file would have got.
-fn target_of(temporary: &str) -> Option<&str> {
+/// Returns the name that a temporary file would have got, and the number of its process.
+fn target_of(temporary: &str) -> Option<(&str, &str)> {
     let (target, numbers) = temporary.strip_prefix('.')?.rsplit_once('.')?;
     let (process, number) = numbers.split_once('-')?;
     let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-    (is_number(process) && is_number(number)).then_some(target)
+    (is_number(process) && is_number(number)).then_some((target, process))
 }
 
 /// Writes a file with `fill`; the old one stays as it is until the new one is complete.
@@ -223,8 +224,14 @@ mod tests {
     #[test]
     fn what_a_killed_process_left_goes_and_nothing_else() {
         let folder = tempfile::tempdir().unwrap();
-        let names =
-            [".a.ply.17-0", ".a.ply.17-x", ".a.ply.17", ".ba.ply.1-1", "a.ply.1-1", "a.ply"];
+        let names = [
+            ".a.ply.4194305-0",
+            ".a.ply.4194305-x",
+            ".a.ply.17",
+            ".ba.ply.1-1",
+            "a.ply.1-1",
+            "a.ply",
+        ];
         names.iter().for_each(|name| fs::write(folder.path().join(name), name).unwrap());
         remove_abandoned([folder.path().join("a.ply").as_path()]);
         let left = names.map(|name| folder.path().join(name).exists());

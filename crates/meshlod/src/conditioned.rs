@@ -170,5 +170,5 @@ fn has_valid_locks(mesh: &Mesh, locks: &Locks) -> bool {
     of_all && locks.ties.iter().flatten().all(|v| v.index() < count)
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "io"))]
 mod tests;

@@ -141,7 +141,11 @@ fn refine<S: Source>(
         // Nothing in the file is finer.
         return Ok(VerifiedExtract { extract: near.extract(&finest)?, verification });
     }
-    let part = if measured_poses(archive)?.is_some() { POSED_START } else { START };
+    let part = match measured_poses(archive)? {
+        Some(_) if least > 0.0 => (POSED_START - rounding / least).max(0.0),
+        Some(_) => POSED_START,
+        None => START,
+    };
     let mut cut = Cut::at(&near.model, &scaled(query, part))?;
     let mut check = Check::new(&surface, &near, rounding);
     loop {

@@ -45,7 +45,7 @@ class Cut:
         upload(cut.vertices, cut.triangles)
         while camera := next_camera():
             change = cut.update(camera=camera, seconds=0.004)
-            patch(change.slots, change.triangles)
+            patch(change.slots, change.triangles)  # after growing to change.slots[-1] + 1 rows
 
     The level has no cracks at any time, also if a limit has stopped an update.
     """

@@ -102,8 +102,10 @@ def _one(task: tuple[list[str], str, str]) -> str:
 
 def _row(status: str, result: Any, distributed: Any) -> dict[str, Any]:
     """Returns the report of a task, or that of a file whose workers died."""
-    if status != "error":
+    if status == "finished":
         return json.loads(result)
+    if status != "error":
+        raise MeshlodError(f"a task was {status}: {result}")
     _, error, trace = result
     if isinstance(error, distributed.scheduler.KilledWorker):
         reason = "its workers died; it may need more memory than they have"

@@ -49,7 +49,9 @@ pub fn run(batch: &Batch, global: GlobalArgs, session: &Session) -> Result<Answe
     batch.report.as_deref().map_or(Ok(()), check_report)?;
     session.progress.stage("looking for files");
     let plan = Plan::new(&batch.inputs, &batch.output, global.format.as_ref())?;
-    let fingerprint = recipe.fingerprint();
+    // What passes without may not pass with it.
+    let strictly = if global.strict { " --strict" } else { "" };
+    let fingerprint = recipe.fingerprint() + strictly;
     let mut journal = Journal::read(&batch.output)?;
     let known = |job: &FileJob| match batch.force {
         true => None,
@@ -67,6 +69,7 @@ pub fn run(batch: &Batch, global: GlobalArgs, session: &Session) -> Result<Answe
         let skipped = reports.len() - todo.len();
         let jobs: Vec<&FileJob> = todo.iter().map(|&at| &plan.jobs[at]).collect();
         let (mut done, mut unkept) = (skipped, None);
+        session.progress.part("files", 0, reports.len());
         session.progress.part("files", done, reports.len());
         remove_abandoned(jobs.iter().map(|job| &*job.output));
         run_jobs(&jobs, &recipe, &Crew::new(batch.jobs, &global), &mut |at, report| {
@@ -85,7 +88,8 @@ pub fn run(batch: &Batch, global: GlobalArgs, session: &Session) -> Result<Answe
     if let Some(path) = &batch.report {
         write_file(path, table(&reports, is_json(path)).as_bytes())?;
     }
-    Ok(answer(batch, &recipe, &plan, &reports, start.elapsed().as_secs_f64()))
+    let seconds = start.elapsed().as_secs_f64();
+    Ok(answer(batch, (&recipe, &fingerprint), &plan, &reports, seconds))
 }
 
 /// Refuses recipes that cannot be run for many files, and those that the parser refuses.
@@ -131,7 +135,7 @@ fn tell(report: &FileReport, session: &Session) {
 
 fn answer(
     batch: &Batch,
-    recipe: &Recipe,
+    (recipe, fingerprint): (&Recipe, &str),
     plan: &Plan,
     reports: &[FileReport],
     seconds: f64,
@@ -145,7 +149,7 @@ fn answer(
     );
     let mut json = json!({
         "file": files::name(&batch.output),
-        "recipe": recipe.fingerprint(),
+        "recipe": fingerprint,
         "files": reports.len(),
         "other_files": plan.others,
         "seconds": seconds,

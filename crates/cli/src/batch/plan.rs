@@ -104,6 +104,8 @@ impl Found {
             ),
             false => (fixed_part(pattern), text.to_owned()),
         };
+        // Paths that are found do not begin with a dot of the pattern.
+        let base = base.strip_prefix(".").map(Path::to_owned).unwrap_or(base);
         let paths = glob_with(&text, MATCHING).map_err(|error| Failure::at(pattern, error))?;
         let mut found = Self { base, files: Vec::new(), others: 0 };
         let made_before = made_before(&found.base, out);

@@ -22,7 +22,9 @@ pub use crate::recipe::text::Syntax;
 use crate::recipe::text::{Fault, entries};
 
 /// Largest file that is read as a recipe.
-const MAX_BYTES: u64 = 1 << 20;
+const MAX_BYTES: u64 = 1 << 16;
+/// Options that decide about no byte of an output.
+const OF_THE_RUN: [&str; 4] = ["json", "quiet", "threads", "strict"];
 
 /// Verb with options, ready for the command-line parser.
 #[derive(Clone, Debug)]
@@ -67,7 +69,7 @@ impl Recipe {
             .and_then(|file| file.take(MAX_BYTES + 1).read_to_string(&mut text))
             .map_err(|error| Failure::at(path, error))?;
         if text.len() as u64 > MAX_BYTES {
-            return Err(Failure::at(path, "is larger than 1 MiB: not a recipe"));
+            return Err(Failure::at(path, "is larger than 64 KiB: not a recipe"));
         }
         Self::parse(&text, syntax, path)
     }
@@ -145,7 +147,8 @@ impl Recipe {
 
     /// Describes everything that decides about the bytes of an output, in one line.
     pub fn fingerprint(&self) -> String {
-        let options = self.options.iter().map(|option| option.fingerprint());
+        let decides = |option: &&Spelled| !OF_THE_RUN.contains(&&*option.name);
+        let options = self.options.iter().filter(decides).map(|option| option.fingerprint());
         let all: Vec<String> = std::iter::once(self.verb.clone()).chain(options).collect();
         format!("meshlod {} {}", env!("CARGO_PKG_VERSION"), all.join(" "))
     }

@@ -13,7 +13,7 @@ pub(super) fn detach_meshes(json: &mut Value, gone: &[usize]) {
     for (index, node) in nodes.into_iter().flatten().enumerate() {
         let mesh = node["mesh"].as_u64();
         let Some(node) = node.as_object_mut() else { continue };
-        if mesh.is_some_and(|mesh| gone.contains(&(mesh as usize))) {
+        if mesh.is_some_and(|mesh| gone.binary_search(&(mesh as usize)).is_ok()) {
             ["mesh", "skin", "weights"].iter().for_each(|key| drop(node.shift_remove(*key)));
             drop_inner(node, "extensions", "EXT_mesh_gpu_instancing");
             bare.push(index as u64);
@@ -21,7 +21,8 @@ pub(super) fn detach_meshes(json: &mut Value, gone: &[usize]) {
     }
     let is_of_bare = |channel: &Value| {
         let target = &channel["target"];
-        target["path"] == "weights" && target["node"].as_u64().is_some_and(|n| bare.contains(&n))
+        target["path"] == "weights"
+            && target["node"].as_u64().is_some_and(|n| bare.binary_search(&n).is_ok())
     };
     if let Some(animations) = json.get_mut("animations").and_then(Value::as_array_mut) {
         animations.retain_mut(|animation| {
@@ -38,7 +39,7 @@ pub(super) fn detach_meshes(json: &mut Value, gone: &[usize]) {
     }
     let meshes = json.get_mut("meshes").and_then(Value::as_array_mut);
     for (index, mesh) in meshes.into_iter().flatten().enumerate() {
-        if let Some(mesh) = mesh.as_object_mut().filter(|_| gone.contains(&index)) {
+        if let Some(mesh) = mesh.as_object_mut().filter(|_| gone.binary_search(&index).is_ok()) {
             mesh.shift_remove("weights");
             drop_inner(mesh, "extras", "targetNames");
             // Its one triangle has no texture coordinates.

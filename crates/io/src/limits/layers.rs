@@ -14,8 +14,12 @@ impl Scene {
         let meshes: Vec<&Mesh> = shown.iter().map(|&mesh| &self.meshes[mesh].mesh).collect();
         let layers =
             meshes.iter().filter_map(|mesh| mesh.attributes.as_ref()).flat_map(|a| &a.layers);
+        let sets = match format {
+            Format::Obj => self.shown_texture_sets(),
+            _ => BTreeSet::new(),
+        };
         let lost: BTreeSet<String> =
-            layers.filter(|layer| !self.holds(format, layer)).map(title).collect();
+            layers.filter(|layer| !holds(format, layer, &sets)).map(title).collect();
         let split = |splits: fn(&Mesh) -> usize| {
             let is_new = !self.had_split_seams();
             if is_new { meshes.iter().map(|mesh| splits(mesh)).sum() } else { 0 }
@@ -39,18 +43,6 @@ impl Scene {
                 "vertices split at seams of their colours",
             ),
         ]
-    }
-
-    /// Reports whether a format has a place for a layer.
-    fn holds(&self, format: Format, layer: &Layer) -> bool {
-        match (format, layer.kind) {
-            (Format::Gltf | Format::Glb | Format::Ply, _) => true,
-            (Format::Stl, _) => false,
-            (Format::Obj, LayerKind::Uv(set)) => self.shown_texture_sets().contains(&set),
-            (_, kind) => {
-                matches!(kind, LayerKind::Normal | LayerKind::Uv(0) | LayerKind::Color(0))
-            }
-        }
     }
 
     /// Returns the set of texture coordinates that the base colour of each material uses.
@@ -83,6 +75,17 @@ impl Scene {
     /// that to split them again changes nothing.
     pub(crate) fn had_split_seams(&self) -> bool {
         self.source.is_some() || self.has_split_seams
+    }
+}
+
+/// Reports whether a format has a place for a layer; `sets` are the sets of texture coordinates that
+/// an OBJ file has.
+fn holds(format: Format, layer: &Layer, sets: &BTreeSet<u8>) -> bool {
+    match (format, layer.kind) {
+        (Format::Gltf | Format::Glb | Format::Ply, _) => true,
+        (Format::Stl, _) => false,
+        (Format::Obj, LayerKind::Uv(set)) => sets.contains(&set),
+        (_, kind) => matches!(kind, LayerKind::Normal | LayerKind::Uv(0) | LayerKind::Color(0)),
     }
 }
 

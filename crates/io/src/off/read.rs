@@ -68,6 +68,7 @@ fn read_noted(bytes: &[u8]) -> Result<(Mesh, Vec<Note>), ParseError> {
     }
     let attributes = columns.attributes(layout, &triangles);
     let notes = vec![
+        Note::not_finite(text.not_finite()),
         Note::left_out(scratch.colored, "colour of a face", "colours of faces")
             .remedied("colours of vertices (COFF) stay, and those of faces in .ply"),
         Note::left_out(

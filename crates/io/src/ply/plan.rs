@@ -120,14 +120,17 @@ fn textured_mesh(scene: &Scene) -> Cow<'_, Mesh> {
         let layers = &mesh.attributes.as_ref()?.layers;
         layers.iter().position(|layer| layer.kind == LayerKind::Uv(set))
     };
-    let pair = find(&mesh, 0).zip(find(&mesh, set)).filter(|(first, own)| first != own);
-    if let Some((first, own)) = pair
+    let (first, own) = (find(&mesh, 0), find(&mesh, set));
+    if first != own
+        && let Some(own) = own
         && let Some(attributes) = &mut mesh.to_mut().attributes
     {
         let layers = &mut attributes.layers;
-        let name = layers[first].name.clone();
-        layers[first].name = std::mem::replace(&mut layers[own].name, name);
-        layers[first].kind = LayerKind::Uv(set);
+        if let Some(first) = first {
+            let name = layers[first].name.clone();
+            layers[first].name = std::mem::replace(&mut layers[own].name, name);
+            layers[first].kind = LayerKind::Uv(set);
+        }
         layers[own].kind = LayerKind::Uv(0);
     }
     mesh

@@ -107,6 +107,11 @@ impl InstancePlace {
         Self { mesh, placement, world, to_levels, growth: stretch(out), growth_back }
     }
 
+    /// Returns true if the mesh is shown where the levels have it.
+    fn is_of_levels(&self) -> bool {
+        self.to_levels == Some(DMat4::IDENTITY)
+    }
+
     fn is_similar(&self) -> bool {
         self.growth * self.growth_back <= SIMILAR
     }
@@ -160,20 +165,30 @@ impl InstancePlace {
 }
 
 /// Returns the union of a query in all places, each mesh for itself.
+///
+/// Meshes that are shown nowhere but where the levels are share the query as it is.
 fn in_all_places<'f>(meshes: &[&Mesh], places: &[InstancePlace], query: &Query<'f>) -> Query<'f> {
+    let mut of_meshes: Vec<Vec<&InstancePlace>> = meshes.iter().map(|_| Vec::new()).collect();
+    places.iter().for_each(|place| of_meshes[place.mesh].push(place));
+    let is_moved = |here: &[&InstancePlace]| here.iter().any(|place| !place.is_of_levels());
     let of_mesh = |(index, mesh): (usize, &&Mesh)| {
+        let here = &of_meshes[index];
+        if !is_moved(here) {
+            return None;
+        }
         let own = Some(mesh.bounds()).filter(|own| !own.is_empty())?;
-        let mut here = places.iter().filter(|place| place.mesh == index).peekable();
-        let placement = here.peek()?.placement;
-        let around = enlarged(moved(&own, &placement));
-        let asked = here.map(|place| place.query(query, &own));
+        let around = enlarged(moved(&own, &here[0].placement));
+        let asked = here.iter().map(|place| place.query(query, &own));
         let asked = needed(asked.filter(|asked| asked.focus.may_meet(&around)).collect(), &around);
         let focus = Focus::Box([around.min, around.max]);
         // The only mesh needs no box that keeps it apart.
         let focus = if meshes.len() == 1 { Focus::Everything } else { focus };
         Some(Query { focus, tolerance: Tolerance::Each(asked) })
     };
-    let each: Vec<_> = meshes.iter().enumerate().filter_map(of_mesh).collect();
+    let mut each: Vec<_> = meshes.iter().enumerate().filter_map(of_mesh).collect();
+    if of_meshes.iter().any(|here| !here.is_empty() && !is_moved(here)) {
+        each.push(query.clone());
+    }
     Query { focus: Focus::Everything, tolerance: Tolerance::Each(each) }
 }
 

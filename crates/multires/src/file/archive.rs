@@ -272,7 +272,8 @@ impl<S: Source> Archive<S> {
 
     /// Returns the error that the file has for one of its levels, in model units: the greatest of the
     /// updates that are not applied in it. It is of the [kind](Self::error_kind) of all errors in the
-    /// file, and excludes rounding. Reads the whole file.
+    /// file, and excludes rounding. Updates that a truncated file lacks are not known. Reads the whole
+    /// file.
     /// # Errors
     /// A damaged file.
     pub fn error_of(&self, level: &Level) -> Result<f64, FileError> {

@@ -202,10 +202,8 @@ impl Header {
             resources,
             has_old_resources: index == ResourceIndex::Old,
         };
-        let known =
-            LOSSLESS | WEDGES | OLD_RESOURCES | RESOURCES | STAGES | OLD_PREDICTED | PREDICTED;
         let has = |flag: u8| bytes[BODY_AT + 3] & flag != 0;
-        if has(!known) || !this.has_wedges && has(OLD_PREDICTED | PREDICTED) {
+        if !this.has_wedges && has(OLD_PREDICTED | PREDICTED) {
             return Err(bad(UNKNOWN_FLAGS));
         }
         if this.has_wedges && (has(OLD_PREDICTED) || !has(PREDICTED)) {

@@ -144,7 +144,9 @@ impl<'f> Tolerance<'f> {
             Self::Uniform(most) => *most == 0.0,
             Self::Pixels { pixels, .. } => *pixels == 0.0,
             Self::Field(_) => false,
-            Self::Each(queries) => queries.iter().all(|query| query.tolerance.is_finest()),
+            Self::Each(queries) => {
+                !queries.is_empty() && queries.iter().all(|query| query.tolerance.is_finest())
+            }
         }
     }
 
