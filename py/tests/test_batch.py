@@ -109,7 +109,9 @@ def test_workers_that_are_killed_change_no_byte(tmp_path):
         assert [report.status for report in reports].count("done") == 60
         (tmp_path / "in" / "bad.ply").unlink()
         again = meshlod.dask.map(tmp_path / "in", TEN, tmp_path / "out", client=client)
-    assert {report.status for report in again} == {"skipped"}
+    # What a worker had made and not yet told when it was killed may have been made twice.
+    statuses = [report.status for report in again]
+    assert set(statuses) <= {"skipped", "done"} and statuses.count("done") <= 2 * len(killed)
     assert contents(tmp_path / "out") == by_command(tmp_path / "in", tmp_path / "expected")
     # The command knows what the workers have made.
     known = meshlod.batch(tmp_path / "in", tmp_path / "out", TEN)
