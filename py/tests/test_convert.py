@@ -115,7 +115,7 @@ def test_pyvista():
 
 
 def test_open3d():
-    open3d = pytest.importorskip("open3d")
+    open3d = pytest.importorskip("open3d", exc_type=ImportError)
     mesh = convert.to_open3d(meshlod.Mesh(*torus()))
     mesh.compute_vertex_normals()
     level = meshlod.simplify(mesh, target_reduction=0.9)
