@@ -16,7 +16,8 @@ use crate::verbs::{
 /// Level of detail for triangle meshes.
 ///
 /// The suffix selects the format: .ply .obj .stl .off .smf .gltf .glb .vrm. A path of - means
-/// standard input or output, with the format given by --format. Exit codes: 0 done, 1 could not, 2 wrong usage, 3 errors found.
+/// standard input or output, with the format given by --format. Exit codes: 0 done, 1 could not, 2
+/// wrong usage, 3 errors found.
 #[derive(Parser)]
 #[command(name = "meshlod", version, max_term_width = 100)]
 pub struct Cli {

@@ -49,7 +49,6 @@ use std::path::Path;
 use std::process::exit;
 
 use clap::{CommandFactory, FromArgMatches};
-use serde_json::Value;
 
 use crate::answer::Answer;
 use crate::command::{Cli, Verb, Work};
@@ -182,9 +181,7 @@ fn answer(verb: Verb, session: &Session) -> Result<Answer, Failure> {
         }
         verb => session.on_threads(|| verb.run(session))?,
     };
-    if let Value::Object(json) = &mut answer.json {
-        json.insert("notes".into(), session.take_notes().into());
-    }
+    session.add_notes(&mut answer);
     Ok(answer)
 }
 

@@ -10,6 +10,7 @@ use meshlod::Format;
 use meshlod::io::{Note, NoteKind};
 use serde_json::{Value, json};
 
+use crate::answer::Answer;
 use crate::args::GlobalArgs;
 use crate::failure::Failure;
 use crate::files;
@@ -142,9 +143,12 @@ impl Session {
         Ok(())
     }
 
-    /// Returns the notes on all files, for the JSON object.
-    pub fn take_notes(&self) -> Vec<Value> {
-        std::mem::take(&mut *self.notes.lock().unwrap_or_else(PoisonError::into_inner))
+    /// Puts the notes on all files into the JSON object of an answer.
+    pub fn add_notes(&self, answer: &mut Answer) {
+        let notes = std::mem::take(&mut *self.notes.lock().unwrap_or_else(PoisonError::into_inner));
+        if let Value::Object(json) = &mut answer.json {
+            json.insert("notes".into(), notes.into());
+        }
     }
 
     /// Prints the reason why a command or one of its files failed, unless the session prints

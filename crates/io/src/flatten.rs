@@ -63,10 +63,11 @@ impl Scene {
     /// Merges all meshes that the scene shows into a single mesh in world space.
     ///
     /// Normals are transformed by the inverse transpose and stay unit vectors; a mirroring node
-    /// flips winding and tangents. The layers are the union over all meshes. Where a mesh lacks one,
-    /// colours are white, normals those of the faces around, and other values 0. Material label `i` is `Scene::materials[i]`; faces without a material share
-    /// one more label, named "". Objects are taken from the mesh, or else each node becomes one; a
-    /// single node without a name gives no objects.
+    /// flips winding and tangents. The layers are the union over all meshes: where a mesh lacks one,
+    /// colours are white, normals those of the faces around, tangents unit vectors, and other
+    /// values 0. Material label `i` is `Scene::materials[i]`; faces without a material share one more
+    /// label, named "". Objects are taken from the mesh, or else each node becomes one; a single node
+    /// without a name gives no objects.
     ///
     /// Cost: linear in the size of the result.
     pub fn flatten(&self) -> Mesh {

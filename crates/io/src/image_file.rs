@@ -89,6 +89,12 @@ pub(crate) fn mime_type(bytes: &[u8]) -> Option<&'static str> {
     }
 }
 
+/// Reports whether a new glTF document can hold an encoded image: a PNG, a JPEG or, by an extension,
+/// a WebP.
+pub(crate) fn holds_image(bytes: &[u8]) -> bool {
+    matches!(mime_type(bytes), Some("image/png" | "image/jpeg" | "image/webp"))
+}
+
 /// Reports whether an image is a PNG or JPEG with colours, which a map of heights has not.
 pub(crate) fn has_colors(bytes: &[u8]) -> bool {
     match image_type("", bytes) {

@@ -63,6 +63,15 @@ impl Note {
         )
     }
 
+    /// Creates the note that faces without a triangle were left out.
+    pub(crate) fn thin_faces(count: usize) -> Self {
+        Self::left_out(
+            count,
+            "face of fewer than three corners",
+            "faces of fewer than three corners",
+        )
+    }
+
     fn new(kind: NoteKind, count: usize, one: &str, many: &str) -> Self {
         let what = if count == 1 { one } else { many };
         let (names, remedy) = (Vec::new(), None);

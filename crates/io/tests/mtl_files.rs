@@ -1,32 +1,17 @@
 //! OBJ files with their libraries and images, in folders as people have them.
 
+mod in_folders;
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use meshlod_fixtures::own_file;
 use meshlod_io::gltf::{Skeleton, SkeletonImage, write_glb};
-use meshlod_io::{Format, Note, NoteKind, ReadOptions, Scene, WriteOptions, read, write};
-use tempfile::{TempDir, tempdir};
+use meshlod_io::{Format, Note, NoteKind, Scene};
+use tempfile::tempdir;
 
-fn read_it(path: &Path) -> Scene {
-    read(path, &ReadOptions::default()).unwrap()
-}
-
-fn write_it(path: &Path, scene: &Scene) {
-    write(path, scene, &WriteOptions::default()).unwrap();
-}
-
-/// Returns a folder with these files.
-fn folder(files: &[(&str, &[u8])]) -> TempDir {
-    let folder = tempdir().unwrap();
-    for (name, bytes) in files {
-        let path = folder.path().join(name);
-        fs::create_dir_all(path.parent().unwrap()).unwrap();
-        fs::write(path, bytes).unwrap();
-    }
-    folder
-}
+use in_folders::{folder, read_it, write_it};
 
 /// Returns all files of a folder by their names in it.
 fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {

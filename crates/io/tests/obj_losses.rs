@@ -1,32 +1,19 @@
 //! Contents of OBJ files and their libraries: they come through, or a note counts them.
 
-use std::fs;
-use std::path::Path;
+mod in_folders;
 
-use meshlod_io::{Format, Image, Material, Note, ReadOptions, Scene, WriteOptions};
-use meshlod_io::{gltf, obj, ply, read, read_bytes, write};
+use std::fs;
+
+use meshlod_io::{Format, Image, Material, Note, ReadOptions, Scene};
+use meshlod_io::{gltf, obj, ply, read_bytes};
 use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId};
 use serde_json::{Value, json};
 use tempfile::{TempDir, tempdir};
 
+use in_folders::{folder, read_it, write_it};
+
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
-
-fn read_it(path: &Path) -> Scene {
-    read(path, &ReadOptions::default()).unwrap()
-}
-
-fn write_it(path: &Path, scene: &Scene) {
-    write(path, scene, &WriteOptions::default()).unwrap();
-}
-
-fn folder(files: &[(&str, &[u8])]) -> TempDir {
-    let folder = tempdir().unwrap();
-    for (name, bytes) in files {
-        fs::write(folder.path().join(name), bytes).unwrap();
-    }
-    folder
-}
 
 fn text_of(folder: &TempDir, name: &str) -> String {
     fs::read_to_string(folder.path().join(name)).unwrap()

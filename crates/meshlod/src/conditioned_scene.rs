@@ -15,9 +15,13 @@ const MANY_PARTS: usize = 20;
 
 /// A scene ready to be simplified, with the options for it.
 ///
-/// With [`Topology::Free`](crate::Topology::Free) borders that lie on each other are sewn together, and non-manifold
-/// vertices are split, so that their copies move and are contracted freely; see [`condition`](meshlod_mesh::condition). With
-/// [`Topology::Keep`](crate::Topology::Keep) all meshes are simplified as they are. The scene itself does not change.
+/// With [`Topology::Free`] borders that lie on each other are sewn together, and non-manifold
+/// vertices are split, so that their copies move and are contracted freely; see [`condition`]. With
+/// [`Topology::Keep`] all meshes are simplified as they are. The scene itself does not change.
+///
+/// [`Topology::Free`]: crate::Topology::Free
+/// [`Topology::Keep`]: crate::Topology::Keep
+/// [`condition`]: meshlod_mesh::condition
 pub struct ConditionedScene<'s> {
     pub(crate) scene: &'s Scene,
     pub(crate) options: Options,

@@ -14,7 +14,6 @@ from ._errors import MeshlodError
 from ._mesh import Mesh
 from ._query import Camera, Focus, query
 
-
 #: Seconds from which on a limit is none.
 LONGEST = 1e9
 

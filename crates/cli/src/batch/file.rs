@@ -66,10 +66,9 @@ fn attempt(
     let session = Session::silent(line.global);
     let done = line.verb.run(&session);
     report.warnings = session.take_warnings();
-    done.map(|mut answer| {
-        answer.json["notes"] = session.take_notes().into();
-        answer
-    })
+    let mut answer = done?;
+    session.add_notes(&mut answer);
+    Ok(answer)
 }
 
 fn defect(panic: &(dyn Any + Send)) -> Failure {

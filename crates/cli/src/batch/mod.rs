@@ -69,6 +69,7 @@ pub fn run(batch: &Batch, global: GlobalArgs, session: &Session) -> Result<Answe
         let skipped = reports.len() - todo.len();
         let jobs: Vec<&FileJob> = todo.iter().map(|&at| &plan.jobs[at]).collect();
         let (mut done, mut unkept) = (skipped, None);
+        // Zero sets up the line, also where an earlier run has made some.
         session.progress.part("files", 0, reports.len());
         session.progress.part("files", done, reports.len());
         remove_abandoned(jobs.iter().map(|job| &*job.output));

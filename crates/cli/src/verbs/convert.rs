@@ -71,7 +71,7 @@ impl Convert {
     }
 }
 
-/// Counts the vertices that are written.
+/// Counts the vertices that are written of all meshes, each counted once and before seams split any.
 fn vertices(scene: &Scene, keeps_unused: bool) -> usize {
     let is_written = |&&is_used: &&bool| is_used || keeps_unused;
     let written = |mesh: &Mesh| mesh.used_vertices().iter().filter(is_written).count();

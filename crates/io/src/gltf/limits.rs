@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::new_document::holds_image;
 use super::unmapped::UnmappedMaterials;
+use crate::image_file::holds_image;
 use crate::obj::mtl::untold;
 use crate::{Material, Note, Scene, Shading};
 

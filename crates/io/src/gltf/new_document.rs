@@ -10,7 +10,7 @@ use super::lod::list_extension;
 use super::materials::EMISSIVE_STRENGTH;
 use super::new_material;
 use super::unmapped::{UnmappedMaterials, is_mapped};
-use crate::image_file::mime_type;
+use crate::image_file::{holds_image, mime_type};
 use crate::scene::IDENTITY;
 use crate::{Image, Node, Scene, SceneMesh, remarks};
 
@@ -105,12 +105,6 @@ pub(super) const WEBP: &str = "EXT_texture_webp";
 
 fn is_webp(image: &Value) -> bool {
     image.get("mimeType").is_some_and(|kind| kind == "image/webp")
-}
-
-/// Reports whether a new document can hold an encoded image: a PNG, a JPEG or, by an extension, a
-/// WebP.
-pub(super) fn holds_image(bytes: &[u8]) -> bool {
-    matches!(mime_type(bytes), Some("image/png" | "image/jpeg" | "image/webp"))
 }
 
 /// Images in use; image `i` is texture `i`.

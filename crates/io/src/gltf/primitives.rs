@@ -33,7 +33,8 @@ impl<'a> Replacer<'a> {
     ///
     /// Primitives keep everything but their arrays. Each gets the attributes that it had, and those
     /// that no primitive had. A primitive left without faces is dropped; a mesh left without faces
-    /// keeps one degenerate primitive, and true comes back. Positions are quantized to the grid, if there is one.
+    /// keeps one degenerate primitive. Positions are quantized to the grid, if there is one. Returns
+    /// true if the mesh has no faces.
     ///
     /// # Errors
     /// If the mesh is invalid or a face's label is not a triangle primitive; also those of

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use meshlod_mesh::{LayerKind, Mesh};
 
-use super::new_document::holds_image;
+use crate::image_file::holds_image;
 use crate::{Note, Scene};
 
 /// Materials with textures, as a new document holds them, of faces without texture coordinates.

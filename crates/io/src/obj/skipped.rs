@@ -66,11 +66,7 @@ impl Skipped {
             )
             .remedied("export curves and surfaces as faces"),
             note(other, "other statement", "other statements").named(words),
-            note(
-                self.thin_faces,
-                "face of fewer than three corners",
-                "faces of fewer than three corners",
-            ),
+            Note::thin_faces(self.thin_faces),
             note(
                 self.smoothing.len(),
                 "smoothing group that is no number",

@@ -16,8 +16,7 @@ use crate::{Precision, Scene, remarks};
 /// Equal uvs and equal normals are written once; the uvs of a face are those of the set that the
 /// texture of its base colour uses. Colours follow the positions, without opacity; a vertex whose
 /// faces see it in several colours is written once for each. Objects become `o`, materials `usemtl`,
-/// with names made unique, and smoothing groups `s`. Comments of a
-/// PLY file come first.
+/// with names made unique, and smoothing groups `s`. Comments of a PLY file come first.
 /// Positions (at `F64`), uvs and normals read back bit for bit. Other layers are not written.
 ///
 /// # Errors

@@ -21,15 +21,15 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
 /// The header may be missing or run into the counts without a blank; comments may appear anywhere.
 /// Polygons are triangulated; faces of one or two corners and face colours are left out with a
 /// note. If the header names no attributes, but all vertices have three or four numbers more, those
-/// are colours, or unit normals. Vertex colours have three or
-/// four components; if any exceeds 1, all are taken to be out of 255. Normals, colours and texture
-/// coordinates that are not finite become 0.
+/// are colours, or unit normals. Vertex colours have three or four components; if any exceeds 1, all
+/// are taken to be out of 255. Normals, colours and texture coordinates that are not finite become
+/// 0, and are counted.
 ///
 /// Cost: O(n), n = bytes, plus that of triangulating concave polygons.
 /// # Errors
 /// The line and the reason: counts that exceed the file, an invalid number, a coordinate that is
-/// not finite, an index out of range, a face without corners. Also files without
-/// faces, binary files, and dimensions other than three.
+/// not finite, an index out of range, a face without corners. Also files without faces, binary
+/// files, and dimensions other than three.
 /// # References
 /// [PLM93], section OFF of its manual.
 pub fn read_scene(bytes: &[u8]) -> Result<Scene, ParseError> {
@@ -71,11 +71,7 @@ fn read_noted(bytes: &[u8]) -> Result<(Mesh, Vec<Note>), ParseError> {
         Note::not_finite(text.not_finite()),
         Note::left_out(scratch.colored, "colour of a face", "colours of faces")
             .remedied("colours of vertices (COFF) stay, and those of faces in .ply"),
-        Note::left_out(
-            scratch.thin,
-            "face of fewer than three corners",
-            "faces of fewer than three corners",
-        ),
+        Note::thin_faces(scratch.thin),
     ];
     Ok((Mesh { attributes, ..Mesh::new(columns.positions, triangles) }, notes))
 }

@@ -86,11 +86,7 @@ fn notes(header: &Header, body: &Body) -> Vec<Note> {
             "lists of texture coordinates that do not match their faces",
         )
         .remedied("a list needs two numbers for each corner of its face"),
-        Note::left_out(
-            body.thin_faces,
-            "face of fewer than three corners",
-            "faces of fewer than three corners",
-        ),
+        Note::thin_faces(body.thin_faces),
         Note::left_out(body.bytes_left, "byte behind the last row", "bytes behind the last row")
             .remedied("if they are rows, correct the counts in the header"),
         Note::changed(

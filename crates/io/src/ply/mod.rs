@@ -82,10 +82,10 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
 /// Parses a PLY file, text or binary, as one mesh under one node; `resolve` loads the textures.
 ///
 /// Attributes are `None` if vertices and faces have none. Faces with fewer than three corners
-/// are dropped, with a note, as are the degenerate triangles that join parts of a strip; a face that repeats a vertex is
-/// kept. Numbers in text are rounded to the type that the header declares, so that both encodings
-/// of a mesh read the same. What is skipped is in the notes of the scene. Memory: at most a small
-/// multiple of `bytes`, whatever the header claims, beside the textures.
+/// are dropped, with a note, as are the degenerate triangles that join parts of a strip; a face
+/// that repeats a vertex is kept. Numbers in text are rounded to the type that the header declares,
+/// so that both encodings of a mesh read the same. What is skipped is in the notes of the scene.
+/// Memory: at most a small multiple of `bytes`, whatever the header claims, beside the textures.
 /// # Errors
 /// Anything that is not a mesh of at least one face, with the line of text or byte of binary data.
 pub fn read_scene(bytes: &[u8], resolve: Resolve<'_>) -> Result<Scene, ParseError> {

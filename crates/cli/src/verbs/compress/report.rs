@@ -58,7 +58,7 @@ impl CompressedFile {
         let missed: Vec<String> = missed.collect();
         let (one, many) = ("error bound of an attribute", "error bounds of attributes");
         Note::left_out(missed.len(), one, many).named(missed).remedied(
-            "correct values that are far from all others, or build --lossless an .mlod file",
+            "correct values that are far from all others, or use build --lossless, which keeps all",
         )
     }
 
