@@ -30,6 +30,11 @@ impl Failure {
         Self { file: Some(file.clone()), ..Self::new(format_args!("{file}: {reason}")) }
     }
 
+    /// Adds the file that the line, which names it already, is about.
+    pub fn about(self, path: &Path) -> Self {
+        Self { file: Some(files::name(path)), ..self }
+    }
+
     /// Creates a usage error, for arguments that the command-line parser itself accepts.
     pub fn usage(line: impl fmt::Display) -> Self {
         Self { exit_code: 2, ..Self::new(line) }

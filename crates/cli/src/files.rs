@@ -89,7 +89,7 @@ pub fn check_output(path: &Path, session: &Session) -> Result<Format, Failure> {
 fn unknown_input(path: &Path, error: &IoError) -> Failure {
     match path.is_dir() {
         true => Failure::at(path, "is a folder; name a file to read"),
-        false => Failure::new(format_args!("{error} .mlod .mlq .mlz")),
+        false => Failure::new(format_args!("{error} .mlod .mlq .mlz")).about(path),
     }
 }
 
@@ -99,9 +99,10 @@ fn unknown_output(path: &Path, error: &IoError) -> Failure {
         _ if path.is_dir() => return Failure::at(path, "is a folder; name a file to write"),
         Some(OwnFormat::Levels) => "build",
         Some(OwnFormat::Resident | OwnFormat::Sent) => "compress",
-        None => return Failure::usage(error),
+        None => return Failure::usage(error).about(path),
     };
     Failure::usage(format_args!("{}: only `meshlod {verb}` writes such files", name(path)))
+        .about(path)
 }
 
 /// Fails if a picture cannot be written to a path, before any work is done.

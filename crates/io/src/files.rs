@@ -116,7 +116,7 @@ fn parse(
         Format::Ply => ply::read_scene(bytes, resolve)?,
         Format::Stl => stl::read_scene(bytes)?,
         Format::Off => off::read_scene(bytes)?,
-        Format::Smf => Scene::from_mesh("", smf::read(bytes)?),
+        Format::Smf => smf::read_scene(bytes)?,
     };
     if matches!(format, Format::Obj | Format::Off | Format::Smf) {
         scene.ply.remarks = remarks::of_text(bytes);

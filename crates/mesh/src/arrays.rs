@@ -2,7 +2,9 @@
 
 use thiserror::Error;
 
-use crate::{Attributes, Layer, LayerKind, Mesh, MeshError, VertexId, WedgeId, first_near, weld};
+use crate::{
+    Attributes, Layer, LayerKind, Mesh, MeshError, Point, VertexId, WedgeId, first_near, weld,
+};
 
 /// Plain arrays of a mesh, as numpy and GPUs have them: one row of every array for each point.
 ///
@@ -89,10 +91,17 @@ pub enum ArraysError {
 }
 
 impl MeshArrays {
-    /// Creates arrays from positions of any precision and faces, without attributes.
-    pub fn new<T: Copy + Into<f64>>(positions: &[[T; 3]], faces: &[[u32; 3]]) -> Self {
-        let positions = positions.iter().map(|position| position.map(Into::into)).collect();
+    /// Creates arrays from positions of any [`Point`] type and faces, without attributes.
+    ///
+    /// Of a flat list of indices, `as_chunks().0` are the faces.
+    pub fn new<P: Point>(positions: &[P], faces: &[[u32; 3]]) -> Self {
+        let positions = positions.iter().map(|&position| position.to_f64()).collect();
         Self { positions, faces: faces.to_vec(), layers: Vec::new() }
+    }
+
+    /// Returns the positions as any [`Point`] type, rounded to its precision.
+    pub fn points<P: Point>(&self) -> Vec<P> {
+        self.positions.iter().copied().map(P::from_f64).collect()
     }
 
     /// Adds an attribute of a kind that has a fixed number of values, or else as many as there are

@@ -6,6 +6,7 @@ macro_rules! id {
     ($name:ident, $letter:literal, $what:literal) => {
         #[doc = concat!("Index of ", $what, ".")]
         #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+        #[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
         #[repr(transparent)]
         pub struct $name(pub u32);
 
@@ -48,5 +49,13 @@ mod tests {
     #[test]
     fn ids_print_with_their_letter() {
         assert_eq!(format!("{} {:?} {}", VertexId(12), FaceId(3), WedgeId(7)), "v12 f3 w7");
+    }
+
+    #[cfg(feature = "bytemuck")]
+    #[test]
+    fn faces_are_a_list_of_indices() {
+        let faces =
+            [[VertexId(0), VertexId(1), VertexId(2)], [VertexId(2), VertexId(1), VertexId(3)]];
+        assert_eq!(bytemuck::cast_slice::<_, u32>(&faces), [0, 1, 2, 2, 1, 3]);
     }
 }

@@ -14,6 +14,8 @@
 
 mod arrays;
 mod attributes;
+#[cfg(feature = "bevy_mesh")]
+mod bevy;
 mod bounds;
 mod buckets;
 mod closed;
@@ -29,12 +31,15 @@ mod locks;
 mod mesh;
 mod names;
 pub mod octahedral;
+mod point;
 mod strip_triangles;
 mod union_find;
 mod weld;
 
 pub use arrays::{ArraysError, MeshArrays};
 pub use attributes::{AttributeBounds, Attributes, Layer, LayerKind};
+#[cfg(feature = "bevy_mesh")]
+pub use bevy::BevyMeshError;
 pub use bounds::Bounds;
 pub use buckets::Buckets;
 pub use closed::closed_faces;
@@ -51,6 +56,7 @@ pub use labels::Labels;
 pub use locks::{Lock, Locks};
 pub use mesh::{Mesh, MeshError};
 pub use names::UnknownName;
+pub use point::Point;
 pub use strip_triangles::strip_triangles;
 pub use union_find::UnionFind;
 pub use weld::{first_near, merge_equal_wedges, weld};

@@ -209,7 +209,7 @@
 //! [`spatial`] has the search structures behind these: the exact closest point of a surface.
 //!
 //! # Features
-//! All are on by default. With `default-features = false` there are [`mesh`], [`simplify`](mod@simplify),
+//! All of these are on by default. With `default-features = false` there are [`mesh`], [`simplify`](mod@simplify),
 //! [`measure`] and [`spatial`], with 18 crates below this one and no C.
 //!
 //! | feature | adds | and needs |
@@ -223,6 +223,14 @@
 //! | `flock` | [`flock`]: a level for each of thousands of members | `multires` |
 //! | `samples` | [`samples`]: procedural meshes | |
 //! | `draco` | glTF compressed by Draco is read | `io` |
+//!
+//! Others let meshes of other crates in and out by [`mesh::MeshArrays`], and are off:
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `glam`, `mint` | their vectors and points are [`mesh::Point`]s, which arrays are made of |
+//! | `bytemuck` | ids are plain numbers: `bytemuck::cast_slice(&mesh.faces)` is a list of indices |
+//! | `bevy_mesh` | [`mesh::MeshArrays`] from a mesh of Bevy, and back |
 //!
 //! # Guarantees
 //! - No input makes it crash: errors in files are reported in one line with their position.

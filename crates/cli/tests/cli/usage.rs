@@ -109,8 +109,10 @@ fn what_could_not_be_done_is_1_and_one_line() {
         assert!(done.only_line().starts_with(&format!("meshlod: {beginning}")), "{done:?}");
         let json = run.run(&[arguments, &["--json"]].concat());
         assert_eq!((json.code, json.only_line()), (1, done.only_line()), "{arguments:?}");
-        let message = format!("meshlod: {}", json.json()["failure"]["message"].as_str().unwrap());
+        let failure = &json.json()["failure"];
+        let message = format!("meshlod: {}", failure["message"].as_str().unwrap());
         assert_eq!(message, done.only_line());
+        assert!(message[9..].starts_with(failure["file"].as_str().unwrap()), "{failure}");
     }
     assert_eq!(run.files(), ["folder.glb", "folder.ply", "in.ply", "l_LOD2.off"]);
 }

@@ -5,5 +5,5 @@ mod read;
 mod scope;
 mod write;
 
-pub use read::read;
+pub use read::{read, read_scene};
 pub use write::{write, write_scene};

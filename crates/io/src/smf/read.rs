@@ -3,19 +3,27 @@
 use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId, merge_equal_wedges};
 
 use super::scope::Scopes;
-use crate::ParseError;
 use crate::polygon::triangulate;
 use crate::text_cursor::{TextCursor, quoted};
 use crate::vertex_attributes::{named_layer, normalize_colors, per_vertex};
+use crate::{Note, ParseError, Scene};
 
-/// Parses an SMF file.
+/// Parses an SMF file, without its notes: see [`read_scene`].
+///
+/// # Errors
+/// Those of [`read_scene`].
+pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
+    read_noted(bytes).map(|(mesh, _)| mesh)
+}
+
+/// Parses an SMF file, as one mesh under one node.
 ///
 /// Understood are `v`, `f` and `t`, the properties `c`, `n` and `r` as bound by `bind`, and scopes
 /// with `trans`, `scale`, `rot`, `t_trans`, `t_scale` and `set vertex_correction`.
 ///
 /// Polygons are triangulated. Normals are normalised and transformed with their vertices.
-/// Properties that are not finite become 0, and if a colour exceeds 1, all are taken to be out of
-/// 255. `#` and `$` begin comments; `tex` is ignored.
+/// Properties that are not finite become 0, and are counted; if a colour exceeds 1, all are taken to
+/// be out of 255. `#` and `$` begin comments. The image that `tex` names is left out with a note.
 ///
 /// Cost: O(n log n), n = bytes, plus that of triangulating concave polygons.
 /// # Errors
@@ -24,7 +32,13 @@ use crate::vertex_attributes::{named_layer, normalize_colors, per_vertex};
 /// Also a file without faces.
 /// # References
 /// [Gar98] (the format's page in QSlim 2.0).
-pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
+pub fn read_scene(bytes: &[u8]) -> Result<Scene, ParseError> {
+    let (mesh, mut notes) = read_noted(bytes)?;
+    notes.retain(|note| note.count > 0);
+    Ok(Scene { notes, ..Scene::from_mesh("", mesh) })
+}
+
+fn read_noted(bytes: &[u8]) -> Result<(Mesh, Vec<Note>), ParseError> {
     let mut text = TextCursor::new(bytes)?;
     let mut reader = SmfReader::new();
     loop {
@@ -33,7 +47,10 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
             break;
         }
     }
-    reader.finish(&text)
+    let images = Note::left_out(reader.images, "texture image", "texture images")
+        .remedied("assign the image again, or convert the model to .obj where it is made");
+    let notes = vec![Note::not_finite(text.not_finite()), images];
+    Ok((reader.finish(&text)?, notes))
 }
 
 /// Element that the values of a property belong to.
@@ -59,6 +76,8 @@ struct SmfReader {
     /// Face of the file that each triangle in `faces` is part of.
     origins: Vec<u32>,
     faces_in_file: u32,
+    /// Statements that name an image.
+    images: usize,
     properties: [BoundLayer; 3],
     polygon: Vec<u32>,
     triangles: Vec<[u32; 3]>,
@@ -83,6 +102,7 @@ impl SmfReader {
             faces: Vec::new(),
             origins: Vec::new(),
             faces_in_file: 0,
+            images: 0,
             properties: [
                 property("c", LayerKind::Color(0), 3),
                 property("n", LayerKind::Normal, 3),
@@ -117,7 +137,10 @@ impl SmfReader {
                 self.properties[UV].values.extend(self.scopes.uv(uv));
                 Ok(())
             }
-            b"tex" => Ok(()),
+            b"tex" => {
+                self.images += 1;
+                Ok(())
+            }
             _ if command.starts_with(b"$") => Ok(()),
             _ if self.scopes.run(command, self.positions.len(), text)? => Ok(()),
             _ => Err(text.error(format!("{} is not an SMF command", quoted(command)))),
@@ -286,6 +309,15 @@ mod tests {
         assert_eq!(attributes.wedge_count, 4);
         assert_eq!(attributes.layers[0].values[3..6], [0.0, 1.0, 0.0]);
         assert_eq!(attributes.layers[1].values, [0.0, 0.0, 1.0, 0.0, 1.0, 2.0, 0.5, 0.0]);
+    }
+
+    #[test]
+    fn values_that_are_not_finite_and_images_are_noted() {
+        let text = format!("{SQUARE}f 1 2 3 4\ntex -i wood.png\nbind n face\nn nan 0 inf\n");
+        let notes: Vec<String> =
+            read_scene(text.as_bytes()).unwrap().notes.iter().map(Note::to_string).collect();
+        let expected = ["2 values of vertices that are not finite read as 0", "1 texture image"];
+        assert_eq!(notes, expected);
     }
 
     #[test]

@@ -60,8 +60,7 @@ impl Said {
     /// Adds a statement, and the image that it names.
     ///
     /// # Errors
-    /// A diffuse colour or an opacity that is no number. Other statements that are malformed say
-    /// nothing.
+    /// A colour or a number that cannot be read; the statement then says nothing.
     pub fn add(&mut self, line: &str, image: Option<usize>) -> Result<(), ParseError> {
         let word = statement::word_of(line);
         match (&*word, image) {
@@ -82,12 +81,12 @@ impl Said {
                 self.opacity = Some(number(&values, "d needs an opacity")?);
             }
             ("tr", _) => self.transparency = number(line, "Tr needs a transparency")?,
-            ("ks", _) => self.specular = color(line).ok().flatten().unwrap_or_default(),
-            ("ke", _) => self.emission = color(line).ok().flatten().or(self.emission),
-            ("ns", _) => self.exponent = number(line, "").unwrap_or_default(),
-            ("pr", _) => self.roughness = number(line, "").ok().or(self.roughness),
-            ("pm", _) => self.metallic = number(line, "").ok().or(self.metallic),
-            ("illum", _) => self.has_no_highlight = number(line, "").is_ok_and(|n| n < 2.0),
+            ("ks", _) => self.specular = color(line)?.unwrap_or_default(),
+            ("ke", _) => self.emission = color(line)?.or(self.emission),
+            ("ns", _) => self.exponent = number(line, "Ns needs an exponent")?,
+            ("pr", _) => self.roughness = Some(number(line, "Pr needs a roughness")?),
+            ("pm", _) => self.metallic = Some(number(line, "Pm needs a metalness")?),
+            ("illum", _) => self.has_no_highlight = number(line, "illum needs a number")? < 2.0,
             _ => {}
         }
         Ok(())

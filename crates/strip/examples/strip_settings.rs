@@ -2,7 +2,7 @@
 //! seconds. docs/notes/strips.md has the figures of `cargo xtask results strips`, whose settings
 //! differ a little.
 //!
-//! `cargo run --release -p meshlod-strip --example strips -- bunny.ply fandisk.off`, with meshes of
+//! `cargo run --release -p meshlod-strip --example strip_settings -- bunny.ply fandisk.off`, with meshes of
 //! the shared folder; put `--thorough` in front for the slow settings too.
 
 use std::time::Instant;
