@@ -73,7 +73,8 @@ pub fn run(batch: &Batch, global: GlobalArgs, session: &Session) -> Result<Answe
         session.progress.part("files", 0, reports.len());
         session.progress.part("files", done, reports.len());
         remove_abandoned(jobs.iter().map(|job| &*job.output));
-        run_jobs(&jobs, &recipe, &Crew::new(batch.jobs, &global), &mut |at, report| {
+        let crew = Crew::new(batch.jobs, jobs.len(), &global);
+        run_jobs(&jobs, &recipe, &crew, &mut |at, report| {
             tell(&report, session);
             if let Err(failure) = journal.add(&report, &fingerprint) {
                 unkept = Some(failure);

@@ -23,11 +23,11 @@ pub struct Crew<'g> {
 }
 
 impl<'g> Crew<'g> {
-    /// Divides the cores among `jobs` files at a time, by default one for each core: threads that
-    /// share nothing waste nothing.
-    pub fn new(jobs: Option<usize>, global: &'g GlobalArgs) -> Self {
+    /// Divides the cores among `jobs` of the files at a time, by default one for each core: threads
+    /// that share nothing waste nothing.
+    pub fn new(jobs: Option<usize>, files: usize, global: &'g GlobalArgs) -> Self {
         let cores = thread::available_parallelism().map_or(1, usize::from);
-        let jobs = jobs.unwrap_or(cores);
+        let jobs = jobs.unwrap_or(cores).min(files).max(1);
         Self { jobs, threads: global.threads.unwrap_or((cores / jobs).max(1)), global }
     }
 }
@@ -55,7 +55,7 @@ pub fn run_jobs(
     let bytes = |job: &FileJob| FileState::of(&job.input).map_or(0, |state| state.bytes);
     let mut order: Vec<usize> = (0..jobs.len()).collect();
     order.sort_by_cached_key(|&at| std::cmp::Reverse(bytes(jobs[at])));
-    let pools = (0..crew.jobs.min(jobs.len())).map(|_| pool(crew.threads));
+    let pools = (0..crew.jobs).map(|_| pool(crew.threads));
     let pools = pools.collect::<Result<Vec<_>, _>>()?;
     let queue = Queue { jobs, order, next: AtomicUsize::new(0), stopped: AtomicBool::new(false) };
     thread::scope(|scope| {
