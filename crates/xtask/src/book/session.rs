@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result};
 
@@ -107,6 +107,7 @@ impl Session {
             .env("PATH", std::env::join_paths(paths)?)
             .env("LC_ALL", "C")
             .current_dir(folder)
+            .stdin(Stdio::null())
             .output()
             .context("sh")?;
         let printed = String::from_utf8_lossy(&output.stdout);
@@ -139,6 +140,7 @@ impl Session {
             .args(["-c", "exec \"$0\" -u \"$1\" 2>&1"])
             .args([python, &file])
             .current_dir(folder)
+            .stdin(Stdio::null())
             .output()
             .context("sh")?;
         let printed = String::from_utf8_lossy(&output.stdout);
@@ -149,7 +151,12 @@ impl Session {
         let ends = format!("{SEPARATOR}\n");
         for ((block, shown), printed) in blocks.iter().zip(printed.split(&ends)) {
             let below = block.end + 1..block.end + 1;
+            let before = self.differences.len();
             self.compare(chapter, lines, shown.clone().unwrap_or(below), printed);
+            for difference in self.differences[before..].iter_mut().filter(|_| shown.is_none()) {
+                difference.printed.insert(0, "```text".into());
+                difference.printed.push("```".into());
+            }
         }
         Ok(())
     }
