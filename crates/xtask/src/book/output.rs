@@ -24,8 +24,7 @@ pub fn rewritten(shown: &[&str], printed: &[&str]) -> Vec<String> {
         return shown.iter().map(ToString::to_string).collect();
     }
     let is_any = |line: &&str| *line == ANY_LINES;
-    let (Some(first), Some(last)) =
-        (shown.iter().position(is_any), shown.iter().rposition(is_any))
+    let (Some(first), Some(last)) = (shown.iter().position(is_any), shown.iter().rposition(is_any))
     else {
         return kept(shown, printed);
     };
@@ -103,7 +102,8 @@ mod tests {
     fn a_mark_is_one_number_of_any_width() {
         assert!(matches(&["in … s, 3 faces"], &["in   10.25 s, 3 faces"]));
         assert!(matches(&["(…%)"], &["(1.5e-3%)"]));
-        for other in ["in s, 3 faces", "in some s, 3 faces", "in 1 s, 4 faces", "in 1 2 s, 3 faces"] {
+        for other in ["in s, 3 faces", "in some s, 3 faces", "in 1 s, 4 faces", "in 1 2 s, 3 faces"]
+        {
             assert!(!matches(&["in … s, 3 faces"], &[other]), "{other}");
         }
     }

@@ -67,9 +67,8 @@ mod tests {
     #[test]
     fn pictures_are_compared_and_only_written_when_asked() {
         let folder = tempfile::tempdir().unwrap();
-        let settle = |bytes, write| {
-            settle(&[picture("a.png", bytes)], folder.path(), write).unwrap().len()
-        };
+        let settle =
+            |bytes, write| settle(&[picture("a.png", bytes)], folder.path(), write).unwrap().len();
         assert_eq!(settle(10, false), 1, "missing");
         assert_eq!(settle(10, true), 0);
         assert_eq!(settle(10, false), 0, "equal");
