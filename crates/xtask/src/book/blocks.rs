@@ -4,7 +4,7 @@ use std::ops::Range;
 
 /// Block to act on. Lines are counted from 0, and ranges leave out the fences.
 #[derive(Debug, PartialEq)]
-pub enum Block {
+pub enum ChapterBlock {
     /// ` ```console `: commands with what they print.
     Console(Vec<Step>),
     /// ` ```python `: the lines of a program, and of the ` ```text ` block below that shows what
@@ -34,21 +34,21 @@ struct Fenced<'t> {
 }
 
 /// Lists the blocks of a chapter that are run or written; others are only to be read.
-pub fn blocks(lines: &[&str]) -> Vec<Block> {
+pub fn blocks(lines: &[&str]) -> Vec<ChapterBlock> {
     let fenced = fenced(lines);
     let mut blocks = Vec::new();
     for (i, Fenced { language, contents }) in fenced.iter().enumerate() {
         if let Some(name) = file_name(lines, contents.start - 1) {
-            blocks.push(Block::File { name: name.to_owned(), contents: contents.clone() });
+            blocks.push(ChapterBlock::File { name: name.to_owned(), contents: contents.clone() });
         } else if *language == "console" {
-            blocks.push(Block::Console(steps(lines, contents)));
+            blocks.push(ChapterBlock::Console(steps(lines, contents)));
         } else if *language == "python" {
             let below = fenced.get(i + 1).filter(|below| {
                 let between = &lines[contents.end + 1..below.contents.start - 1];
                 below.language == "text" && between.iter().all(|line| line.is_empty())
             });
             let printed = below.map(|below| below.contents.clone());
-            blocks.push(Block::Python { program: contents.clone(), printed });
+            blocks.push(ChapterBlock::Python { program: contents.clone(), printed });
         }
     }
     blocks
@@ -102,7 +102,7 @@ fn steps(lines: &[&str], contents: &Range<usize>) -> Vec<Step> {
 mod tests {
     use super::*;
 
-    fn blocks_of(text: &str) -> Vec<Block> {
+    fn blocks_of(text: &str) -> Vec<ChapterBlock> {
         blocks(&text.lines().collect::<Vec<_>>())
     }
 
@@ -114,22 +114,22 @@ mod tests {
     fn a_console_has_commands_and_what_they_print() {
         let blocks = blocks_of("Do:\n```console\n$ a\n1\n2\n$ b \\\n  c\n$ d\n3\n```\nDone.");
         let steps = [step("a", 2, 3..5), step("b \\\n  c", 5, 7..7), step("d", 7, 8..9)];
-        assert_eq!(blocks, [Block::Console(steps.into())]);
+        assert_eq!(blocks, [ChapterBlock::Console(steps.into())]);
     }
 
     #[test]
     fn a_named_block_is_a_file_whatever_its_language() {
         let blocks = blocks_of("Write this to `a.toml`:\n\n```toml\nverb = 1\n```");
-        assert_eq!(blocks, [Block::File { name: "a.toml".into(), contents: 3..4 }]);
+        assert_eq!(blocks, [ChapterBlock::File { name: "a.toml".into(), contents: 3..4 }]);
         assert_eq!(blocks_of("By `--error`:\n```text\n1\n```"), []);
     }
 
     #[test]
     fn python_prints_what_the_text_right_below_shows() {
         let blocks = blocks_of("```python\np\n```\n\n```text\n1\n```\nx\n```text\n2\n```");
-        assert_eq!(blocks, [Block::Python { program: 1..2, printed: Some(5..6) }]);
+        assert_eq!(blocks, [ChapterBlock::Python { program: 1..2, printed: Some(5..6) }]);
         let apart = blocks_of("```python\np\n```\nx\n```text\n2\n```");
-        assert_eq!(apart, [Block::Python { program: 1..2, printed: None }]);
+        assert_eq!(apart, [ChapterBlock::Python { program: 1..2, printed: None }]);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::Result;
 
-use super::{CHAPTERS, SUMMARY, listed};
+use super::summary::{CHAPTERS, SUMMARY, listed};
 use crate::project::{Project, Text};
 
 /// Start of the line that shows a file; mdbook puts the file in its place.

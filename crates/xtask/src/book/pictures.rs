@@ -4,6 +4,8 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 
+/// Folder of the pictures: from that of the chapters, and from where a chapter runs.
+pub const FOLDER: &str = "pictures";
 /// Largest picture, in bytes: the book is part of every clone.
 const MAX_BYTES: usize = 60_000;
 
