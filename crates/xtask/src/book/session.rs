@@ -188,7 +188,7 @@ impl fmt::Display for Difference {
     }
 }
 
-#[cfg(all(test, unix))]
+#[cfg(test)]
 mod tests {
     use super::*;
 
