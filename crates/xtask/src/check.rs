@@ -11,6 +11,7 @@ mod type_names;
 
 use anyhow::{Result, bail};
 
+use crate::book;
 use crate::project::Project;
 
 pub use references::keys_of;
@@ -33,6 +34,7 @@ pub fn run(project: &Project) -> Result<()> {
     errors.extend(references::check(&files, &pages));
     let manifests = [project.files("crates", "Cargo.toml")?, project.files("py", "Cargo.toml")?];
     errors.extend(arrows::check(&manifests.concat(), &pages)?);
+    errors.extend(book::check(project)?);
     errors.extend(prose::check(&sources));
     errors.extend(type_names::check_crates(&crates));
     errors.extend(type_names::check_facade(&crates, FACADE));

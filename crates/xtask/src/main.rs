@@ -1,6 +1,7 @@
 //! `cargo xtask VERB`: checks, documentation and measurements of the project itself.
 #![forbid(unsafe_code)]
 
+mod book;
 mod check;
 mod compare;
 mod doc;
@@ -13,7 +14,11 @@ use std::process::ExitCode;
 use project::Project;
 
 const USAGE: &str = "usage: cargo xtask VERB
-  check    check references, arrows between crates, imports, names of types, phrases, lengths of files
+  check    check references, arrows between crates, imports, names of types, phrases, lengths of files,
+           and the links of the book
+  book [CHAPTER...] [--write] [--python PATH] [--program PATH]
+           run what the chapters of docs/book show and compare what it prints and draws, or write that
+           into them
   doc      build the documentation of all crates; warnings are errors
   results [SECTION...]  remake docs/RESULTS.md, or only the sections with such titles
   policies             draw and measure fish of several parts by each policy for contacts, in docs/notes/contacts
@@ -28,6 +33,7 @@ fn main() -> ExitCode {
     let verb = arguments.next();
     let project = Project::here();
     let outcome = match verb.as_deref() {
+        Some("book") => book::run(&project, &arguments.collect::<Vec<_>>()),
         Some("check") => check::run(&project),
         Some("compare") => compare::run(&arguments.collect::<Vec<_>>()),
         Some("doc") => doc::run(&project),

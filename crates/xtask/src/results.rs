@@ -22,6 +22,7 @@ use anyhow::{Context, Result, bail};
 
 use crate::project::Project;
 
+pub use command::Program;
 pub use contacts::policies;
 
 type Section = fn(&Project) -> Result<String>;

@@ -34,6 +34,11 @@ impl Program {
         Ok(Self(folder.join("meshlod")))
     }
 
+    /// Returns the path of the program.
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
     /// Runs `meshlod` and returns its time and memory; fails if the program fails.
     pub fn run(&self, arguments: &[&str], files: [&Path; 2]) -> Result<ResourceUsage> {
         let mut child = Command::new(&self.0)
