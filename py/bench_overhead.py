@@ -2,14 +2,13 @@
 
     RAYON_NUM_THREADS=1 python bench_overhead.py --rounds 9 MESH
 
-The command runs in this process, by the same native part and with one thread, in turns with
-meshlod.simplify on arrays. Its time is what it reports as simplify_seconds, without reading and
-writing; Python's is the whole call. Memory is the peak of processes: one that loads arrays, one
-that simplifies them after that, and the whole command.
+Times are CPU seconds of the process, so that other load counts little: of the engine on a mesh that
+is there, in turns with meshlod.simplify on arrays, and of the command, which runs in this process,
+too, and reads and writes files. Memory is the peak of processes: one that loads arrays, one that
+simplifies them after that, and the whole command.
 """
 
 import argparse
-import json
 import os
 import pathlib
 import statistics
@@ -20,9 +19,9 @@ import time
 
 import meshlod
 import numpy as np
-from meshlod import _native
+from meshlod import _asked, _native
 
-OPTIONS = ["--ratio", "10%", "--force"]
+OPTIONS = ["--ratio", "10%"]
 
 SAVE = """import meshlod, numpy, sys
 mesh = meshlod.load(sys.argv[1])
@@ -33,15 +32,10 @@ arrays = numpy.load(sys.argv[1])
 points, faces = arrays["points"], arrays["faces"]"""
 
 
-def engine_seconds(mesh, out):
-    command = ["meshlod", "simplify", mesh, out, *OPTIONS, "--threads", "1", "--json"]
-    return json.loads(_native.answer(command))["simplify_seconds"]
-
-
-def call_seconds(points, faces):
-    start = time.perf_counter()
-    meshlod.simplify(points, faces, 0.9)
-    return time.perf_counter() - start
+def cpu_seconds(work, *arguments):
+    start = time.process_time()
+    work(*arguments)
+    return time.process_time() - start
 
 
 def peak_mb(*arguments):
@@ -63,13 +57,21 @@ def main():
         command = peak_mb("-m", "meshlod", "simplify", options.mesh, out, *OPTIONS)
         mesh = meshlod.load(options.mesh)
         points, faces = np.array(mesh.vertices), np.array(mesh.faces)
-        pairs = [
-            (engine_seconds(options.mesh, out), call_seconds(points, faces))
-            for _ in range(options.rounds)
+        plain = {"method": "lindstrom-turk", "topology": "free", "lock_boundary": False}
+        asked = _asked.asked("ratio", 0.1, **plain)
+        verb = ["meshlod", "simplify", options.mesh, out, *OPTIONS, "--threads", "1", "--json"]
+        runs = {
+            "engine": (_native.simplify, mesh._native, asked),
+            "call": (meshlod.simplify, points, faces, 0.9),
+            "command": (_native.answer, verb),
+        }
+        rounds = [
+            {name: cpu_seconds(*run) for name, run in runs.items()} for _ in range(options.rounds)
         ]
-    engine, call = (statistics.median(times) for times in zip(*pairs, strict=True))
-    ratio = statistics.median(call / engine for engine, call in pairs)
-    print(f"engine {1e3 * engine:.0f} ms, call {1e3 * call:.0f} ms, ratio of pairs {ratio:.3f}")
+    for name in runs:
+        median = statistics.median(times[name] for times in rounds)
+        ratio = statistics.median(times[name] / times["engine"] for times in rounds)
+        print(f"{name} {1e3 * median:.0f} ms, {ratio:.3f} of the engine")
     print(f"arrays loaded {loaded:.0f} MB, simplified {simplified:.0f}, command {command:.0f}")
 
 

@@ -59,7 +59,7 @@ impl NativeFilm {
         Ok((arrays(py, &flock)?, camera_arguments(&camera)))
     }
 
-    /// What the schools swim round, as meshes.
+    /// Obstacles that the schools swim round, as meshes.
     fn obstacles(&self, py: Python<'_>) -> PyResult<Vec<NativeMesh>> {
         let film = Arc::clone(&self.0);
         let meshes = run(py, None, move |_| {

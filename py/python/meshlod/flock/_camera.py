@@ -30,11 +30,11 @@ def camera_arguments(camera: Any, flock: Flock) -> Any:
     eye, look, up, fov, (width, height) = _seen(camera)
     turn, length = flock._turn(), flock._unit()
     forward, top = turn @ np.subtract(look, eye), turn @ up
-    right = np.cross(forward, top)
-    level = np.cross(forward, [0.0, 1.0, 0.0])
-    if np.linalg.norm(np.cross(right, level)) > 1e-3 * np.linalg.norm(right) * np.linalg.norm(
-        level
-    ) or np.dot(right, level) < 0:
+    right, level = np.cross(forward, top), np.cross(forward, [0.0, 1.0, 0.0])
+    if not level.any():
+        # Straight up or down: the right of the picture is +x.
+        level = np.array([1.0, 0.0, 0.0])
+    if np.dot(right, level) < (1 - 1e-6) * np.linalg.norm(right) * np.linalg.norm(level):
         raise MeshlodError(f"the camera's up must be that of the flock, +{flock.up}, without roll")
     if width < height:
         # Flocks have it along the shorter side of the picture.

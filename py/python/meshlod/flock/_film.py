@@ -59,5 +59,5 @@ class Film:
 
     @property
     def obstacles(self) -> list[Mesh]:
-        """What the schools swim round."""
+        """Obstacles that the schools swim round."""
         return [Mesh._of(native) for native in self._native.obstacles()]
