@@ -11,6 +11,7 @@ mod command;
 mod cut;
 mod errors;
 mod files;
+mod flock;
 mod mesh;
 mod model;
 mod numpy_views;
@@ -36,6 +37,8 @@ mod _native {
     use super::errors::MeshlodError;
     #[pymodule_export]
     use super::files::{load, save};
+    #[pymodule_export]
+    use super::flock::{NativeFilm, NativeLevelTable, NativeSelector};
     #[pymodule_export]
     use super::mesh::{NativeMesh, from_arrays};
     #[pymodule_export]

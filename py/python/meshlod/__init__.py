@@ -9,7 +9,7 @@ Mesh(4 vertices, 4 faces)
 0.166667
 """
 
-from . import convert
+from . import convert, flock
 from ._batch import FileReport, batch
 from ._cut import Cut, CutChange
 from ._errors import MeshlodError, MeshlodWarning
@@ -39,6 +39,7 @@ __all__ = [
     "load",
     "save",
     "convert",
+    "flock",
     "simplify",
 ]
 __version__ = "0.1.0"

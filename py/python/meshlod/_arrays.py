@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from ._errors import MeshlodError
 
@@ -33,6 +33,16 @@ def as_points(points: ArrayLike, name: str = "points") -> NDArray[Any]:
         raise MeshlodError(f"{name} must be numbers, not {array.dtype}")
     single = array.dtype.kind == "f" and array.dtype.itemsize == 4
     return np.require(array, np.float32 if single else np.float64, ALIGNED)
+
+
+def as_rows(
+    values: ArrayLike, name: str, dtype: DTypeLike, count: int | None = None
+) -> NDArray[Any]:
+    """Returns rows of three numbers, ``count`` of them if that is given, of a type."""
+    array = as_points(values, name)
+    if count is not None and len(array) != count:
+        raise MeshlodError(f"{name} has {len(array)} rows, but there are {count} positions")
+    return np.require(array, dtype, ALIGNED)
 
 
 def as_faces(faces: ArrayLike, name: str = "faces") -> NDArray[Any]:

@@ -16,6 +16,17 @@ class Asked(TypedDict):
     weights: tuple[float, float, float] | None
     progress: Callable[[float], object] | None
 
+class FlockArguments(TypedDict):
+    positions: NDArray[np.float32]
+    headings: NDArray[np.float32]
+    speeds: NDArray[np.float32]
+    schools: list[tuple[list[int], list[float], list[float], list[float]]]
+
+#: Eye, direction, field of view, size, velocity, gaze.
+FlockCameraArguments = tuple[
+    list[float], list[float], float, list[int], list[float], list[float]
+]
+
 class MeshlodError(ValueError):
     """An input that is not what it should be: the message says what, where, and what to do."""
 
@@ -75,6 +86,68 @@ class NativeCut:
     ) -> tuple[NDArray[np.float64], list[tuple[str, NDArray[np.float32]]]]: ...
     def materials(self) -> tuple[list[str], NDArray[np.uint32]] | None: ...
     def mesh(self) -> NativeMesh: ...
+
+class NativeLevelTable:
+    def __init__(
+        self,
+        mesh: NativeMesh,
+        forward: list[float],
+        up: list[float],
+        method: str,
+        step: float,
+        coarsest: int,
+        directions: int,
+    ) -> None: ...
+    @property
+    def vertices(self) -> NDArray[np.float32]: ...
+    @property
+    def triangles(self) -> NDArray[np.uint32]: ...
+    def attributes(self) -> list[tuple[str, NDArray[np.float32]]]: ...
+    def levels(self) -> tuple[NDArray[np.int64], NDArray[np.float32]]: ...
+    def depth(self) -> int: ...
+    def mesh(self, level: int) -> NativeMesh: ...
+    def draw(
+        self,
+        flock: FlockArguments,
+        levels: NDArray[np.uint16],
+        camera: FlockCameraArguments,
+        obstacles: list[NativeMesh],
+    ) -> bytes: ...
+
+class NativeFilm:
+    def __init__(
+        self,
+        scenario: str,
+        members: int,
+        schools: int,
+        seed: int,
+        size: list[int],
+        frame_s: float,
+    ) -> None: ...
+    def next_frame(
+        self,
+    ) -> tuple[
+        tuple[
+            NDArray[np.float32],
+            NDArray[np.float32],
+            NDArray[np.float32],
+            list[tuple[list[int], list[float], list[float], list[float]]],
+        ],
+        FlockCameraArguments,
+    ]: ...
+    def obstacles(self) -> list[NativeMesh]: ...
+
+class NativeSelector:
+    def __init__(self, table: NativeLevelTable, policy: str) -> None: ...
+    def select(
+        self,
+        flock: FlockArguments,
+        camera: FlockCameraArguments,
+        triangles: int,
+        detail: float,
+        impostors_below_px: float | None,
+        visible: NDArray[np.bool_] | None,
+    ) -> tuple[NDArray[np.uint16], int]: ...
 
 def from_arrays(
     points: NDArray[Any],
