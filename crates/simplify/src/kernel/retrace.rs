@@ -18,7 +18,6 @@ use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
 use crate::kernel::metric::Metric;
 use crate::kernel::schedule::bucket_queue::{BucketQueue, NONE};
 use crate::kernel::schedule::deferral::Deferral;
-use crate::kernel::simd::{SimdTask, widest};
 use crate::refusal::Refusals;
 
 /// Part of the distance that would do by which a bound is lowered, as another contraction may be
@@ -123,12 +122,7 @@ fn last_steps(steps: &[Logged], components: Option<&Components>, vertices: usize
 impl<A: AttributeModel> CollapseLoop<'_, A> {
     /// Repeats the steps of another run on the unchanged surface, which must be one part, without
     /// those that are taken back. Then only vertices whose rings differ from that run are queued.
-    pub(crate) fn retrace(&mut self, retrace: &Retrace) {
-        widest(Repeat { collapse_loop: self, retrace });
-    }
-
-    #[inline(always)]
-    fn repeat_all(&mut self, Retrace { steps, back, .. }: &Retrace) {
+    pub(crate) fn retrace(&mut self, Retrace { steps, back, .. }: &Retrace) {
         let mut differs = vec![false; self.vertices.all.len()];
         let mut back = back.iter().copied().peekable();
         for (number, step) in (0..).zip(steps) {
@@ -150,7 +144,6 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
     }
 
     /// Repeats a contraction. Returns false, with nothing changed, if that is not possible.
-    #[inline(always)]
     fn repeat(&mut self, done: &LoggedContraction) -> bool {
         let Self { vertices, model, edge_ring, .. } = self;
         let [v0, v1] = [done.kept, done.gone];
@@ -219,20 +212,5 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
                 vertex.floor = 1;
             }
         }
-    }
-}
-
-/// SIMD task of [`CollapseLoop::retrace`].
-struct Repeat<'e, 'v, 'r, A> {
-    collapse_loop: &'e mut CollapseLoop<'v, A>,
-    retrace: &'r Retrace,
-}
-
-impl<A: AttributeModel> SimdTask for Repeat<'_, '_, '_, A> {
-    type Output = ();
-
-    #[inline(always)]
-    fn work(self) {
-        self.collapse_loop.repeat_all(self.retrace);
     }
 }
