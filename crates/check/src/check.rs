@@ -23,6 +23,8 @@ use subject::Subject;
 
 /// Options of a mesh check.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct CheckOptions {
     /// Kinds of findings to search for; kinds left out take no time.
     pub kinds: Kinds,

@@ -6,6 +6,8 @@ use crate::objects::ObjectId;
 
 /// A defect or noteworthy feature found in a mesh, with the vertices and faces concerned.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(tag = "kind", rename_all = "kebab-case"))]
 pub enum Finding {
     /// A vertex with a NaN or infinite coordinate. Its faces are excluded from all further checks.
     NonFiniteVertex {
@@ -22,7 +24,8 @@ pub enum Finding {
     /// Attributes, materials or objects whose arrays do not match the faces. Mismatched labels are
     /// ignored.
     BadAttributes {
-        /// The first mismatch found.
+        /// The first mismatch found; serde writes its message.
+        #[cfg_attr(feature = "serde", serde(serialize_with = "as_text"))]
         error: MeshError,
     },
     /// A vertex that no face uses.
@@ -114,8 +117,15 @@ pub enum Finding {
     },
 }
 
+#[cfg(feature = "serde")]
+fn as_text<S: serde::Serializer>(error: &MeshError, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(error)
+}
+
 /// The way in which a face is degenerate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Degeneracy {
     /// Two corners of the face are the same vertex.
     RepeatedVertex,
@@ -125,6 +135,7 @@ pub enum Degeneracy {
 
 /// Kind, place and penetration depth of the intersection of two faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Intersection {
     /// Whether the faces touch, cross or overlap.
     pub kind: IntersectionKind,
@@ -138,6 +149,8 @@ pub struct Intersection {
 
 /// Kind of the intersection of two faces, decided exactly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum IntersectionKind {
     /// The faces touch in a single point without passing through each other.
     Point,
@@ -151,6 +164,8 @@ pub enum IntersectionKind {
 
 /// Kind of a mesh defect or other finding, without its details.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Kind {
     /// NaN or infinite coordinates of a vertex: [`Finding::NonFiniteVertex`].
     NonFiniteVertex,
@@ -186,6 +201,8 @@ pub enum Kind {
 
 /// Severity of a finding, which depends on its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Severity {
     /// The mesh is usable, but the finding is worth knowing.
     Warning,

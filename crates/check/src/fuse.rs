@@ -17,6 +17,7 @@ use solids::Solids;
 
 /// Counts of the changes that [`fuse`] made to a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Fused {
     /// Counts of the cuts made where components intersect, before anything is removed.
     pub imprint: Imprint,

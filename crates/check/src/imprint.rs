@@ -19,6 +19,7 @@ use points::IntersectionPoints;
 
 /// Counts of the cuts that [`imprint`] made in a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Imprint {
     /// Number of pairs of faces that intersected in more than a common corner.
     pub pairs: usize,

@@ -44,6 +44,23 @@ impl Kinds {
     }
 }
 
+/// Writes the kinds as a list of names.
+#[cfg(feature = "serde")]
+impl serde::Serialize for Kinds {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(Kind::ALL.into_iter().filter(|&kind| self.contains(kind)))
+    }
+}
+
+/// Reads a list of the names of kinds.
+#[cfg(feature = "serde")]
+impl<'de> serde::Deserialize<'de> for Kinds {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let kinds: Vec<Kind> = serde::Deserialize::deserialize(deserializer)?;
+        Ok(kinds.into_iter().collect())
+    }
+}
+
 impl Default for Kinds {
     fn default() -> Self {
         Self::ALL

@@ -14,6 +14,8 @@ use crate::unique_positions::UniquePositions;
 
 /// Options for choosing vertex locks; see [`locks`](locks()).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct LockOptions {
     /// Treatment of the vertices where components meet, even components of one object, which could
     /// otherwise drift apart; `None` leaves them free.
@@ -24,6 +26,8 @@ pub struct LockOptions {
 
 /// Treatment of the vertices at contacts, where components meet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum ContactPolicy {
     /// Vertices at one position are tied, and those where components cross, overlap or touch are
     /// protected.

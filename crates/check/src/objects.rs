@@ -4,10 +4,14 @@ use meshlod_mesh::{Labels, Mesh, VertexId, face_components};
 
 /// Index of an object among the objects of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(transparent))]
 pub struct ObjectId(pub u32);
 
 /// Rule by which the faces of a mesh are grouped into objects.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum ObjectsBy {
     /// Named objects of the file if there are two or more, otherwise connected components.
     #[default]
@@ -20,6 +24,7 @@ pub enum ObjectsBy {
 
 /// Objects and connected components of a mesh.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Objects {
     /// Object that each face belongs to.
     pub of_face: Vec<ObjectId>,

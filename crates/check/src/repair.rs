@@ -27,6 +27,8 @@ pub(crate) use stitch::stitch;
 ///
 /// The steps on by default preserve the visible surface: they neither remove nor add any of it.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct RepairOptions {
     /// Largest distance at which vertices are welded, in model units; 0 welds vertices at the same
     /// position. `None`, the default, welds nothing, as parts that only touch would be joined.

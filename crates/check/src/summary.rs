@@ -54,6 +54,14 @@ impl Summary {
     }
 }
 
+/// Writes the counts of the kinds that were found under their names.
+#[cfg(feature = "serde")]
+impl serde::Serialize for Summary {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.found())
+    }
+}
+
 impl<'a> FromIterator<&'a Finding> for Summary {
     fn from_iter<I: IntoIterator<Item = &'a Finding>>(findings: I) -> Self {
         let mut summary = Self::default();

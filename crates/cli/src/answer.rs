@@ -2,7 +2,8 @@
 
 use std::io::{self, ErrorKind, Write};
 
-use serde_json::Value;
+use serde::Serialize;
+use serde_json::{Value, json};
 
 use crate::failure::Failure;
 use crate::session::Session;
@@ -50,8 +51,15 @@ pub struct Answer {
 }
 
 impl Answer {
-    pub fn new(json: Value, text: String) -> Self {
-        Self { json, text, file_on_stdout: false, is_output: false, outcome: Outcome::Done }
+    /// Creates an answer; `json` must be a structure or a map, which are objects in JSON.
+    pub fn new(json: impl Serialize, text: String) -> Self {
+        Self {
+            json: json!(json),
+            text,
+            file_on_stdout: false,
+            is_output: false,
+            outcome: Outcome::Done,
+        }
     }
 
     /// Prints the answer, of `--quiet` only JSON, and returns the exit code.

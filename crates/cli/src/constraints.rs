@@ -110,7 +110,7 @@ impl FlatInput {
 
     /// Returns the number of faces before fusing.
     pub fn input_faces(&self) -> usize {
-        self.fused.as_ref().map_or(self.mesh.faces.len(), |fused| fused.before)
+        self.fused.as_ref().map_or(self.mesh.faces.len(), |fused| fused.input_faces)
     }
 }
 

@@ -7,7 +7,7 @@ use meshlod::measure::{
     PreparedSurface, surface_distance,
 };
 use meshlod::{Mesh, Scene, io::SceneMesh};
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use crate::failure::Failure;
 use crate::numbers;
@@ -64,29 +64,51 @@ pub fn of_level(
     surface_distance(original, &level, options)
 }
 
-/// Returns the distances in each direction and combined as JSON, in model units and percent of the
-/// diagonal.
-pub fn to_json(distance: &Distance) -> Value {
-    let lengths = |mean: f64, rms: f64, max: f64| {
-        json!({
-            "mean": mean,
-            "rms": rms,
-            "max": max,
-            "mean_percent": distance.percent(mean),
-            "rms_percent": distance.percent(rms),
-            "max_percent": distance.percent(max),
-        })
-    };
-    let way = |way: &OneSidedDistance| {
-        let mut json = lengths(way.mean, way.rms, way.max);
-        json["place"] = place_json(&way.place);
-        json
-    };
-    let mut json = lengths(distance.mean(), distance.rms(), distance.max());
-    json["diagonal"] = distance.diagonal.into();
-    json["forward"] = way(&distance.forward);
-    json["backward"] = way(&distance.backward);
-    json
+/// Distances in each direction and combined, in model units and percent of the diagonal.
+#[derive(Serialize)]
+pub struct DistanceFigures {
+    #[serde(flatten)]
+    both: Lengths,
+    diagonal: f64,
+    forward: OneWay,
+    backward: OneWay,
+}
+
+#[derive(Serialize)]
+struct OneWay {
+    #[serde(flatten)]
+    lengths: Lengths,
+    place: Place,
+}
+
+#[derive(Serialize)]
+struct Lengths {
+    mean: f64,
+    rms: f64,
+    max: f64,
+    mean_percent: f64,
+    rms_percent: f64,
+    max_percent: f64,
+}
+
+impl From<&Distance> for DistanceFigures {
+    fn from(distance: &Distance) -> Self {
+        let lengths = |[mean, rms, max]: [f64; 3]| {
+            let [mean_percent, rms_percent, max_percent] =
+                [mean, rms, max].map(|length| distance.percent(length));
+            Lengths { mean, rms, max, mean_percent, rms_percent, max_percent }
+        };
+        let way = |way: &OneSidedDistance| OneWay {
+            lengths: lengths([way.mean, way.rms, way.max]),
+            place: way.place,
+        };
+        Self {
+            both: lengths([distance.mean(), distance.rms(), distance.max()]),
+            diagonal: distance.diagonal,
+            forward: way(&distance.forward),
+            backward: way(&distance.backward),
+        }
+    }
 }
 
 /// Formats the distances in each direction and combined as a table.
@@ -107,23 +129,38 @@ pub fn to_table(distance: &Distance) -> String {
     ])
 }
 
-/// Returns the bounds of the maximum distance in each direction and combined as JSON, in model units
-/// and percent of the diagonal.
-pub fn certified_json(distance: &CertifiedDistance) -> Value {
-    let way = |way: &Bracket| {
-        json!({
-            "lower": way.lower,
-            "upper": way.upper,
-            "lower_percent": distance.percent(way.lower),
-            "upper_percent": distance.percent(way.upper),
-            "reached": way.reached,
-            "place": place_json(&way.place),
-        })
-    };
-    let mut json = way(&distance.symmetric());
-    json["forward"] = way(&distance.forward);
-    json["backward"] = way(&distance.backward);
-    json
+/// Bounds of the maximum distance in each direction and combined, in model units and percent of the
+/// diagonal.
+#[derive(Serialize)]
+pub struct CertifiedFigures {
+    #[serde(flatten)]
+    both: BracketFigures,
+    forward: BracketFigures,
+    backward: BracketFigures,
+}
+
+#[derive(Serialize)]
+struct BracketFigures {
+    lower: f64,
+    upper: f64,
+    lower_percent: f64,
+    upper_percent: f64,
+    reached: bool,
+    place: Place,
+}
+
+impl From<&CertifiedDistance> for CertifiedFigures {
+    fn from(distance: &CertifiedDistance) -> Self {
+        let way = |Bracket { lower, upper, place, reached, .. }: Bracket| {
+            let [lower_percent, upper_percent] = [lower, upper].map(|l| distance.percent(l));
+            BracketFigures { lower, upper, lower_percent, upper_percent, reached, place }
+        };
+        Self {
+            both: way(distance.symmetric()),
+            forward: way(distance.forward),
+            backward: way(distance.backward),
+        }
+    }
 }
 
 /// Formats the bounds of the maximum distance in each direction and combined as a table.
@@ -143,8 +180,4 @@ pub fn certified_table(distance: &CertifiedDistance) -> String {
         row("both", distance.symmetric()),
     ]);
     format!("\n{table}")
-}
-
-fn place_json(place: &Place) -> Value {
-    json!({ "from": place.from, "to": place.to, "face": place.face.0 })
 }

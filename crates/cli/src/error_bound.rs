@@ -3,7 +3,7 @@
 use meshlod::measure::{CertifiedOptions, PreparedSurface, certified_surface_distance};
 use meshlod::simplify::Digits;
 use meshlod::{Mesh, Report, Scene, Target, rounding_of_level};
-use serde_json::Value;
+use serde::Serialize;
 
 use crate::distance;
 use crate::numbers::value;
@@ -48,6 +48,14 @@ pub struct ProvedError {
     is_exceeded: bool,
     rounds: usize,
     rounding: f64,
+}
+
+/// Figures of an error that was asked for, lengths in world units.
+#[derive(Serialize)]
+pub struct ErrorFigures {
+    error_asked: Option<f64>,
+    error_proved: Option<f64>,
+    error_rounds: Option<usize>,
 }
 
 impl AskedError {
@@ -132,11 +140,14 @@ impl ProvedError {
         format!("--error {asked}: only {proved} is proved; {help}")
     }
 
-    /// Adds what was asked for and what is proved to a JSON object.
-    pub fn add_json(kept: Option<&Self>, json: &mut Value) {
-        json["error_asked"] = kept.map(|kept| kept.asked).into();
-        json["error_proved"] = kept.and_then(|kept| kept.proved).into();
-        json["error_rounds"] = kept.map(|kept| kept.rounds).into();
+    /// Returns what was asked for and what is proved; `None` of all three where no error was asked
+    /// for.
+    pub fn figures(kept: Option<&Self>) -> ErrorFigures {
+        ErrorFigures {
+            error_asked: kept.map(|kept| kept.asked),
+            error_proved: kept.and_then(|kept| kept.proved),
+            error_rounds: kept.map(|kept| kept.rounds),
+        }
     }
 
     /// Formats the lines with what was asked for and what is proved.

@@ -3,7 +3,7 @@
 use clap::Args;
 use meshlod::check::Fused;
 use meshlod::{Constraints, Scene, Target};
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use crate::numbers::{count, faces, plural};
 use crate::session::Session;
@@ -19,11 +19,19 @@ pub struct FuseArgs {
     pub fuse: bool,
 }
 
-/// Result of fusing a scene.
+/// Changes made by fusing a scene, under the keys of JSON.
+#[derive(Clone, Copy, Serialize)]
 pub struct FuseReport {
-    pub before: usize,
-    after: usize,
-    fused: Fused,
+    pub input_faces: usize,
+    output_faces: usize,
+    cut_faces: usize,
+    new_vertices: usize,
+    buried_faces: usize,
+    joined_edges: usize,
+    components_not_fused: usize,
+    /// True if anything intersected that could be fused.
+    #[serde(skip)]
+    pub is_change: bool,
 }
 
 impl FuseArgs {
@@ -32,43 +40,35 @@ impl FuseArgs {
         if self.fuse {
             session.progress.stage("fusing");
         }
-        let before = shown_faces(scene);
+        let input_faces = shown_faces(scene);
         let constraints = Constraints { fuse: self.fuse, ..Constraints::default() };
         let fused = constraints.fuse(scene)?;
-        Some(FuseReport { before, after: shown_faces(scene), fused })
+        let Fused { imprint, buried, joined, left } = fused;
+        Some(FuseReport {
+            input_faces,
+            output_faces: shown_faces(scene),
+            cut_faces: imprint.faces,
+            new_vertices: imprint.vertices,
+            buried_faces: buried,
+            joined_edges: joined,
+            components_not_fused: left,
+            is_change: fused != Fused { left, ..Fused::default() },
+        })
     }
 }
 
 impl FuseReport {
-    /// Returns true if fusing changed the scene.
-    pub fn is_change(&self) -> bool {
-        self.fused != Fused { left: self.fused.left, ..Fused::default() }
-    }
-
     /// Converts a target ratio to a number of faces, based on the faces before fusing.
-    pub fn target(&self, target: Target) -> Target {
+    pub fn target(self, target: Target) -> Target {
         match target {
-            Target::Ratio(ratio) => Target::Faces((self.before as f64 * ratio) as usize),
+            Target::Ratio(ratio) => Target::Faces((self.input_faces as f64 * ratio) as usize),
             target => target,
         }
     }
 
-    pub fn to_json(&self) -> Value {
-        json!({
-            "input_faces": self.before,
-            "output_faces": self.after,
-            "cut_faces": self.fused.imprint.faces,
-            "new_vertices": self.fused.imprint.vertices,
-            "buried_faces": self.fused.buried,
-            "joined_edges": self.fused.joined,
-            "components_not_fused": self.fused.left,
-        })
-    }
-
     /// Formats the changes made by fusing as one line.
-    pub fn to_text(&self) -> String {
-        let Fused { imprint, buried, joined, left } = self.fused;
-        let left = match left {
+    pub fn to_text(self) -> String {
+        let left = match self.components_not_fused {
             0 => String::new(),
             left => {
                 format!(", {} component{} not fused: open or inside out", count(left), plural(left))
@@ -76,25 +76,20 @@ impl FuseReport {
         };
         format!(
             "fused: {} to {} ({} cut, {} inner piece{} removed, {} edge{} joined{left})\n",
-            faces(self.before),
-            count(self.after),
-            count(imprint.faces),
-            count(buried),
-            plural(buried),
-            count(joined),
-            plural(joined),
+            faces(self.input_faces),
+            count(self.output_faces),
+            count(self.cut_faces),
+            count(self.buried_faces),
+            plural(self.buried_faces),
+            count(self.joined_edges),
+            plural(self.joined_edges),
         )
     }
 }
 
-/// Returns the changes made by fusing as JSON; `null` without `--fuse`.
-pub fn to_json(done: Option<&FuseReport>) -> Value {
-    done.map_or(Value::Null, FuseReport::to_json)
-}
-
 /// Formats the changes made by fusing as one line; empty without `--fuse`.
 pub fn to_text(done: Option<&FuseReport>) -> String {
-    done.map_or(String::new(), FuseReport::to_text)
+    done.copied().map_or(String::new(), FuseReport::to_text)
 }
 
 fn shown_faces(scene: &Scene) -> usize {

@@ -2,9 +2,9 @@
 
 use meshlod::multires::Tolerance;
 use meshlod::{PoseCounts, Verification};
-use serde_json::{Value, json};
+use serde::Serialize;
 
-use crate::model_file;
+use crate::model_file::{self, PoseFigures};
 use crate::numbers::{count, percent, plural, value};
 
 /// Error that was asked for.
@@ -68,12 +68,25 @@ pub struct PosedError {
     pub stored: Option<f64>,
 }
 
-impl PosedError {
-    fn to_json(self) -> Value {
-        let mut json = model_file::poses_json(Some(self.poses));
-        json["error"] = self.stored.into();
-        json
-    }
+/// Error of an extracted mesh for programs, in model units unless pixels are said.
+#[derive(Serialize)]
+pub struct KeptFigures {
+    asked: Option<f64>,
+    asked_px: Option<f64>,
+    proved: Option<f64>,
+    proved_px: Option<f64>,
+    kept: Option<bool>,
+    in_focus: bool,
+    poses: Option<PosedFigures>,
+    updates_added: Option<usize>,
+    rounds: Option<usize>,
+}
+
+#[derive(Serialize)]
+struct PosedFigures {
+    #[serde(flatten)]
+    poses: PoseFigures,
+    error: Option<f64>,
 }
 
 impl KeptError {
@@ -148,7 +161,7 @@ impl KeptError {
         }
     }
 
-    pub fn to_json(self) -> Value {
+    pub fn figures(self) -> KeptFigures {
         let [asked, asked_px] = match self.asked {
             Asked::Finest => [Some(0.0), None],
             Asked::Length(asked) => [Some(asked), None],
@@ -159,17 +172,21 @@ impl KeptError {
             Known::Verified(proof) if self.is_whole => Some(proof),
             _ => None,
         };
-        json!({
-            "asked": asked,
-            "asked_px": asked_px,
-            "proved": self.proved(),
-            "proved_px": self.proved_px(),
-            "kept": self.is_kept(),
-            "in_focus": self.is_local,
-            "poses": self.in_poses.map(PosedError::to_json),
-            "updates_added": proof.map(|proof| proof.added),
-            "rounds": proof.map(|proof| proof.rounds),
-        })
+        let posed = |PosedError { poses, stored: error }: PosedError| PosedFigures {
+            poses: poses.into(),
+            error,
+        };
+        KeptFigures {
+            asked,
+            asked_px,
+            proved: self.proved(),
+            proved_px: self.proved_px(),
+            kept: self.is_kept(),
+            in_focus: self.is_local,
+            poses: self.in_poses.map(posed),
+            updates_added: proof.map(|proof| proof.added),
+            rounds: proof.map(|proof| proof.rounds),
+        }
     }
 
     pub fn to_text(self) -> String {

@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
 use meshlod::check::ContactPolicy;
-use meshlod::{Report, Scene, VertexLocking};
-use serde_json::{Value, json};
+use meshlod::{Scene, VertexLocking};
 
 use crate::args::ReadArgs;
 use crate::check::lock_file::{self, FileRows};
@@ -77,10 +76,4 @@ impl LockArgs {
             (None, None) => VertexLocking::None,
         })
     }
-}
-
-/// Returns the numbers of locked, protected and tied vertices as JSON.
-pub fn to_json(report: &Report) -> Value {
-    let held = &report.held;
-    json!({ "locked": held.locked, "protected": held.protected, "tied": held.tied })
 }

@@ -6,6 +6,7 @@ use std::path::Path;
 use meshlod::PoseCounts;
 use meshlod::io::Note;
 use meshlod::multires::{Archive, Certificate, ErrorKind, FileError, Fit, ModelFile, Source};
+use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
@@ -66,6 +67,14 @@ pub fn certificate_json(certificate: &Certificate) -> Value {
     json!({ "sound": certificate.sound, "odd": certificate.non_manifold })
 }
 
+/// Serializes a certificate by the keys of [`certificate_json`].
+pub fn certificate_figures<S: Serializer>(
+    of: &Certificate,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    certificate_json(of).serialize(serializer)
+}
+
 pub fn certificate_text(certificate: &Certificate) -> String {
     let Certificate { sound, non_manifold } = *certificate;
     let mut text =
@@ -74,10 +83,6 @@ pub fn certificate_text(certificate: &Certificate) -> String {
         text += &format!("; {} next to non-manifold parts of the input", count(non_manifold));
     }
     text
-}
-
-pub fn fit_json(fit: &Fit) -> Value {
-    json!({ "moved": fit.moved, "turned": fit.turned, "rounded": fit.rounded })
 }
 
 /// Describes the distance of a height field's finest level from the mesh.
@@ -153,9 +158,15 @@ pub fn poses_text(PoseCounts { poses, animations }: PoseCounts) -> String {
     )
 }
 
-pub fn poses_json(poses: Option<PoseCounts>) -> Value {
-    poses.map_or(
-        Value::Null,
-        |PoseCounts { poses, animations }| json!({ "measured": poses, "animations": animations }),
-    )
+/// Numbers of poses in which errors were measured, and of the animations that they are of.
+#[derive(Serialize)]
+pub struct PoseFigures {
+    measured: u32,
+    animations: u32,
+}
+
+impl From<PoseCounts> for PoseFigures {
+    fn from(PoseCounts { poses: measured, animations }: PoseCounts) -> Self {
+        Self { measured, animations }
+    }
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 use meshlod::io::{Note, merged_instances};
 use meshlod::multires::{ModelFile, Query};
 use meshlod::{Format, MissingParts, ModelScene, PoseCounts, Scene, SceneCounts, SceneQueryError};
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use crate::failure::Failure;
 use crate::model_file;
@@ -71,19 +71,36 @@ pub fn counts_text(counts: &SceneCounts, poses: ErrorPoses) -> String {
     text + "\n"
 }
 
-pub fn counts_json(counts: &SceneCounts) -> Value {
-    json!({
-        "nodes": counts.nodes,
-        "meshes": counts.meshes,
-        "instances": counts.instances,
-        "materials": counts.materials,
-        "images": counts.images,
-        "missing_images": counts.missing_images,
-        "skins": counts.skins,
-        "animations": counts.animations,
-        "skinned_meshes": counts.skinned_meshes,
-        "morphing_meshes": counts.morphing_meshes,
-    })
+/// Numbers of what a scene has, of its meshes those that are shown.
+#[derive(Serialize)]
+pub struct SceneFigures {
+    nodes: usize,
+    meshes: usize,
+    instances: usize,
+    materials: usize,
+    images: usize,
+    missing_images: usize,
+    skins: usize,
+    animations: usize,
+    skinned_meshes: usize,
+    morphing_meshes: usize,
+}
+
+impl From<&SceneCounts> for SceneFigures {
+    fn from(counts: &SceneCounts) -> Self {
+        Self {
+            nodes: counts.nodes,
+            meshes: counts.meshes,
+            instances: counts.instances,
+            materials: counts.materials,
+            images: counts.images,
+            missing_images: counts.missing_images,
+            skins: counts.skins,
+            animations: counts.animations,
+            skinned_meshes: counts.skinned_meshes,
+            morphing_meshes: counts.morphing_meshes,
+        }
+    }
 }
 
 /// Reads the scene of a multiresolution file, with notes of what a truncated file lacks.
@@ -108,16 +125,6 @@ pub fn read(path: &Path, file: &ModelFile<File>, session: &Session) -> Result<Mo
     ];
     session.note(path, &notes)?;
     Ok(model)
-}
-
-/// Lists the parts of a scene that a truncated file lacks, for programs.
-pub fn missing_json(missing: &MissingParts) -> Value {
-    json!({
-        "scene": missing.scene,
-        "previews": missing.previews,
-        "images": missing.images,
-        "animations": missing.animations,
-    })
 }
 
 /// Returns a scene of the level in `flat`, as the format can hold it: glTF has the nodes of the

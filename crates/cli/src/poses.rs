@@ -3,7 +3,7 @@
 use meshlod::io::gltf::{Animator, Moment};
 use meshlod::measure::{DistanceOptions, surface_distance};
 use meshlod::{Mesh, Scene, posed_mesh};
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use crate::distance;
 use crate::failure::Failure;
@@ -17,6 +17,14 @@ pub struct FarthestPose {
     at: Moment,
     /// Number of poses that were compared.
     poses: usize,
+}
+
+/// Number of poses that were compared, and the moment at which two scenes are farthest apart.
+#[derive(Serialize)]
+pub struct FarthestFigures {
+    measured: usize,
+    animation: usize,
+    seconds: f64,
 }
 
 impl FarthestPose {
@@ -58,9 +66,9 @@ impl FarthestPose {
         farthest.map(|(_, pose)| pose).ok_or_else(|| none(paths[0]))
     }
 
-    pub fn to_json(&self) -> Value {
+    pub fn figures(&self) -> FarthestFigures {
         let Moment { animation, seconds } = self.at;
-        json!({ "measured": self.poses, "animation": animation, "seconds": seconds })
+        FarthestFigures { measured: self.poses, animation, seconds }
     }
 
     pub fn to_text(&self) -> String {

@@ -2,36 +2,57 @@
 
 use std::time::Duration;
 
-use meshlod::simplify::Refusal;
+use meshlod::simplify::{Contractions, Held, Refusal, Refusals};
 use meshlod::{Report, Topology};
-use serde_json::{Map, Value, json};
+use serde::Serialize;
 
 use crate::numbers::{count, faces, value};
 
-/// Returns the number of refused contractions by reason as JSON.
-pub fn refusals_json(report: &Report) -> Value {
-    let entry = |refusal: Refusal| (refusal.name().into(), report.refusals.count(refusal).into());
-    Value::Object(Refusal::ALL.into_iter().map(entry).collect::<Map<String, Value>>())
+/// Numbers of edges and faces contracted, with the share of edges.
+#[derive(Serialize)]
+pub struct ContractionFigures {
+    #[serde(flatten)]
+    contractions: Contractions,
+    edge_share: Option<f64>,
 }
 
-/// Returns the numbers of edges and faces contracted as JSON, with the share of edges.
-pub fn contractions_json(report: &Report) -> Value {
-    let contractions = report.contractions;
-    json!({
-        "edges": contractions.edges,
-        "faces": contractions.faces,
-        "edge_share": contractions.edge_share(),
-    })
+impl From<Contractions> for ContractionFigures {
+    fn from(contractions: Contractions) -> Self {
+        Self { contractions, edge_share: contractions.edge_share() }
+    }
 }
 
-/// Returns those fields of a simplification report that every command prints as JSON.
-pub fn report_json(report: &Report) -> Value {
-    json!({
-        "input_faces": report.input_faces,
-        "output_faces": report.output_faces,
-        "reached": report.reached,
-        "error_estimate": report.error_estimate,
-    })
+/// Time that a run took, and what its input had that is left out or kept in place.
+#[derive(Serialize)]
+pub struct InputFigures {
+    simplify_seconds: f64,
+    degenerate_faces: usize,
+    duplicate_faces: usize,
+    non_manifold_vertices: usize,
+}
+
+impl InputFigures {
+    pub fn of(report: &Report, time: Duration) -> Self {
+        let Report { degenerate_faces, duplicate_faces, non_manifold_vertices, .. } = *report;
+        let simplify_seconds = time.as_secs_f64();
+        Self { simplify_seconds, degenerate_faces, duplicate_faces, non_manifold_vertices }
+    }
+}
+
+/// Vertices that a run held, components that vanished, and contractions that were refused.
+#[derive(Serialize)]
+pub struct RunFigures {
+    held: Held,
+    vanished: usize,
+    vanished_volume: f64,
+    refusals: Refusals,
+}
+
+impl From<&Report> for RunFigures {
+    fn from(report: &Report) -> Self {
+        let Report { held, vanished, refusals, volume, .. } = *report;
+        Self { held, vanished, vanished_volume: volume.vanished, refusals }
+    }
 }
 
 /// Formats a line that explains why the target of a simplification was missed, and what would help.

@@ -1,8 +1,9 @@
 //! Options for what may happen to the topology of a mesh.
 
 use clap::{Args, ValueEnum};
+use meshlod::mesh::Conditioning;
 use meshlod::{Borders, ConditionedScene, Scene, Topology, world_bounds};
-use serde_json::Value;
+use serde::Serialize;
 
 use crate::failure::Failure;
 use crate::numbers::{count, value};
@@ -81,12 +82,19 @@ impl TopologyArgs {
     }
 }
 
-/// Adds what conditioning has changed in a scene to the JSON of a report.
-pub fn add_json(json: &mut Value, scene: &ConditionedScene<'_>) {
-    let counts = scene.counts();
-    json["stitched_edges"] = counts.stitched_edges.into();
-    json["stitched_vertices"] = counts.stitched_vertices.into();
-    json["split_vertices"] = counts.split_vertices.into();
+/// Numbers of edges and vertices that conditioning has changed in a scene.
+#[derive(Serialize)]
+pub struct ConditioningFigures {
+    stitched_edges: usize,
+    stitched_vertices: usize,
+    split_vertices: usize,
+}
+
+impl ConditioningFigures {
+    pub fn of(scene: &ConditionedScene<'_>) -> Self {
+        let Conditioning { stitched_edges, stitched_vertices, split_vertices, .. } = scene.counts();
+        Self { stitched_edges, stitched_vertices, split_vertices }
+    }
 }
 
 /// Formats lines about what conditioning has changed in a scene; empty if that is nothing.

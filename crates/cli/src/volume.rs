@@ -6,7 +6,7 @@ use meshlod::simplify::{Digits, ExactVolumeError, Unconserved, VolumeLoss, Volum
 use meshlod::{
     ConditionedScene, Mesh, Method, Scene, closed_volume, conserve_volumes, world_bounds,
 };
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use crate::numbers::percent;
 use crate::session::Session;
@@ -69,25 +69,23 @@ pub fn worst_residual(
     worst
 }
 
-/// Returns the contractions that could not conserve the volume as JSON, with what they owed and the
-/// level was repaid; `null` for a method that does not aim to.
-pub fn unconserved_json(method: Method, loss: &VolumeLoss) -> Value {
-    let json = || {
-        json!({
-            "at_boundaries": with_bounds(&loss.open),
-            "behind_boundary_cones": loss.at_boundaries,
-            "held": with_bounds(&loss.held),
-            "owed": loss.owed,
-            "repaid": loss.repaid,
-        })
-    };
-    method.conserves_volume().then(json).into()
+/// Contractions that could not conserve the volume, with what they owed and the level was repaid.
+#[derive(Serialize)]
+pub struct VolumeNotConserved {
+    at_boundaries: Unconserved,
+    behind_boundary_cones: Option<f64>,
+    held: Unconserved,
+    owed: f64,
+    repaid: f64,
 }
 
-fn with_bounds(some: &Unconserved) -> Value {
-    let bounds =
-        (some.contractions > 0).then(|| json!({ "min": some.bounds.min, "max": some.bounds.max }));
-    json!({ "contractions": some.contractions, "bounds": bounds })
+impl VolumeNotConserved {
+    /// Returns the figures of a run; `None` for a method that does not aim to conserve the volume.
+    pub fn of(method: Method, loss: &VolumeLoss) -> Option<Self> {
+        let VolumeLoss { at_boundaries: behind_boundary_cones, held, owed, repaid, .. } = *loss;
+        let figures = Self { at_boundaries: loss.open, behind_boundary_cones, held, owed, repaid };
+        method.conserves_volume().then_some(figures)
+    }
 }
 
 /// Describes the volume that a volume-conserving method has lost in closed parts, relative to the
@@ -162,7 +160,7 @@ mod tests {
         assert_eq!(text(&vanished).as_deref(), Some(expected));
         let repaid = VolumeLoss { repaid: 0.03, ..loss };
         assert_eq!(text(&repaid), None);
-        let json = |method| unconserved_json(method, &loss);
+        let json = |method| serde_json::json!(VolumeNotConserved::of(method, &loss));
         assert_eq!(json(Method::LeeJang)["held"]["contractions"], 1);
         assert_eq!(json(Method::LeeJang)["owed"], 0.02);
         assert!(json(Method::LeeJang)["at_boundaries"]["bounds"].is_null());

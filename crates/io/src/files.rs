@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use std::path::{Component, Path, PathBuf};
 
 use meshlod_mesh::{Mesh, VertexId};
+use serde::{Deserialize, Serialize};
 
 use beside::{Beside, bare_name};
 use write_gltf::write_gltf;
@@ -25,7 +26,8 @@ mod write_obj;
 mod write_ply;
 
 /// Policy for merging vertices at equal or close positions when a file is read.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Weld {
     /// Keeps the vertices as they are in the file.
     Off,
@@ -40,14 +42,16 @@ pub enum Weld {
 }
 
 /// Options for reading a mesh file with [`read()`] or [`read_bytes`].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct ReadOptions {
     /// Choice of the vertices to merge, such as those at bit-identical positions.
     pub weld: Weld,
 }
 
 /// Options for writing a mesh file with [`write()`].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct WriteOptions {
     /// Precision of coordinates in PLY, OBJ, OFF, SMF and text STL. Binary STL and glTF always use
     /// 32 bits; glTF counts them from a centre of the mesh where that is needed, see

@@ -3,11 +3,13 @@
 use glam::DVec3;
 use meshlod_mesh::Mesh;
 use rustc_hash::FxHashMap;
+use serde::{Deserialize, Serialize};
 
 use crate::{Format, Note, Scene, gltf};
 
 /// Precision of the floating-point coordinates in a written file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Precision {
     /// 32-bit floats where they keep the shape, else 64-bit floats.
     ///

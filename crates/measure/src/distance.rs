@@ -10,6 +10,8 @@ use crate::sample::samples;
 
 /// Options for measuring the distance between two meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct DistanceOptions {
     /// Number of sample points on each surface, spread evenly by area.
     ///
@@ -30,6 +32,7 @@ impl Default for DistanceOptions {
 /// Mean and RMS are taken over the samples. The maximum is a lower bound of the true one, and exact
 /// if that is attained at a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Distance {
     /// Distance from points on A to the surface B.
     pub forward: OneSidedDistance,
@@ -41,6 +44,7 @@ pub struct Distance {
 
 /// Distance measured from points on one surface to another surface, in model units.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct OneSidedDistance {
     /// Mean distance of the sample points from the other surface, in model units.
     pub mean: f64,
@@ -54,6 +58,7 @@ pub struct OneSidedDistance {
 
 /// Point on one surface and the closest point on the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Place {
     /// Point on the surface that is measured from.
     pub from: [f64; 3],

@@ -13,6 +13,7 @@ const DEGENERATE: f64 = 1e-15;
 /// Statistics of the shape quality of triangles: 1 for an equilateral triangle, 0 for a degenerate
 /// one.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Quality {
     /// Number of triangles with a quality below 0.1, from 0.1 to 0.2 and so on; the last bin
     /// includes 1.

@@ -104,6 +104,14 @@ impl fmt::Display for LayerKind {
     }
 }
 
+/// Writes the type as a text, as `Display` does.
+#[cfg(feature = "serde")]
+impl serde::Serialize for LayerKind {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
 /// Attribute layer: the values of one attribute, such as normals, for all wedges of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
@@ -158,6 +166,8 @@ impl Attributes {
 ///
 /// A bound below the resolution of `f32` is met as closely as `f32` allows.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct AttributeBounds {
     /// Largest error of normals and tangents, in radians, down to .00004 (16 bits for each of two
     /// coordinates).

@@ -17,6 +17,17 @@ impl Default for Bounds {
     }
 }
 
+/// Writes the corners as `min` and `max`, and an empty box as nothing.
+#[cfg(feature = "serde")]
+impl serde::Serialize for Bounds {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self.is_empty() {
+            true => serializer.serialize_none(),
+            false => serializer.collect_map([("min", self.min), ("max", self.max)]),
+        }
+    }
+}
+
 impl Bounds {
     /// Empty box, which contains no point.
     pub const EMPTY: Self = Self { min: [f64::INFINITY; 3], max: [f64::NEG_INFINITY; 3] };

@@ -4,6 +4,8 @@ use crate::VertexId;
 
 /// Constraint on a vertex in mesh simplification.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Lock {
     /// Simplification may move or remove the vertex freely.
     #[default]
@@ -18,6 +20,8 @@ pub enum Lock {
 
 /// Constraints on mesh simplification: locked vertices, and vertices that must stay together.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Locks {
     /// Constraint on each vertex; empty if all vertices are free.
     pub of_vertex: Vec<Lock>,

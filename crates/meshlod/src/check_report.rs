@@ -8,6 +8,7 @@ use meshlod_mesh::Mesh;
 
 /// Findings of a mesh check: all of them counted, the first of each kind listed.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct CheckReport {
     /// Objects of the mesh, which the findings refer to by index.
     pub objects: Objects,

@@ -17,6 +17,8 @@ use crate::{Constraints, PlaceError, compressed_strips, place_scene};
 
 /// Options for writing a compressed mesh file with [`compress`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct CompressOptions {
     /// Accuracy or size that the positions must reach; the default is 11 bits per axis.
     pub target: CompressionTarget,
@@ -39,6 +41,7 @@ impl Default for CompressOptions {
 
 /// Contents and size of the file that [`compress`] wrote.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct CompressReport {
     /// Number of vertices in the file.
     pub vertices: usize,

@@ -28,6 +28,8 @@ use crate::locks::join_locks;
 /// # Ok::<(), meshlod::SimplifyError>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Constraints {
     /// Changes that are allowed to the topology of the surface.
     pub topology: Topology,
@@ -44,6 +46,8 @@ pub struct Constraints {
 
 /// Source of the locks of single vertices.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum VertexLocking {
     /// No vertex is locked.
     #[default]

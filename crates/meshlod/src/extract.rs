@@ -47,6 +47,7 @@ impl Default for ExtractOptions<'static> {
 
 /// Facts about a mesh that [`extract_reported`] took out of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ExtractReport {
     /// Number of faces of the level, with those that were cropped. More than `max_faces` if the
     /// coarsest level has more.

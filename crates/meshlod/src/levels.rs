@@ -13,6 +13,8 @@ use crate::{Constraints, CutVolumeError};
 
 /// Options for writing a multiresolution file with [`build`].
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct BuildOptions {
     /// Simplification method whose contractions define the levels.
     pub method: Method,
@@ -42,6 +44,7 @@ impl Default for BuildOptions {
 
 /// Contents and size of the file that [`build`] wrote.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct BuildReport {
     /// Number of faces of the finest level, which leaves out degenerate and duplicate faces of the
     /// mesh.

@@ -208,8 +208,29 @@
 //!
 //! [`spatial`] has the search structures behind these: the exact closest point of a surface.
 //!
+//! # Settings and reports as data
+//! With the feature `serde`, options can be read from a file of any format and written to one, and
+//! reports can be written. What a file leaves out has its default, and a name that no option has is
+//! an error. Methods and the like go by the names that they print, targets by their unit. A number
+//! that is not finite is `null` in JSON:
+//!
+//! ```
+//! # #[cfg(feature = "serde")] {
+//! use meshlod::{Options, Target, samples, simplify};
+//!
+//! let options: Options = serde_json::from_str(r#"{ "method": "qem", "topology": "keep" }"#)?;
+//! let target: Target = serde_json::from_str(r#"{ "ratio": 0.1 }"#)?;
+//! let (_, report) = simplify(&samples::torus(1_000), target, &options)?;
+//! assert!(serde_json::to_string(&report)?.starts_with(r#"{"method":"qem","input_faces":"#));
+//!
+//! let misspelt = serde_json::from_str::<Options>(r#"{ "methods": "qem" }"#);
+//! assert!(misspelt.unwrap_err().to_string().starts_with("unknown field `methods`"));
+//! # }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # Features
-//! All of these are on by default. With `default-features = false` there are [`mesh`], [`simplify`](mod@simplify),
+//! All of these but `serde` are on by default. With `default-features = false` there are [`mesh`], [`simplify`](mod@simplify),
 //! [`measure`] and [`spatial`], with 18 crates below this one and no C.
 //!
 //! | feature | adds | and needs |
@@ -223,6 +244,7 @@
 //! | `flock` | [`flock`]: a level for each of thousands of members | `multires` |
 //! | `samples` | [`samples`]: procedural meshes | |
 //! | `draco` | glTF compressed by Draco is read | `io` |
+//! | `serde` | options and reports as data, of whatever else is on | |
 //!
 //! Others let meshes of other crates in and out by [`mesh::MeshArrays`], and are off:
 //!

@@ -39,6 +39,7 @@ pub struct VerifiedExtract {
 
 /// Proof of the error of an extracted mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Verification {
     /// True if every point of the mesh in the focus is as close to the original as the query asks,
     /// and every point of the original in the focus as close to the mesh.

@@ -12,6 +12,8 @@ use crate::refusal::Refusals;
 /// Mesh simplification algorithm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Method {
     /// Edge contraction by quadric error metrics, with optimal placement of new vertices [GH97].
     Qem,
@@ -117,6 +119,8 @@ impl Method {
 
 /// Number of faces or error at which a simplification stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Target {
     /// At most this number of faces; the result may have a few faces fewer.
     Faces(usize),
@@ -165,6 +169,8 @@ meshlod_mesh::by_name!(Method, "methods");
 
 /// Changes that a simplification may make to the topology of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Topology {
     /// Connected components may vanish where that costs less than contracting them further. Seams
     /// of textures and borders of materials give way where nothing else is left at a price in
@@ -194,6 +200,8 @@ meshlod_mesh::by_name!(Topology, "treatments of the topology");
 
 /// Options of a mesh simplification.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Options {
     /// Simplification algorithm, which also decides which of the two engines runs it.
     pub method: Method,
@@ -253,6 +261,8 @@ impl Options {
 /// Weights of attribute errors relative to distances in the costs of contractions; 0 ignores an
 /// attribute.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct AttributeWeights {
     /// Weight of normals: a deviation of 1 counts as this fraction of the bounding-box diagonal.
     pub normal: f64,
@@ -363,6 +373,7 @@ pub enum SimplifyError {
 
 /// Numbers of contractions by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Contractions {
     /// Number of edges contracted by themselves.
     pub edges: usize,
@@ -387,6 +398,7 @@ impl AddAssign for Contractions {
 
 /// Proof that a level is as near to its input as was asked for, or how near it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ErrorProof {
     /// Largest distance asked for, in model units.
     pub asked: f64,
@@ -398,6 +410,7 @@ pub struct ErrorProof {
 
 /// Report of a mesh simplification.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Report {
     /// Simplification method that ran.
     pub method: Method,

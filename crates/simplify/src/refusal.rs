@@ -98,6 +98,14 @@ impl AddAssign for Refusals {
     }
 }
 
+/// Writes the count of every reason under its name.
+#[cfg(feature = "serde")]
+impl serde::Serialize for Refusals {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(Refusal::ALL.map(|refusal| (refusal.name(), self.count(refusal))))
+    }
+}
+
 impl fmt::Display for Refusals {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut separator = "";

@@ -15,6 +15,8 @@ use crate::verify::has_three_corners;
 
 /// Vertex cache that strips are built for, and the trade between cache misses and strip length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct CacheAware {
     /// Number of vertices that the cache holds; it is first in, first out.
     pub entries: usize,

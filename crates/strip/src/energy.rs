@@ -5,6 +5,8 @@ use crate::dual_node::{DualEdge, Links};
 
 /// Prices of strips, in vertices sent beyond one per triangle; each is clamped to a thousand.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Prices {
     /// Price of each strip, in vertices: its first two vertices, and a restart if that counts.
     pub strip: f64,

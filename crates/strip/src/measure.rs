@@ -9,6 +9,7 @@ use crate::strips::Strips;
 /// Statistics of triangle strips: the vertices and indices they send, and how well a vertex cache
 /// serves them.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct StripStatistics {
     /// Number of triangles that the strips draw.
     pub triangles: usize,

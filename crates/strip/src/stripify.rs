@@ -12,6 +12,8 @@ use crate::strips::Strips;
 
 /// Quality of triangle strips, traded for the time to build them.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum StripQuality {
     /// Greedy strips, built in one pass.
     Fast,
@@ -37,6 +39,8 @@ impl StripQuality {
 
 /// Options of [`stripify`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct StripOptions<'a> {
     /// Quality of the strips, traded for the time to build them.
     pub quality: StripQuality,
@@ -44,7 +48,9 @@ pub struct StripOptions<'a> {
     pub prices: Prices,
     /// Vertex cache to cut and order the strips for; `None` to ignore caching.
     pub cache: Option<CacheAware>,
-    /// Cluster label of each face; no strip crosses from one cluster to another.
+    /// Cluster label of each face; no strip crosses from one cluster to another. Not part of what
+    /// serde writes and reads.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub clusters: Option<&'a [u32]>,
     /// Seed of the random numbers; other seeds give other strips of about the same quality.
     pub seed: u64,

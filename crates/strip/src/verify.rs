@@ -6,6 +6,7 @@ use crate::strips::Strips;
 
 /// Difference between the triangles that strips draw and those of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Difference {
     /// Number of triangles of the mesh that the strips do not draw.
     pub missing: usize,

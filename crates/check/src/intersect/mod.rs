@@ -36,6 +36,8 @@ pub(crate) use soup::{ScaledPositions, SearchInput};
 
 /// Method of finding the pairs of faces that may intersect. The findings do not depend on it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum BroadPhase {
     /// Bounding volume hierarchy of the faces tested against itself; the faster method.
     #[default]

@@ -10,11 +10,32 @@ use crate::check::boundary::{Boundary, BoundaryPolyline};
 
 /// Limits on the size of the holes that are filled.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct HoleLimits {
     /// Maximum number of edges of a hole, never more than [`HoleLimits::MOST_EDGES`].
     pub edges: usize,
-    /// Maximum perimeter of a hole, in model units.
+    /// Maximum perimeter of a hole, in model units; infinite for no limit, which serde leaves out.
+    #[cfg_attr(feature = "serde", serde(with = "no_limit", default = "no_limit::length"))]
     pub length: f64,
+}
+
+/// An infinite length, which JSON cannot express, as one that is not there.
+#[cfg(feature = "serde")]
+mod no_limit {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn length() -> f64 {
+        f64::INFINITY
+    }
+
+    pub fn serialize<S: Serializer>(length: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+        length.is_finite().then_some(*length).serialize(serializer)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+        Ok(Option::deserialize(deserializer)?.unwrap_or_else(length))
+    }
 }
 
 impl HoleLimits {

@@ -102,6 +102,14 @@ pub struct RepairReport {
     counts: [usize; RepairStep::ALL.len()],
 }
 
+/// Writes the count of every step under its name.
+#[cfg(feature = "serde")]
+impl serde::Serialize for RepairReport {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(RepairStep::ALL.map(|step| (step.name(), self.count(step))))
+    }
+}
+
 impl RepairReport {
     /// Adds to the count of a repair step.
     pub fn add(&mut self, step: RepairStep, count: usize) {

@@ -33,8 +33,8 @@ impl FileState {
 /// Makes the output of one file. A panic, which would be a defect, is a failure of this file alone.
 pub fn run_file(line: Result<VerbLine, Failure>, job: &FileJob) -> FileReport {
     let start = Instant::now();
-    let before = FileState::of(&job.input);
-    let mut report = FileReport { input_state: before, ..FileReport::planned(job) };
+    let mut report = FileReport::planned(job);
+    report.set_input(FileState::of(&job.input));
     let done = catch_unwind(AssertUnwindSafe(|| attempt(line, job, &mut report)));
     match done.unwrap_or_else(|panic| Err(defect(&*panic))) {
         Ok(answer) => {
@@ -42,7 +42,7 @@ pub fn run_file(line: Result<VerbLine, Failure>, job: &FileJob) -> FileReport {
                 Outcome::Done => Status::Done,
                 Outcome::Missed | Outcome::Found => Status::Missed,
             };
-            report.output_state = FileState::of(&job.output);
+            report.set_output(FileState::of(&job.output));
             report.result = Some(answer.json);
         }
         Err(failure) => {

@@ -9,7 +9,8 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use serde_json::{Value, json};
+use serde::Deserialize;
+use serde_json::json;
 
 use crate::batch::file::FileState;
 use crate::batch::plan::FileJob;
@@ -26,6 +27,13 @@ pub struct Journal {
     made: BTreeMap<String, (String, FileReport)>,
     /// The file, once a line is added.
     file: Option<File>,
+}
+
+/// A line of the journal.
+#[derive(Deserialize)]
+struct Line {
+    recipe: String,
+    report: FileReport,
 }
 
 impl Journal {
@@ -45,11 +53,7 @@ impl Journal {
             read => read.map_err(|error| Failure::at(&journal.path, error))?,
         };
         for line in bytes.split(|&byte| byte == b'\n') {
-            let entry = serde_json::from_slice(line).ok().and_then(|json: Value| {
-                let report = FileReport::from_json(&json["report"])?;
-                Some((json["recipe"].as_str()?.to_owned(), report))
-            });
-            if let Some((recipe, report)) = entry {
+            if let Ok(Line { recipe, report }) = serde_json::from_slice(line) {
                 journal.made.insert(report.output.clone(), (recipe, report));
             }
         }
@@ -61,9 +65,7 @@ impl Journal {
         let planned = FileReport::planned(job);
         let (made_by, report) = self.made.get(&planned.output)?;
         let states = [FileState::of(&job.input)?, FileState::of(&job.output)?];
-        let same = made_by == recipe
-            && report.input == planned.input
-            && [report.input_state, report.output_state] == states.map(Some);
+        let same = made_by == recipe && report.input == planned.input && report.is_of(states);
         same.then(|| FileReport { status: Status::Skipped, ..report.clone() })
     }
 
@@ -75,7 +77,7 @@ impl Journal {
         if report.status != Status::Done {
             return Ok(());
         }
-        let line = json!({ "recipe": recipe, "report": report.to_json() });
+        let line = json!({ "recipe": recipe, "report": report });
         let mut append = || -> io::Result<()> {
             let file = match &mut self.file {
                 Some(file) => file,

@@ -19,7 +19,7 @@ use std::time::Instant;
 
 use clap::Parser;
 use meshlod::io::{remove_abandoned, write_file};
-use serde_json::{Value, json};
+use serde_json::json;
 
 use crate::answer::{Answer, Outcome};
 use crate::args::GlobalArgs;
@@ -176,7 +176,7 @@ fn answer(
             let _ = writeln!(text, "{} -> {}", report.input, report.output);
         }
     }
-    json["reports"] = reports.iter().map(FileReport::to_json).collect::<Vec<Value>>().into();
+    json["reports"] = json!(reports);
     let wrong = number(Status::Failed) + number(Status::Missed) > 0;
     Answer { outcome: Outcome::Missed.when(wrong), ..Answer::new(json, text) }
 }
@@ -193,7 +193,7 @@ pub fn run_file_json(mut arguments: Vec<OsString>, input: &Path, output: &Path) 
         Ok(pool) => pool.install(|| file::run_file(line, &job)),
         Err(failure) => file::run_file(Err(failure), &job),
     };
-    report.to_json().to_string()
+    json!(report).to_string()
 }
 
 /// Notes in the journal of `folder` that a worker elsewhere has made a file, given its report.
@@ -201,8 +201,7 @@ pub fn run_file_json(mut arguments: Vec<OsString>, input: &Path, output: &Path) 
 /// # Errors
 /// Of the system.
 pub fn record_json(folder: &Path, recipe: &str, report: &str) -> Result<(), Failure> {
-    let json: Value = serde_json::from_str(report).map_err(Failure::new)?;
-    let report = FileReport::from_json(&json);
-    let report = report.ok_or_else(|| Failure::new("this is not the report of a file"))?;
+    let wrong = |error| Failure::new(format_args!("this is not the report of a file: {error}"));
+    let report: FileReport = serde_json::from_str(report).map_err(wrong)?;
     Journal::new(folder).add(&report, recipe)
 }

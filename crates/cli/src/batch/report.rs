@@ -1,5 +1,6 @@
 //! How a file of a batch went, as a row of a table and as JSON.
 
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use crate::batch::file::FileState;
@@ -7,7 +8,8 @@ use crate::batch::plan::FileJob;
 use crate::files;
 
 /// State of a file in a batch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Status {
     /// Nothing was tried yet.
     Planned,
@@ -45,20 +47,22 @@ impl Status {
 }
 
 /// How one file went.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FileReport {
     pub input: String,
     pub output: String,
     pub status: Status,
-    /// Object that the verb prints with `--json`.
-    pub result: Option<Value>,
     pub error: Option<String>,
     pub warnings: Vec<String>,
     pub seconds: f64,
-    /// State of the input before it was read.
-    pub input_state: Option<FileState>,
     /// State of the output after it was written.
-    pub output_state: Option<FileState>,
+    pub bytes: Option<u64>,
+    pub changed_ns: Option<u64>,
+    /// State of the input before it was read.
+    pub input_bytes: Option<u64>,
+    pub input_changed_ns: Option<u64>,
+    /// Object that the verb prints with `--json`.
+    pub result: Option<Value>,
 }
 
 /// Columns of the table, with the place of each in the JSON of a report.
@@ -79,7 +83,7 @@ const COLUMNS: [(&str, &[&str]); 12] = [
 
 /// Formats reports as a table: CSV, or JSON with all that is known.
 pub fn table(reports: &[FileReport], as_json: bool) -> String {
-    let rows: Vec<Value> = reports.iter().map(FileReport::to_json).collect();
+    let rows: Vec<Value> = reports.iter().map(|report| json!(report)).collect();
     if as_json {
         return format!("{:#}\n", Value::Array(rows));
     }
@@ -115,12 +119,14 @@ impl FileReport {
             input: files::name(&job.input),
             output: files::name(&job.output),
             status: Status::Planned,
-            result: None,
             error: None,
             warnings: Vec::new(),
             seconds: 0.0,
-            input_state: None,
-            output_state: None,
+            bytes: None,
+            changed_ns: None,
+            input_bytes: None,
+            input_changed_ns: None,
+            result: None,
         }
     }
 
@@ -132,42 +138,23 @@ impl FileReport {
         }
     }
 
-    pub fn to_json(&self) -> Value {
-        let [input, output] = [self.input_state, self.output_state];
-        json!({
-            "input": self.input,
-            "output": self.output,
-            "status": self.status.name(),
-            "error": self.error,
-            "warnings": self.warnings,
-            "seconds": self.seconds,
-            "bytes": output.map(|state| state.bytes),
-            "changed_ns": output.map(|state| state.changed_ns),
-            "input_bytes": input.map(|state| state.bytes),
-            "input_changed_ns": input.map(|state| state.changed_ns),
-            "result": self.result,
-        })
+    /// Notes the state of the input before it was read.
+    pub fn set_input(&mut self, state: Option<FileState>) {
+        self.input_bytes = state.map(|state| state.bytes);
+        self.input_changed_ns = state.map(|state| state.changed_ns);
     }
 
-    /// Reads what [`Self::to_json`] wrote; `None` if it is anything else.
-    pub fn from_json(json: &Value) -> Option<Self> {
-        let text = |key: &str| json[key].as_str().map(str::to_owned);
-        let state = |bytes: &str, changed: &str| {
-            Some(FileState { bytes: json[bytes].as_u64()?, changed_ns: json[changed].as_u64()? })
-        };
-        let status = json["status"].as_str()?;
-        let warnings = json["warnings"].as_array()?.iter().map(|line| line.as_str());
-        Some(Self {
-            input: text("input")?,
-            output: text("output")?,
-            status: Status::ALL.into_iter().find(|known| known.name() == status)?,
-            result: Some(json["result"].clone()).filter(|result| !result.is_null()),
-            error: text("error"),
-            warnings: warnings.map(|line| line.map(str::to_owned)).collect::<Option<_>>()?,
-            seconds: json["seconds"].as_f64()?,
-            input_state: state("input_bytes", "input_changed_ns"),
-            output_state: state("bytes", "changed_ns"),
-        })
+    /// Notes the state of the output after it was written.
+    pub fn set_output(&mut self, state: Option<FileState>) {
+        self.bytes = state.map(|state| state.bytes);
+        self.changed_ns = state.map(|state| state.changed_ns);
+    }
+
+    /// Returns whether input and output were in these states.
+    pub fn is_of(&self, [input, output]: [FileState; 2]) -> bool {
+        let bytes = [self.input_bytes, self.bytes] == [input.bytes, output.bytes].map(Some);
+        let changed = [input.changed_ns, output.changed_ns].map(Some);
+        bytes && [self.input_changed_ns, self.changed_ns] == changed
     }
 }
 
@@ -182,8 +169,10 @@ mod tests {
             result: Some(json!({ "input_faces": 10, "output_faces": 5, "error_estimate": 0.5 })),
             warnings: vec!["one".into(), "two\nlines".into()],
             seconds: 0.25,
-            input_state: Some(FileState { bytes: 7, changed_ns: u64::MAX }),
-            output_state: Some(FileState { bytes: 3, changed_ns: 1 }),
+            bytes: Some(3),
+            changed_ns: Some(1),
+            input_bytes: Some(7),
+            input_changed_ns: Some(u64::MAX),
             ..FileReport::planned(&job)
         }
     }
@@ -191,10 +180,10 @@ mod tests {
     #[test]
     fn a_report_comes_back_from_json() {
         let report = report();
-        let text = report.to_json().to_string();
-        assert_eq!(FileReport::from_json(&serde_json::from_str(&text).unwrap()), Some(report));
-        assert_eq!(FileReport::from_json(&json!({ "input": "a" })), None);
-        assert_eq!(FileReport::from_json(&json!([])), None);
+        let text = json!(report).to_string();
+        assert_eq!(serde_json::from_str::<FileReport>(&text).unwrap(), report);
+        assert!(serde_json::from_str::<FileReport>(r#"{ "input": "a" }"#).is_err());
+        assert!(serde_json::from_str::<FileReport>("[]").is_err());
     }
 
     #[test]

@@ -10,7 +10,7 @@ use serde_json::json;
 use crate::answer::Answer;
 use crate::failure::Failure;
 use crate::files;
-use crate::model_file;
+use crate::model_file::{self, PoseFigures};
 use crate::model_scene;
 use crate::numbers::{count, faces, plural};
 use crate::session::Session;
@@ -48,7 +48,7 @@ fn prove_contractions(
         "file": files::name(path),
         "model": "contractions",
         "error_kind": kind,
-        "poses": model_file::poses_json(poses),
+        "poses": poses.map(PoseFigures::from),
         "rounding": model_file::rounding(archive),
         "lossless": archive.is_lossless(),
         "chunks": chunks,
@@ -57,7 +57,7 @@ fn prove_contractions(
         "base_faces": model.base_faces(),
         "faces": model.full_faces(),
         "certificate": model_file::certificate_json(&certificate),
-        "scene_missing": model_scene::missing_json(&scene.missing),
+        "scene_missing": scene.missing,
     });
     let text = format!(
         "{}: {} to {}, {there} of {chunks} chunk{}, {}; {}\n{}{}\n",
@@ -89,7 +89,7 @@ fn prove_field(
         "model": "right-triangles",
         "error_kind": "bound",
         "grid": [columns, rows],
-        "fit": model_file::fit_json(&field.fit()),
+        "fit": field.fit(),
         "parts": parts,
         "parts_there": there,
         "faces": model.full_faces(),

@@ -1,6 +1,6 @@
 //! JSON report of a mesh check.
 
-use meshlod::check::{Degeneracy, Finding, Intersection, Kind, ObjectId};
+use meshlod::check::{Finding, Intersection, Kind, ObjectId};
 use serde_json::{Value, json};
 
 use crate::check::contacts::KINDS;
@@ -34,11 +34,11 @@ pub fn json(inspection: &Inspection, sites: &Sites) -> Value {
         ),
         "contacts": pairs.iter().take(*limit).map(|(objects, pair)| {
             let mut json = json!({
-                "objects": objects.map(|object| object.0),
+                "objects": objects,
                 "names": objects.map(|object| inspection.name(object)),
                 "face_pairs": pair.faces(),
                 "deepest": touch(&pair.deepest),
-                "deepest_faces": pair.faces.map(|face| face.0),
+                "deepest_faces": pair.faces,
             });
             for ((_, name), count) in KINDS.into_iter().zip(pair.counts) {
                 json[name] = count.into();
@@ -46,58 +46,46 @@ pub fn json(inspection: &Inspection, sites: &Sites) -> Value {
             json
         }).collect::<Vec<_>>(),
         "contacts_left_out": pairs.len().saturating_sub(*limit),
-        "sites": sites.json(),
+        "sites": sites.several(),
     })
 }
 
 /// Returns the JSON of a finding with its kind, position and ids.
 fn of(inspection: &Inspection, (group, finding): &(Group, Finding)) -> Value {
     let mut json = ids(inspection, finding);
-    json["kind"] = group.kind.name().into();
+    json["kind"] = json!(group.kind);
     json["severity"] = group.grade.name().into();
     json["place"] = json!(finding.place(&inspection.mesh));
     json
 }
 
 fn ids(inspection: &Inspection, finding: &Finding) -> Value {
+    let name = |object: &ObjectId| inspection.name(*object);
     match finding {
         Finding::NonFiniteVertex { vertex } | Finding::UnusedVertex { vertex } => {
-            json!({ "vertices": [vertex.0] })
+            json!({ "vertices": [vertex] })
         }
-        Finding::BadIndex { face, vertex } => json!({ "faces": [face.0], "vertices": [vertex.0] }),
+        Finding::BadIndex { face, vertex } => json!({ "faces": [face], "vertices": [vertex] }),
         Finding::BadAttributes { error } => json!({ "reason": error.to_string() }),
-        Finding::CoincidentVertices { vertices } => {
-            json!({ "vertices": vertices.iter().map(|v| v.0).collect::<Vec<_>>() })
-        }
-        Finding::DegenerateFace { face, shape } => {
-            let shape = match shape {
-                Degeneracy::RepeatedVertex => "repeated-vertex",
-                Degeneracy::ZeroArea => "zero-area",
-            };
-            json!({ "faces": [face.0], "shape": shape })
-        }
-        Finding::DuplicateFace { face, of } => json!({ "faces": [face.0, of.0] }),
-        Finding::InconsistentEdge { edge, faces } => {
-            json!({ "vertices": edge.map(|v| v.0), "faces": faces.map(|f| f.0) })
-        }
+        Finding::CoincidentVertices { vertices } => json!({ "vertices": vertices }),
+        Finding::DegenerateFace { face, shape } => json!({ "faces": [face], "shape": shape }),
+        Finding::DuplicateFace { face, of } => json!({ "faces": [face, of] }),
+        Finding::InconsistentEdge { edge, faces } => json!({ "vertices": edge, "faces": faces }),
         Finding::BoundaryLoop { vertices, closed } => {
-            json!({ "vertices": vertices.iter().map(|v| v.0).collect::<Vec<_>>(), "closed": closed })
+            json!({ "vertices": vertices, "closed": closed })
         }
-        Finding::NonManifoldEdge { edge, faces } => json!({
-            "vertices": edge.map(|v| v.0), "faces": faces.iter().map(|f| f.0).collect::<Vec<_>>(),
-        }),
+        Finding::NonManifoldEdge { edge, faces } => json!({ "vertices": edge, "faces": faces }),
         Finding::NonManifoldVertex { vertex, fans } => {
-            json!({ "vertices": [vertex.0], "fans": fans })
+            json!({ "vertices": [vertex], "fans": fans })
         }
-        Finding::InsideOut { face, volume } => json!({ "faces": [face.0], "volume": volume }),
+        Finding::InsideOut { face, volume } => json!({ "faces": [face], "volume": volume }),
         Finding::SelfIntersection { object, faces, intersection } => json!({
-            "objects": [object.0], "names": [inspection.name(*object)],
-            "faces": faces.map(|f| f.0), "touch": touch(intersection),
+            "objects": [object], "names": [name(object)],
+            "faces": faces, "touch": touch(intersection),
         }),
         Finding::Contact { objects, faces, intersection } => json!({
-            "objects": objects.map(|ObjectId(object)| object),
-            "names": objects.map(|object| inspection.name(object)),
-            "faces": faces.map(|f| f.0), "touch": touch(intersection),
+            "objects": objects, "names": objects.each_ref().map(name),
+            "faces": faces, "touch": touch(intersection),
         }),
         Finding::Crowded { found } => json!({ "found": found }),
     }

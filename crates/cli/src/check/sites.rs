@@ -2,13 +2,14 @@
 
 use meshlod::Scene;
 use meshlod::mesh::{FaceId, VertexId};
-use serde_json::{Value, json};
+use serde::Serialize;
 
 /// The meshes that the nodes of a scene place, in the order of [`Scene::flatten`].
 pub struct Sites(Vec<Site>);
 
 /// Mesh placed by a node.
-struct Site {
+#[derive(Serialize)]
+pub struct Site {
     node: usize,
     mesh: usize,
     /// Name of the node, else of the mesh, else the node's number.
@@ -59,19 +60,8 @@ impl Sites {
         }
     }
 
-    /// Returns the ranges of ids that belong to each node and mesh as JSON; `null` if there is only
-    /// one.
-    pub fn json(&self) -> Value {
-        let json = |site: &Site| {
-            json!({
-                "node": site.node, "mesh": site.mesh, "name": site.name,
-                "first_vertex": site.first_vertex, "vertices": site.vertices,
-                "first_face": site.first_face, "faces": site.faces,
-            })
-        };
-        match &self.0[..] {
-            [_] => Value::Null,
-            sites => sites.iter().map(json).collect(),
-        }
+    /// Returns the ranges of ids that belong to each node and mesh; `None` if there is only one.
+    pub fn several(&self) -> Option<&[Site]> {
+        (self.0.len() != 1).then_some(&self.0)
     }
 }

@@ -9,21 +9,17 @@ use crate::files;
 use crate::numbers;
 use crate::page::chain::{Chain, Level};
 use crate::page::columns::{Column, legend};
-use crate::page::level_json::level_json;
+use crate::page::level_figures::LevelFigures;
 use crate::table::aligned;
 
 /// Returns all measurements as JSON, with file names relative to the output folder.
 pub fn json(comparison: &Comparison<'_>, outcome: &ComparisonResult, output: &Output) -> Value {
     let input = &comparison.subject.counts;
-    let level = |method, level: &Level| {
-        let mut json = level_json(method, level, input);
-        json["file"] = level.file.clone().into();
-        json
-    };
+    let level = |method, level: &Level| LevelFigures::of(method, level, input, level.file.clone());
     let entry = |entry: &MethodResult| {
         let Chain { method, levels } = &entry.chain;
         json!({
-            "method": method.name(),
+            "method": method,
             "levels": levels.iter().map(|made| level(*method, made)).collect::<Vec<_>>(),
             "failed": entry.failure.as_ref().map(ToString::to_string),
         })
@@ -31,7 +27,7 @@ pub fn json(comparison: &Comparison<'_>, outcome: &ComparisonResult, output: &Ou
     let verdicts = outcome.verdicts(&comparison.sizes).map(|(_, verdict)| verdict.json());
     json!({
         "input": comparison.subject.name,
-        "counts": input.json(),
+        "counts": input,
         "samples_each_way": comparison.options.samples,
         "seed": comparison.options.seed,
         "flip_picture_side": comparison.pictures.then_some(COMPARED_SIDE),

@@ -57,7 +57,7 @@ impl Verdict {
     /// or several are exact.
     pub fn json(&self) -> Value {
         let json = |contest: Option<&Contest>, unit: &str| {
-            contest.map(|Contest(order)| json!({ "method": order[0].0.name(), unit: order[0].1 }))
+            contest.map(|Contest(order)| json!({ "method": order[0].0, unit: order[0].1 }))
         };
         json!({
             "size": self.size.to_string(),

@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
+use meshlod::Method;
 use meshlod::measure::Distance;
+use serde::Serialize;
 use serde_json::{Value, json};
 
 use crate::demo::DemoResult;
@@ -10,7 +12,8 @@ use crate::demo::sample_report::{SAMPLES, SampleReport};
 use crate::files;
 use crate::numbers::{count, percent, value};
 use crate::page::chain::{Chain, Level};
-use crate::page::level_json::level_json;
+use crate::page::counts::Counts;
+use crate::page::level_figures::LevelFigures;
 use crate::table::aligned;
 
 /// Returns all measurements and file paths as JSON.
@@ -26,25 +29,37 @@ pub fn json(result: &DemoResult) -> Value {
     })
 }
 
-fn of_report(report: &SampleReport, folder: &Path) -> Value {
-    let mut json = report.subject.counts.json();
-    json["sample"] = report.sample.name.into();
-    json["file"] = files::name(&folder.join(report.sample.input_file())).into();
-    json["lods"] = files::name(&folder.join(report.sample.lods_file())).into();
-    let chain = |chain: &Chain| {
-        let method = chain.method;
-        let level = |level: &Level| {
-            let mut json = level_json(method, level, &report.subject.counts);
-            json["file"] = files::name(&folder.join(&level.file)).into();
-            json
-        };
-        json!({
-            "method": method.name(),
-            "levels": chain.levels.iter().map(level).collect::<Vec<_>>(),
-        })
+/// Counts, files and levels of a sample for programs.
+#[derive(Serialize)]
+struct SampleFigures<'r> {
+    #[serde(flatten)]
+    counts: &'r Counts,
+    sample: &'static str,
+    file: String,
+    lods: String,
+    chains: Vec<ChainFigures>,
+}
+
+#[derive(Serialize)]
+struct ChainFigures {
+    method: Method,
+    levels: Vec<LevelFigures>,
+}
+
+fn of_report<'r>(report: &'r SampleReport, folder: &Path) -> SampleFigures<'r> {
+    let counts = &report.subject.counts;
+    let name = |file: &str| files::name(&folder.join(file));
+    let chain = |&Chain { method, ref levels }: &Chain| {
+        let level = |level| LevelFigures::of(method, level, counts, name(&level.file));
+        ChainFigures { method, levels: levels.iter().map(level).collect() }
     };
-    json["chains"] = report.chains.iter().map(chain).collect();
-    json
+    SampleFigures {
+        counts,
+        sample: report.sample.name,
+        file: name(&report.sample.input_file()),
+        lods: name(&report.sample.lods_file()),
+        chains: report.chains.iter().map(chain).collect(),
+    }
 }
 
 /// Formats a line about each level, and the path of the page.

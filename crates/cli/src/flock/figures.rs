@@ -2,10 +2,11 @@
 
 use meshlod::flock::levels::LevelTable;
 use meshlod::flock::select::InstanceLevel;
-use serde_json::{Value, json};
+use serde::Serialize;
+use serde_json::json;
 
 /// Figures of a frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FrameFigures {
     pub frame: usize,
     /// Time since the first frame.
@@ -32,27 +33,10 @@ pub struct Figures {
     pub frames: Vec<FrameFigures>,
 }
 
-impl FrameFigures {
-    fn json(&self) -> Value {
-        json!({
-            "frame": self.frame,
-            "seconds": self.seconds,
-            "members_in_view": self.members_in_view,
-            "triangles": self.triangles,
-            "impostors": self.impostors,
-            "full_triangles": self.full_triangles,
-            "switches": self.switches,
-            "simulation_ms": self.simulation_ms,
-            "selection_ms": self.selection_ms,
-            "draw_ms": self.draw_ms,
-        })
-    }
-}
-
 impl Figures {
     /// Returns one JSON object a line, one line a frame.
     pub fn lines(&self) -> String {
-        self.frames.iter().map(|frame| format!("{}\n", frame.json())).collect()
+        self.frames.iter().map(|frame| format!("{}\n", json!(frame))).collect()
     }
 
     /// Returns the mean of a figure over the frames.

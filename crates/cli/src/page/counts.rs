@@ -3,9 +3,10 @@
 use meshlod::Mesh;
 use meshlod::measure::{area, volume};
 use meshlod::mesh::{Connectivity, face_components};
-use serde_json::{Value, json};
+use serde::Serialize;
 
 /// Counts, measures and topology of a mesh.
+#[derive(Serialize)]
 pub struct Counts {
     pub vertices: usize,
     pub faces: usize,
@@ -38,21 +39,6 @@ impl Counts {
             area: area(mesh),
             volume: volume(mesh),
         }
-    }
-
-    pub fn json(&self) -> Value {
-        json!({
-            "vertices": self.vertices,
-            "faces": self.faces,
-            "boundary_edges": self.boundary_edges,
-            "non_manifold_edges": self.non_manifold_edges,
-            "components": self.components,
-            "closed": self.closed,
-            "genus": self.genus,
-            "diagonal": self.diagonal,
-            "area": self.area,
-            "volume": self.volume,
-        })
     }
 }
 

@@ -16,7 +16,7 @@ pub mod figures;
 pub mod heat;
 pub mod inline_picture;
 pub mod key;
-pub mod level_json;
+pub mod level_figures;
 pub mod picture_row;
 mod refine;
 pub mod renderer;

@@ -23,9 +23,8 @@ use crate::args::{AttributeErrorArgs, ReadArgs};
 use crate::constraints::{ConstraintArgs, FlatInput};
 use crate::failure::Failure;
 use crate::fuse;
-use crate::locks;
-use crate::model_file;
-use crate::model_scene::{self, ErrorPoses};
+use crate::model_file::{self, PoseFigures};
+use crate::model_scene::{self, ErrorPoses, SceneFigures};
 use crate::numbers::{percent, value};
 use crate::parse::{self, Bound};
 use crate::scene_files;
@@ -140,14 +139,13 @@ impl Build {
         notes.extend(scene_files::unused_parts(&mesh, built.faces));
         scene_files::write_encoded(&self.output, &notes, &built.bytes, session)?;
         let time = start.elapsed();
-        let mut json = self.json(&mesh, &built, time);
-        json["fused"] = fuse::to_json(fused.as_ref());
+        let scene = rest.is_some().then(|| SceneFigures::from(&counts));
+        let figures = self.figures(&mesh, &built, (fused, scene), time);
         let mut text = fuse::to_text(fused.as_ref()) + &self.text(&mesh, &built, time);
         if rest.is_some() {
-            json["scene"] = model_scene::counts_json(&counts);
             text += &model_scene::counts_text(&counts, built.poses);
         }
-        Ok(Answer::new(json, text))
+        Ok(Answer::new(figures, text))
     }
 
     fn contractions(
@@ -165,7 +163,7 @@ impl Build {
         let recorder = if self.lossless { Recorder::lossless } else { Recorder::new };
         let mut both = (recorder(&simplifier), watch);
         let report = simplifier.run(Target::Faces(0), &mut both);
-        let held = locks::to_json(&report.map_err(|error| failed(error.into()))?);
+        let held = report.map_err(|error| failed(error.into()))?.held;
         let mut forest = both.0.into_forest().map_err(failed)?;
         session.progress.stage("measuring errors");
         let poses = self.pose(&mut forest, mesh, rest.as_deref_mut(), session);
@@ -200,6 +198,10 @@ impl Build {
             certificate,
             error_kind: model_file::error_kind(&archive),
             held,
+            poses: poses.measured().map(PoseFigures::from),
+            model: "contractions",
+            method: self.method,
+            lossless: self.lossless,
         };
         Ok(Built {
             faces: forest.full_faces(),
@@ -273,7 +275,12 @@ impl Build {
             faces: mesh.faces.len(),
             rounding,
             moved: format!("vertices moved by up to {} ({part})", value(rounding)),
-            levels: Levels::RightTriangles { size: field.size(), fit: field.fit() },
+            levels: Levels::RightTriangles {
+                model: "right-triangles",
+                error_kind: "bound",
+                grid: field.size(),
+                fit: field.fit(),
+            },
             poses: ErrorPoses::Unknown,
         })
     }

@@ -14,6 +14,7 @@ use std::time::Instant;
 use clap::{Args, ValueEnum};
 use meshlod::codec::{CompressionTarget, Reconstruction, Scheme};
 use meshlod::{Mesh, Scene, SceneCounts, model_limits};
+use serde_json::json;
 
 use crate::answer::{Answer, Outcome};
 use crate::args::{AttributeErrorArgs, ReadArgs};
@@ -21,7 +22,7 @@ use crate::constraints::ConstraintArgs;
 use crate::failure::Failure;
 use crate::files;
 use crate::fuse;
-use crate::model_scene::{self, ErrorPoses};
+use crate::model_scene::{self, ErrorPoses, SceneFigures};
 use crate::numbers::percent;
 use crate::parse::{self, Bound};
 use crate::scene_files;
@@ -135,15 +136,14 @@ impl Compress {
             session.warn(Failure::at(&self.input, reason));
         }
         scene_files::write_encoded(&output, &packed.notes, &packed.bytes, session)?;
-        let mut json = packed.json(&output, time);
-        json["fused"] = fuse::to_json(fused.as_ref());
+        let scene = counts.as_ref().map(SceneFigures::from);
+        let figures = packed.figures(&output, time, fused, scene);
         let mut text = fuse::to_text(fused.as_ref()) + &packed.text(&output, time);
         if let Some(counts) = counts {
-            json["scene"] = model_scene::counts_json(&counts);
             text += &model_scene::counts_text(&counts, ErrorPoses::Unknown);
         }
         let outcome = Outcome::Missed.when(session.strict && !packed.reached);
-        Ok(Answer { outcome, ..Answer::new(json, text) })
+        Ok(Answer { outcome, ..Answer::new(figures, text) })
     }
 
     /// Lists what numbers of parts give, and writes nothing.
@@ -159,7 +159,7 @@ impl Compress {
         let fused = self.constraints.fuse.apply(&mut scene, session);
         let Placed { mesh, .. } = self.place(scene, session)?;
         let (mut json, text) = self.sweep(&mesh, session)?;
-        json["fused"] = fuse::to_json(fused.as_ref());
+        json["fused"] = json!(fused);
         Ok(Answer::new(json, fuse::to_text(fused.as_ref()) + &text))
     }
 

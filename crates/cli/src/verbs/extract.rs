@@ -24,7 +24,7 @@ use crate::model_scene;
 use crate::numbers::value;
 use crate::scene_files;
 use crate::session::Session;
-use crate::verbs::extract::report::{Extracted, volume_text};
+use report::Extracted;
 
 /// Extract one level from a multiresolution file: fine where it is needed, coarse elsewhere. glTF
 /// gets the whole scene, with nodes, materials, skins and animations, other formats its surface
@@ -100,21 +100,14 @@ impl Extract {
             session.warn(Failure::at(&self.input, warning));
         }
         let reached = reached && taken.error.is_kept() != Some(false);
-        let asked = report::Request { output: &self.output, reached, time };
-        let mut json = taken.to_json(&asked, counts);
-        json["volume_residual"] = restored.map(|restored| restored.after.abs()).into();
-        json["volume_moved"] = restored.map(|restored| restored.farthest).into();
         let shown = model_scene::shown_faces(&scene);
-        json["shown_faces"] = shown.into();
-        let mut text = taken.to_text(&asked, counts, shown);
-        if let Some(restored) = &restored {
-            text += &volume_text(restored, taken.lossless);
-        }
+        let done = report::Done { output: &self.output, counts, shown, reached, restored, time };
+        let (figures, text) = (taken.figures(&done), taken.to_text(&done));
         scene_files::write(&self.output, &scene, &writing, session)?;
         Ok(Answer {
             file_on_stdout: files::is_pipe(&self.output),
             outcome: Outcome::Missed.when(session.strict && !reached),
-            ..Answer::new(json, text)
+            ..Answer::new(figures, text)
         })
     }
 

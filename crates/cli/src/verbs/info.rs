@@ -6,9 +6,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use meshlod::measure::{area, volume};
-use meshlod::mesh::{Connectivity, face_components};
+use meshlod::mesh::{Bounds, Connectivity, face_components};
 use meshlod::{Mesh, Scene};
-use serde_json::{Value, json};
+use serde::Serialize;
+use serde_json::Value;
 
 use crate::answer::Answer;
 use crate::args::ReadArgs;
@@ -44,23 +45,45 @@ impl Info {
         let faces_once = faces_of_meshes(&scene);
         let mesh = scene.into_mesh();
         let facts = Facts::of(&mesh);
-        let mut json = facts.json();
-        json["file"] = files::name(&self.input).into();
-        json["meshes"] = meshes.into();
-        contents.add_to(&mut json);
         let mut text = format!("{}\n{}{}", files::name(&self.input), facts.text(), contents.text());
-        if let Some(stored) = stored {
-            json["stored"] = stored.json;
-            json["stored"]["faces"] = faces_once.into();
+        if let Some(stored) = &stored {
             text += &match faces_once == mesh.faces.len() {
                 true => "stored as\n".to_owned(),
                 false => format!("stored as {}, each mesh once\n", faces(faces_once)),
             };
-            let rows = stored.rows.into_iter().map(|[name, of]| [format!("  {name}"), of]);
+            let rows = stored.rows.iter().map(|[name, of]| [format!("  {name}"), of.clone()]);
             text += &aligned(&rows.collect::<Vec<_>>());
         }
-        Ok(Answer::new(json, text))
+        let figures = InfoFigures {
+            facts,
+            file: files::name(&self.input),
+            meshes,
+            contents,
+            stored: stored.map(|stored| StoredFigures { form: stored.json, faces: faces_once }),
+        };
+        Ok(Answer::new(figures, text))
     }
+}
+
+/// All that is printed for programs.
+#[derive(Serialize)]
+struct InfoFigures<'i> {
+    #[serde(flatten)]
+    facts: Facts<'i>,
+    file: String,
+    meshes: usize,
+    #[serde(flatten)]
+    contents: Contents,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stored: Option<StoredFigures>,
+}
+
+/// How a file of our own stores its mesh, with the faces of its meshes, each once.
+#[derive(Serialize)]
+struct StoredFigures {
+    #[serde(flatten)]
+    form: Value,
+    faces: usize,
 }
 
 /// Returns the number of faces of the meshes that a scene shows, each once.
@@ -71,66 +94,62 @@ fn faces_of_meshes(scene: &Scene) -> usize {
     shown.map(|(mesh, _)| mesh.mesh.faces.len()).sum()
 }
 
-/// Counts and measurements of a flattened scene.
+/// Counts and measurements of a flattened scene, under the keys of JSON.
+#[derive(Serialize)]
 struct Facts<'m> {
-    mesh: &'m Mesh,
-    connectivity: Connectivity,
+    vertices: usize,
+    unreferenced: usize,
+    faces: usize,
+    degenerate_faces: usize,
+    edges: usize,
+    boundary_edges: usize,
+    non_manifold_edges: usize,
+    inconsistent_edges: usize,
+    pinched_vertices: usize,
     components: usize,
     objects: usize,
-    unreferenced: usize,
+    closed: bool,
+    bounds: Bounds,
+    diagonal: f64,
     area: f64,
     volume: f64,
+    wedges: Option<usize>,
+    attributes: Vec<String>,
+    materials: &'m [String],
 }
 
 impl<'m> Facts<'m> {
     fn of(mesh: &'m Mesh) -> Self {
+        let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
         let components = face_components(&mesh.faces, mesh.positions.len()).1;
-        // Objects are the named ones of the file, else connected components.
-        let objects = mesh.objects.as_ref().map_or(components, labels_in_use);
+        let bounds = mesh.bounds();
         Self {
-            mesh,
-            connectivity: Connectivity::new(&mesh.faces, mesh.positions.len()),
-            components,
-            objects,
+            vertices: mesh.positions.len(),
             unreferenced: mesh.used_vertices().iter().filter(|used| !**used).count(),
+            faces: mesh.faces.len(),
+            degenerate_faces: connectivity.degenerate_faces(),
+            edges: connectivity.edge_count(),
+            boundary_edges: connectivity.boundary_edges(),
+            non_manifold_edges: connectivity.non_manifold_edges(),
+            inconsistent_edges: connectivity.inconsistent_edges(),
+            pinched_vertices: connectivity.pinched_vertices(),
+            components,
+            // Objects are the named ones of the file, else connected components.
+            objects: mesh.objects.as_ref().map_or(components, labels_in_use),
+            closed: connectivity.is_closed(),
+            bounds,
+            diagonal: bounds.diagonal(),
             area: area(mesh),
             volume: volume(mesh),
+            wedges: mesh.attributes.as_ref().map(|attributes| attributes.wedge_count),
+            attributes: attributes(mesh),
+            materials: mesh.materials.as_ref().map_or(&[], |labels| &labels.names),
         }
     }
 
-    fn json(&self) -> Value {
-        let Self { mesh, connectivity, .. } = self;
-        let bounds = mesh.bounds();
-        let box_json =
-            (!bounds.is_empty()).then(|| json!({ "min": bounds.min, "max": bounds.max }));
-        let materials = mesh.materials.as_ref().map_or(&[][..], |labels| &labels.names);
-        json!({
-            "vertices": mesh.positions.len(),
-            "unreferenced": self.unreferenced,
-            "faces": mesh.faces.len(),
-            "degenerate_faces": connectivity.degenerate_faces(),
-            "edges": connectivity.edge_count(),
-            "boundary_edges": connectivity.boundary_edges(),
-            "non_manifold_edges": connectivity.non_manifold_edges(),
-            "inconsistent_edges": connectivity.inconsistent_edges(),
-            "pinched_vertices": connectivity.pinched_vertices(),
-            "components": self.components,
-            "objects": self.objects,
-            "closed": connectivity.is_closed(),
-            "bounds": box_json,
-            "diagonal": bounds.diagonal(),
-            "area": self.area,
-            "volume": self.volume,
-            "wedges": mesh.attributes.as_ref().map(|attributes| attributes.wedge_count),
-            "attributes": self.attributes(),
-            "materials": materials,
-        })
-    }
-
     fn text(&self) -> String {
-        let Self { mesh, connectivity, .. } = self;
         let number = |name: &str, number: usize| [format!("  {name}"), count(number)];
-        let mut rows = vec![number("vertices", mesh.positions.len())];
+        let mut rows = vec![number("vertices", self.vertices)];
         // Defects are listed only if there are any.
         let odd = |rows: &mut Vec<_>, name: &str, amount: usize| {
             if amount > 0 {
@@ -138,19 +157,19 @@ impl<'m> Facts<'m> {
             }
         };
         odd(&mut rows, "  unused", self.unreferenced);
-        rows.push(number("faces", mesh.faces.len()));
-        odd(&mut rows, "  degenerate", connectivity.degenerate_faces());
-        rows.push(number("edges", connectivity.edge_count()));
-        rows.push(number("  boundary", connectivity.boundary_edges()));
-        rows.push(number("  non-manifold", connectivity.non_manifold_edges()));
-        odd(&mut rows, "  inconsistent", connectivity.inconsistent_edges());
-        odd(&mut rows, "pinched vertices", connectivity.pinched_vertices());
+        rows.push(number("faces", self.faces));
+        odd(&mut rows, "  degenerate", self.degenerate_faces);
+        rows.push(number("edges", self.edges));
+        rows.push(number("  boundary", self.boundary_edges));
+        rows.push(number("  non-manifold", self.non_manifold_edges));
+        odd(&mut rows, "  inconsistent", self.inconsistent_edges);
+        odd(&mut rows, "pinched vertices", self.pinched_vertices);
         rows.push(number("components", self.components));
         rows.push(number("objects", self.objects));
-        let closed = if connectivity.is_closed() { "yes" } else { "no" };
+        let closed = if self.closed { "yes" } else { "no" };
         rows.push(["  closed".into(), closed.into()]);
         for (name, amount) in
-            [("diagonal", mesh.bounds().diagonal()), ("area", self.area), ("volume", self.volume)]
+            [("diagonal", self.diagonal), ("area", self.area), ("volume", self.volume)]
         {
             rows.push([format!("  {name}"), value(amount)]);
         }
@@ -159,7 +178,7 @@ impl<'m> Facts<'m> {
 
     /// Formats bounds, attributes and materials, which do not fit into columns.
     fn lines(&self) -> String {
-        let bounds = self.mesh.bounds();
+        let bounds = &self.bounds;
         let corner = |corner: [f64; 3]| {
             [0, 1, 2].map(|i| coordinate(corner[i], bounds.max[i] - bounds.min[i])).join(" ")
         };
@@ -167,25 +186,26 @@ impl<'m> Facts<'m> {
         if !bounds.is_empty() {
             text += &format!("  from  {}\n  to    {}\n", corner(bounds.min), corner(bounds.max));
         }
-        if let Some(attributes) = &self.mesh.attributes {
-            let names = self.attributes().join(", ");
-            text += &format!("  attributes  {names} at {} wedges\n", count(attributes.wedge_count));
+        if let Some(wedges) = self.wedges {
+            let names = self.attributes.join(", ");
+            text += &format!("  attributes  {names} at {} wedges\n", count(wedges));
         }
-        if let Some(labels) = &self.mesh.materials {
-            text += &format!("  materials   {}\n", labels.names.join(", "));
+        if !self.materials.is_empty() {
+            text += &format!("  materials   {}\n", self.materials.join(", "));
         }
         text
     }
+}
 
-    fn attributes(&self) -> Vec<String> {
-        let layers = self.mesh.attributes.iter().flat_map(|attributes| &attributes.layers);
-        layers
-            .map(|layer| match layer.kind {
-                kind if kind.is_named() => layer.name.clone(),
-                kind => kind.to_string(),
-            })
-            .collect()
-    }
+/// Names the attributes of a mesh: by their type, or by their own names where the type has none.
+fn attributes(mesh: &Mesh) -> Vec<String> {
+    let layers = mesh.attributes.iter().flat_map(|attributes| &attributes.layers);
+    layers
+        .map(|layer| match layer.kind {
+            kind if kind.is_named() => layer.name.clone(),
+            kind => kind.to_string(),
+        })
+        .collect()
 }
 
 fn labels_in_use(labels: &meshlod::mesh::Labels) -> usize {

@@ -22,7 +22,6 @@ use crate::scene_files;
 use crate::session::Session;
 use crate::simplify_report;
 use crate::simplify_run::{self, ReadyScene, Simplified, SimplifyRun};
-use crate::topology;
 use crate::verbs::simplify::MethodArgs;
 use crate::volume::ExactVolumeArgs;
 
@@ -105,10 +104,9 @@ impl Lods {
         if let Some(level) = chain.last() {
             self.method.warn(&level.simplified.report, &ready, session);
         }
-        let (mut json, text) = (self.json(&chain, time), self.text(&chain, &ready, (layout, time)));
-        topology::add_json(&mut json, &ready.scene);
-        json["layout"] = layout.name().into();
-        json["guide"] = files::name(&self.guide_file()).into();
+        let run = (layout, time);
+        let figures = self.figures(&chain, &ready, run);
+        let text = self.text(&chain, &ready, run);
         let guide = self.guide(&chain, &world_bounds(&scene), layout);
         self.write(layout, &mut scene, &mut chain, session)?;
         write_file(&self.guide_file(), format!("{guide:#}\n").as_bytes())?;
@@ -117,7 +115,7 @@ impl Lods {
         }
         let missed = chain.iter().any(|level| !level.simplified.report.reached);
         let outcome = Outcome::Missed.when(session.strict && missed);
-        Ok(Answer { outcome, ..Answer::new(json, text) })
+        Ok(Answer { outcome, ..Answer::new(figures, text) })
     }
 
     /// Warns of a target that was missed, and of a level that is not written.

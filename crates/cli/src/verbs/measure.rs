@@ -8,15 +8,16 @@ use meshlod::measure::{
 };
 use meshlod::mesh::Connectivity;
 use meshlod::{Mesh, Scene};
+use serde::Serialize;
 
 use crate::answer::Answer;
 use crate::args::{ReadArgs, SamplingArgs};
-use crate::distance;
+use crate::distance::{self, CertifiedFigures, DistanceFigures};
 use crate::failure::Failure;
 use crate::files;
 use crate::numbers::{change, value};
 use crate::parse;
-use crate::poses::FarthestPose;
+use crate::poses::{FarthestFigures, FarthestPose};
 use crate::session::Session;
 use crate::table::aligned;
 
@@ -43,6 +44,27 @@ pub struct Measure {
     reading: ReadArgs,
 }
 
+/// MeasureFigures of a measurement for programs.
+#[derive(Serialize)]
+struct MeasureFigures {
+    #[serde(flatten)]
+    distance: DistanceFigures,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    certified: Option<CertifiedFigures>,
+    area_a: f64,
+    volume_a: f64,
+    closed_a: bool,
+    area_b: f64,
+    volume_b: f64,
+    closed_b: bool,
+    /// Relative; `None` if the area of A is zero.
+    area_change: Option<f64>,
+    /// Relative; `None` unless both are closed.
+    volume_change: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pose: Option<FarthestFigures>,
+}
+
 impl Measure {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         if files::is_pipe(&self.a) && files::is_pipe(&self.b) {
@@ -63,21 +85,20 @@ impl Measure {
         let (areas, volumes) = ([area(&a), area(&b)], [volume(&a), volume(&b)]);
         let closed = [is_closed(&a), is_closed(&b)];
 
-        let mut json = distance::to_json(&apart);
-        if let Some(certified) = &certified {
-            json["certified"] = distance::certified_json(certified);
-        }
-        for (i, of) in ["a", "b"].into_iter().enumerate() {
-            json[format!("area_{of}")] = areas[i].into();
-            json[format!("volume_{of}")] = volumes[i].into();
-            json[format!("closed_{of}")] = closed[i].into();
-        }
-        json["area_change"] = relative(areas).into();
-        json["volume_change"] = relative(volumes).filter(|_| closed == [true; 2]).into();
+        let figures = MeasureFigures {
+            distance: (&apart).into(),
+            certified: certified.as_ref().map(CertifiedFigures::from),
+            area_a: areas[0],
+            volume_a: volumes[0],
+            closed_a: closed[0],
+            area_b: areas[1],
+            volume_b: volumes[1],
+            closed_b: closed[1],
+            area_change: relative(areas),
+            volume_change: relative(volumes).filter(|_| closed == [true; 2]),
+            pose: pose.as_ref().map(FarthestPose::figures),
+        };
         let row = |name: &str, [a, b]: [f64; 2]| [name.into(), value(a), value(b), change(a, b)];
-        if let Some(pose) = &pose {
-            json["pose"] = pose.to_json();
-        }
         let text = format!(
             "{}{}{}diagonal {}\n\n{}{}",
             pose.map(|pose| pose.to_text()).unwrap_or_default(),
@@ -91,7 +112,7 @@ impl Measure {
             ]),
             open_note(closed),
         );
-        Ok(Answer::new(json, text))
+        Ok(Answer::new(figures, text))
     }
 
     /// Returns the surfaces of both scenes, as they are or in the pose that keeps them farthest apart.

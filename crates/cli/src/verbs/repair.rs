@@ -9,13 +9,13 @@ use meshlod::check::{
     CheckOptions, HoleLimits, Kinds, RepairOptions, RepairReport, RepairStep, Summary, check,
 };
 use meshlod::{Format, Scene, repair_scene};
-use serde_json::{Map, Value, json};
+use serde::Serialize;
 
 use crate::answer::Answer;
 use crate::args::{ReadArgs, WriteArgs};
 use crate::failure::Failure;
 use crate::files;
-use crate::fuse::{self, FuseArgs};
+use crate::fuse::{self, FuseArgs, FuseReport};
 use crate::numbers::{count, faces, plural, value};
 use crate::parse;
 use crate::scene_files;
@@ -125,7 +125,7 @@ impl Repair {
         self.warn(format, &done, session);
         Ok(Answer {
             file_on_stdout: files::is_pipe(&self.output),
-            ..Answer::new(self.json(&done), self.text(&done))
+            ..Answer::new(self.figures(&done), self.text(&done))
         })
     }
 
@@ -159,24 +159,21 @@ impl Repair {
         }
     }
 
-    fn json(&self, done: &Repaired) -> Value {
-        let all = RepairStep::ALL.into_iter();
-        let steps: Map<String, Value> =
-            all.map(|step| (step.name().into(), done.report.count(step).into())).collect();
-        let left = done.left.found().map(|(kind, count)| (kind.name().into(), count.into()));
-        json!({
-            "file": files::name(&self.output),
-            "changed": !done.report.is_unchanged() || done.fused.as_ref().is_some_and(|f| f.is_change()),
-            "input_faces": done.before.faces,
-            "input_vertices": done.before.vertices,
-            "output_faces": done.after.faces,
-            "output_vertices": done.after.vertices,
-            "steps": steps,
-            "fused": fuse::to_json(done.fused.as_ref()),
-            "errors_left": done.left.total(),
-            "errors_left_by_kind": Value::Object(left.collect()),
-            "repair_seconds": done.time.as_secs_f64(),
-        })
+    fn figures<'d>(&self, done: &'d Repaired) -> RepairFigures<'d> {
+        let Repaired { report, fused, left, before, after, time } = done;
+        RepairFigures {
+            file: files::name(&self.output),
+            changed: !report.is_unchanged() || fused.as_ref().is_some_and(|fused| fused.is_change),
+            input_faces: before.faces,
+            input_vertices: before.vertices,
+            output_faces: after.faces,
+            output_vertices: after.vertices,
+            steps: report,
+            fused: *fused,
+            errors_left: left.total(),
+            errors_left_by_kind: left,
+            repair_seconds: time.as_secs_f64(),
+        }
     }
 
     fn text(&self, done: &Repaired) -> String {
@@ -209,6 +206,22 @@ impl Repair {
     }
 }
 
+/// RepairFigures of a repair for programs.
+#[derive(Serialize)]
+struct RepairFigures<'d> {
+    file: String,
+    changed: bool,
+    input_faces: usize,
+    input_vertices: usize,
+    output_faces: usize,
+    output_vertices: usize,
+    steps: &'d RepairReport,
+    fused: Option<FuseReport>,
+    errors_left: usize,
+    errors_left_by_kind: &'d Summary,
+    repair_seconds: f64,
+}
+
 /// Counts the errors of a scene.
 fn errors(scene: Scene) -> Summary {
     let options = CheckOptions { kinds: Kinds::errors(), ..CheckOptions::default() };
@@ -222,7 +235,7 @@ fn errors(scene: Scene) -> Summary {
 
 struct Repaired {
     report: RepairReport,
-    fused: Option<fuse::FuseReport>,
+    fused: Option<FuseReport>,
     /// Errors in the file that was written.
     left: Summary,
     before: MeshSize,

@@ -1,5 +1,7 @@
 //! `simplify`: reduces a mesh to fewer faces.
 
+mod report;
+
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -9,7 +11,6 @@ use meshlod::simplify::AttributeWeights;
 use meshlod::{
     Format, Mesh, Method, Options, Report, Scene, Target, digits_of, moved_at_most, world_bounds,
 };
-use serde_json::{Value, json};
 
 use crate::answer::{Answer, Outcome};
 use crate::args::{ReadArgs, WriteArgs};
@@ -18,9 +19,7 @@ use crate::distance;
 use crate::error_bound::{AskedError, ProvedError};
 use crate::failure::Failure;
 use crate::files;
-use crate::fuse;
-use crate::locks::{self, InputScene};
-use crate::numbers::{count, faces, percent, value};
+use crate::locks::InputScene;
 use crate::parse::{self, Bound};
 use crate::scene_files;
 use crate::sequence;
@@ -28,7 +27,7 @@ use crate::session::Session;
 use crate::simplify_report;
 use crate::simplify_run::{self, ReadyScene, Simplified, SimplifyRun};
 use crate::topology;
-use crate::volume::{self, ExactVolumeArgs};
+use crate::volume::ExactVolumeArgs;
 
 /// Reduce a mesh to fewer faces
 #[derive(Args)]
@@ -221,25 +220,16 @@ impl Simplify {
             let reason = simplify_report::why_not_reached(&done.report, task.options.topology);
             session.warn(Failure::at(&self.input, reason));
         }
-        let mut json = self.json(&done, &task.ready, fused.as_ref(), time);
-        ProvedError::add_json(kept.as_ref(), &mut json);
-        let mut text = self.text(&done, &task, fused.as_ref(), time);
-        text += &kept.map_or(String::new(), |kept| kept.text());
+        let outcome = Outcome::Missed.when(session.strict && !done.report.reached);
+        let run = report::FinishedRun { task: &task, done: &done, fused, kept, residual, time };
+        let answer = Answer::new(self.figures(&run), self.text(&run));
         simplify_run::replace(&mut scene, std::mem::take(&mut done.meshes));
         let write = || scene_files::write(&self.output, &scene, &self.writing, session);
         match (&self.sequence, &done.sequence) {
             (Some(path), Some(sequence)) => sequence::write_with(path, sequence, write)?,
             _ => write()?,
         }
-        json["volume_residual"] = residual.into();
-        if let Some(residual) = residual {
-            text += &format!("volume_residual: {residual:.1e}\n");
-        }
-        Ok(Answer {
-            file_on_stdout: files::is_pipe(&self.output),
-            outcome: Outcome::Missed.when(session.strict && !done.report.reached),
-            ..Answer::new(json, text)
-        })
+        Ok(Answer { file_on_stdout: files::is_pipe(&self.output), outcome, ..answer })
     }
 
     fn plain_run(
@@ -305,69 +295,5 @@ impl Simplify {
             Some(_) => asked.by_report(&done.report, moved),
             None => asked.by_measuring(surface.as_ref(), task.scene, &done.meshes),
         }))
-    }
-
-    fn json(
-        &self,
-        done: &Simplified,
-        ready: &ReadyScene<'_>,
-        fused: Option<&fuse::FuseReport>,
-        time: Duration,
-    ) -> Value {
-        let report = &done.report;
-        let mut json = json!({ "method": report.method.name() });
-        for (key, value) in simplify_report::report_json(report).as_object().into_iter().flatten() {
-            json[key] = value.clone();
-        }
-        json["error_measured"] = done.measured.as_ref().map(distance::to_json).into();
-        json["volume_running_sum"] = report.volume.lost().into();
-        json["contractions"] = simplify_report::contractions_json(report);
-        json["volume_not_conserved"] = volume::unconserved_json(report.method, &report.volume);
-        json["simplify_seconds"] = time.as_secs_f64().into();
-        json["degenerate_faces"] = report.degenerate_faces.into();
-        json["duplicate_faces"] = report.duplicate_faces.into();
-        json["non_manifold_vertices"] = report.non_manifold_vertices.into();
-        topology::add_json(&mut json, &ready.scene);
-        json["fused"] = fuse::to_json(fused);
-        json["held"] = locks::to_json(report);
-        json["vanished"] = report.vanished.into();
-        json["vanished_volume"] = report.volume.vanished.into();
-        json["refusals"] = simplify_report::refusals_json(report);
-        json["file"] = files::name(&self.output).into();
-        json
-    }
-
-    fn text(
-        &self,
-        done: &Simplified,
-        task: &Task<'_>,
-        fused: Option<&fuse::FuseReport>,
-        time: Duration,
-    ) -> String {
-        let report = &done.report;
-        let input_faces = fused.map_or(report.input_faces, |fused| fused.before);
-        let part = 100.0 * report.output_faces as f64 / input_faces as f64;
-        let mut text = format!(
-            "{}{}: {} to {} ({})\n{}{}",
-            fuse::to_text(fused),
-            files::name(&self.output),
-            faces(input_faces),
-            count(report.output_faces),
-            percent(part),
-            topology::to_text(&task.ready.scene),
-            simplify_report::mesh_notes(report),
-        );
-        text += &format!("error_estimate: {}\n", value(report.error_estimate));
-        if let Some(distance) = &done.measured {
-            text += &format!("error_measured:\n{}", distance::to_table(distance));
-        }
-        let can_restore = || volume::can_restore(&task.ready.scene, &done.meshes);
-        if !self.volume.exact_volume
-            && let Some(line) =
-                volume::lost_text(report.method, &report.volume, task.scene, can_restore)
-        {
-            text += &format!("{line}\n");
-        }
-        text + &simplify_report::seconds_line(time)
     }
 }

@@ -4,26 +4,24 @@ mod follow;
 mod model;
 mod options;
 mod output;
+mod report;
 mod table;
 mod verify;
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use clap::{Args, ValueEnum};
-use meshlod::mesh::{Connectivity, VertexId};
+use clap::Args;
+use meshlod::mesh::VertexId;
 use meshlod::strip::{
     self, Difference, Filter, MergeTree, SkipStrip, StripOptions, StripStatistics, Strips,
 };
 use meshlod::{Options, Scene, SimplifyError};
-use serde_json::{Value, json};
 
 use crate::answer::{Answer, Outcome};
 use crate::args::ReadArgs;
 use crate::constraints::{ConstraintArgs, FlatInput};
 use crate::failure::Failure;
-use crate::files;
-use crate::fuse;
 use crate::kept_error::KeptError;
 use crate::model_query::QueryArgs;
 use crate::model_scene;
@@ -155,14 +153,14 @@ impl Strip {
                 "the strips do not draw the faces of the level, which is a defect of this program",
             ));
         }
-        let (mut json, mut text) = (self.json(&source, &levels), self.text(&source, &levels));
-        json["error"] = error.map(KeptError::to_json).into();
+        let figures = self.figures(&source, &levels, error);
+        let mut text = self.text(&source, &levels);
         text += &error.map(KeptError::to_text).unwrap_or_default();
         let outcome = match is_wrong {
             true => Outcome::Found,
             false => Outcome::Missed.when(session.strict && missed),
         };
-        Ok(Answer { outcome, ..Answer::new(json, text) })
+        Ok(Answer { outcome, ..Answer::new(figures, text) })
     }
 
     /// Warns of meshes that several nodes show, since each of these gets strips of its own.
@@ -245,60 +243,11 @@ impl Strip {
         };
         StripOptions { quality, ..StripOptions::default() }
     }
-
-    fn effort_name(&self) -> Option<String> {
-        self.effort.to_possible_value().map(|value| value.get_name().to_owned())
-    }
-
-    fn json(&self, source: &StripSource, levels: &[StrippedLevel]) -> Value {
-        let mesh = &source.input.mesh;
-        let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
-        let degenerate = connectivity.degenerate_faces();
-        let left_out = mesh.faces.len() - source.tree.faces().len();
-        let name = |value: &dyn Fn() -> Option<clap::builder::PossibleValue>| {
-            value().map(|value| value.get_name().to_owned())
-        };
-        json!({
-            "file": files::name(&self.input),
-            "input_faces": source.input.input_faces(),
-            "fused": fuse::to_json(source.input.fused.as_ref()),
-            "degenerate_faces": degenerate,
-            "duplicate_faces": left_out - degenerate,
-            "non_manifold_edges": connectivity.non_manifold_edges(),
-            "inconsistent_edges": connectivity.inconsistent_edges(),
-            "filter": name(&|| self.filter.as_ref()?.to_possible_value()),
-            "quality": name(&|| self.quality.to_possible_value()),
-            "effort": self.effort_name(),
-            "levels": levels.iter().map(StrippedLevel::json).collect::<Vec<_>>(),
-            "simplify_seconds": source.simplify_time.as_secs_f64(),
-            "strip_seconds": source.skip.as_ref().map(|_| source.strip_time.as_secs_f64()),
-            "verified": self.verify.then(|| !levels.iter().any(StrippedLevel::is_wrong)),
-            "out": self.out.as_deref().map(files::name),
-        })
-    }
 }
 
 impl StrippedLevel {
     fn is_wrong(&self) -> bool {
         self.difference.is_some_and(|difference| difference != Difference::default())
-    }
-
-    fn json(&self) -> Value {
-        let Self { sent, difference, .. } = self;
-        json!({
-            "size": self.size.to_string(),
-            "reached": self.reached,
-            "triangles": self.triangles,
-            "vertices_sent": sent.vertices_sent,
-            "indices_with_restart": sent.indices_with_restart,
-            "strips": sent.strips,
-            "swaps": sent.swaps,
-            "acmr16": sent.acmr16,
-            "acmr32": sent.acmr32,
-            "seconds": self.time.as_secs_f64(),
-            "missing": difference.map(|difference| difference.missing),
-            "extra": difference.map(|difference| difference.extra),
-        })
     }
 }
 

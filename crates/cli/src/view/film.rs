@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use meshlod::io::write_file;
 use meshlod_view::Gpu;
-use meshlod_view::script::{Script, ScriptFilm, ScriptFrame};
+use meshlod_view::script::{Script, ScriptFilm};
 use meshlod_view::stage::Loaded;
 use serde_json::{Value, json};
 
@@ -46,22 +46,11 @@ pub fn run(
         let frame = frame.map_err(|error| Failure::at(input, error))?;
         session.progress.part("filming", frame.frame as usize, frames);
         write_file(&out.join(format!("frame_{:04}.png", frame.frame)), &frame.picture.png())?;
-        lines.push(figures(&frame));
+        lines.push(json!(frame));
     }
     let text: String = lines.iter().map(|line| format!("{line}\n")).collect();
     write_file(&out.join("frames.jsonl"), text.as_bytes())?;
     Ok(summary(&gpu, size, out, &lines))
-}
-
-fn figures(frame: &ScriptFrame) -> Value {
-    json!({
-        "frame": frame.frame,
-        "faces": frame.faces,
-        "sent_bytes": frame.sent_bytes,
-        "index_bytes": frame.index_bytes,
-        "cut_ms": frame.cut_ms,
-        "draw_ms": frame.draw_ms,
-    })
 }
 
 /// Sums up a film; what the first frame sends is the whole cut, and counts apart.

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use meshlod::flock::levels::{Impostor, ImpostorOptions};
 use meshlod_view::Gpu;
 use meshlod_view::viewer::{SchoolReport, SchoolWindowOptions, run_school};
-use serde_json::json;
 
 use crate::answer::Answer;
 use crate::failure::Failure;
@@ -59,7 +58,7 @@ pub fn run(verb: View, session: &Session) -> Result<Answer, Failure> {
     for problem in &report.problems {
         session.warn(problem);
     }
-    Ok(Answer::new(json!(report), text(&report)))
+    Ok(Answer::new(&report, text(&report)))
 }
 
 fn text(report: &SchoolReport) -> String {

@@ -2,7 +2,6 @@
 
 use meshlod_view::ViewError;
 use meshlod_view::viewer::{self, ViewerOptions, ViewerReport};
-use serde_json::json;
 
 use crate::answer::{Answer, Outcome};
 use crate::failure::Failure;
@@ -36,7 +35,7 @@ pub fn run(verb: View, session: &Session) -> Result<Answer, Failure> {
     }
     let has_failed = wanted > 0 && report.first_picture_ms.is_none();
     let outcome = Outcome::Missed.when(has_failed);
-    Ok(Answer { outcome, ..Answer::new(json!(report), text(&report)) })
+    Ok(Answer { outcome, ..Answer::new(&report, text(&report)) })
 }
 
 fn text(report: &ViewerReport) -> String {

@@ -22,11 +22,12 @@ pub(crate) struct PackedLayer {
 
 /// Size and error of a compressed attribute layer.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct LayerReport {
-    /// Meaning of the values in the layer, such as normals.
-    pub kind: LayerKind,
     /// Name of the attribute layer in its file.
     pub name: String,
+    /// Meaning of the values in the layer, such as normals.
+    pub kind: LayerKind,
     /// Compressed size of the layer in bytes, with everything needed to decode it.
     pub bytes: usize,
     /// Largest error of a value in the layer: in radians for directions, else in the unit of the

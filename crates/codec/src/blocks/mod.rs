@@ -66,6 +66,7 @@ impl Accuracy {
 /// Error of a mesh stored in vertex blocks, next to that of a uniform grid with the same mean
 /// error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct BlocksReport {
     /// Error of the surface decoded from the blocks.
     pub blocks: SurfaceChange,
@@ -82,6 +83,7 @@ pub struct BlocksReport {
 ///
 /// Lengths are in model units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SurfaceChange {
     /// Mean distance of the decoded surface's points from the planes of their original faces, in
     /// model units.

@@ -7,6 +7,8 @@ use super::face_graph::FaceGraph;
 
 /// Point of a grid cell to which the vertices in it are decoded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Reconstruction {
     /// The middle of the cell, which halves the largest error.
     #[default]

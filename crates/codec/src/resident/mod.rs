@@ -45,6 +45,7 @@ pub struct Compressed {
 
 /// Size of a compressed mesh by content, in bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct CompressedSizes {
     /// Size of the vertex positions in bytes, with everything needed to decode them.
     pub positions: usize,

@@ -10,6 +10,8 @@ use crate::parts::{Partitioner, Parts, PartsError, Reconstruction};
 
 /// Storage scheme for vertex positions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Scheme {
     /// Positions in 8 bits per axis, in parts of the mesh that share one grid [LCL10].
     Parts(Reconstruction),
@@ -21,6 +23,8 @@ pub enum Scheme {
 
 /// Accuracy or size that a compressed mesh should have.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum CompressionTarget {
     /// Accuracy of a uniform grid over the whole mesh with this many bits per axis, from 2 to 24.
     ///

@@ -54,6 +54,7 @@ pub struct Transport {
 
 /// Size of an `.mlz` file by content, in bytes; the numbers add up to the whole file.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct TransportSizes {
     /// Size of the vertex positions, in bytes.
     pub positions: f64,

@@ -1,7 +1,10 @@
 //! Names of the scenarios.
 
+use serde::{Deserialize, Serialize};
+
 /// Scenario of this crate by its name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum ScenarioName {
     /// The camera follows a school and circles it, near and far by turns [CC05].
     Ring,

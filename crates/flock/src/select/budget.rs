@@ -1,7 +1,10 @@
 //! Limits of a frame: its cost and its fineness.
 
+use serde::{Deserialize, Serialize};
+
 /// Limits for the choice of levels.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Budget {
     /// Most triangles of all members together. The policies `budget` and `ours` keep to it where
     /// the coarsest levels of all members in view allow; the others ignore it.

@@ -1,5 +1,7 @@
 //! Names of the policies.
 
+use serde::{Deserialize, Serialize};
+
 use crate::levels::LevelTable;
 use crate::select::Policy;
 use crate::select::policies::{
@@ -8,7 +10,8 @@ use crate::select::policies::{
 };
 
 /// Policy of this crate by its name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum PolicyName {
     /// Full detail.
     None,

@@ -1,5 +1,6 @@
 //! Facts about a glTF file that its scene does not show: extensions, bytes by kind, animations.
 
+use serde::Serialize;
 use serde_json::Value;
 
 /// Extensions of a glTF file and its bytes by kind, as they are in the file.
@@ -21,7 +22,7 @@ pub struct FileFacts {
 }
 
 /// Size of an animation.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct AnimationFacts {
     /// Name of the animation; empty if it has none.
     pub name: String,

@@ -18,6 +18,8 @@ use crate::prepared::PreparedSurface;
 
 /// Options for a certified distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct CertifiedOptions {
     /// Greatest difference of the two bounds of each direction, relative to the lower one.
     pub tolerance: f64,
@@ -41,6 +43,7 @@ impl Default for CertifiedOptions {
 
 /// Maximum distance between two surfaces A and B in both directions, each between two bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct CertifiedDistance {
     /// Greatest distance of a point on A from the surface B.
     pub forward: Bracket,
@@ -52,6 +55,7 @@ pub struct CertifiedDistance {
 
 /// Lower and upper bound of a distance, in model units.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Bracket {
     /// Lower bound: the distance at `place`, less what rounding may have added.
     pub lower: f64,

@@ -27,6 +27,8 @@ use suspects::Around;
 
 /// Treatment of boundary edges that lie on each other in the conditioning of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Borders {
     /// Boundary edges at equal positions and of opposite directions become one edge.
     #[default]
@@ -37,6 +39,8 @@ pub enum Borders {
 
 /// Which vertices the conditioning of a mesh looks at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Search {
     /// Vertices that end a boundary edge, an edge with an odd number of faces, or one whose faces do
     /// not agree. A pinched vertex of closed fans, and a front with its back, are not found.
@@ -50,6 +54,8 @@ pub enum Search {
 
 /// Options of [`condition`].
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct ConditionOptions {
     /// Which vertices are looked at.
     pub search: Search,
@@ -62,6 +68,7 @@ pub struct ConditionOptions {
 
 /// Numbers of edges, vertices and faces that the conditioning of a mesh has changed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Conditioning {
     /// Number of pairs of boundary edges that became one edge.
     pub stitched_edges: usize,

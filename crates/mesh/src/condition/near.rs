@@ -7,6 +7,7 @@ use crate::{Connectivity, Mesh, Side};
 
 /// Boundary edges of a mesh, and how many of them a small distance keeps apart from others.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct NearBorders {
     /// Distance between the ends of edges, in model units.
     pub distance: f64,

@@ -5,6 +5,7 @@ use meshlod_mesh::{LayerKind, Mesh};
 
 /// Numbers of what a scene has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SceneCounts {
     /// Nodes, whether they show a mesh or not.
     pub nodes: usize,

@@ -26,6 +26,7 @@ pub struct ModelScene {
 
 /// Parts of a scene that a truncated file lacks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct MissingParts {
     /// True if the file ends before nodes and materials.
     pub scene: bool,

@@ -31,6 +31,7 @@ pub struct ScenePoses {
 
 /// Numbers of poses in which errors were measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PoseCounts {
     /// Poses.
     pub poses: u32,

@@ -23,6 +23,8 @@ use overlay::{Fragment, Overlay};
 /// Meaning of the errors stored with a model's updates: estimates, measured distances or proven
 /// bounds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum ErrorKind {
     /// The errors are estimates by the simplification: most triangles are within them, some are
     /// not.

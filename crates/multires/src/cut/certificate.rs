@@ -15,6 +15,7 @@ use crate::implicit::{Implicit, has_three_corners};
 
 /// Result of certifying a multiresolution model: what has been proved about its updates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Certificate {
     /// Number of updates proved sound: they open no crack and keep every cut as manifold as the
     /// input.

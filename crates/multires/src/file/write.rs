@@ -18,6 +18,8 @@ use crate::implicit::{Dependencies, DetachedUpdate, Implicit, ModelInfo, Order, 
 
 /// Options for writing a `.mlod` file.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Storage {
     /// Largest distance that rounding may move a vertex, in model units; `None` for the default.
     ///
@@ -41,6 +43,8 @@ pub struct Storage {
 
 /// Errors to store in a `.mlod` file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum StoredErrors {
     /// The forest's, whatever they are.
     #[default]

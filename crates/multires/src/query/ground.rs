@@ -6,6 +6,8 @@ use crate::query::QueryError;
 
 /// Region over the ground, which reaches from deepest depth to greatest height.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Ground {
     /// Vertical axis: 0, 1 or 2 for x, y or z. That of a height field is
     /// [`HeightField::axis`](crate::HeightField::axis).
@@ -16,6 +18,8 @@ pub struct Ground {
 
 /// Shape on the ground, in model units.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum GroundShape {
     /// The segment between two points.
     Line([[f64; 2]; 2]),

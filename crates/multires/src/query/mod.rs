@@ -28,6 +28,8 @@ pub struct Query<'f> {
 
 /// Region of interest of a query, in model units.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Focus {
     /// The whole model.
     #[default]
@@ -83,6 +85,8 @@ pub enum Tolerance<'f> {
 
 /// A perspective camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ViewCamera {
     /// Position of the camera, in model units.
     pub eye: [f64; 3],

@@ -12,6 +12,8 @@ use crate::pack::{unzigzag, zigzag};
 
 /// Precision with which the heights of a height field are stored.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum HeightPrecision {
     /// Heights are stored exactly, bit for bit.
     Exact,

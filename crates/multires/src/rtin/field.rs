@@ -21,6 +21,7 @@ pub struct HeightField {
 
 /// Largest differences between a mesh and the height field made from it, in model units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Fit {
     /// Largest distance by which a vertex was moved onto the grid, within the grid's plane, in
     /// model units.

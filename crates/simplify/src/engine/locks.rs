@@ -8,6 +8,7 @@ use crate::surface::{Flags, Surface};
 
 /// Numbers of input vertices that are locked, protected or tied.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Held {
     /// Number of vertices that stay in place, by their own lock or as part of a locked boundary.
     pub locked: usize,

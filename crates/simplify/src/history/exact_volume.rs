@@ -37,6 +37,8 @@ const ROUNDS: usize = 4;
 
 /// Number format in which a file stores positions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Digits {
     /// 32-bit floats, as in binary mesh files by default.
     #[default]
@@ -59,6 +61,7 @@ impl Digits {
 
 /// Relative difference in volume between a simplified mesh, as written to a file, and the original.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct VolumeResidual {
     /// Difference in volume before the correction, as a fraction of the original volume.
     pub before: f64,

@@ -12,6 +12,7 @@ use crate::surface::{Flags, Placed, Surface};
 /// Volume lost by contractions, and the contractions in which no method can conserve it. A
 /// contracted face counts as two edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct VolumeLoss {
     /// Volume before minus volume after, summed over all contractions with a closed ring, in cubic
     /// model units: table 2 of [LJ05].
@@ -43,6 +44,7 @@ pub struct VolumeLoss {
 
 /// Contractions whose position could not be chosen to conserve the volume.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Unconserved {
     /// Number of these contractions.
     pub contractions: usize,

@@ -8,6 +8,8 @@ use crate::region::Region;
 
 /// Effort spent on repairing triangle strips after a change.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum StripEffort {
     /// Quick repair, fast enough for a level of detail that changes every frame.
     Quick,

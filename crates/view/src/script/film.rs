@@ -5,6 +5,7 @@ use std::time::Instant;
 use meshlod::mesh::Bounds;
 use meshlod::multires::Focus;
 use meshlod::picture::Picture;
+use serde::Serialize;
 
 use super::Script;
 use super::key::Pose;
@@ -25,12 +26,13 @@ pub struct ScriptFilm {
     frame: u32,
 }
 
-/// Picture of a film, with its figures.
-#[derive(Debug)]
+/// Picture of a film, with its figures, which are what serde writes.
+#[derive(Debug, Serialize)]
 pub struct ScriptFrame {
     /// Number of the frame, from 0.
     pub frame: u32,
     /// The picture.
+    #[serde(skip)]
     pub picture: Picture,
     /// Number of faces drawn.
     pub faces: usize,

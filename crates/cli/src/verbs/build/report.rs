@@ -2,14 +2,16 @@
 
 use std::time::Duration;
 
-use meshlod::Mesh;
 use meshlod::multires::{Certificate, Fit};
-use serde_json::{Value, json};
+use meshlod::simplify::Held;
+use meshlod::{Mesh, Method};
+use serde::Serialize;
 
 use super::Build;
 use crate::files;
-use crate::model_file;
-use crate::model_scene::ErrorPoses;
+use crate::fuse::FuseReport;
+use crate::model_file::{self, PoseFigures};
+use crate::model_scene::{ErrorPoses, SceneFigures};
 use crate::numbers::{count, faces, value};
 
 /// File contents with the figures to report.
@@ -27,54 +29,70 @@ pub(super) struct Built {
     pub(super) poses: ErrorPoses,
 }
 
+/// BuildFigures of the levels, under the keys of JSON.
+#[derive(Serialize)]
+#[serde(untagged)]
 pub(super) enum Levels {
     Contractions {
+        held: Held,
+        error_kind: &'static str,
+        poses: Option<PoseFigures>,
+        model: &'static str,
+        method: Method,
+        lossless: bool,
         updates: usize,
         base_faces: usize,
+        #[serde(serialize_with = "model_file::certificate_figures")]
         certificate: Certificate,
-        error_kind: &'static str,
-        /// Numbers of vertices that were held, as JSON.
-        held: Value,
     },
     RightTriangles {
-        size: [u32; 2],
+        model: &'static str,
+        error_kind: &'static str,
+        grid: [u32; 2],
         fit: Fit,
     },
 }
 
+/// BuildFigures of a file for programs.
+#[derive(Serialize)]
+pub(super) struct BuildFigures<'b> {
+    file: String,
+    input_vertices: usize,
+    input_faces: usize,
+    bytes: usize,
+    scene_bytes: usize,
+    bytes_per_vertex: f64,
+    rounding: f64,
+    build_seconds: f64,
+    #[serde(flatten)]
+    levels: &'b Levels,
+    fused: Option<FuseReport>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    scene: Option<SceneFigures>,
+}
+
 impl Build {
-    pub(super) fn json(&self, mesh: &Mesh, built: &Built, time: Duration) -> Value {
-        let vertices = vertex_count(mesh);
-        let mut json = json!({
-            "file": files::name(&self.output),
-            "input_vertices": vertices,
-            "input_faces": mesh.faces.len(),
-            "bytes": built.bytes.len(),
-            "scene_bytes": built.bytes.len() - built.surface_bytes,
-            "bytes_per_vertex": built.surface_bytes as f64 / vertices as f64,
-            "rounding": built.rounding,
-            "build_seconds": time.as_secs_f64(),
-        });
-        match &built.levels {
-            Levels::Contractions { updates, base_faces, certificate, error_kind, held } => {
-                json["held"] = held.clone();
-                json["error_kind"] = (*error_kind).into();
-                json["poses"] = model_file::poses_json(built.poses.measured());
-                json["model"] = "contractions".into();
-                json["method"] = self.method.name().into();
-                json["lossless"] = self.lossless.into();
-                json["updates"] = (*updates).into();
-                json["base_faces"] = (*base_faces).into();
-                json["certificate"] = model_file::certificate_json(certificate);
-            }
-            Levels::RightTriangles { size, fit } => {
-                json["model"] = "right-triangles".into();
-                json["error_kind"] = "bound".into();
-                json["grid"] = json!(size);
-                json["fit"] = model_file::fit_json(fit);
-            }
+    pub(super) fn figures<'b>(
+        &self,
+        mesh: &Mesh,
+        built: &'b Built,
+        (fused, scene): (Option<FuseReport>, Option<SceneFigures>),
+        time: Duration,
+    ) -> BuildFigures<'b> {
+        let input_vertices = vertex_count(mesh);
+        BuildFigures {
+            file: files::name(&self.output),
+            input_vertices,
+            input_faces: mesh.faces.len(),
+            bytes: built.bytes.len(),
+            scene_bytes: built.bytes.len() - built.surface_bytes,
+            bytes_per_vertex: built.surface_bytes as f64 / input_vertices as f64,
+            rounding: built.rounding,
+            build_seconds: time.as_secs_f64(),
+            levels: &built.levels,
+            fused,
+            scene,
         }
-        json
     }
 
     pub(super) fn text(&self, mesh: &Mesh, built: &Built, time: Duration) -> String {
@@ -97,7 +115,7 @@ impl Build {
                 model_file::errors_text(error_kind, built.poses.measured()),
                 model_file::certificate_text(certificate),
             ),
-            Levels::RightTriangles { size: [columns, rows], fit } => format!(
+            Levels::RightTriangles { grid: [columns, rows], fit, .. } => format!(
                 "right triangles of {columns} x {rows} heights; {}\n",
                 model_file::fit_text(fit),
             ),

@@ -1,14 +1,17 @@
 //! Report of `compress`, as JSON and text.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 
 use meshlod::codec::LayerReport;
 use meshlod::io::Note;
 use meshlod::mesh::{AttributeBounds, LayerKind};
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use crate::files;
+use crate::fuse::FuseReport;
+use crate::model_scene::SceneFigures;
 use crate::numbers::{count, faces, percent, value};
 
 /// Compressed file with the figures to report.
@@ -33,12 +36,40 @@ pub struct CompressedFile {
 }
 
 /// Numbers of the triangle strips in a file.
+#[derive(Clone, Copy, Serialize)]
 pub struct StripCounts {
     pub strips: usize,
     /// Number of indices, restarts included.
     pub indices: usize,
     /// Number of parts whose indices take a byte.
     pub parts_with_byte_indices: usize,
+}
+
+/// CompressFigures of a compressed file for programs.
+#[derive(Serialize)]
+pub struct CompressFigures<'f> {
+    file: String,
+    vertices: usize,
+    faces: usize,
+    bytes_positions: usize,
+    bytes_connectivity: usize,
+    bytes_attributes: usize,
+    bytes_scene: usize,
+    bytes_headers: usize,
+    bytes_total: usize,
+    bytes_per_triangle: f64,
+    reduction: f64,
+    reached: bool,
+    layers: &'f [LayerReport],
+    encode_seconds: f64,
+    /// Number of blocks, parts or meshes, under their name.
+    #[serde(flatten)]
+    pieces: BTreeMap<&'static str, usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    strips: Option<StripCounts>,
+    fused: Option<FuseReport>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    scene: Option<SceneFigures>,
 }
 
 impl CompressedFile {
@@ -62,30 +93,35 @@ impl CompressedFile {
         )
     }
 
-    pub fn json(&self, output: &Path, time: Duration) -> Value {
-        let [positions, connectivity, attributes] = self.sizes;
-        let mut json = json!({
-            "file": files::name(output),
-            "vertices": self.vertices,
-            "faces": self.faces,
-            "bytes_positions": positions,
-            "bytes_connectivity": connectivity,
-            "bytes_attributes": attributes,
-            "bytes_scene": self.scene,
-            "bytes_headers": self.surface() - positions - connectivity - attributes,
-            "bytes_total": self.bytes.len(),
-            "bytes_per_triangle": self.surface() as f64 / self.faces as f64,
-            "reduction": self.reduction(),
-            "reached": self.reached,
-            "layers": self.layers.iter().map(layer_json).collect::<Vec<_>>(),
-            "encode_seconds": time.as_secs_f64(),
-        });
-        json[self.pieces.0] = self.pieces.1.into();
-        if let Some(StripCounts { strips, indices, parts_with_byte_indices }) = self.strips {
-            let strips = json!({ "strips": strips, "indices": indices, "parts_with_byte_indices": parts_with_byte_indices });
-            json["strips"] = strips;
+    pub fn figures(
+        &self,
+        output: &Path,
+        time: Duration,
+        fused: Option<FuseReport>,
+        scene: Option<SceneFigures>,
+    ) -> CompressFigures<'_> {
+        let [bytes_positions, bytes_connectivity, bytes_attributes] = self.sizes;
+        let surface = self.surface();
+        CompressFigures {
+            file: files::name(output),
+            vertices: self.vertices,
+            faces: self.faces,
+            bytes_positions,
+            bytes_connectivity,
+            bytes_attributes,
+            bytes_scene: self.scene,
+            bytes_headers: surface - bytes_positions - bytes_connectivity - bytes_attributes,
+            bytes_total: self.bytes.len(),
+            bytes_per_triangle: surface as f64 / self.faces as f64,
+            reduction: self.reduction(),
+            reached: self.reached,
+            layers: &self.layers,
+            encode_seconds: time.as_secs_f64(),
+            pieces: [self.pieces].into(),
+            strips: self.strips,
+            fused,
+            scene,
         }
-        json
     }
 
     pub fn text(&self, output: &Path, time: Duration) -> String {
@@ -136,13 +172,4 @@ impl CompressedFile {
     pub fn reduction(&self) -> f64 {
         1.0 - self.sizes[0] as f64 / (12 * self.vertices) as f64
     }
-}
-
-fn layer_json(layer: &LayerReport) -> Value {
-    json!({
-        "name": layer.name,
-        "kind": layer.kind.to_string(),
-        "bytes": layer.bytes,
-        "max_error": layer.max_error,
-    })
 }

@@ -5,17 +5,23 @@ use std::time::Duration;
 
 use meshlod::multires::Level;
 use meshlod::simplify::VolumeResidual;
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use crate::files;
-use crate::kept_error::KeptError;
+use crate::kept_error::{KeptError, KeptFigures};
 use crate::numbers::{count, faces, plural, value};
 
-/// Output that the user asked for, whether its target was met, and the time that it took.
-pub struct Request<'a> {
+/// File that was written, and whether it is what was asked for.
+pub struct Done<'a> {
     pub output: &'a Path,
+    /// Vertices and faces.
+    pub counts: [usize; 2],
+    /// Number of faces that the scene shows, over all instances.
+    pub shown: usize,
     /// True if the level is as close or as coarse as asked.
     pub reached: bool,
+    /// Difference in volume that is left, if the volume was restored.
+    pub restored: Option<VolumeResidual>,
     pub time: Duration,
 }
 
@@ -35,51 +41,73 @@ pub struct Extracted {
     pub bytes: u64,
 }
 
+/// ExtractFigures of an extracted level for programs.
+#[derive(Serialize)]
+pub struct ExtractFigures {
+    file: String,
+    vertices: usize,
+    faces: usize,
+    reached: bool,
+    error_kind: &'static str,
+    error: KeptFigures,
+    lossless: bool,
+    chunks: usize,
+    chunks_there: usize,
+    chunks_read: usize,
+    updates_read: usize,
+    bytes_read: u64,
+    extract_seconds: f64,
+    volume_residual: Option<f64>,
+    volume_moved: Option<f64>,
+    shown_faces: usize,
+}
+
 impl Extracted {
-    pub fn to_json(&self, asked: &Request<'_>, [vertices, faces]: [usize; 2]) -> Value {
-        json!({
-            "file": files::name(asked.output),
-            "vertices": vertices,
-            "faces": faces,
-            "reached": asked.reached,
-            "error_kind": self.error_kind,
-            "error": self.error.to_json(),
-            "lossless": self.lossless,
-            "chunks": self.chunks[2],
-            "chunks_there": self.chunks[1],
-            "chunks_read": self.chunks[0],
-            "updates_read": self.updates,
-            "bytes_read": self.bytes,
-            "extract_seconds": asked.time.as_secs_f64(),
-        })
+    pub fn figures(&self, done: &Done<'_>) -> ExtractFigures {
+        let ([vertices, faces], [chunks_read, chunks_there, chunks]) = (done.counts, self.chunks);
+        ExtractFigures {
+            file: files::name(done.output),
+            vertices,
+            faces,
+            reached: done.reached,
+            error_kind: self.error_kind,
+            error: self.error.figures(),
+            lossless: self.lossless,
+            chunks,
+            chunks_there,
+            chunks_read,
+            updates_read: self.updates,
+            bytes_read: self.bytes,
+            extract_seconds: done.time.as_secs_f64(),
+            volume_residual: done.restored.map(|restored| restored.after.abs()),
+            volume_moved: done.restored.map(|restored| restored.farthest),
+            shown_faces: done.shown,
+        }
     }
 
-    pub fn to_text(
-        &self,
-        asked: &Request<'_>,
-        [vertices, all]: [usize; 2],
-        shown: usize,
-    ) -> String {
-        let shown = match shown == all {
+    pub fn to_text(&self, done: &Done<'_>) -> String {
+        let ([vertices, all], [read, _, chunks]) = (done.counts, self.chunks);
+        let shown = match done.shown == all {
             true => String::new(),
-            false => format!(", shown as {}", count(shown)),
+            false => format!(", shown as {}", count(done.shown)),
         };
-        let [read, _, chunks] = self.chunks;
+        let volume = done.restored.map(|restored| volume_text(&restored, self.lossless));
         format!(
-            "{}: {} vertices, {}{shown}\nread {read} of {chunks} chunk{}, {} bytes\n{}extract_seconds: {}\n",
-            files::name(asked.output),
+            "{}: {} vertices, {}{shown}\nread {read} of {chunks} chunk{}, {} bytes\n{}extract_seconds: {}\n{}",
+            files::name(done.output),
             count(vertices),
             faces(all),
             plural(chunks),
             count(self.bytes as usize),
             self.error.to_text(),
-            value(asked.time.as_secs_f64()),
+            value(done.time.as_secs_f64()),
+            volume.unwrap_or_default(),
         )
     }
 }
 
 /// Describes what is left of a difference in volume, and whose volume it is.
-pub fn volume_text(restored: &VolumeResidual, lossless: bool) -> String {
+fn volume_text(restored: &VolumeResidual, lossless: bool) -> String {
     let VolumeResidual { after, farthest, .. } = restored;
     let text =
         format!("volume_residual: {:.1e}\nvolume_moved: {}\n", after.abs(), value(*farthest));

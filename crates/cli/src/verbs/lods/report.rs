@@ -3,19 +3,64 @@
 use std::path::Path;
 use std::time::Duration;
 
+use meshlod::Method;
 use meshlod::measure::Distance;
 use meshlod::mesh::Bounds;
+use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::{ChainLayout, LodLevel, Lods};
-use crate::distance;
+use crate::distance::DistanceFigures;
 use crate::files;
-use crate::locks;
 use crate::numbers::{count, percent, value};
-use crate::simplify_report;
+use crate::simplify_report::{self, InputFigures, RunFigures};
 use crate::simplify_run::{ReadyScene, Simplified};
 use crate::table::aligned;
-use crate::topology;
+use crate::topology::{self, ConditioningFigures};
+
+/// Figures of a chain for programs.
+#[derive(Serialize)]
+pub(super) struct LodsFigures {
+    method: Option<Method>,
+    input_faces: Option<usize>,
+    levels: Vec<LodFigures>,
+    #[serde(flatten)]
+    input: Option<InputFigures>,
+    #[serde(flatten)]
+    run: Option<RunFigures>,
+    #[serde(flatten)]
+    conditioning: ConditioningFigures,
+    layout: &'static str,
+    guide: String,
+}
+
+#[derive(Serialize)]
+struct LodFigures {
+    size: String,
+    faces: usize,
+    reached: bool,
+    error_estimate: f64,
+    error_measured: Option<DistanceFigures>,
+    volume_residual: Option<f64>,
+    screen_coverage: f64,
+    file: Option<String>,
+}
+
+impl From<&LodLevel> for LodFigures {
+    fn from(level: &LodLevel) -> Self {
+        let Simplified { report, measured, .. } = &level.simplified;
+        Self {
+            size: level.size.to_string(),
+            faces: report.output_faces,
+            reached: report.reached,
+            error_estimate: report.error_estimate,
+            error_measured: measured.as_ref().map(DistanceFigures::from),
+            volume_residual: level.volume_residual,
+            screen_coverage: level.screen_coverage,
+            file: level.file.as_deref().map(files::name),
+        }
+    }
+}
 
 impl Lods {
     /// Describes all levels for engines: files, errors and from where on each is fine enough.
@@ -49,34 +94,24 @@ impl Lods {
         guide
     }
 
-    pub(super) fn json(&self, chain: &[LodLevel], time: Duration) -> Value {
-        let level = |level: &LodLevel| {
-            let report = &level.simplified.report;
-            json!({
-                "size": level.size.to_string(),
-                "faces": report.output_faces,
-                "reached": report.reached,
-                "error_estimate": report.error_estimate,
-                "error_measured": level.simplified.measured.as_ref().map(distance::to_json),
-                "volume_residual": level.volume_residual,
-                "screen_coverage": level.screen_coverage,
-                "file": level.file.as_deref().map(files::name),
-            })
-        };
+    pub(super) fn figures(
+        &self,
+        chain: &[LodLevel],
+        ready: &ReadyScene<'_>,
+        (layout, time): (ChainLayout, Duration),
+    ) -> LodsFigures {
+        // A chain is one run, and its last report is that of the whole run.
         let report = chain.last().map(|level| &level.simplified.report);
-        json!({
-            "method": report.map(|report| report.method.name()),
-            "input_faces": report.map(|report| report.input_faces),
-            "levels": chain.iter().map(level).collect::<Vec<_>>(),
-            "simplify_seconds": time.as_secs_f64(),
-            "degenerate_faces": report.map(|report| report.degenerate_faces),
-            "duplicate_faces": report.map(|report| report.duplicate_faces),
-            "non_manifold_vertices": report.map(|report| report.non_manifold_vertices),
-            "held": report.map(locks::to_json),
-            "vanished": report.map(|report| report.vanished),
-            "vanished_volume": report.map(|report| report.volume.vanished),
-            "refusals": report.map(simplify_report::refusals_json),
-        })
+        LodsFigures {
+            method: report.map(|report| report.method),
+            input_faces: report.map(|report| report.input_faces),
+            levels: chain.iter().map(LodFigures::from).collect(),
+            input: report.map(|report| InputFigures::of(report, time)),
+            run: report.map(RunFigures::from),
+            conditioning: ConditioningFigures::of(&ready.scene),
+            layout: layout.name(),
+            guide: files::name(&self.guide_file()),
+        }
     }
 
     pub(super) fn text(

@@ -4,9 +4,9 @@ use std::time::{Duration, Instant};
 
 use meshlod::multires::{Cut, Implicit, ModelFile, UpdateLimits};
 use meshlod::strip::{CutStrips, Difference, StripIndices, StripStatistics};
-use serde_json::{Value, json};
+use serde::Serialize;
 
-use super::Strip;
+use super::{Strip, report};
 use crate::answer::{Answer, Outcome};
 use crate::failure::Failure;
 use crate::files;
@@ -17,23 +17,34 @@ use crate::query_args::ErrorLimit;
 use crate::session::Session;
 use crate::table::aligned;
 
-/// Strips of a cut, and what it took to get there from the one before.
+/// Strips of a cut, and what it took to get there from the one before, under the keys of JSON.
+#[derive(Serialize)]
 struct FollowedCut {
-    error: ErrorLimit,
+    error: String,
+    triangles: usize,
     /// Triangles that were added, removed or changed; all of the first cut.
     changed: usize,
-    figures: CutFigures,
-    time: Duration,
-    difference: Option<Difference>,
+    vertices_sent: usize,
+    indices_with_restart: usize,
+    /// Entries of the index buffers, with restarts and unused places.
+    entries: usize,
+    entries_per_triangle: f64,
+    entries_written: usize,
+    strips: usize,
+    seconds: f64,
+    /// Triangles by which the strips differ from the cut, if they were compared.
+    missing: Option<usize>,
+    extra: Option<usize>,
 }
 
-/// Sizes of a cut and of its strips.
-struct CutFigures {
-    triangles: usize,
-    sent: StripStatistics,
-    /// Entries of the index buffers, with restarts and unused places, and those written.
-    entries: usize,
-    written: usize,
+/// FollowFigures of all cuts for programs.
+#[derive(Serialize)]
+struct FollowFigures<'c> {
+    file: String,
+    effort: Option<String>,
+    each_mesh_once: bool,
+    cuts: &'c [FollowedCut],
+    verified: Option<bool>,
 }
 
 impl Strip {
@@ -61,8 +72,8 @@ impl Strip {
             let time = start.elapsed();
             if let Some((strips, indices)) = &strips {
                 let difference = self.verify.then(|| strips.difference(&model, &cut));
-                let figures = CutFigures::of(&cut, strips, indices);
-                followed.push(FollowedCut { error, changed, figures, time, difference });
+                let all = (strips, indices);
+                followed.push(FollowedCut::of((error, changed), &cut, all, difference, time));
             }
         }
         let wrong = followed.iter().any(FollowedCut::is_wrong);
@@ -72,19 +83,19 @@ impl Strip {
                 "the strips do not draw the faces of the cut, which is a defect of this program",
             ));
         }
-        let json = json!({
-            "file": files::name(&self.input),
-            "effort": self.effort_name(),
-            "each_mesh_once": !scene.is_flat(),
-            "cuts": followed.iter().map(FollowedCut::json).collect::<Vec<_>>(),
-            "verified": self.verify.then_some(!wrong),
-        });
+        let figures = FollowFigures {
+            file: files::name(&self.input),
+            effort: report::name(&self.effort),
+            each_mesh_once: !scene.is_flat(),
+            cuts: &followed,
+            verified: self.verify.then_some(!wrong),
+        };
         let mut text = self.follow_text(&followed);
         if !scene.is_flat() {
             text += "counts are of each mesh once, however many nodes show it\n";
         }
         let outcome = Outcome::Found.when(wrong);
-        Ok(Answer { outcome, ..Answer::new(json, text) })
+        Ok(Answer { outcome, ..Answer::new(figures, text) })
     }
 
     /// Brings strips and index buffers up to date, and returns how many triangles have changed.
@@ -125,9 +136,9 @@ impl Strip {
         text += "error: as the file has it; changed: triangles that the last cut did not have, or has no more;\n";
         text +=
             "entries: index buffers with restarts and free places; written: those that changed\n";
-        for FollowedCut { error, difference, .. } in followed.iter().filter(|cut| cut.is_wrong()) {
-            let (missing, extra) = difference.map_or((0, 0), |d| (d.missing, d.extra));
-            text += &format!("{error}: {missing} missing and {extra} extra triangles\n");
+        for cut in followed.iter().filter(|cut| cut.is_wrong()) {
+            let [missing, extra] = [cut.missing, cut.extra].map(Option::unwrap_or_default);
+            text += &format!("{}: {missing} missing and {extra} extra triangles\n", cut.error);
         }
         if self.verify && !followed.iter().any(FollowedCut::is_wrong) {
             text += "verified: the strips draw exactly the faces of each cut\n";
@@ -136,61 +147,52 @@ impl Strip {
     }
 }
 
-impl CutFigures {
-    fn of(cut: &Cut<'_>, strips: &CutStrips, indices: &StripIndices) -> Self {
+impl FollowedCut {
+    fn of(
+        (error, changed): (ErrorLimit, usize),
+        cut: &Cut<'_>,
+        (strips, indices): (&CutStrips, &StripIndices),
+        difference: Option<Difference>,
+        time: Duration,
+    ) -> Self {
         let sets = 0..indices.sets();
-        let changed = sets.clone().flat_map(|set| indices.changed(set));
+        let written = sets.clone().flat_map(|set| indices.changed(set));
+        let entries = sets.map(|set| indices.indices(set).len()).sum();
+        let triangles = cut.face_count();
+        let sent = StripStatistics::new(&strips.strips());
         Self {
-            triangles: cut.face_count(),
-            sent: StripStatistics::new(&strips.strips()),
-            entries: sets.map(|set| indices.indices(set).len()).sum(),
-            written: changed.map(ExactSizeIterator::len).sum(),
+            error: error.to_string(),
+            triangles,
+            changed,
+            vertices_sent: sent.vertices_sent,
+            indices_with_restart: sent.indices_with_restart,
+            entries,
+            entries_per_triangle: entries as f64 / triangles.max(1) as f64,
+            entries_written: written.map(ExactSizeIterator::len).sum(),
+            strips: sent.strips,
+            seconds: time.as_secs_f64(),
+            missing: difference.map(|difference| difference.missing),
+            extra: difference.map(|difference| difference.extra),
         }
     }
 
-    fn per_triangle(&self, number: usize) -> f64 {
-        number as f64 / self.triangles.max(1) as f64
-    }
-}
-
-impl FollowedCut {
     fn is_wrong(&self) -> bool {
-        self.difference.is_some_and(|difference| difference != Difference::default())
-    }
-
-    fn json(&self) -> Value {
-        let Self { figures, difference, .. } = self;
-        let CutFigures { triangles, sent, entries, written } = figures;
-        json!({
-            "error": self.error.to_string(),
-            "triangles": triangles,
-            "changed": self.changed,
-            "vertices_sent": sent.vertices_sent,
-            "indices_with_restart": sent.indices_with_restart,
-            "entries": entries,
-            "entries_per_triangle": figures.per_triangle(*entries),
-            "entries_written": written,
-            "strips": sent.strips,
-            "seconds": self.time.as_secs_f64(),
-            "missing": difference.map(|difference| difference.missing),
-            "extra": difference.map(|difference| difference.extra),
-        })
+        [self.missing, self.extra].into_iter().flatten().any(|number| number > 0)
     }
 
     fn row(&self) -> [String; 11] {
-        let CutFigures { triangles, sent, entries, written } = &self.figures;
         [
-            self.error.to_string(),
-            count(*triangles),
+            self.error.clone(),
+            count(self.triangles),
             count(self.changed),
-            count(sent.vertices_sent),
-            format!("{:.3}", self.figures.per_triangle(sent.vertices_sent)),
-            count(sent.indices_with_restart),
-            count(*entries),
-            format!("{:.3}", self.figures.per_triangle(*entries)),
-            count(*written),
-            count(sent.strips),
-            format!("{:.1}", self.time.as_secs_f64() * 1e3),
+            count(self.vertices_sent),
+            format!("{:.3}", self.vertices_sent as f64 / self.triangles.max(1) as f64),
+            count(self.indices_with_restart),
+            count(self.entries),
+            format!("{:.3}", self.entries_per_triangle),
+            count(self.entries_written),
+            count(self.strips),
+            format!("{:.1}", self.seconds * 1e3),
         ]
     }
 }
