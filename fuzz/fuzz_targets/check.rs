@@ -23,7 +23,7 @@ fn mesh(bytes: &[u8]) -> Option<(Mesh, RepairOptions)> {
     let mut mesh = Mesh::new(positions, faces);
     mesh.attributes = (extras & 1 != 0).then(|| attributes(&mesh, extras));
     mesh.objects = (extras & 2 != 0).then(|| objects(&mesh, extras));
-    let holes = HoleLimits { edges: usize::from(extras >> 4), length: f64::INFINITY };
+    let holes = HoleLimits { edges: usize::from(extras >> 4), length: None };
     let holes = (extras & 4 != 0).then_some(holes);
     let weld = (extras & 8 != 0).then_some(0.0);
     Some((mesh, RepairOptions { weld, holes, ..RepairOptions::default() }))

@@ -35,8 +35,8 @@ fn main() -> Result<(), Box<dyn Error>> {
                      mean {:.5} %, max {:.3} %",
                     method.name(),
                     report.output_faces,
-                    report.volume.open.contractions,
-                    seen.at_boundaries.unwrap_or(0.0) / whole,
+                    report.volume.at_boundaries.contractions,
+                    seen.behind_boundary_cones.unwrap_or(0.0) / whole,
                     measured.percent(measured.mean()),
                     measured.percent(measured.max()),
                 );

@@ -44,20 +44,59 @@ impl Kinds {
     }
 }
 
-/// Writes the kinds as a list of names.
+/// Writes the kinds as a list of names, and all kinds as `"all"`, so that kinds added later belong
+/// to them.
 #[cfg(feature = "serde")]
 impl serde::Serialize for Kinds {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        if *self == Self::ALL && serializer.is_human_readable() {
+            return serializer.serialize_str(ALL);
+        }
         serializer.collect_seq(Kind::ALL.into_iter().filter(|&kind| self.contains(kind)))
     }
 }
 
-/// Reads a list of the names of kinds.
+/// Reads a list of the names of kinds, or `"all"`.
 #[cfg(feature = "serde")]
 impl<'de> serde::Deserialize<'de> for Kinds {
     fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let kinds: Vec<Kind> = serde::Deserialize::deserialize(deserializer)?;
-        Ok(kinds.into_iter().collect())
+        if deserializer.is_human_readable() {
+            deserializer.deserialize_any(KindsVisitor)
+        } else {
+            deserializer.deserialize_seq(KindsVisitor)
+        }
+    }
+}
+
+/// Name of [`Kinds::ALL`] in files that people read.
+#[cfg(feature = "serde")]
+const ALL: &str = "all";
+
+#[cfg(feature = "serde")]
+struct KindsVisitor;
+
+#[cfg(feature = "serde")]
+impl<'de> serde::de::Visitor<'de> for KindsVisitor {
+    type Value = Kinds;
+
+    fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "a list of kinds of findings, or \"{ALL}\"")
+    }
+
+    fn visit_str<E: serde::de::Error>(self, name: &str) -> Result<Kinds, E> {
+        if name == ALL {
+            Ok(Kinds::ALL)
+        } else {
+            Err(E::invalid_value(serde::de::Unexpected::Str(name), &self))
+        }
+    }
+
+    fn visit_seq<A: serde::de::SeqAccess<'de>>(self, mut kinds: A) -> Result<Kinds, A::Error> {
+        let mut set = Kinds::NONE;
+        while let Some(kind) = kinds.next_element()? {
+            set = set.with(kind);
+        }
+        Ok(set)
     }
 }
 

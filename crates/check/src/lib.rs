@@ -31,6 +31,6 @@ pub use kinds::Kinds;
 pub use locks::{ContactPolicy, LockOptions, LockReason, VertexLocks, locks};
 pub use object_octree::{ObjectLeaf, ObjectOctree};
 pub use objects::{ObjectId, Objects, ObjectsBy};
-pub use repair::{HoleLimits, RepairOptions, RepairReport, RepairStep, repair};
+pub use repair::{HoleLimits, RepairOptions, RepairReport, RepairStep, Stitch, repair};
 pub use summary::Summary;
 pub use unique_positions::UniquePositions;

@@ -39,9 +39,8 @@ pub struct RepairOptions {
     pub duplicates: bool,
     /// True to split non-manifold edges and non-manifold vertices; on by default.
     pub split: bool,
-    /// Largest distance at which boundary edges are stitched, in model units, if the result is
-    /// manifold; 0, the default, stitches edges at the same positions.
-    pub stitch: Option<f64>,
+    /// Choice of the boundary edges to stitch; by default those at the same positions.
+    pub stitch: Stitch,
     /// True to reverse faces until neighbours agree, and closed shells that point inwards; on by
     /// default.
     pub orient: bool,
@@ -59,10 +58,35 @@ impl Default for RepairOptions {
             degenerate: true,
             duplicates: true,
             split: true,
-            stitch: Some(0.0),
+            stitch: Stitch::default(),
             orient: true,
             holes: None,
             unused: true,
+        }
+    }
+}
+
+/// Policy for stitching boundary edges, which is done only where the result is manifold.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+pub enum Stitch {
+    /// Leaves boundary edges as they are.
+    Off,
+    /// Stitches boundary edges at the same positions.
+    #[default]
+    Exact,
+    /// Stitches boundary edges within this distance of each other, in model units; 0 is as good as
+    /// [`Stitch::Exact`].
+    Within(f64),
+}
+
+impl Stitch {
+    fn epsilon(self) -> Option<f64> {
+        match self {
+            Self::Off => None,
+            Self::Exact => Some(0.0),
+            Self::Within(epsilon) => Some(epsilon),
         }
     }
 }
@@ -108,7 +132,7 @@ pub fn repair(mesh: &Mesh, options: &RepairOptions) -> (Mesh, RepairReport) {
         add(RepairStep::TurnedFaces, turned);
         add(RepairStep::NotOrientable, impossible);
     }
-    if let Some(epsilon) = options.stitch {
+    if let Some(epsilon) = options.stitch.epsilon() {
         add(RepairStep::Stitched, stitch::stitch(&mut mesh, epsilon));
     }
     if let Some(limits) = &options.holes {

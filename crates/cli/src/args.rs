@@ -17,7 +17,7 @@ pub struct GlobalArgs {
     #[arg(long, global = true)]
     pub json: bool,
     /// Exit with 1 if something of a file would be left out, then without output, or if a target is
-    /// out of reach
+    /// out of reach, then with what comes closest to it
     #[arg(long, global = true)]
     pub strict: bool,
     /// Print errors only, and JSON with --json: no progress, no warnings, no summary

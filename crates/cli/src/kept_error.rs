@@ -4,7 +4,7 @@ use meshlod::multires::Tolerance;
 use meshlod::{PoseCounts, Verification};
 use serde::Serialize;
 
-use crate::model_file::{self, PoseFigures};
+use crate::model_file;
 use crate::numbers::{count, percent, plural, value};
 
 /// Error that was asked for.
@@ -85,7 +85,7 @@ pub struct KeptFigures {
 #[derive(Serialize)]
 struct PosedFigures {
     #[serde(flatten)]
-    poses: PoseFigures,
+    poses: PoseCounts,
     error: Option<f64>,
 }
 
@@ -172,10 +172,7 @@ impl KeptError {
             Known::Verified(proof) if self.is_whole => Some(proof),
             _ => None,
         };
-        let posed = |PosedError { poses, stored: error }: PosedError| PosedFigures {
-            poses: poses.into(),
-            error,
-        };
+        let posed = |PosedError { poses, stored: error }: PosedError| PosedFigures { poses, error };
         KeptFigures {
             asked,
             asked_px,

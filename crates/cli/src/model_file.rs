@@ -6,8 +6,6 @@ use std::path::Path;
 use meshlod::PoseCounts;
 use meshlod::io::Note;
 use meshlod::multires::{Archive, Certificate, ErrorKind, FileError, Fit, ModelFile, Source};
-use serde::{Serialize, Serializer};
-use serde_json::{Value, json};
 
 use crate::failure::Failure;
 use crate::files;
@@ -63,24 +61,12 @@ pub fn open_again(path: &Path, session: &Session) -> Result<ModelFile<File>, Fai
     })
 }
 
-pub fn certificate_json(certificate: &Certificate) -> Value {
-    json!({ "sound": certificate.sound, "odd": certificate.non_manifold })
-}
-
-/// Serializes a certificate by the keys of [`certificate_json`].
-pub fn certificate_figures<S: Serializer>(
-    of: &Certificate,
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    certificate_json(of).serialize(serializer)
-}
-
 pub fn certificate_text(certificate: &Certificate) -> String {
-    let Certificate { sound, non_manifold } = *certificate;
+    let Certificate { sound, odd } = *certificate;
     let mut text =
         format!("proved: no cut of {} update{} has a crack", count(sound), plural(sound));
-    if non_manifold > 0 {
-        text += &format!("; {} next to non-manifold parts of the input", count(non_manifold));
+    if odd > 0 {
+        text += &format!("; {} next to non-manifold parts of the input", count(odd));
     }
     text
 }
@@ -144,11 +130,11 @@ pub fn errors_text(kind: &str, poses: Option<PoseCounts>) -> String {
 }
 
 /// Names the poses in which errors were measured.
-pub fn poses_text(PoseCounts { poses, animations }: PoseCounts) -> String {
+pub fn poses_text(PoseCounts { measured, animations }: PoseCounts) -> String {
+    let [poses, animations] = [measured, animations].map(|number| number as usize);
     if animations == 0 {
-        return format!("{} pose{} of the nodes", count(poses as usize), plural(poses as usize));
+        return format!("{} pose{} of the nodes", count(poses), plural(poses));
     }
-    let [poses, animations] = [poses, animations].map(|number| number as usize);
     format!(
         "{} pose{} of {} animation{}",
         count(poses),
@@ -156,17 +142,4 @@ pub fn poses_text(PoseCounts { poses, animations }: PoseCounts) -> String {
         count(animations),
         plural(animations),
     )
-}
-
-/// Numbers of poses in which errors were measured, and of the animations that they are of.
-#[derive(Serialize)]
-pub struct PoseFigures {
-    measured: u32,
-    animations: u32,
-}
-
-impl From<PoseCounts> for PoseFigures {
-    fn from(PoseCounts { poses: measured, animations }: PoseCounts) -> Self {
-        Self { measured, animations }
-    }
 }

@@ -151,7 +151,7 @@ impl QueryArgs {
         let reason = format_args!(
             "--faces {most} is out of reach: the coarsest level has {found}, and that is what was {done}"
         );
-        session.warn(Failure::at(input, reason));
+        session.miss(&Failure::at(input, reason));
         false
     }
 

@@ -6,7 +6,6 @@ use std::path::Path;
 use meshlod::io::{Note, merged_instances};
 use meshlod::multires::{ModelFile, Query};
 use meshlod::{Format, MissingParts, ModelScene, PoseCounts, Scene, SceneCounts, SceneQueryError};
-use serde::Serialize;
 
 use crate::failure::Failure;
 use crate::model_file;
@@ -69,38 +68,6 @@ pub fn counts_text(counts: &SceneCounts, poses: ErrorPoses) -> String {
         ),
     };
     text + "\n"
-}
-
-/// Numbers of what a scene has, of its meshes those that are shown.
-#[derive(Serialize)]
-pub struct SceneFigures {
-    nodes: usize,
-    meshes: usize,
-    instances: usize,
-    materials: usize,
-    images: usize,
-    missing_images: usize,
-    skins: usize,
-    animations: usize,
-    skinned_meshes: usize,
-    morphing_meshes: usize,
-}
-
-impl From<&SceneCounts> for SceneFigures {
-    fn from(counts: &SceneCounts) -> Self {
-        Self {
-            nodes: counts.nodes,
-            meshes: counts.meshes,
-            instances: counts.instances,
-            materials: counts.materials,
-            images: counts.images,
-            missing_images: counts.missing_images,
-            skins: counts.skins,
-            animations: counts.animations,
-            skinned_meshes: counts.skinned_meshes,
-            morphing_meshes: counts.morphing_meshes,
-        }
-    }
 }
 
 /// Reads the scene of a multiresolution file, with notes of what a truncated file lacks.

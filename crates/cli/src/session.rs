@@ -109,9 +109,18 @@ impl Session {
             Some(kept) => {
                 kept.lock().unwrap_or_else(PoisonError::into_inner).push(line.to_string())
             }
-            // With `--strict`, a warning may be why the run fails.
+            // With `--strict`, a warning of a file may be why the batch fails.
             None if self.quiet && !self.strict => {}
             None => self.progress.suspend(|| say(format_args!("warning: {line}"))),
+        }
+    }
+
+    /// Says that a target was missed: with a warning or, with `--strict`, an error line, since it is
+    /// then why the run fails.
+    pub fn miss(&self, reason: &Failure) {
+        match self.kept_warnings {
+            None if self.strict => self.complain(reason),
+            _ => self.warn(reason),
         }
     }
 

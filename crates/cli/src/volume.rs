@@ -82,8 +82,8 @@ pub struct VolumeNotConserved {
 impl VolumeNotConserved {
     /// Returns the figures of a run; `None` for a method that does not aim to conserve the volume.
     pub fn of(method: Method, loss: &VolumeLoss) -> Option<Self> {
-        let VolumeLoss { at_boundaries: behind_boundary_cones, held, owed, repaid, .. } = *loss;
-        let figures = Self { at_boundaries: loss.open, behind_boundary_cones, held, owed, repaid };
+        let VolumeLoss { at_boundaries, behind_boundary_cones, held, owed, repaid, .. } = *loss;
+        let figures = Self { at_boundaries, behind_boundary_cones, held, owed, repaid };
         method.conserves_volume().then_some(figures)
     }
 }

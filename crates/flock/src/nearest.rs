@@ -34,6 +34,7 @@
 //! ```
 
 use meshlod_multires::{Focus, Level, Model, Query, QueryError, Tolerance};
+use serde::{Deserialize, Serialize};
 
 use crate::camera::FlockCamera;
 use crate::flock::Flock;
@@ -47,7 +48,8 @@ pub struct NearestCuts {
 }
 
 /// Options for the cuts of the nearest members.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct NearestOptions {
     /// Most members that get a cut.
     pub members: usize,
@@ -58,7 +60,8 @@ pub struct NearestOptions {
 }
 
 /// Part of a member that its cut makes fine.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum CutFocus {
     /// The part in the view frustum; the rest is as coarse as possible. A shadow of the member may
     /// show that.

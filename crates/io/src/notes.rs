@@ -54,12 +54,12 @@ impl Note {
         Self::new(NoteKind::Changed, count, one, many)
     }
 
-    /// Creates the note that attributes of vertices which are not finite were read as 0.
+    /// Creates the note that values of attributes which are not finite were read as 0.
     pub(crate) fn not_finite(count: usize) -> Self {
         Self::changed(
             count,
-            "value of a vertex that is not finite read as 0",
-            "values of vertices that are not finite read as 0",
+            "value of an attribute that is not finite read as 0",
+            "values of attributes that are not finite read as 0",
         )
     }
 

@@ -161,11 +161,12 @@ fn images_of_one_name_go_to_one_folder() {
 #[test]
 fn a_malformed_library_costs_a_note_and_stays_as_it_is() {
     let object = format!("mtllib a.mtl\n{SQUARE}usemtl a\nf 1 2 3\n");
-    let library: &[u8] = b"newmtl a\nKd 0,8 0,8 0,8\nTr x\nKs 1 1 1\nd\nNs 96,0\nPr\nKs red\n";
+    let library: &[u8] =
+        b"newmtl a\nKd 0,8 0,8 0,8\nTr x\nKs 1 1 1\nd\nNs 96,0\nPr\nKs red\nKe 0 nan 0\nPm inf\n";
     let here = folder(&[("a.obj", object.as_bytes()), ("a.mtl", library)]);
     let scene = read_it(&here.path().join("a.obj"));
     let note = &scene.notes[0];
-    assert_eq!((note.count, scene.notes.len()), (6, 1));
+    assert_eq!((note.count, scene.notes.len()), (8, 1));
     assert_eq!(note.names[0], "a.mtl, line 2: \"0,8\" is not a number");
     let there = tempdir().unwrap();
     write_it(&there.path().join("a.obj"), &scene);

@@ -93,7 +93,7 @@ pub enum ArraysError {
 impl MeshArrays {
     /// Creates arrays from positions of any [`Point`] type and faces, without attributes.
     ///
-    /// Of a flat list of indices, `as_chunks().0` are the faces.
+    /// For a flat list of indices, pass `indices.as_chunks().0`, which drops what is not a face.
     pub fn new<P: Point>(positions: &[P], faces: &[[u32; 3]]) -> Self {
         let positions = positions.iter().map(|&position| position.to_f64()).collect();
         Self { positions, faces: faces.to_vec(), layers: Vec::new() }
@@ -133,7 +133,7 @@ impl MeshArrays {
         vertices
     }
 
-    fn validate(&self) -> Result<(), ArraysError> {
+    pub(crate) fn validate(&self) -> Result<(), ArraysError> {
         let count = self.positions.len();
         if u32::try_from(count).is_err() {
             return Err(ArraysError::TooMany { count });

@@ -6,7 +6,7 @@ use bevy_mesh::{
 };
 use thiserror::Error;
 
-use crate::{Layer, LayerKind, MeshArrays, Point, strip_triangles};
+use crate::{ArraysError, Layer, LayerKind, MeshArrays, Point, strip_triangles};
 
 /// Reason why a mesh of Bevy cannot become plain arrays, or arrays a mesh of Bevy.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -19,25 +19,37 @@ pub enum BevyMeshError {
     #[error("the mesh is a {0:?}, not a list or strip of triangles")]
     NotTriangles(PrimitiveTopology),
     /// The number of indices of a list is not a multiple of three.
-    #[error("{0} indices are no list of triangles")]
+    #[error("a list of triangles needs a multiple of three indices, not {0}")]
     BadIndexCount(usize),
     /// There are no positions.
     #[error("the mesh has no positions")]
     NoPositions,
-    /// An attribute is compressed, or in another format that is not read.
-    #[error("{name}: format {format} is not read; convert the mesh before it is compressed")]
+    /// An attribute is compressed, or a custom one that does not have single precision.
+    #[error(
+        "{name}: {format} is not read; remove the attribute, or convert the mesh before compressing it"
+    )]
     BadFormat {
         /// Name of the attribute.
         name: &'static str,
         /// Format of its values.
         format: String,
     },
-    /// Bevy has no attribute of this kind; those of one's own need a type of their own there.
-    #[error("{0}: Bevy has no such attribute; take the layer away or insert it yourself")]
+    /// Bevy has no attribute of this kind.
+    #[error(
+        "{0}: Bevy has no such attribute; remove the layer, or insert it as a custom attribute"
+    )]
     NoAttribute(String),
-    /// A layer has too few or too many values, or too many for each point.
-    #[error("{0}: wrong number of values")]
-    BadLength(String),
+    /// Bevy has one attribute of each kind, but there are two layers.
+    #[error("{0}: a second layer of this kind; remove one")]
+    SecondLayer(String),
+    /// A layer has another number of values for each point than the attribute of Bevy.
+    #[error("{name}: {width} values for each point do not fit the attribute of Bevy")]
+    BadWidth {
+        /// Name of the layer.
+        name: String,
+        /// Number of values for each point.
+        width: usize,
+    },
     /// A number does not fit into single precision, or a joint not into 16 bits.
     #[error("{name}: row {row} does not fit: {value}")]
     OutOfRange {
@@ -48,6 +60,9 @@ pub enum BevyMeshError {
         /// Value that does not fit.
         value: f64,
     },
+    /// The arrays are not a mesh.
+    #[error(transparent)]
+    Arrays(#[from] ArraysError),
 }
 
 /// Attributes of Bevy that have a type here.
@@ -61,8 +76,8 @@ const ATTRIBUTES: [(MeshVertexAttribute, LayerKind); 7] = [
     (BevyMesh::ATTRIBUTE_JOINT_WEIGHT, LayerKind::Weights(0)),
 ];
 
-/// Copies the mesh. Attributes of one's own are layers of the kind [`LayerKind::Other`] if they
-/// have single precision; morph targets stay behind.
+/// Copies the mesh. Custom attributes of single precision become layers of the kind
+/// [`LayerKind::Other`], and others are errors; morph targets stay behind.
 ///
 /// Indices are as they were: [`Mesh::from_arrays`](crate::Mesh::from_arrays) checks them.
 impl TryFrom<&BevyMesh> for MeshArrays {
@@ -92,13 +107,17 @@ impl TryFrom<&BevyMesh> for MeshArrays {
 /// Returns the faces, of points in order where the mesh has no indices.
 fn faces_of(mesh: &BevyMesh, points: usize) -> Result<Vec<[u32; 3]>, BevyMeshError> {
     let indices = mesh.try_indices_option().map_err(|_| BevyMeshError::NotInMainWorld)?;
-    let indices: Vec<u32> = match indices {
-        Some(Indices::U16(indices)) => indices.iter().copied().map(u32::from).collect(),
-        Some(Indices::U32(indices)) => indices.clone(),
-        None => (0..points).map(|i| i as u32).collect(),
+    let (indices, restart): (Vec<u32>, u32) = match indices {
+        Some(Indices::U16(indices)) => {
+            (indices.iter().copied().map(u32::from).collect(), u16::MAX.into())
+        }
+        Some(Indices::U32(indices)) => (indices.clone(), u32::MAX),
+        None => ((0..points).map(|i| i as u32).collect(), u32::MAX),
     };
     match mesh.primitive_topology() {
-        PrimitiveTopology::TriangleStrip => Ok(strip_triangles(&indices).collect()),
+        PrimitiveTopology::TriangleStrip => {
+            Ok(indices.split(|&i| i == restart).flat_map(strip_triangles).collect())
+        }
         PrimitiveTopology::TriangleList => match indices.as_chunks() {
             (faces, []) => Ok(faces.to_vec()),
             _ => Err(BevyMeshError::BadIndexCount(indices.len())),
@@ -146,11 +165,15 @@ impl TryFrom<MeshArrays> for BevyMesh {
     type Error = BevyMeshError;
 
     fn try_from(arrays: MeshArrays) -> Result<Self, BevyMeshError> {
+        arrays.validate()?;
         let mut mesh = Self::new(PrimitiveTopology::TriangleList, Default::default());
-        let points = arrays.positions.len();
         mesh.insert_attribute(Self::ATTRIBUTE_POSITION, points_of(&arrays.positions)?);
         for layer in arrays.layers {
-            let (attribute, values) = attribute_of(layer, points)?;
+            let name = layer.name.clone();
+            let (attribute, values) = attribute_of(layer)?;
+            if mesh.contains_attribute(attribute) {
+                return Err(BevyMeshError::SecondLayer(name));
+            }
             mesh.insert_attribute(attribute, values);
         }
         mesh.insert_indices(Indices::U32(arrays.faces.into_flattened()));
@@ -161,7 +184,7 @@ impl TryFrom<MeshArrays> for BevyMesh {
 fn points_of(positions: &[[f64; 3]]) -> Result<Vec<[f32; 3]>, BevyMeshError> {
     let single = |(row, &position): (usize, &[f64; 3])| {
         let point = <[f32; 3]>::from_f64(position);
-        match (0..3).find(|&k| position[k].is_finite() && !point[k].is_finite()) {
+        match (0..3).find(|&k| !point[k].is_finite()) {
             Some(k) => {
                 Err(BevyMeshError::OutOfRange { name: "points".into(), row, value: position[k] })
             }
@@ -171,17 +194,11 @@ fn points_of(positions: &[[f64; 3]]) -> Result<Vec<[f32; 3]>, BevyMeshError> {
     positions.iter().enumerate().map(single).collect()
 }
 
-fn attribute_of(
-    layer: Layer,
-    points: usize,
-) -> Result<(MeshVertexAttribute, Values), BevyMeshError> {
+fn attribute_of(layer: Layer) -> Result<(MeshVertexAttribute, Values), BevyMeshError> {
     let Layer { kind, name, width, mut values } = layer;
     let Some(&(attribute, _)) = ATTRIBUTES.iter().find(|&&(_, known)| known == kind) else {
         return Err(BevyMeshError::NoAttribute(name));
     };
-    if values.len() != points * width {
-        return Err(BevyMeshError::BadLength(name));
-    }
     flip_uvs(kind, &mut values);
     let values = match (kind, width) {
         (LayerKind::Normal, 3) => Values::Float32x3(rows(&values)),
@@ -192,7 +209,7 @@ fn attribute_of(
         }
         (LayerKind::Joints(_), 4) => Values::Uint16x4(joints_of(&name, &values)?),
         (_, 4) => Values::Float32x4(rows(&values)),
-        _ => return Err(BevyMeshError::BadLength(name)),
+        _ => return Err(BevyMeshError::BadWidth { name, width }),
     };
     Ok((attribute, values))
 }
@@ -222,7 +239,7 @@ fn flip_uvs(kind: LayerKind, values: &mut [f32]) {
 
 #[cfg(test)]
 mod tests {
-    use bevy_mesh::{CuboidMeshBuilder, MeshBuilder};
+    use bevy_mesh::{CuboidMeshBuilder, MeshBuilder, VertexFormat};
 
     use super::*;
     use crate::{Connectivity, Mesh};
@@ -260,6 +277,18 @@ mod tests {
     fn strips_and_meshes_without_indices_have_faces() {
         let strip = square(PrimitiveTopology::TriangleStrip);
         assert_eq!(arrays(&strip).unwrap().faces, [[0, 1, 2], [2, 1, 3]]);
+        let restarted = [
+            Indices::U16(vec![0, 1, 2, u16::MAX, 2, 1, 3]),
+            Indices::U32(vec![0, 1, 2, u32::MAX, 2, 1, 3]),
+        ];
+        for indices in restarted {
+            let strip = strip.clone().with_inserted_indices(indices);
+            assert_eq!(arrays(&strip).unwrap().faces, [[0, 1, 2], [2, 1, 3]]);
+        }
+    }
+
+    #[test]
+    fn meshes_that_are_no_triangles_are_refused() {
         let list = square(PrimitiveTopology::TriangleList);
         assert_eq!(arrays(&list), Err(BevyMeshError::BadIndexCount(4)));
         let list = list.with_inserted_indices(Indices::U16(vec![0, 1, 9]));
@@ -273,11 +302,35 @@ mod tests {
         assert_eq!(arrays(&lines), Err(lines_error));
         let bare = BevyMesh::new(PrimitiveTopology::TriangleList, Default::default());
         assert_eq!(arrays(&bare), Err(BevyMeshError::NoPositions));
+        let mut drawn = square(PrimitiveTopology::TriangleStrip);
+        drawn.take_gpu_data().unwrap();
+        assert_eq!(arrays(&drawn), Err(BevyMeshError::NotInMainWorld));
+    }
+
+    #[test]
+    fn fractions_may_be_whole_numbers_and_others_may_not() {
+        let strip = || square(PrimitiveTopology::TriangleStrip);
+        let color =
+            MeshVertexAttribute { format: VertexFormat::Unorm8x4, ..BevyMesh::ATTRIBUTE_COLOR };
+        let colored =
+            strip().with_inserted_attribute(color, Values::Unorm8x4(vec![[255, 0, 51, 0]; 4]));
+        assert_eq!(arrays(&colored).unwrap().layers[0].values[..4], [1.0, 0.0, 0.2, 0.0]);
+        let weight = MeshVertexAttribute {
+            format: VertexFormat::Unorm16x4,
+            ..BevyMesh::ATTRIBUTE_JOINT_WEIGHT
+        };
+        let weighted =
+            strip().with_inserted_attribute(weight, Values::Unorm16x4(vec![[65_535, 0, 0, 0]; 4]));
+        assert_eq!(arrays(&weighted).unwrap().layers[0].values[..4], [1.0, 0.0, 0.0, 0.0]);
+        let numbers = MeshVertexAttribute::new("Floor", 9_998, VertexFormat::Uint32);
+        let numbered = strip().with_inserted_attribute(numbers, Values::Uint32(vec![1; 4]));
+        let error = arrays(&numbered).unwrap_err().to_string();
+        assert!(error.starts_with("Floor: Uint32 is not read; remove the attribute"), "{error}");
     }
 
     #[test]
     fn attributes_keep_their_values() {
-        let owned = MeshVertexAttribute::new("Heat", 9_999, bevy_mesh::VertexFormat::Float32);
+        let owned = MeshVertexAttribute::new("Heat", 9_999, VertexFormat::Float32);
         let mesh = square(PrimitiveTopology::TriangleStrip)
             .with_inserted_attribute(BevyMesh::ATTRIBUTE_UV_0, vec![[0.25_f32, 0.75]; 4])
             .with_inserted_attribute(
@@ -304,6 +357,7 @@ mod tests {
         let same = |id| assert_eq!(back.attribute(id), mesh.attribute(id));
         same(BevyMesh::ATTRIBUTE_UV_0);
         same(BevyMesh::ATTRIBUTE_JOINT_INDEX);
+        same(BevyMesh::ATTRIBUTE_JOINT_WEIGHT);
     }
 
     #[test]
@@ -317,7 +371,25 @@ mod tests {
             MeshArrays::new(&points, &[[0, 1, 2]]).with(LayerKind::Joints(0), vec![0.5; 12]);
         let error = BevyMesh::try_from(joints).unwrap_err().to_string();
         assert_eq!(error, "joints0: row 0 does not fit: 0.5");
-        let short = MeshArrays::new(&points, &[[0, 1, 2]]).with(LayerKind::Normal, vec![0.0; 6]);
-        assert_eq!(BevyMesh::try_from(short), Err(BevyMeshError::BadLength("normal".into())));
+        let triangle = || MeshArrays::new(&points, &[[0, 1, 2]]);
+        let refused = |arrays: MeshArrays| BevyMesh::try_from(arrays).unwrap_err().to_string();
+        let short = triangle().with(LayerKind::Normal, vec![0.0; 6]);
+        assert_eq!(refused(short), "normal: 6 values, but each of 3 points needs 3");
+        let wide = triangle().with(LayerKind::Color(0), vec![0.0; 6]);
+        assert_eq!(
+            refused(wide),
+            "color0: 2 values for each point do not fit the attribute of Bevy"
+        );
+        let gray = || vec![0.5; 9];
+        let opaque = triangle().with(LayerKind::Color(0), gray());
+        let expected = Values::Float32x4(vec![[0.5, 0.5, 0.5, 1.0]; 3]);
+        let mesh = BevyMesh::try_from(opaque.clone()).unwrap();
+        assert_eq!(mesh.attribute(BevyMesh::ATTRIBUTE_COLOR), Some(&expected));
+        let twice = opaque.with(LayerKind::Color(0), gray());
+        assert_eq!(refused(twice), "color0: a second layer of this kind; remove one");
+        assert_eq!(
+            refused(MeshArrays::new(&points, &[[0, 1, 3]])),
+            "faces: row 0 refers to point 3, but there are only 3 points"
+        );
     }
 }

@@ -2,8 +2,8 @@
 
 /// Point in space, with three coordinates of single or double precision.
 ///
-/// Arrays are points; vectors of glam and points of mint are too, behind features with the names
-/// of these crates.
+/// Arrays are points; vectors of glam 0.34, and points and vectors of mint 0.5, are too, behind
+/// features with the names of these crates. Those of another glam become arrays by `to_array`.
 pub trait Point: Copy {
     /// Creates the point from its coordinates, rounded to its precision.
     fn from_f64(coordinates: [f64; 3]) -> Self;

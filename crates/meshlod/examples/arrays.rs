@@ -10,8 +10,8 @@ use meshlod::{Mesh, Options, Target, samples, simplify};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let (points, faces) = points_and_faces();
-    // Points may be f32 or f64, or vectors of glam or mint with the features of these names. Of a
-    // flat list of indices, `as_chunks().0` are the faces.
+    // Points may be f32 or f64, or vectors of glam or mint with the features of these names. For a
+    // flat list of indices, pass `indices.as_chunks().0`.
     let mesh = Mesh::from_arrays(MeshArrays::new(&points, &faces))?;
     println!("{:>6}  {:>7}  {:>7}  max error", "level", "points", "faces");
     let options = DistanceOptions { samples: 50_000, ..DistanceOptions::default() };

@@ -229,6 +229,16 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! Parts of options that have no default of their own, [`multires::ViewCamera`],
+//! [`multires::Ground`] and [`codec::Lattice`], are given whole. What is not plain data stays in
+//! code:
+//! - [`ExtractOptions`] and [`multires::Query`], which may hold a function;
+//! - [`flock::simulation::SimulationOptions`], with its schools and obstacles: they hold paths and
+//!   distance fields that are prepared in advance;
+//! - [`picture::SeeThroughOptions`] and [`flock::levels::ImpostorOptions`], options of pictures;
+//! - what options borrow, a mesh or one value a face: [`strip::StripOptions::clusters`],
+//!   [`measure::BeyondOptions::faces`], [`flock::scene::ScenarioOptions::terrain`].
+//!
 //! # Features
 //! All of these but `serde` are on by default. With `default-features = false` there are [`mesh`], [`simplify`](mod@simplify),
 //! [`measure`] and [`spatial`], with 18 crates below this one and no C.
@@ -250,9 +260,12 @@
 //!
 //! | feature | adds |
 //! |---|---|
-//! | `glam`, `mint` | their vectors and points are [`mesh::Point`]s, which arrays are made of |
+//! | `glam`, `mint` | vectors and points of glam 0.34 and mint 0.5 are [`mesh::Point`]s, which arrays are made of |
 //! | `bytemuck` | ids are plain numbers: `bytemuck::cast_slice(&mesh.faces)` is a list of indices |
-//! | `bevy_mesh` | [`mesh::MeshArrays`] from a mesh of Bevy, and back |
+//! | `bevy_mesh` | [`mesh::MeshArrays`] from a mesh of Bevy 0.20, and back |
+//!
+//! These versions are part of the version of meshlod. Bevy has a glam of its own, whose vectors
+//! become points by way of mint or as arrays.
 //!
 //! # Guarantees
 //! - No input makes it crash: errors in files are reported in one line with their position.

@@ -2,25 +2,34 @@
 
 use std::fmt::Debug;
 
-use meshlod::check::{CheckOptions, ContactPolicy, HoleLimits, Kind, Kinds, RepairOptions};
-use meshlod::codec::{CompressionTarget, Reconstruction, Scheme};
-use meshlod::flock::scene::ScenarioName;
+use meshlod::check::{
+    CheckOptions, ContactPolicy, HoleLimits, Kind, Kinds, LockOptions, RepairOptions, Stitch,
+};
+use meshlod::codec::{
+    CompressionTarget, Lattice, Reconstruction, Scheme, TransportOptions, TransportQuantization,
+};
+use meshlod::flock::evaluate::{Arm, EvaluationOptions};
+use meshlod::flock::levels::{ChainOptions, ModelAxes};
+use meshlod::flock::nearest::{CutFocus, NearestOptions};
+use meshlod::flock::scene::{ScenarioName, ScenarioOptions};
+use meshlod::flock::select::policies::Factors;
 use meshlod::flock::select::{Budget, PolicyName};
-use meshlod::io::Precision;
-use meshlod::measure::{CertifiedOptions, DistanceOptions};
-use meshlod::mesh::{Lock, Locks, VertexId};
-use meshlod::multires::{ErrorKind, Storage};
-use meshlod::strip::StripQuality;
+use meshlod::io::{Precision, Weld};
+use meshlod::measure::{BeyondOptions, CertifiedOptions, DistanceOptions};
+use meshlod::mesh::{AttributeBounds, ConditionOptions, Lock, Locks, Search, VertexId};
+use meshlod::multires::{ErrorKind, Focus, Ground, GroundShape, Storage, UpdateLimits};
+use meshlod::simplify::AttributeWeights;
+use meshlod::strip::{CacheAware, Prices, StripOptions, StripQuality};
 use meshlod::{
-    BuildOptions, CompressOptions, Constraints, Method, Options, Target, Topology, VertexLocking,
-    check_report, samples, simplify,
+    BuildOptions, CompressOptions, Constraints, Method, Options, ReadOptions, Target, Topology,
+    VertexLocking, WriteOptions, check_report, samples, simplify,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, from_value, json, to_value};
 
-/// Checks that options come back as they were, that no field must be given, and that a misspelt one
-/// is refused.
+/// Checks that options come back as they were from JSON and from TOML, which leaves out what is
+/// `None`, that no field must be given, and that a misspelt one is refused.
 fn options_as<T: Serialize + DeserializeOwned + Default>(options: &T, expected: &Value) {
     let written = to_value(options).unwrap();
     for (field, value) in expected.as_object().unwrap() {
@@ -28,6 +37,8 @@ fn options_as<T: Serialize + DeserializeOwned + Default>(options: &T, expected: 
     }
     let read: T = from_value(written.clone()).unwrap();
     assert_eq!(to_value(&read).unwrap(), written);
+    let of_toml: T = toml::from_str(&toml::to_string(options).unwrap()).unwrap();
+    assert_eq!(to_value(&of_toml).unwrap(), written);
     let of_part: T = from_value(expected.clone()).unwrap();
     assert_eq!(to_value(&of_part).unwrap(), written);
     let none: T = from_value(json!({})).unwrap();
@@ -36,10 +47,20 @@ fn options_as<T: Serialize + DeserializeOwned + Default>(options: &T, expected: 
     assert!(error.is_some_and(|error| error.contains("unknown field `misspelt`")));
 }
 
-#[test]
-fn options_come_back_and_need_no_field_and_refuse_misspelt_ones() {
+/// Checks that one value comes back as it was from JSON.
+fn form<T: Serialize + DeserializeOwned + PartialEq + Debug>(value: T, expected: &Value) {
+    assert_eq!(&to_value(&value).unwrap(), expected);
+    assert_eq!(from_value::<T>(expected.clone()).unwrap(), value);
+}
+
+fn some_locks() -> (Locks, Value) {
     let locks = Locks { of_vertex: vec![Lock::Free, Lock::Locked], ties: vec![vec![VertexId(3)]] };
-    let locks_json = json!({ "of_vertex": ["free", "locked"], "ties": [[3]] });
+    (locks, json!({ "of_vertex": ["free", "locked"], "ties": [[3]] }))
+}
+
+#[test]
+fn options_of_simplification_and_measuring() {
+    let (locks, locks_json) = some_locks();
     options_as(
         &Options {
             method: Method::QemEndpoint,
@@ -56,22 +77,52 @@ fn options_come_back_and_need_no_field_and_refuse_misspelt_ones() {
         &Constraints { locks: VertexLocking::Given(vec![locks]), fuse: true, ..Default::default() },
         &json!({ "locks": { "given": [locks_json] }, "fuse": true }),
     );
+    options_as(&AttributeWeights { uv: 2.0, ..Default::default() }, &json!({ "uv": 2.0 }));
+    let searched = ConditionOptions { search: Search::Unbalanced, ..Default::default() };
+    options_as(&searched, &json!({ "search": "unbalanced", "borders": "stitch" }));
     options_as(&DistanceOptions { samples: 7, ..Default::default() }, &json!({ "samples": 7 }));
     options_as(&CertifiedOptions { floor: 0.0, ..Default::default() }, &json!({ "floor": 0.0 }));
+    options_as(&BeyondOptions { slack: 0.5, ..Default::default() }, &json!({ "slack": 0.5 }));
+}
+
+#[test]
+fn options_of_checks_and_repair() {
     options_as(
         &CheckOptions { kinds: Kinds::NONE.with(Kind::BadIndex), ..Default::default() },
         &json!({ "kinds": ["bad-index"], "broad_phase": "tree" }),
     );
-    let any_length = HoleLimits { edges: 8, length: f64::INFINITY };
     options_as(
-        &RepairOptions { holes: Some(any_length), unused: false, ..Default::default() },
-        &json!({ "holes": { "edges": 8, "length": null }, "unused": false }),
+        &LockOptions { contacts: Some(ContactPolicy::Tie), boundary: Lock::Locked },
+        &json!({ "contacts": "tie", "boundary": "locked" }),
     );
+    let of_any_length = HoleLimits { edges: 8, length: None };
+    let none_stitched = RepairOptions {
+        stitch: Stitch::Off,
+        holes: Some(of_any_length),
+        unused: false,
+        ..Default::default()
+    };
+    options_as(
+        &none_stitched,
+        &json!({ "stitch": "off", "holes": { "edges": 8, "length": null }, "unused": false }),
+    );
+    options_as(
+        &RepairOptions { stitch: Stitch::Within(0.5), weld: Some(0.0), ..Default::default() },
+        &json!({ "stitch": { "within": 0.5 }, "weld": 0.0, "holes": null }),
+    );
+    options_as(&HoleLimits { length: Some(2.5), ..Default::default() }, &json!({ "length": 2.5 }));
+}
+
+#[test]
+fn options_of_files_levels_and_bytes() {
+    options_as(&ReadOptions { weld: Weld::Within(0.5) }, &json!({ "weld": { "within": 0.5 } }));
+    options_as(&WriteOptions { precision: Precision::F64 }, &json!({ "precision": "f64" }));
     let storage = Storage { rounding: Some(0.5), ..Storage::default() };
     options_as(
         &BuildOptions { errors: ErrorKind::Bound, storage, ..Default::default() },
         &json!({ "errors": "bound", "storage": to_value(storage).unwrap() }),
     );
+    options_as(&UpdateLimits { changes: Some(9), ..Default::default() }, &json!({ "changes": 9 }));
     options_as(
         &CompressOptions {
             target: CompressionTarget::Reduction(0.5),
@@ -83,7 +134,64 @@ fn options_come_back_and_need_no_field_and_refuse_misspelt_ones() {
             "target": { "reduction": 0.5 }, "scheme": { "parts": "truncated" }, "strips": "fast",
         }),
     );
+    let quantization = TransportQuantization::Lattice(Lattice::new(-9).unwrap());
+    options_as(
+        &TransportOptions { quantization, ..Default::default() },
+        &json!({ "quantization": { "lattice": { "exponent": -9 } }, "block_faces": 256 }),
+    );
+    options_as(&AttributeBounds { uv: 0.5, ..Default::default() }, &json!({ "uv": 0.5 }));
+    let cache = CacheAware { entries: 24, ..CacheAware::default() };
+    options_as(
+        &StripOptions { cache: Some(cache), seed: 7, ..StripOptions::default() },
+        &json!({ "cache": to_value(cache).unwrap(), "seed": 7 }),
+    );
+    options_as(&cache, &json!({ "entries": 24 }));
+    options_as(&Prices::with_restarts(), &json!({ "strip": 3.0 }));
+}
+
+#[test]
+fn options_of_flocks() {
     options_as(&Budget { triangles: 9, ..Budget::default() }, &json!({ "triangles": 9 }));
+    let (locks, locks_json) = some_locks();
+    options_as(
+        &ChainOptions { axes: ModelAxes::FISH, locks: Some(locks), ..Default::default() },
+        &json!({ "axes": to_value(ModelAxes::FISH).unwrap(), "locks": locks_json }),
+    );
+    options_as(&ModelAxes::FISH, &json!({ "forward": [-1.0, 0.0, 0.0] }));
+    options_as(&ScenarioOptions { members: 9, ..Default::default() }, &json!({ "members": 9 }));
+    options_as(
+        &NearestOptions { focus: CutFocus::Everything, ..Default::default() },
+        &json!({ "focus": "everything" }),
+    );
+    let arms = vec![Arm::VisibleOnly(PolicyName::Ours), Arm::Paper(Factors::All), Arm::Random];
+    options_as(
+        &EvaluationOptions { arms, ..Default::default() },
+        &json!({ "arms": [{ "visible-only": "ours" }, { "paper": "all" }, "random"], "pairs": 4 }),
+    );
+}
+
+#[test]
+fn all_kinds_are_all_those_to_come() {
+    form(Kinds::ALL, &json!("all"));
+    form(Kinds::NONE, &json!([]));
+    form(CheckOptions::default().kinds, &json!("all"));
+    assert_eq!(from_value::<Kinds>(to_value(Kind::ALL).unwrap()).unwrap(), Kinds::ALL);
+    let refused = |kinds: Value| from_value::<Kinds>(kinds).unwrap_err().to_string();
+    assert!(refused(json!("none")).contains("expected a list of kinds of findings, or \"all\""));
+    assert!(refused(json!(["all"])).contains("unknown variant `all`"));
+}
+
+#[test]
+fn what_has_no_default_is_given_whole_and_checked() {
+    let shape = GroundShape::Line([[0.0; 2], [1.0; 2]]);
+    form(
+        Ground { up: 2, shape },
+        &json!({ "up": 2, "shape": { "line": [[0.0, 0.0], [1.0, 1.0]] } }),
+    );
+    let refused = from_value::<Focus>(json!({ "ground": { "up": 2 } })).unwrap_err();
+    assert!(refused.to_string().contains("missing field `shape`"));
+    let refused = from_value::<Lattice>(json!({ "exponent": 961 })).unwrap_err();
+    assert!(refused.to_string().contains("must be between -960 and 960"));
 }
 
 #[test]
@@ -93,8 +201,7 @@ fn targets_name_their_unit() {
         (Target::Ratio(0.25), json!({ "ratio": 0.25 })),
         (Target::Error(0.5), json!({ "error": 0.5 })),
     ] {
-        assert_eq!(to_value(target).unwrap(), expected);
-        assert_eq!(from_value::<Target>(expected).unwrap(), target);
+        form(target, &expected);
     }
 }
 

@@ -289,10 +289,10 @@ fn volume_is_lost_until_a_level_has_been_repaid() {
 fn contractions_that_cannot_conserve_volume_are_reported() {
     for runner in Runner::all().filter(|runner| runner.method.conserves_volume()) {
         let (_, report) = runner.run(&samples::terrain(800), 0.1);
-        let Unconserved { contractions, bounds } = report.volume.open;
+        let Unconserved { contractions, bounds } = report.volume.at_boundaries;
         assert!(contractions > 0 && bounds.diagonal() > 0.0);
         if !runner.is_kernel() {
-            let lost = report.volume.at_boundaries.unwrap().abs();
+            let lost = report.volume.behind_boundary_cones.unwrap().abs();
             assert!(lost < 1e-12, "{runner:?} loses {lost:e} behind the cones at boundaries");
         }
         let mesh = samples::sphere(800);

@@ -48,7 +48,8 @@ pub fn run(project: &Project, arguments: &[String]) -> Result<()> {
         let findings = session::run(&chapter, &programs)?;
         findings.notes.iter().for_each(|note| println!("note: {note}"));
         errors.extend(findings.errors.iter().cloned());
-        if options.write {
+        // What a command prints that fails is not for the book.
+        if options.write && findings.errors.is_empty() {
             let text = findings.rewritten(&chapter.text);
             std::fs::write(project.root().join(&chapter.path), text)?;
         } else {

@@ -11,30 +11,18 @@ use crate::check::boundary::{Boundary, BoundaryPolyline};
 /// Limits on the size of the holes that are filled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct HoleLimits {
     /// Maximum number of edges of a hole, never more than [`HoleLimits::MOST_EDGES`].
     pub edges: usize,
-    /// Maximum perimeter of a hole, in model units; infinite for no limit, which serde leaves out.
-    #[cfg_attr(feature = "serde", serde(with = "no_limit", default = "no_limit::length"))]
-    pub length: f64,
+    /// Maximum perimeter of a hole, in model units; `None` for any.
+    pub length: Option<f64>,
 }
 
-/// An infinite length, which JSON cannot express, as one that is not there.
-#[cfg(feature = "serde")]
-mod no_limit {
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-    pub fn length() -> f64 {
-        f64::INFINITY
-    }
-
-    pub fn serialize<S: Serializer>(length: &f64, serializer: S) -> Result<S::Ok, S::Error> {
-        length.is_finite().then_some(*length).serialize(serializer)
-    }
-
-    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-        Ok(Option::deserialize(deserializer)?.unwrap_or_else(length))
+impl Default for HoleLimits {
+    /// Returns the limits of all holes that can be filled.
+    fn default() -> Self {
+        Self { edges: Self::MOST_EDGES, length: None }
     }
 }
 
@@ -139,7 +127,8 @@ fn area(mesh: &Mesh, face: [VertexId; 3]) -> f64 {
 fn is_within(mesh: &Mesh, vertices: &[VertexId], limits: &HoleLimits) -> bool {
     let at = |i: usize| glam::DVec3::from(mesh.positions[vertices[i % vertices.len()].index()]);
     let length = || (0..vertices.len()).map(|i| at(i).distance(at(i + 1))).sum::<f64>();
-    vertices.len() <= limits.edges.min(HoleLimits::MOST_EDGES) && length() <= limits.length
+    vertices.len() <= limits.edges.min(HoleLimits::MOST_EDGES)
+        && limits.length.is_none_or(|most| length() <= most)
 }
 
 /// Returns the holes that fit the budget, smallest first and the first among equals, in their

@@ -228,7 +228,7 @@ fn borders_within_the_tolerance_are_stitched() {
         *x += 1e-7 * ((i % 7) as f64 - 3.0);
     }
     assert_eq!(repaired(&apart).1, []);
-    let options = RepairOptions { stitch: Some(1e-5), ..RepairOptions::default() };
+    let options = RepairOptions { stitch: Stitch::Within(1e-5), ..RepairOptions::default() };
     let (stitched, _) = repair(&apart, &options);
     assert!(Connectivity::new(&stitched.faces, stitched.positions.len()).is_closed());
 }
@@ -346,8 +346,7 @@ fn slivers_on_each_other_are_mended_in_turns() {
 }
 
 fn holes(edges: usize) -> RepairOptions {
-    let length = f64::INFINITY;
-    RepairOptions { holes: Some(HoleLimits { edges, length }), ..RepairOptions::default() }
+    RepairOptions { holes: Some(HoleLimits { edges, length: None }), ..RepairOptions::default() }
 }
 
 #[test]
@@ -361,7 +360,7 @@ fn holes_within_the_limits_are_closed() {
     let (same, report) = repair(&open, &holes(3));
     assert!(same == open && report.is_unchanged());
     let short = RepairOptions {
-        holes: Some(HoleLimits { edges: 100, length: 3.9 }),
+        holes: Some(HoleLimits { edges: 100, length: Some(3.9) }),
         ..RepairOptions::default()
     };
     assert_eq!(repair(&open, &short).0, open);
@@ -409,7 +408,7 @@ fn beyond_the_budget_the_largest_holes_are_left() {
     let edges = [9, 5, 9, 4, 9];
     let filled = |most_weighed| {
         let mut mesh = cones(&edges);
-        let limits = HoleLimits { edges: 10, length: f64::INFINITY };
+        let limits = HoleLimits { edges: 10, length: None };
         let filled = holes::fill(&mut mesh, &limits, most_weighed);
         assert_eq!(filled.left, 0);
         let open = findings(
@@ -440,7 +439,7 @@ fn faces_connected_far_away_may_touch_a_filling() {
     let below = [cone.positions[1], cone.positions[3], [0.0, 0.0, -1.0]];
     cone.positions.extend(below);
     cone.faces.push([5, 6, 7].map(VertexId));
-    let limits = HoleLimits { edges: 4, length: f64::INFINITY };
+    let limits = HoleLimits { edges: 4, length: None };
     let filled = |mesh: &Mesh| holes::fill(&mut mesh.clone(), &limits, usize::MAX).holes;
     assert_eq!(filled(&cone), 0, "another component");
     let around =

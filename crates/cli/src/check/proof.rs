@@ -10,7 +10,7 @@ use serde_json::json;
 use crate::answer::Answer;
 use crate::failure::Failure;
 use crate::files;
-use crate::model_file::{self, PoseFigures};
+use crate::model_file;
 use crate::model_scene;
 use crate::numbers::{count, faces, plural};
 use crate::session::Session;
@@ -48,7 +48,7 @@ fn prove_contractions(
         "file": files::name(path),
         "model": "contractions",
         "error_kind": kind,
-        "poses": poses.map(PoseFigures::from),
+        "poses": poses,
         "rounding": model_file::rounding(archive),
         "lossless": archive.is_lossless(),
         "chunks": chunks,
@@ -56,7 +56,7 @@ fn prove_contractions(
         "updates": model.update_count(),
         "base_faces": model.base_faces(),
         "faces": model.full_faces(),
-        "certificate": model_file::certificate_json(&certificate),
+        "certificate": certificate,
         "scene_missing": scene.missing,
     });
     let text = format!(

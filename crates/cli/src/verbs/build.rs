@@ -23,8 +23,8 @@ use crate::args::{AttributeErrorArgs, ReadArgs};
 use crate::constraints::{ConstraintArgs, FlatInput};
 use crate::failure::Failure;
 use crate::fuse;
-use crate::model_file::{self, PoseFigures};
-use crate::model_scene::{self, ErrorPoses, SceneFigures};
+use crate::model_file;
+use crate::model_scene::{self, ErrorPoses};
 use crate::numbers::{percent, value};
 use crate::parse::{self, Bound};
 use crate::scene_files;
@@ -52,7 +52,7 @@ pub struct Build {
         help = parse::methods())]
     method: Method,
     /// Compute proven error bounds in place of measured errors: levels of the same error have two to
-    /// three times as many faces. The errors of right triangles are bounds in any case
+    /// six times as many faces. The errors of right triangles are bounds in any case
     #[arg(long)]
     bounds: bool,
     /// Keep the method's smoothed estimates in place of measured errors: two to three times faster.
@@ -139,7 +139,7 @@ impl Build {
         notes.extend(scene_files::unused_parts(&mesh, built.faces));
         scene_files::write_encoded(&self.output, &notes, &built.bytes, session)?;
         let time = start.elapsed();
-        let scene = rest.is_some().then(|| SceneFigures::from(&counts));
+        let scene = rest.is_some().then_some(counts);
         let figures = self.figures(&mesh, &built, (fused, scene), time);
         let mut text = fuse::to_text(fused.as_ref()) + &self.text(&mesh, &built, time);
         if rest.is_some() {
@@ -198,7 +198,7 @@ impl Build {
             certificate,
             error_kind: model_file::error_kind(&archive),
             held,
-            poses: poses.measured().map(PoseFigures::from),
+            poses: poses.measured(),
             model: "contractions",
             method: self.method,
             lossless: self.lossless,
@@ -229,8 +229,8 @@ impl Build {
             session.warn(Failure::at(&self.input, format_args!("poses: {note}")));
         }
         match poses.counts {
-            PoseCounts { poses: 0, .. } if poses.notes.is_empty() => ErrorPoses::Unbent,
-            PoseCounts { poses: 0, .. } => ErrorPoses::Unknown,
+            PoseCounts { measured: 0, .. } if poses.notes.is_empty() => ErrorPoses::Unbent,
+            PoseCounts { measured: 0, .. } => ErrorPoses::Unknown,
             _ if self.bounds || self.estimates => ErrorPoses::Unknown,
             counts => {
                 rest.note_poses(counts);

@@ -22,7 +22,7 @@ use crate::constraints::ConstraintArgs;
 use crate::failure::Failure;
 use crate::files;
 use crate::fuse;
-use crate::model_scene::{self, ErrorPoses, SceneFigures};
+use crate::model_scene::{self, ErrorPoses};
 use crate::numbers::percent;
 use crate::parse::{self, Bound};
 use crate::scene_files;
@@ -133,11 +133,10 @@ impl Compress {
             let reason = format_args!(
                 "the target is out of reach; the reduction is {best}: ask for a smaller --reduction or a larger --error"
             );
-            session.warn(Failure::at(&self.input, reason));
+            session.miss(&Failure::at(&self.input, reason));
         }
         scene_files::write_encoded(&output, &packed.notes, &packed.bytes, session)?;
-        let scene = counts.as_ref().map(SceneFigures::from);
-        let figures = packed.figures(&output, time, fused, scene);
+        let figures = packed.figures(&output, time, fused, counts);
         let mut text = fuse::to_text(fused.as_ref()) + &packed.text(&output, time);
         if let Some(counts) = counts {
             text += &model_scene::counts_text(&counts, ErrorPoses::Unknown);

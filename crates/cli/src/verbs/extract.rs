@@ -92,14 +92,16 @@ impl Extract {
             moves = shown_rounding(&scene, format, precision);
         }
         taken.error.note_rounding(moves);
+        let is_kept = taken.error.is_kept() != Some(false);
         if moves > spare {
             let moved = format_args!("rounding to f32 moved coordinates by up to {}", value(moves));
-            session.warn(Failure::at(&self.output, moved));
+            let moved = Failure::at(&self.output, moved);
+            if is_kept { session.warn(moved) } else { session.miss(&moved) }
         }
         if let Some(warning) = taken.error.warning() {
-            session.warn(Failure::at(&self.input, warning));
+            session.miss(&Failure::at(&self.input, warning));
         }
-        let reached = reached && taken.error.is_kept() != Some(false);
+        let reached = reached && is_kept;
         let shown = model_scene::shown_faces(&scene);
         let done = report::Done { output: &self.output, counts, shown, reached, restored, time };
         let (figures, text) = (taken.figures(&done), taken.to_text(&done));

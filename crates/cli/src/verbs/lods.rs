@@ -121,14 +121,12 @@ impl Lods {
     /// Warns of a target that was missed, and of a level that is not written.
     fn warn_of(&self, level: &LodLevel, topology: Topology, session: &Session) {
         let LodLevel { size, simplified, .. } = level;
-        let warn = |reason: &str| {
-            session.warn(Failure::at(&self.input, format_args!("{size}: {reason}")));
-        };
+        let at = |reason: &str| Failure::at(&self.input, format_args!("{size}: {reason}"));
         if !simplified.report.reached {
-            warn(&simplify_report::why_not_reached(&simplified.report, topology));
+            session.miss(&at(&simplify_report::why_not_reached(&simplified.report, topology)));
         }
         if level.file.is_none() {
-            warn("not written, since it is the same as the level before");
+            session.warn(at("not written, since it is the same as the level before"));
         }
     }
 

@@ -44,7 +44,7 @@ pub struct Measure {
     reading: ReadArgs,
 }
 
-/// MeasureFigures of a measurement for programs.
+/// Figures of a measurement for programs.
 #[derive(Serialize)]
 struct MeasureFigures {
     #[serde(flatten)]

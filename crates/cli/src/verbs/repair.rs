@@ -6,7 +6,8 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use meshlod::check::{
-    CheckOptions, HoleLimits, Kinds, RepairOptions, RepairReport, RepairStep, Summary, check,
+    CheckOptions, HoleLimits, Kinds, RepairOptions, RepairReport, RepairStep, Stitch, Summary,
+    check,
 };
 use meshlod::{Format, Scene, repair_scene};
 use serde::Serialize;
@@ -84,13 +85,13 @@ struct StepArgs {
 
 impl StepArgs {
     fn options(&self, weld: Option<f64>) -> RepairOptions {
-        let length = self.hole_length.unwrap_or(f64::INFINITY);
+        let length = self.hole_length;
         RepairOptions {
             weld,
             duplicates: !self.no_duplicates,
             degenerate: !self.no_degenerate,
             split: !self.no_split,
-            stitch: (!self.no_stitch).then_some(self.stitch),
+            stitch: if self.no_stitch { Stitch::Off } else { Stitch::Within(self.stitch) },
             orient: !self.no_orient,
             holes: self.holes.map(|edges| HoleLimits { edges, length }),
             unused: !self.no_unused,
@@ -206,7 +207,7 @@ impl Repair {
     }
 }
 
-/// RepairFigures of a repair for programs.
+/// Figures of a repair for programs.
 #[derive(Serialize)]
 struct RepairFigures<'d> {
     file: String,

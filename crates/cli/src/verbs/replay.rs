@@ -7,7 +7,7 @@ use meshlod::simplify::Progressive;
 use meshlod::{Scene, Target};
 use serde_json::json;
 
-use crate::answer::Answer;
+use crate::answer::{Answer, Outcome};
 use crate::args::{ReadArgs, WriteArgs};
 use crate::failure::Failure;
 use crate::files;
@@ -78,7 +78,7 @@ impl Replay {
                 "its coarsest level has {}, and that is what was written",
                 faces(base)
             );
-            session.warn(Failure::at(&self.input, reason));
+            session.miss(&Failure::at(&self.input, reason));
         }
         let scene = self.scene_of(&sequence, session)?;
         scene_files::write(&self.output, &scene, &self.writing, session)?;
@@ -97,7 +97,11 @@ impl Replay {
             count(base),
             count(full)
         );
-        Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
+        Ok(Answer {
+            file_on_stdout: files::is_pipe(&self.output),
+            outcome: Outcome::Missed.when(session.strict && !reached),
+            ..Answer::new(json, text)
+        })
     }
 
     fn check_paths(&self) -> Result<(), Failure> {

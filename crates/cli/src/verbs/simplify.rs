@@ -215,10 +215,10 @@ impl Simplify {
         self.method.warn(&done.report, &task.ready, session);
         if let Some(kept) = kept.filter(|kept| !kept.is_held()) {
             done.report.reached = false;
-            session.warn(Failure::at(&self.input, kept.warning()));
+            session.miss(&Failure::at(&self.input, kept.warning()));
         } else if !done.report.reached {
             let reason = simplify_report::why_not_reached(&done.report, task.options.topology);
-            session.warn(Failure::at(&self.input, reason));
+            session.miss(&Failure::at(&self.input, reason));
         }
         let outcome = Outcome::Missed.when(session.strict && !done.report.reached);
         let run = report::FinishedRun { task: &task, done: &done, fused, kept, residual, time };

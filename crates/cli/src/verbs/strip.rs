@@ -140,7 +140,7 @@ impl Strip {
                 level.size,
                 numbers::faces(level.triangles)
             );
-            session.warn(Failure::at(&self.input, reason));
+            session.miss(&Failure::at(&self.input, reason));
         }
         if let Some(output) = &output {
             output.write(&source.input, &source.tree, &levels, session)?;

@@ -89,7 +89,7 @@ fn what_a_scan_has_beyond_its_numbers_is_counted() {
     assert_eq!(done.code, 0, "{done:?}");
     for note in [
         "1 face of fewer than three corners",
-        "2 values of vertices that are not finite read as 0",
+        "2 values of attributes that are not finite read as 0",
         "1 normal without a length computed from the faces around it",
         "1 value rounded to 32 bits",
     ] {

@@ -6,6 +6,7 @@ use std::sync::LazyLock;
 
 use serde_json::Value;
 
+use crate::json_pages;
 use crate::run::Run;
 
 /// Output of a run, with the files it wrote.
@@ -38,6 +39,11 @@ fn list<'v>(json: &'v Value, field: &str) -> &'v Vec<Value> {
 
 fn levels(sample: &Value) -> impl Iterator<Item = &Value> {
     list(sample, "chains").iter().flat_map(|chain| list(chain, "levels"))
+}
+
+#[test]
+fn the_page_of_json_has_every_key_of_a_demo() {
+    json_pages::check("demo", &DEMO.json);
 }
 
 #[test]

@@ -116,6 +116,8 @@ fn a_sequence_gives_every_level_back_to_the_byte() {
     }
     let done = run.run(&["replay", "fish.seq", "back.ply", "--faces", "1"]);
     assert!(done.code == 0 && done.err.contains("coarsest"), "{done:?}");
+    let strict = run.run(&["replay", "fish.seq", "back.ply", "--faces", "1", "--strict"]);
+    assert_eq!((strict.code, strict.err), (1, done.err.replacen("warning: ", "", 1)));
 }
 
 /// Writes a glTF scene of a coloured fish scaled to a hundredth.

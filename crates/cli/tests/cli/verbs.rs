@@ -169,8 +169,14 @@ fn a_target_out_of_reach_is_a_warning_or_strictly_a_failure() {
     let done = run.run(&arguments);
     assert_eq!((done.code, &done.json()["reached"]), (0, &false.into()));
     assert!(done.only_line().contains("warning: in.ply: target not reached"), "{done:?}");
-    let strict = run.run(&[&arguments[..], &["--strict"]].concat());
-    assert_eq!((strict.code, &strict.json()["reached"]), (1, &false.into()));
+    let quiet = run.run(&[&arguments[..], &["--quiet"]].concat());
+    assert_eq!((quiet.code, &*quiet.err), (0, ""));
+    for more in [&["--strict"][..], &["--strict", "--quiet"]] {
+        let strict = run.run(&[&arguments[..], more].concat());
+        assert_eq!((strict.code, &strict.json()["reached"]), (1, &false.into()));
+        let error = "meshlod: in.ply: target not reached";
+        assert!(strict.only_line().starts_with(error), "{strict:?}");
+    }
     assert_eq!(run.json(&["info", "out.ply"])["closed"], true);
 }
 

@@ -19,8 +19,17 @@ use crate::kd::blocks_of;
 /// Equal positions stay equal, in whatever mesh and on whatever machine: a cell is stored as
 /// integers, and decoding rounds once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Lattice {
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "valid_exponent"))]
     exponent: i32,
+}
+
+#[cfg(feature = "serde")]
+fn valid_exponent<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<i32, D::Error> {
+    let exponent = serde::Deserialize::deserialize(deserializer)?;
+    Lattice::new(exponent).map(|lattice| lattice.exponent).map_err(serde::de::Error::custom)
 }
 
 /// Compressed positions of a mesh on a lattice, in blocks of 32 vertices that can be decoded

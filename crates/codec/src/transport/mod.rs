@@ -71,6 +71,8 @@ pub struct TransportSizes {
 
 /// Options of [`Transport::encode`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct TransportOptions {
     /// Grid to which vertex positions are rounded.
     pub quantization: TransportQuantization,
@@ -85,6 +87,8 @@ const MAX_LAYER_VALUES: usize = 255;
 
 /// Grid of cubic cells to which vertex positions are rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum TransportQuantization {
     /// Uniform grid over the mesh with 2^bits − 1 cells along its longest side, for 1 to 21 bits.
     Bits(u32),

@@ -1,12 +1,15 @@
 //! Arms of the comparison: policies, what engines do, and controls.
 
+use serde::{Deserialize, Serialize};
+
 use crate::evaluate::controls::{RandomLevels, ScreenErrorFacing, ShuffledLayer};
 use crate::levels::LevelTable;
 use crate::select::policies::{Along, Factors, Paper, RelativeDistance};
 use crate::select::{Policy, PolicyName};
 
 /// Way to choose levels that takes part in an evaluation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Arm {
     /// Policy by its name.
     Policy(PolicyName),

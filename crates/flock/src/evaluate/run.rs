@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use meshlod_picture::{Picture, PictureError};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::camera::FlockCamera;
 use crate::draw::FlockPainter;
@@ -17,7 +17,8 @@ use crate::levels::{LevelTable, Look};
 use crate::select::{Budget, InstanceLevel, Selector};
 
 /// Options of an evaluation.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct EvaluationOptions {
     /// Arms to compare.
     pub arms: Vec<Arm>,

@@ -17,6 +17,8 @@ use crate::select::InstanceLevel;
 
 /// Options for building a [`LevelTable`].
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct ChainOptions {
     /// Axes of the model.
     pub axes: ModelAxes,

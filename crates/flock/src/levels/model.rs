@@ -2,12 +2,14 @@
 
 use glam::{DMat3, DVec3};
 use meshlod_mesh::{LayerKind, Mesh};
+use serde::{Deserialize, Serialize};
 
 use crate::levels::normals::add_normals;
 use crate::levels::table::TableError;
 
 /// Axes of a model, which say how it becomes a member of a flock.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct ModelAxes {
     /// Direction in which the model swims, a vector of any length.
     pub forward: [f64; 3],

@@ -3,6 +3,7 @@
 use std::f32::consts::FRAC_PI_4;
 
 use meshlod_mesh::Mesh;
+use serde::{Deserialize, Serialize};
 
 use crate::scene::lanes::{Ring, shares};
 use crate::scene::setting::Setting;
@@ -11,7 +12,8 @@ use crate::scene::{ScenarioName, SceneError, SceneObstacle, obstacle_course, rin
 use crate::simulation::SimulationOptions;
 
 /// Options of a scenario.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct ScenarioOptions<'a> {
     /// Number of members in all schools.
     pub members: usize,
@@ -24,7 +26,8 @@ pub struct ScenarioOptions<'a> {
     /// Time from frame to frame, in seconds.
     pub frame_s: f64,
     /// Terrain with +y up, in any unit: the scenario `terrain` scales it so that its shorter side
-    /// covers the school's way.
+    /// covers the school's way. Not part of what serde writes and reads.
+    #[serde(skip)]
     pub terrain: Option<&'a Mesh>,
 }
 

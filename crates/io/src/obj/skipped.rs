@@ -83,11 +83,7 @@ impl Skipped {
                 .remedied("export opacities as .ply or .glb"),
             note(self.masks, "mask of a vertex", "masks of vertices"),
             note(self.paint, "colour of polypaint", "colours of polypaint"),
-            Note::changed(
-                self.not_finite,
-                "value of an attribute that is not finite read as 0",
-                "values of attributes that are not finite read as 0",
-            ),
+            Note::not_finite(self.not_finite),
         ];
         notes.retain(|note| note.count > 0);
         notes

@@ -343,7 +343,7 @@ fn attributes_that_are_not_finite_are_read_as_0_and_counted() {
         notes,
         [
             "1 face of fewer than three corners",
-            "2 values of vertices that are not finite read as 0",
+            "2 values of attributes that are not finite read as 0",
         ]
     );
     let layers = scene.into_mesh().attributes.unwrap().layers;

@@ -316,7 +316,7 @@ mod tests {
         let text = format!("{SQUARE}f 1 2 3 4\ntex -i wood.png\nbind n face\nn nan 0 inf\n");
         let notes: Vec<String> =
             read_scene(text.as_bytes()).unwrap().notes.iter().map(Note::to_string).collect();
-        let expected = ["2 values of vertices that are not finite read as 0", "1 texture image"];
+        let expected = ["2 values of attributes that are not finite read as 0", "1 texture image"];
         assert_eq!(notes, expected);
     }
 

@@ -18,6 +18,8 @@ const CHUNK: usize = 256;
 
 /// Options for [`faces_beyond`].
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct BeyondOptions<'a> {
     /// Part of the limit by which a face that is not listed may still exceed it.
     ///
@@ -25,7 +27,8 @@ pub struct BeyondOptions<'a> {
     pub slack: f64,
     /// Limit on the divisions of all faces together; undecided faces have equal shares of it.
     pub most_splits: usize,
-    /// Faces to examine, each once; `None` for all.
+    /// Faces to examine, each once; `None` for all. Not part of what serde writes and reads.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub faces: Option<&'a [FaceId]>,
 }
 

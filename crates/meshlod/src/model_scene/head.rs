@@ -52,8 +52,8 @@ impl Head {
     pub fn to_bytes(&self) -> Vec<u8> {
         let kind = u8::from(self.skeleton.is_gltf) | if self.poses.is_some() { POSED } else { 0 };
         let mut to = vec![kind];
-        if let Some(PoseCounts { poses, animations }) = self.poses {
-            put(&mut to, &[poses, animations]);
+        if let Some(PoseCounts { measured, animations }) = self.poses {
+            put(&mut to, &[measured, animations]);
         }
         put(&mut to, &[self.meshes.len() as u32]);
         for mesh in &self.meshes {
@@ -90,7 +90,7 @@ impl Head {
         let is_gltf = kind & 1 != 0;
         let poses = match kind {
             0 | 1 => None,
-            2 | 3 => Some(PoseCounts { poses: input.number()?, animations: input.number()? }),
+            2 | 3 => Some(PoseCounts { measured: input.number()?, animations: input.number()? }),
             _ => return None,
         };
         let meshes = input.list(1, Input::mesh)?;
@@ -202,7 +202,7 @@ mod tests {
             ],
             images: 4,
             parts: vec![PartKind::Preview(3), PartKind::Animations, PartKind::Image(3)],
-            poses: Some(PoseCounts { poses: 64, animations: 3 }),
+            poses: Some(PoseCounts { measured: 64, animations: 3 }),
         }
     }
 

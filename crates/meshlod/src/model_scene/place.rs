@@ -152,7 +152,7 @@ impl PackedScene {
 
     /// Notes in how many poses errors were measured, for who reads the file.
     pub fn note_poses(&mut self, counts: PoseCounts) {
-        self.head.poses = (counts.poses > 0).then_some(counts);
+        self.head.poses = (counts.measured > 0).then_some(counts);
     }
 
     /// Returns the scene as resources of a multiresolution file whose chunks have these lengths in

@@ -33,9 +33,9 @@ pub struct ScenePoses {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PoseCounts {
-    /// Poses.
-    pub poses: u32,
-    /// Animations that they are of.
+    /// Poses in which they were measured.
+    pub measured: u32,
+    /// Animations that these poses are of.
     pub animations: u32,
 }
 
@@ -91,7 +91,7 @@ impl ScenePoses {
             return None;
         }
         this.counts = PoseCounts {
-            poses: this.poses.len() as u32,
+            measured: this.poses.len() as u32,
             animations: if this.poses.is_empty() { 0 } else { animations.len() as u32 },
         };
         Some(this)

@@ -51,7 +51,7 @@ fn levels_of_a_flat_sheet_are_near_it_when_it_bends() {
         let scene = scene(&glb);
         let (unposed, _) = levels(&scene, false);
         let (posed, counts) = levels(&scene, true);
-        assert_eq!(counts, PoseCounts { poses: counts.poses, animations: 1 });
+        assert_eq!(counts, PoseCounts { measured: counts.measured, animations: 1 });
         assert_eq!(measured_poses(&posed).unwrap(), Some(counts), "{what}");
         assert_eq!(measured_poses(&unposed).unwrap(), None, "{what}");
         let error = 0.004;
@@ -97,7 +97,7 @@ fn levels_of_shared_models_are_near_them_while_they_move() {
         let animator = Animator::new(&scene).unwrap();
         let (posed, counts) = levels(&scene, true);
         let (unposed, _) = levels(&scene, false);
-        assert!((50..=64).contains(&counts.poses), "{name}: {counts:?}");
+        assert!((50..=64).contains(&counts.measured), "{name}: {counts:?}");
         let size = posed_mesh(&scene, &animator, None).bounds().diagonal();
         for part in [0.01, 0.03] {
             let error = part * size;

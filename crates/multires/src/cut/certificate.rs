@@ -22,12 +22,12 @@ pub struct Certificate {
     ///
     /// Their two sides have the same boundary, and their wings are distinct.
     pub sound: usize,
-    /// Number of updates where the input is already non-manifold or inconsistently oriented, so
-    /// that manifoldness is not proved.
+    /// Number of odd updates, where the input is already non-manifold or inconsistently oriented,
+    /// so that manifoldness is not proved.
     ///
     /// Their levels are proved, so they are the same in every cut; and with the children
     /// identified, both sides have the same edges of an odd number of faces.
-    pub non_manifold: usize,
+    pub odd: usize,
 }
 
 /// Reason why a multiresolution model cannot be certified.
@@ -96,7 +96,7 @@ pub enum Flaw {
 
 impl Implicit {
     /// Proves that no cut has a crack, and that each is as manifold as the input except at
-    /// [`non_manifold`](Certificate::non_manifold) updates.
+    /// [`odd`](Certificate::odd) updates.
     ///
     /// Cost: linear.
     /// # Errors
@@ -110,7 +110,7 @@ impl Implicit {
         for update in by_level(self.update_count(), |update| MAX_LEVELS - self.level(update)) {
             match proof.check(update) {
                 Ok(true) => certificate.sound += 1,
-                Ok(false) => certificate.non_manifold += 1,
+                Ok(false) => certificate.odd += 1,
                 Err(why) => return Err(CertifyError::Update { update, why }),
             }
         }

@@ -53,6 +53,8 @@ pub struct Cut<'m> {
 
 /// Limits on the work that one call of [`Cut::update`] may do.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct UpdateLimits {
     /// Largest number of splits and merges of vertices; `None` for any number.
     pub changes: Option<usize>,

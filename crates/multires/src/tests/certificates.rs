@@ -16,7 +16,7 @@ fn built_models_are_certified() {
     each(|what, _, forest| {
         let mt = Implicit::new(forest).unwrap();
         let certificate = mt.certify().unwrap_or_else(|why| panic!("{what}: {why}"));
-        assert_eq!(certificate.sound + certificate.non_manifold, mt.update_count(), "{what}");
+        assert_eq!(certificate.sound + certificate.odd, mt.update_count(), "{what}");
     });
 }
 
@@ -25,10 +25,10 @@ fn only_non_manifold_updates_count_as_such() {
     let certify = |mesh: &Mesh, method| Implicit::new(&forest(mesh, method)).unwrap().certify();
     for method in [Method::Qem, Method::LeeJang] {
         let sound = certify(&samples::terrain(600), method).unwrap();
-        assert!(sound.sound > 200 && sound.non_manifold == 0, "{sound:?}");
+        assert!(sound.sound > 200 && sound.odd == 0, "{sound:?}");
     }
     let turned = certify(&fixtures::moebius(40), Method::Qem).unwrap();
-    assert!(turned.non_manifold > 0, "a strip of one side is not oriented somewhere: {turned:?}");
+    assert!(turned.odd > 0, "a strip of one side is not oriented somewhere: {turned:?}");
 }
 
 /// Changes one field of one update at a time. Models that still pass must give sound cuts only:
@@ -42,7 +42,7 @@ fn certified_models_are_sound() {
     let (mut passed, mut refused) = (0, 0);
     for method in [Method::Qem, Method::LeeJang, Method::LindstromTurkFaces] {
         let mt = Implicit::new(&forest(&mesh, method)).unwrap();
-        assert_eq!(mt.certify(), Ok(Certificate { sound: mt.update_count(), non_manifold: 0 }));
+        assert_eq!(mt.certify(), Ok(Certificate { sound: mt.update_count(), odd: 0 }));
         for changed in (0..mt.update_count() as u32).flat_map(|update| mt.corrupted(update)) {
             if let Err(unsound) = changed.certify() {
                 reasons.insert(match unsound {

@@ -31,10 +31,10 @@ pub struct VolumeLoss {
     /// Volume before minus volume after, summed over all contractions at a boundary, in cubic model
     /// units: behind the faces and cones that close them, from each boundary loop to its middle in
     /// the input. `None` without such contractions, and by the kernel, which has no cones.
-    pub at_boundaries: Option<f64>,
+    pub behind_boundary_cones: Option<f64>,
     /// Contractions at a boundary, and open components that were removed as a whole. `running_sum`
     /// leaves them out.
-    pub open: Unconserved,
+    pub at_boundaries: Unconserved,
     /// Contractions forced to one position by a lock, a tie or a seam, and closed components that
     /// were removed as a whole, each counted once. The sum includes them. At a seam, methods that
     /// conserve the volume move the vertex along the surface's normal, and are forced only where
@@ -67,11 +67,11 @@ impl VolumeLoss {
         self.running_sum += other.running_sum * scale;
         self.owed += other.owed * scale;
         self.repaid += other.repaid * scale;
-        if let Some(lost) = other.at_boundaries {
-            *self.at_boundaries.get_or_insert(0.0) += lost * scale;
+        if let Some(lost) = other.behind_boundary_cones {
+            *self.behind_boundary_cones.get_or_insert(0.0) += lost * scale;
         }
         self.vanished += other.vanished * scale;
-        self.open.count_in(&other.open, &transform);
+        self.at_boundaries.count_in(&other.at_boundaries, &transform);
         self.held.count_in(&other.held, &transform);
     }
 }
@@ -100,8 +100,9 @@ impl Observe for VolumeLoss {
         if !neighbourhood.is_closed(surface) {
             let from = surface.position(neighbourhood.contracted()[placed.kept]);
             let plane = VolumePlane::new(surface, neighbourhood, from);
-            *self.at_boundaries.get_or_insert(0.0) += plane.loss(placed.position - from) / 6.0;
-            return self.open.add(placed.position);
+            *self.behind_boundary_cones.get_or_insert(0.0) +=
+                plane.loss(placed.position - from) / 6.0;
+            return self.at_boundaries.add(placed.position);
         }
         // Relative to the kept vertex, which is a corner of nearly all old faces.
         let kept = surface.position(neighbourhood.contracted()[placed.kept]);
@@ -125,7 +126,7 @@ impl Observe for VolumeLoss {
             surface.face(*face).iter().any(|&v| surface.flags(v).any(Flags::BOUNDARY))
         };
         let kind = match faces.iter().any(ends_open) {
-            true => &mut self.open,
+            true => &mut self.at_boundaries,
             false => {
                 let sixfold = |face: &FaceId| {
                     let [a, b, c] = corners(face).map(|corner| corner - origin);

@@ -139,8 +139,8 @@ impl VolumeTally {
             owed: owed * sixth,
             repaid: 0.0,
             vanished: self.vanished * sixth,
-            at_boundaries: None,
-            open: self.open.to_model(frame),
+            behind_boundary_cones: None,
+            at_boundaries: self.open.to_model(frame),
             held: self.held.to_model(frame),
         }
     }
@@ -185,7 +185,7 @@ mod tests {
         let loss = volume.loss(&frame, 3.0);
         assert!((loss.running_sum / frame.unit.powi(3) - 2.0).abs() < 1e-12);
         assert!((loss.owed / frame.unit.powi(3) - 0.5).abs() < 1e-12);
-        assert_eq!([loss.open.contractions, loss.held.contractions], [1, 1]);
+        assert_eq!([loss.at_boundaries.contractions, loss.held.contractions], [1, 1]);
         assert_eq!(loss.held.bounds.min, frame.to_model(Vec3::ONE));
     }
 

@@ -90,8 +90,8 @@ impl Session<'_> {
         let programs = self.programs.meshlod.parent().context("a program is in a folder")?;
         let path = std::env::var_os("PATH").unwrap_or_default();
         let paths = std::iter::once(programs.to_owned()).chain(std::env::split_paths(&path));
-        let mut shell = Command::new("sh");
-        shell.args(["-c", &format!("exec 2>&1\n{}", step.command)]);
+        let mut shell = Command::new("bash");
+        shell.args(["-o", "pipefail", "-c", &format!("exec 2>&1\n{}", step.command)]);
         shell.env("PATH", std::env::join_paths(paths)?).env("LC_ALL", "C");
         let printed = self.output_of(shell, step.line)?;
         self.compare(step.printed, &printed);
@@ -112,7 +112,7 @@ impl Session<'_> {
         let program: String = program.collect();
         let file = self.folder.join("chapter.py");
         std::fs::write(&file, program)?;
-        let mut shell = Command::new("sh");
+        let mut shell = Command::new("bash");
         shell.args(["-c", "exec \"$0\" -u \"$1\" 2>&1"]).args([python, &file]);
         let printed = self.output_of(shell, first.start)?;
         let separator = format!("{SEPARATOR}\n");
@@ -132,7 +132,7 @@ impl Session<'_> {
     /// Runs a command of the block or line at `line` in the folder and returns what it prints.
     fn output_of(&mut self, mut command: Command, line: usize) -> Result<String> {
         let output =
-            command.current_dir(self.folder).stdin(Stdio::null()).output().context("sh")?;
+            command.current_dir(self.folder).stdin(Stdio::null()).output().context("bash")?;
         let printed = String::from_utf8_lossy(&output.stdout).into_owned();
         if !output.status.success() {
             let place = self.place(line);
@@ -225,8 +225,10 @@ mod tests {
 
     #[test]
     fn a_command_that_fails_is_an_error_and_python_without_a_python_a_note() {
-        let found = findings("```console\n$ echo no; exit 3\nno\n```\n```python\nx\n```\n");
-        assert_eq!(found.errors, ["a.md:2: the command failed: no"]);
+        let found =
+            findings("```console\n$ echo no; exit 3\nno\n$ false | cat\n```\n```python\nx\n```\n");
+        let failed = ["a.md:2: the command failed: no", "a.md:4: the command failed: no output"];
+        assert_eq!(found.errors, failed);
         assert_eq!(found.notes.len(), 1);
     }
 }

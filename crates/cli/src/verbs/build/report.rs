@@ -4,14 +4,14 @@ use std::time::Duration;
 
 use meshlod::multires::{Certificate, Fit};
 use meshlod::simplify::Held;
-use meshlod::{Mesh, Method};
+use meshlod::{Mesh, Method, PoseCounts, SceneCounts};
 use serde::Serialize;
 
 use super::Build;
 use crate::files;
 use crate::fuse::FuseReport;
-use crate::model_file::{self, PoseFigures};
-use crate::model_scene::{ErrorPoses, SceneFigures};
+use crate::model_file;
+use crate::model_scene::ErrorPoses;
 use crate::numbers::{count, faces, value};
 
 /// File contents with the figures to report.
@@ -29,20 +29,19 @@ pub(super) struct Built {
     pub(super) poses: ErrorPoses,
 }
 
-/// BuildFigures of the levels, under the keys of JSON.
+/// Figures of the levels, under the keys of JSON.
 #[derive(Serialize)]
 #[serde(untagged)]
 pub(super) enum Levels {
     Contractions {
         held: Held,
         error_kind: &'static str,
-        poses: Option<PoseFigures>,
+        poses: Option<PoseCounts>,
         model: &'static str,
         method: Method,
         lossless: bool,
         updates: usize,
         base_faces: usize,
-        #[serde(serialize_with = "model_file::certificate_figures")]
         certificate: Certificate,
     },
     RightTriangles {
@@ -53,7 +52,7 @@ pub(super) enum Levels {
     },
 }
 
-/// BuildFigures of a file for programs.
+/// Figures of a multiresolution file for programs.
 #[derive(Serialize)]
 pub(super) struct BuildFigures<'b> {
     file: String,
@@ -68,7 +67,7 @@ pub(super) struct BuildFigures<'b> {
     levels: &'b Levels,
     fused: Option<FuseReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    scene: Option<SceneFigures>,
+    scene: Option<SceneCounts>,
 }
 
 impl Build {
@@ -76,7 +75,7 @@ impl Build {
         &self,
         mesh: &Mesh,
         built: &'b Built,
-        (fused, scene): (Option<FuseReport>, Option<SceneFigures>),
+        (fused, scene): (Option<FuseReport>, Option<SceneCounts>),
         time: Duration,
     ) -> BuildFigures<'b> {
         let input_vertices = vertex_count(mesh);

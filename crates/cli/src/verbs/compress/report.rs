@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 
+use meshlod::SceneCounts;
 use meshlod::codec::LayerReport;
 use meshlod::io::Note;
 use meshlod::mesh::{AttributeBounds, LayerKind};
@@ -11,7 +12,6 @@ use serde::Serialize;
 
 use crate::files;
 use crate::fuse::FuseReport;
-use crate::model_scene::SceneFigures;
 use crate::numbers::{count, faces, percent, value};
 
 /// Compressed file with the figures to report.
@@ -45,7 +45,7 @@ pub struct StripCounts {
     pub parts_with_byte_indices: usize,
 }
 
-/// CompressFigures of a compressed file for programs.
+/// Figures of a compressed file for programs.
 #[derive(Serialize)]
 pub struct CompressFigures<'f> {
     file: String,
@@ -69,7 +69,7 @@ pub struct CompressFigures<'f> {
     strips: Option<StripCounts>,
     fused: Option<FuseReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    scene: Option<SceneFigures>,
+    scene: Option<SceneCounts>,
 }
 
 impl CompressedFile {
@@ -98,7 +98,7 @@ impl CompressedFile {
         output: &Path,
         time: Duration,
         fused: Option<FuseReport>,
-        scene: Option<SceneFigures>,
+        scene: Option<SceneCounts>,
     ) -> CompressFigures<'_> {
         let [bytes_positions, bytes_connectivity, bytes_attributes] = self.sizes;
         let surface = self.surface();

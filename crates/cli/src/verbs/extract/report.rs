@@ -41,7 +41,7 @@ pub struct Extracted {
     pub bytes: u64,
 }
 
-/// ExtractFigures of an extracted level for programs.
+/// Figures of an extracted level for programs.
 #[derive(Serialize)]
 pub struct ExtractFigures {
     file: String,

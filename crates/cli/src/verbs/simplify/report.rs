@@ -28,7 +28,7 @@ pub(super) struct FinishedRun<'r> {
     pub(super) time: Duration,
 }
 
-/// SimplifyFigures of a run for programs.
+/// Figures of a run for programs.
 #[derive(Serialize)]
 pub(super) struct SimplifyFigures {
     method: Method,

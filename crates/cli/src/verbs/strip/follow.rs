@@ -37,7 +37,7 @@ struct FollowedCut {
     extra: Option<usize>,
 }
 
-/// FollowFigures of all cuts for programs.
+/// Figures of the strips of all cuts for programs.
 #[derive(Serialize)]
 struct FollowFigures<'c> {
     file: String,

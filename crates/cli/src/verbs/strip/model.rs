@@ -57,7 +57,7 @@ impl Strip {
         let answer = self.query.answer(&file, &query, most.is_some(), session);
         let (taken, known) = answer.map_err(failed)?;
         let mut error = self.query.kept_error(&file, &asked, known);
-        error.warning().into_iter().for_each(|text| session.warn(Failure::at(&self.input, text)));
+        error.warning().into_iter().for_each(|text| session.miss(&Failure::at(&self.input, text)));
         let found = taken.level.faces.len();
         let reached = self.query.reaches(&self.input, found, "stripped", session);
         let flat = model.flat_scene(files::stem(&self.input), taken.level.mesh());

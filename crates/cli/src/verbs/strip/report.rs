@@ -1,4 +1,4 @@
-//! StripFigures of strips for programs.
+//! Figures of strips for programs.
 
 use clap::ValueEnum;
 use meshlod::mesh::Connectivity;
@@ -10,7 +10,7 @@ use crate::files;
 use crate::fuse::FuseReport;
 use crate::kept_error::{KeptError, KeptFigures};
 
-/// StripFigures of all levels.
+/// Figures of the strips of all levels.
 #[derive(Serialize)]
 pub(super) struct StripFigures {
     file: String,

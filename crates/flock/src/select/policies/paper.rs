@@ -1,5 +1,7 @@
 //! The paper's three factors together.
 
+use serde::{Deserialize, Serialize};
+
 use crate::levels::LevelTable;
 use crate::select::policies::direction::SidedLevels;
 use crate::select::policies::each_school;
@@ -15,7 +17,8 @@ pub struct Paper {
 }
 
 /// Factors of the paper that take part.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Factors {
     /// All three.
     All,

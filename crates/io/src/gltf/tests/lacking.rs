@@ -64,7 +64,7 @@ fn attributes_that_are_not_finite_are_replaced_also_in_files_written_again() {
     assert_eq!(
         notes,
         [
-            "1 value of a vertex that is not finite read as 0",
+            "1 value of an attribute that is not finite read as 0",
             "1 normal without a length computed from the faces around it",
         ]
     );

@@ -141,11 +141,21 @@ fn color(line: &str) -> Result<Option<[f32; 3]>, ParseError> {
     let red = text.attribute("")?;
     let green = if text.more() { text.attribute("")? } else { red };
     let blue = if text.more() { text.attribute("")? } else { red };
-    Ok(Some([red, green, blue]))
+    finite(&text, Some([red, green, blue]))
 }
 
 fn number(line: &str, need: &str) -> Result<f32, ParseError> {
-    values(line)?.attribute(need)
+    let mut text = values(line)?;
+    let number = text.attribute(need)?;
+    finite(&text, number)
+}
+
+/// Returns what was read from a line, unless the line has a number that is not finite.
+fn finite<T>(text: &TextCursor, value: T) -> Result<T, ParseError> {
+    match text.not_finite() {
+        0 => Ok(value),
+        _ => Err(text.error("a number is not finite")),
+    }
 }
 
 /// Returns a cursor behind the first word of a line.
