@@ -58,7 +58,7 @@ def on_dask(inputs, out, kills):
 
         thread = threading.Thread(target=kill)
         thread.start()
-        reports = meshlod.dask.map(inputs, RECIPE, out, client=client)
+        reports = meshlod.dask.map(inputs, out, RECIPE, client=client)
         over.set()
         thread.join()
     assert all(report.status == "done" for report in reports)

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 use crate::errors::{raised, raised_by_file};
 use crate::scene::NativeScene;
-use crate::work::run;
+use crate::work::{Watch, run};
 
 /// Reads a mesh file or a compressed file, and returns its scene with notes on what was left out.
 ///
@@ -18,7 +18,7 @@ use crate::work::run;
 pub fn load(py: Python<'_>, path: PathBuf) -> PyResult<(NativeScene, Vec<String>)> {
     let scene = run(py, None, move |_| match is_compressed(&path) {
         true => compressed(&path),
-        false => read(&path, &ReadOptions::default()).map_err(raised_by_file),
+        false => read(&path, &ReadOptions::default()).map_err(unreadable),
     })??;
     let notes = texts(&scene.notes);
     Ok((NativeScene::new(scene), notes))
@@ -33,9 +33,23 @@ pub fn save(py: Python<'_>, scene: &NativeScene, path: PathBuf) -> PyResult<Vec<
     let format = Format::of_path(&path).map_err(raised_by_file)?;
     let scene = scene.shared();
     let notes = scene.limits_of(format);
-    run(py, None, move |_| write(&path, &scene, &WriteOptions::default()))?
-        .map_err(raised_by_file)?;
+    let work = move |watch: &mut Watch| {
+        // Files that belong together refer to each other by name: they are written where they stay.
+        watch.commit();
+        write(&path, &scene, &WriteOptions::default())
+    };
+    run(py, None, work)?.map_err(raised_by_file)?;
     Ok(texts(&notes))
+}
+
+/// Makes an exception of an error of reading, which names the formats of this package too.
+fn unreadable(error: IoError) -> PyErr {
+    match &error {
+        IoError::UnknownFormat { .. } => {
+            raised(format_args!("{error} .mlz .mlq, and .mlod by meshlod.Model"))
+        }
+        _ => raised_by_file(error),
+    }
 }
 
 fn is_compressed(path: &Path) -> bool {

@@ -27,7 +27,7 @@ struct Split {
 }
 
 /// Labels of faces for Python: names, and an index into them for each face.
-type FaceLabels<'py> = (Vec<String>, Bound<'py, PyArray1<u32>>);
+pub type FaceLabels<'py> = (Vec<String>, Bound<'py, PyArray1<u32>>);
 
 impl NativeMesh {
     /// Takes over a mesh.
@@ -170,7 +170,8 @@ pub fn from_arrays<'py>(
     Ok((NativeMesh::new(mesh.map_err(raised)?)?, vertices))
 }
 
-fn labels<'py>(py: Python<'py>, labels: &Labels) -> Option<FaceLabels<'py>> {
+/// Returns labels of faces for Python.
+pub fn labels<'py>(py: Python<'py>, labels: &Labels) -> Option<FaceLabels<'py>> {
     Some((labels.names.clone(), PyArray1::from_slice(py, &labels.of_face)))
 }
 

@@ -9,10 +9,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::cut::NativeCut;
-use crate::errors::{raised, raised_by_file};
+use crate::errors::{raised, raised_by_file, raised_by_making};
 use crate::mesh::NativeMesh;
+use crate::new_file::make;
 use crate::query::{CameraArguments, SentQuery};
-use crate::work::run;
+use crate::work::{Watch, run};
 
 /// A `.mlod` file, of which every extraction reads what it needs.
 #[pyclass(frozen, module = "meshlod._native")]
@@ -43,8 +44,10 @@ pub fn build(
     };
     let options = BuildOptions { lossless, errors, ..BuildOptions::default() };
     let mesh = mesh.shared();
-    run(py, None, move |_| meshlod::build(&mesh, &path, &options))?.map_err(raised)?;
-    Ok(())
+    let work = move |watch: &mut Watch| {
+        make(watch, &path, |path| meshlod::build(&mesh, path, &options)).map(drop)
+    };
+    run(py, None, work)?.map_err(raised_by_making)
 }
 
 #[pymethods]

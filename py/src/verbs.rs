@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use meshlod::check::{CheckOptions, HoleLimits, RepairOptions, Severity};
+use meshlod::check::{CheckOptions, HoleLimits, RepairOptions, Severity, Stitch};
 use meshlod::codec::CompressionTarget;
 use meshlod::measure::{DistanceOptions, area, distance, volume};
 use meshlod::mesh::LayerKind;
@@ -13,10 +13,11 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
-use crate::errors::raised;
+use crate::errors::{raised, raised_by_making};
 use crate::mesh::NativeMesh;
+use crate::new_file::make;
 use crate::report;
-use crate::work::run;
+use crate::work::{Watch, run};
 
 /// Index that ends a strip, as in 32-bit index buffers of GPUs.
 const RESTART: u32 = u32::MAX;
@@ -71,7 +72,8 @@ pub fn repair(
             return Err(raised(format_args!("{name} must be at least 0, not {length}")));
         }
     }
-    let holes = fill_holes.map(|edges| HoleLimits { edges, length: f64::INFINITY });
+    let holes = fill_holes.map(|edges| HoleLimits { edges, length: None });
+    let stitch = stitch.map_or(Stitch::Off, Stitch::Within);
     let options = RepairOptions { weld, stitch, holes, ..RepairOptions::default() };
     let mesh = mesh.shared();
     let (repaired, report) = run(py, None, move |_| meshlod::check::repair(&mesh, &options))?;
@@ -134,8 +136,10 @@ pub fn compress(
     let target = error.map_or(CompressionTarget::Bits(bits), CompressionTarget::Error);
     let options = CompressOptions { target, ..CompressOptions::default() };
     let mesh = mesh.shared();
-    let report =
-        run(py, None, move |_| meshlod::compress(&mesh, &path, &options))?.map_err(raised)?;
+    let work = move |watch: &mut Watch| {
+        make(watch, &path, |path| meshlod::compress(&mesh, path, &options))
+    };
+    let report = run(py, None, work)?.map_err(raised_by_making)?;
     Ok((report.bytes, report.reached))
 }
 

@@ -3,12 +3,13 @@
 //! The work runs on a pool of threads. The calling thread waits for it without the GIL, and wakes
 //! up now and then to let Python handle signals and to call the progress callback. If either
 //! raises, the exception is passed on at once, and the work ends at its next contraction, or else
-//! by itself: it owns all that it uses.
+//! by itself: it owns all that it uses. Only work that is putting a file into its place is waited
+//! for, so that nothing is written after an exception.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::process;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU8, AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -19,7 +20,7 @@ use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// Time between two looks at signals and progress. Finished work is noticed at once.
-const TICK: Duration = Duration::from_millis(50);
+pub const TICK: Duration = Duration::from_millis(50);
 
 /// Callback that is told the part of the work that is done, from 0 to 1.
 pub struct Progress {
@@ -29,12 +30,30 @@ pub struct Progress {
     pub faces: Option<usize>,
 }
 
+/// Work that may still be cancelled.
+const RUNNING: u8 = 0;
+
+/// Work that nobody waits for any more.
+const CANCELLED: u8 = 1;
+
+/// Work that is putting a file into its place.
+const COMMITTED: u8 = 2;
+
 /// State that the work shares with the thread that waits for it.
 #[derive(Default)]
 struct Shared {
-    is_cancelled: AtomicBool,
+    /// [`RUNNING`], from which work gets to one of the two others and no further.
+    state: AtomicU8,
     /// Number of faces removed so far.
     gone: AtomicUsize,
+}
+
+impl Shared {
+    /// Moves running work to another state, and returns false if it is in one already.
+    fn move_to(&self, state: u8) -> bool {
+        let order = Ordering::Relaxed;
+        self.state.compare_exchange(RUNNING, state, order, order).is_ok()
+    }
 }
 
 /// Observer that counts removed faces and ends the work if nobody waits for it any more.
@@ -62,9 +81,16 @@ impl Watch {
         self.check();
     }
 
+    /// Ends the work if it has been cancelled; from here on its end is waited for. To be called
+    /// right before a file is put into its place.
+    pub fn commit(&self) {
+        self.0.move_to(COMMITTED);
+        self.check();
+    }
+
     /// Ends the work if it has been cancelled, by unwinding to where it was started.
     fn check(&self) {
-        if self.0.is_cancelled.load(Ordering::Relaxed) {
+        if self.0.state.load(Ordering::Relaxed) == CANCELLED {
             // No panic: nothing is printed.
             resume_unwind(Box::new(Cancelled));
         }
@@ -103,7 +129,10 @@ pub fn run<T: Send + 'static>(
             Err(RecvTimeoutError::Timeout) => look(py, progress.as_ref(), &shared),
         };
         if let Err(raised) = seen {
-            shared.is_cancelled.store(true, Ordering::Relaxed);
+            if !shared.move_to(CANCELLED) {
+                // The file is nearly there.
+                let _ = py.detach(move || receiver.recv());
+            }
             return Err(raised);
         }
     }

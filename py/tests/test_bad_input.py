@@ -56,7 +56,7 @@ def test_arrays(points, faces, message):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({}, "give one of target_reduction, target_count and max_error, not none"),
+        ({}, "^give target_reduction, target_count or max_error$"),
         ({"target_reduction": 0.5, "target_count": 9}, "target_reduction and target_count"),
         ({"target_reduction": 1.5}, "must be between 0 and 1, not 1.5"),
         ({"target_reduction": float("nan")}, "must be between 0 and 1, not nan"),
@@ -134,6 +134,7 @@ def test_cameras(tmp_path):
         (meshlod.Camera(**at, size=(640.0, 480)), "size must be a whole number, not 640.0"),
         (meshlod.Camera(**at, size=(0, 480)), "size must be between 1"),
         (meshlod.Camera(**at, fov="wide"), "fov must be a number, not 'wide'"),
+        (meshlod.Camera(**at, fov=60), "fov is in radians, and must be less than pi, not 60"),
         (meshlod.Camera(eye=(1, 2), look=(0, 0, 0)), "eye must be three numbers"),
         (at, "camera must be a Camera, not dict"),
     ]:
@@ -148,3 +149,12 @@ def test_an_object_that_is_no_mesh():
         meshlod.Mesh(POINTS, FACES).measure(3)
     with pytest.raises(meshlod.MeshlodError, match="not int"):
         meshlod.save("a.ply", 3)
+
+
+@pytest.mark.parametrize(
+    ("second", "message"),
+    [(0.9, "write target_reduction=0.9$"), (100, "write target_count=100$")],
+)
+def test_a_target_in_place_of_faces(second, message):
+    with pytest.raises(meshlod.MeshlodError, match=message):
+        meshlod.simplify(meshlod.Mesh(POINTS, FACES), second)

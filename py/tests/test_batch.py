@@ -61,6 +61,8 @@ def test_recipes_are_files_or_dictionaries(tmp_path):
         meshlod.batch(tmp_path / "none", tmp_path / "out", TEN)
     with pytest.raises(meshlod.MeshlodError, match="at least one path"):
         meshlod.batch([], tmp_path / "out", TEN)
+    with pytest.raises(meshlod.MeshlodError, match="jobs must be between 1 and 65536, not 0"):
+        meshlod.batch(tmp_path / "in", tmp_path / "out", TEN, jobs=0)
 
 
 def test_a_file_that_fails_is_a_warning(tmp_path):
@@ -76,7 +78,7 @@ def test_dask_is_asked_for_where_it_is_missing(monkeypatch, tmp_path):
 
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(meshlod.MeshlodError, match=r"pip install 'dask\[distributed\]'"):
-        meshlod.dask.map(tmp_path, TEN, tmp_path / "out")
+        meshlod.dask.map(tmp_path, tmp_path / "out", TEN)
 
 
 def test_workers_that_are_killed_change_no_byte(tmp_path):
@@ -103,12 +105,12 @@ def test_workers_that_are_killed_change_no_byte(tmp_path):
 
         with pytest.warns(meshlod.MeshlodWarning, match="bad.ply: line 1"):
             reports = meshlod.dask.map(
-                tmp_path / "in", TEN, tmp_path / "out", client=client, progress=kill
+                tmp_path / "in", tmp_path / "out", TEN, client=client, progress=kill
             )
         assert len(killed) >= 2
         assert [report.status for report in reports].count("done") == 60
         (tmp_path / "in" / "bad.ply").unlink()
-        again = meshlod.dask.map(tmp_path / "in", TEN, tmp_path / "out", client=client)
+        again = meshlod.dask.map(tmp_path / "in", tmp_path / "out", TEN, client=client)
     # What a worker had made and not yet told when it was killed may have been made twice.
     statuses = [report.status for report in again]
     assert set(statuses) <= {"skipped", "done"} and statuses.count("done") <= 2 * len(killed)

@@ -24,7 +24,8 @@ def test_trimesh():
     colored.visual.face_colors = [1, 2, 3, 255]
     with pytest.warns(meshlod.MeshlodWarning, match="colours of faces"):
         meshlod.simplify(colored, target_reduction=0.5)
-    with pytest.raises(meshlod.MeshlodError, match="a Scene is no single mesh"):
+    message = "from_trimesh takes a trimesh.Trimesh, not Scene: use to_mesh"
+    with pytest.raises(meshlod.MeshlodError, match=message):
         meshlod.simplify(trimesh.Scene(colored), target_reduction=0.5)
     with pytest.warns(meshlod.MeshlodWarning, match="the material with its textures") as caught:
         convert.from_trimesh(mesh)
@@ -158,3 +159,11 @@ def test_meshio(tmp_path):
     solid = meshio.Mesh(np.eye(4, 3), [("tetra", [[0, 1, 2, 3]])])
     with pytest.raises(meshlod.MeshlodError, match="tetra are no surface"):
         convert.from_meshio(solid)
+
+
+@pytest.mark.parametrize("package", ["trimesh", "pyvista", "open3d", "meshio"])
+def test_what_is_no_mesh_of_a_package(package):
+    if package != "open3d":
+        pytest.importorskip(package)
+    with pytest.raises(meshlod.MeshlodError, match=f"from_{package} takes .*{package}.*, not int$"):
+        getattr(convert, f"from_{package}")(3)

@@ -25,7 +25,7 @@ ALIGNED = ("C", "A")
 
 def as_points(points: ArrayLike, name: str = "points") -> NDArray[Any]:
     """Returns points as rows of three floats, of single or double precision."""
-    array = _array(points, name)
+    array = as_array(points, name)
     if array.size == 0 and array.ndim < 2:
         array = array.reshape(0, 3)
     _check_rows(array, name, (3,))
@@ -45,9 +45,18 @@ def as_rows(
     return np.require(array, dtype, ALIGNED)
 
 
+def as_column(values: ArrayLike, name: str, count: int) -> NDArray[Any]:
+    """Returns ``count`` numbers."""
+    array = as_array(values, name)
+    if array.shape != (count,) or array.dtype.kind not in "fiu":
+        shape, dtype = array.shape, array.dtype
+        raise MeshlodError(f"{name} must have the shape ({count},), not {dtype} of {shape}")
+    return array
+
+
 def as_faces(faces: ArrayLike, name: str = "faces") -> NDArray[Any]:
     """Returns faces as rows of three integers of 32 or 64 bits."""
-    array = _array(faces, name)
+    array = as_array(faces, name)
     if array.size == 0:
         if array.ndim >= 2:
             _check_rows(array, name, (3,))
@@ -83,7 +92,7 @@ def as_attributes(
     for name, values in as_named(others).items():
         if name in ("normals", "uvs", "colors"):
             raise MeshlodError(f"attributes: {name} has a parameter of its own")
-        array = _array(values, name)
+        array = as_array(values, name)
         is_label = array.dtype.kind in "iub"
         if is_label and array.size and not -MOST_LABEL <= array.min() <= array.max() <= MOST_LABEL:
             raise MeshlodError(f"{name}: whole numbers must be at most {MOST_LABEL}")
@@ -107,7 +116,7 @@ def as_named(attributes: Mapping[str, ArrayLike] | None) -> Mapping[str, ArrayLi
 
 def as_vertices(locks: ArrayLike, count: int) -> NDArray[np.int64]:
     """Returns the rows of ``count`` points that a mask or an array of rows selects."""
-    array = _array(locks, "locks")
+    array = as_array(locks, "locks")
     if array.size == 0 and array.dtype.kind != "b":
         return np.zeros(0, dtype=np.int64)
     if array.ndim != 1 or array.dtype.kind not in "biu":
@@ -143,7 +152,8 @@ def returned(
     return all_values
 
 
-def _array(values: ArrayLike, name: str) -> NDArray[Any]:
+def as_array(values: ArrayLike, name: str) -> NDArray[Any]:
+    """Returns an array as it is."""
     if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
         raise MeshlodError(f"{name} has masked values: fill or drop them first")
     try:
@@ -162,7 +172,7 @@ def _check_rows(array: NDArray[Any], name: str, widths: tuple[int, ...], hint: s
 def _floats(
     values: ArrayLike, name: str, count: int, widths: tuple[int, ...] = ()
 ) -> NDArray[np.float32]:
-    array = _array(values, name)
+    array = as_array(values, name)
     if array.ndim == 1 and not widths:
         array = array.reshape(-1, 1)
     _check_rows(array, name, widths or (array.shape[-1] if array.ndim else 1,))
@@ -184,7 +194,7 @@ def _unit(normals: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def _colors(colors: ArrayLike, count: int) -> NDArray[np.float32]:
-    array = _array(colors, "colors")
+    array = as_array(colors, "colors")
     values = _floats(array, "colors", count, (3, 4))
     if array.dtype == np.uint8:
         return values / np.float32(255)

@@ -26,8 +26,10 @@ def target(
         "max_error": max_error,
     }
     names = [name for name, value in given.items() if value is not None]
-    if len(names) != 1:
-        what = " and ".join(names) or "none"
+    if not names:
+        raise MeshlodError("give target_reduction, target_count or max_error")
+    if len(names) > 1:
+        what = " and ".join(names)
         raise MeshlodError(f"give one of target_reduction, target_count and max_error, not {what}")
     if target_count is not None:
         return "count", whole("target_count", target_count, 0, 2**53)
@@ -92,6 +94,15 @@ def triple(name: str, values: Any) -> tuple[float, float, float]:
     except (TypeError, ValueError, OverflowError):
         raise MeshlodError(f"{name} must be three numbers, not {values!r}") from None
     return x, y, z
+
+
+def pair(name: str, values: Any) -> tuple[float, float]:
+    """Returns two numbers."""
+    try:
+        x, y = (float(value) for value in values)
+    except (TypeError, ValueError, OverflowError):
+        raise MeshlodError(f"{name} must be two numbers, not {values!r}") from None
+    return x, y
 
 
 def size_px(values: Any) -> list[int]:

@@ -17,6 +17,10 @@ from ._progress import ProgressLike, callback
 RecipeLike = Path | Mapping[str, Any]
 
 
+#: Greatest number of files that are done at a time.
+MOST_JOBS = 2**16
+
+
 @dataclass(frozen=True)
 class FileReport:
     """How one file of a batch went."""
@@ -57,7 +61,7 @@ def batch(
     """
     arguments = command(paths, out, recipe, format, force)
     if jobs is not None:
-        arguments += ["--jobs", str(jobs)]
+        arguments += ["--jobs", str(_asked.whole("jobs", jobs, 1, MOST_JOBS))]
     answer = json.loads(_native.answer(arguments, callback(progress, "files")))
     return reported(answer["reports"])
 

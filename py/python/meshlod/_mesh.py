@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _asked, _native
 from ._arrays import as_attributes, as_faces, as_points, as_vertices, by_name
 from ._errors import MeshlodError, warn
+from ._immutable import Immutable
 from ._progress import ProgressLike, callback
 from ._reports import CheckReport, Distance, OneSidedDistance, Report
 
@@ -24,7 +25,7 @@ Path = str | os.PathLike[str]
 PICTURE = (512, 512)
 
 
-class Mesh:
+class Mesh(Immutable):
     """A triangle mesh that never changes: all methods return new ones.
 
     ``vertices``, ``faces`` and the attributes are read-only views of its memory. They have one row
@@ -235,7 +236,8 @@ class Mesh:
     def build(self, path: Path, *, lossless: bool = False, errors: str = "measured") -> Model:
         """Writes all levels to a ``.mlod`` file, and opens it.
 
-        ``errors`` are ``"estimate"``, ``"measured"``, or ``"bound"``, which are proved.
+        ``errors`` are ``"estimate"``, ``"measured"``, or ``"bound"``, which are proved. Ctrl-C
+        leaves a file that was there as it was.
         """
         from ._model import Model
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import pi
 from numbers import Real
 from typing import Any, NamedTuple
 
@@ -63,4 +64,7 @@ def _seen(camera: Any) -> tuple[list[float], list[float], list[float], float, li
     if not isinstance(camera, Camera):
         raise MeshlodError(f"camera must be a Camera, not {type(camera).__name__}")
     at = {name: list(triple(name, getattr(camera, name))) for name in ("eye", "look", "up")}
-    return at["eye"], at["look"], at["up"], number("fov", camera.fov), size_px(camera.size)
+    fov = number("fov", camera.fov)
+    if fov > pi:
+        raise MeshlodError(f"fov is in radians, and must be less than pi, not {camera.fov!r}")
+    return at["eye"], at["look"], at["up"], fov, size_px(camera.size)

@@ -9,12 +9,13 @@ from numpy.typing import NDArray
 
 from . import _asked, _native
 from ._errors import MeshlodError, warn
+from ._immutable import Immutable
 from ._mesh import Mesh, Path
 from ._progress import ProgressLike, callback
 from ._reports import Report
 
 
-class Scene:
+class Scene(Immutable):
     """All that a file holds: meshes, nodes, materials, textures, skins and animations.
 
     It never changes. Saved in the format that it was read from, it keeps everything but the

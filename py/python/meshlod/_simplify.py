@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from numbers import Real
 from typing import Any
 
 from numpy.typing import ArrayLike
@@ -85,6 +86,10 @@ def simplify(
         if faces is not None:
             raise MeshlodError("give faces or triangles, not both")
         faces = triangles
+    if isinstance(faces, Real):
+        # A mesh brings its faces along: this is meant to be a target.
+        name = "target_reduction" if faces <= 1 else "target_count"
+        raise MeshlodError(f"faces must be an array, not {faces}: write {name}={faces}")
     lock_boundary = lock_boundary or bool(preserve_border)
     kind, value = _asked.target(target_reduction, target_count, max_error)
     given = {"normals": normals, "uvs": uvs, "colors": colors, **as_named(attributes)}

@@ -49,7 +49,8 @@ def _of_trimesh(mesh: Any) -> tuple[Mesh, list[str]]:
     """Returns a mesh, and names of what it leaves out beside the material."""
     if not hasattr(mesh, "faces"):
         kind = type(mesh).__name__
-        raise MeshlodError(f"a {kind} is no single mesh: use to_mesh() or concatenate first")
+        advice = ": use to_mesh() first" if hasattr(mesh, "to_mesh") else ""
+        raise MeshlodError(f"from_trimesh takes a trimesh.Trimesh, not {kind}{advice}")
     known: dict[str, Any] = {}
     left_out = []
     visual = mesh.visual
@@ -105,6 +106,10 @@ def from_pyvista(mesh: Any) -> Mesh:
     """Makes a mesh of the surface of a ``pyvista`` data set, with the arrays of its points."""
     import pyvista
 
+    if not isinstance(mesh, pyvista.DataSet):
+        kind = type(mesh).__name__
+        advice = ": use combine() first" if hasattr(mesh, "combine") else ""
+        raise MeshlodError(f"from_pyvista takes a pyvista data set, not {kind}{advice}")
     surface = mesh
     if not isinstance(mesh, pyvista.PolyData):
         surface = mesh.extract_surface(pass_pointid=False, pass_cellid=False)
@@ -145,7 +150,8 @@ def from_open3d(mesh: Any) -> Mesh:
     """Makes a mesh of an ``open3d.geometry.TriangleMesh``."""
     if not hasattr(mesh, "triangles") or not hasattr(mesh, "has_triangle_uvs"):
         kind = type(mesh).__name__
-        raise MeshlodError(f"a {kind} is no open3d.geometry.TriangleMesh: use to_legacy() first")
+        advice = ": use to_legacy() first" if hasattr(mesh, "to_legacy") else ""
+        raise MeshlodError(f"from_open3d takes an open3d TriangleMesh, not {kind}{advice}")
     points, faces = np.asarray(mesh.vertices), np.asarray(mesh.triangles)
     normals = np.asarray(mesh.vertex_normals) if mesh.has_vertex_normals() else None
     colors = np.asarray(mesh.vertex_colors) if mesh.has_vertex_colors() else None
@@ -187,6 +193,8 @@ def to_open3d(mesh: Mesh) -> Any:
 
 def from_meshio(mesh: Any) -> Mesh:
     """Makes a mesh of the triangles and quadrilaterals of a ``meshio.Mesh``."""
+    if not hasattr(mesh, "cells") or not hasattr(mesh, "point_data"):
+        raise MeshlodError(f"from_meshio takes a meshio.Mesh, not {type(mesh).__name__}")
     faces = [block.data for block in mesh.cells if block.type == "triangle"]
     left_out = []
     for block in mesh.cells:

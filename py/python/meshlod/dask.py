@@ -26,8 +26,8 @@ __all__ = ["map"]
 
 def map(
     paths: Path | Iterable[Path],
-    recipe: RecipeLike,
     out: Path,
+    recipe: RecipeLike,
     *,
     client: Client | None = None,
     format: str | None = None,

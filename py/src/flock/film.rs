@@ -1,7 +1,5 @@
 //! Films: scenarios that run, frame by frame.
 
-use std::sync::{Arc, Mutex, PoisonError};
-
 use meshlod::flock::FlockCamera;
 use meshlod::flock::scene::{Film, Scenario, ScenarioName, ScenarioOptions};
 use meshlod::samples;
@@ -10,14 +8,13 @@ use pyo3::prelude::*;
 use super::CameraArguments;
 use super::members::{FlockArrays, arrays};
 use crate::errors::raised;
+use crate::lent_out::LentOut;
 use crate::mesh::NativeMesh;
 use crate::work::run;
 
 /// A film, which one thread at a time advances.
-///
-/// Nobody waits for the GIL while holding the lock, as whoever has the GIL may wait for the lock.
 #[pyclass(frozen, module = "meshlod._native")]
-pub struct NativeFilm(Arc<Mutex<Film>>);
+pub struct NativeFilm(LentOut<Film>);
 
 /// Faces of the terrain of the scenario of this name, as on the command line.
 const TERRAIN_FACES: usize = 40_000;
@@ -45,14 +42,13 @@ impl NativeFilm {
             let options = ScenarioOptions { members, schools, seed, size, frame_s, terrain };
             Film::new(Scenario::named(name, &options)?)
         })?;
-        Ok(Self(Arc::new(Mutex::new(film.map_err(raised)?))))
+        Ok(Self(LentOut::new(film.map_err(raised)?)))
     }
 
     /// Advances by the time of a frame, and returns the flock and its camera.
     fn next_frame<'py>(&self, py: Python<'py>) -> PyResult<(FlockArrays<'py>, CameraArguments)> {
-        let film = Arc::clone(&self.0);
+        let mut film = self.0.take(py)?;
         let frame = run(py, None, move |_| {
-            let mut film = film.lock().unwrap_or_else(PoisonError::into_inner);
             film.next_frame().map(|(flock, camera)| (flock.clone(), camera))
         })?;
         let (flock, camera) = frame.map_err(raised)?;
@@ -61,10 +57,8 @@ impl NativeFilm {
 
     /// Obstacles that the schools swim round, as meshes.
     fn obstacles(&self, py: Python<'_>) -> PyResult<Vec<NativeMesh>> {
-        let film = Arc::clone(&self.0);
-        let meshes = run(py, None, move |_| {
-            film.lock().unwrap_or_else(PoisonError::into_inner).scenario().obstacle_meshes()
-        })?;
+        let film = self.0.take(py)?;
+        let meshes = run(py, None, move |_| film.scenario().obstacle_meshes())?;
         meshes.into_iter().map(NativeMesh::new).collect()
     }
 }

@@ -9,30 +9,32 @@ use meshlod::flock::levels::{
 use meshlod::flock::select::InstanceLevel;
 use meshlod::mesh::{Borders, ConditionOptions, Locks, Search, condition};
 use meshlod::{Mesh, Method};
-use numpy::{PyArray1, PyArray2, PyReadonlyArray1};
+use numpy::{PyArray2, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
+use super::member_sizes::{give_sizes, replace_impostors};
 use super::members::FlockArguments;
 use super::{CameraArguments, camera_of};
 use crate::errors::raised;
-use crate::mesh::{NativeMesh, name_of};
-use crate::numpy_views::{given, given_flat, lent};
+use crate::mesh::{FaceLabels, NativeMesh, labels, name_of};
+use crate::numpy_views::{given_flat, lent};
 use crate::work::run;
 
 /// All levels of a model, which never change, so that numpy can look into their memory.
 #[pyclass(frozen, module = "meshlod._native")]
 pub struct NativeLevelTable {
     table: Arc<LevelTable>,
+    /// First triangle of each level and the one behind its last.
+    ranges: Vec<[i64; 2]>,
+    /// Error of each level.
+    errors: Vec<f32>,
     /// Pictures of the model, made when first needed.
     impostor: OnceLock<Arc<Impostor>>,
 }
 
 /// Attributes by name, with a row of values for each vertex.
 type Attributes<'py> = Vec<(String, Bound<'py, PyArray2<f32>>)>;
-
-/// Ranges of triangles, and errors, of levels.
-type Levels<'py> = (Bound<'py, PyArray2<i64>>, Bound<'py, PyArray1<f32>>);
 
 /// Greatest number of faces of a model: its levels for all directions take about a kilobyte a face.
 const MAX_FACES: usize = 1_000_000;
@@ -94,7 +96,11 @@ impl NativeLevelTable {
         let axes = ModelAxes { forward, up };
         let options = ChainOptions { axes, method, step, coarsest, directions, locks: None };
         let table = run(py, None, move |_| built(&mesh, &options))??;
-        Ok(Self { table: Arc::new(table), impostor: OnceLock::new() })
+        let ranges = table.levels.iter().map(|level| {
+            [level.triangles.start, level.triangles.end].map(|triangle| triangle as i64)
+        });
+        let (ranges, errors) = (ranges.collect(), table.levels.iter().map(|l| l.error).collect());
+        Ok(Self { table: Arc::new(table), ranges, errors, impostor: OnceLock::new() })
     }
 
     /// Position of each vertex, as a read-only view.
@@ -122,14 +128,23 @@ impl NativeLevelTable {
         layers.collect()
     }
 
-    /// First triangle of each level and the one behind its last, and the errors of the levels.
-    fn levels<'py>(&self, py: Python<'py>) -> PyResult<Levels<'py>> {
-        let levels = &self.table.levels;
-        let ranges = levels.iter().map(|level| {
-            [level.triangles.start, level.triangles.end].map(|triangle| triangle as i64)
-        });
-        let errors = levels.iter().map(|level| level.error).collect();
-        Ok((given(py, ranges.collect())?, PyArray1::from_vec(py, errors)))
+    /// Names of materials, and the material of each triangle; `None` if there are none.
+    fn materials<'py>(&self, py: Python<'py>) -> Option<FaceLabels<'py>> {
+        labels(py, self.table.materials.as_ref()?)
+    }
+
+    /// First triangle of each level and the one behind its last, as a read-only view.
+    #[getter]
+    fn ranges<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<i64>>> {
+        // SAFETY: they belong to the table, which never changes.
+        unsafe { lent(slf.clone().into_any(), slf.get().ranges.as_flattened(), 2) }
+    }
+
+    /// Error of each level, as a read-only view of one column.
+    #[getter]
+    fn errors<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        // SAFETY: they belong to the table, which never changes.
+        unsafe { lent(slf.clone().into_any(), &slf.get().errors, 1) }
     }
 
     /// Number of levels of the whole chain, which are the first.
@@ -137,12 +152,20 @@ impl NativeLevelTable {
         self.table.depth()
     }
 
-    /// Copy of a level.
+    /// Copy of a level, with the vertices that it uses.
     fn mesh(&self, py: Python<'_>, level: usize) -> PyResult<NativeMesh> {
-        NativeMesh::new(py.detach(|| self.table.mesh(level)))
+        NativeMesh::new(py.detach(|| {
+            let mut mesh = self.table.mesh(level);
+            mesh.compact();
+            mesh
+        }))
     }
 
     /// Draws every member at its level, and obstacles, and returns the pixels as RGBA bytes.
+    ///
+    /// `scales` are the lengths of members in body lengths; those that are not 1 long are drawn at
+    /// their coarsest level where they are impostors.
+    #[pyo3(signature = (flock, levels, camera, obstacles, scales))]
     fn draw<'py>(
         &self,
         py: Python<'py>,
@@ -150,9 +173,14 @@ impl NativeLevelTable {
         levels: PyReadonlyArray1<'py, u16>,
         camera: CameraArguments,
         obstacles: Vec<PyRef<'py, NativeMesh>>,
+        scales: Option<PyReadonlyArray1<'py, f32>>,
     ) -> PyResult<Bound<'py, PyBytes>> {
         let (flock, camera) = (flock.to_flock()?, camera_of(camera)?);
-        let levels = self.chosen(levels.as_slice()?)?;
+        let mut levels = self.chosen(levels.as_slice()?)?;
+        let scales = scales.map(|scales| scales.as_slice().map(<[f32]>::to_vec)).transpose()?;
+        if let Some(scales) = &scales {
+            replace_impostors(&mut levels, scales, &self.table);
+        }
         let obstacles: Vec<Mesh> = obstacles.iter().map(|mesh| (*mesh.shared()).clone()).collect();
         let drawn: usize = levels.iter().map(|level| level.triangles(&self.table)).sum();
         if drawn > MAX_DRAWN {
@@ -170,7 +198,11 @@ impl NativeLevelTable {
             }
             let mut painter = FlockPainter::new(&table, &look, &obstacles);
             painter.impostor = impostor.clone();
-            let picture = painter.draw(&flock, &levels, &camera)?;
+            let mut frame = painter.frame(&flock, &levels);
+            if let Some(scales) = &scales {
+                give_sizes(&mut frame, &flock.members, scales);
+            }
+            let picture = painter.render(&frame, &camera, &camera.for_picture())?;
             Ok::<_, TableError>((picture.rgba().to_vec(), impostor))
         })?
         .map_err(raised)?;

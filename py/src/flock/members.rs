@@ -44,7 +44,7 @@ impl FlockArguments<'_> {
         let (headings, _) = self.headings.as_slice()?.as_chunks::<3>();
         let speeds = self.speeds.as_slice()?;
         if let Some(row) = positions.iter().position(|p| !is_near(p)) {
-            let must = "must be finite and within a million body lengths of the origin";
+            let must = "must be within a million body lengths of the camera";
             return Err(raised(format_args!("positions: row {row} {must}")));
         }
         if let Some(row) = speeds.iter().position(|speed| !speed.is_finite()) {

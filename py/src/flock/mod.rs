@@ -2,6 +2,7 @@
 
 mod film;
 mod level_table;
+mod member_sizes;
 mod members;
 mod selector;
 

@@ -1,7 +1,5 @@
 //! Choice of a level for every member, frame by frame.
 
-use std::sync::{Arc, Mutex, PoisonError};
-
 use meshlod::flock::select::{Budget, PolicyName, Selector};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -10,13 +8,12 @@ use super::level_table::NativeLevelTable;
 use super::members::FlockArguments;
 use super::{CameraArguments, camera_of};
 use crate::errors::raised;
+use crate::lent_out::LentOut;
 use crate::work::run;
 
 /// A policy with what it keeps from frame to frame, which one thread at a time asks.
-///
-/// Nobody waits for the GIL while holding the lock, as whoever has the GIL may wait for the lock.
 #[pyclass(frozen, module = "meshlod._native")]
-pub struct NativeSelector(Arc<Mutex<Selector>>);
+pub struct NativeSelector(LentOut<Selector>);
 
 #[pymethods]
 impl NativeSelector {
@@ -27,7 +24,7 @@ impl NativeSelector {
             let names = unknown.known.join(", ");
             raised(format_args!("policy must be one of {names}, not {}", unknown.name))
         })?;
-        Ok(Self(Arc::new(Mutex::new(Selector::new(policy, table.shared())))))
+        Ok(Self(LentOut::new(Selector::new(policy, table.shared()))))
     }
 
     /// Chooses a level for every member, and returns them with the number of triangles drawn.
@@ -46,9 +43,8 @@ impl NativeSelector {
         let (flock, camera) = (flock.to_flock()?, camera_of(camera)?);
         let budget = Budget { triangles, detail, impostors_below_px };
         let visible = visible.map(|mask| mask.as_slice().map(<[bool]>::to_vec)).transpose()?;
-        let selector = Arc::clone(&self.0);
+        let mut selector = self.0.take(py)?;
         let (levels, drawn) = run(py, None, move |_| {
-            let mut selector = selector.lock().unwrap_or_else(PoisonError::into_inner);
             let chosen = selector.select_visible(&flock, &camera, &budget, visible.as_deref());
             let levels: Vec<u16> = chosen.iter().map(|level| level.to_bits()).collect();
             (levels, selector.triangles())

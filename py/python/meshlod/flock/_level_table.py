@@ -9,16 +9,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _native
-from .._arrays import ALIGNED, by_name
+from .._arrays import ALIGNED, as_array, by_name
 from .._asked import number, triple, whole, word
 from .._errors import MeshlodError
+from .._immutable import Immutable
 from .._mesh import Mesh
 from .._query import Camera
-from ._camera import camera_arguments
+from ._camera import seen_arguments
+from ._frames import model_axes
 from ._members import Flock
 
 
-class LevelTable:
+class LevelTable(Immutable):
     """All levels of one model, in one table of vertices and one of triangles.
 
     A level is a range of triangles. The first ``depth`` levels are the whole model, finest first;
@@ -32,7 +34,7 @@ class LevelTable:
     for ``directions`` by ``directions`` views.
     """
 
-    __slots__ = ("__weakref__", "_axes", "_center", "_levels", "_native", "body_length")
+    __slots__ = ("__weakref__", "_axes", "_center", "_native", "body_length")
 
     def __init__(
         self,
@@ -57,16 +59,24 @@ class LevelTable:
             whole("coarsest", coarsest, 1, 2**32 - 1),
             whole("directions", directions, 2, 32),
         )
-        self._axes = _axes(np.array(ahead), np.array(top))
+        self._axes = model_axes(ahead, top)
         used = mesh.vertices[np.unique(mesh.faces)] @ self._axes.T
         low, high = used.min(axis=0), used.max(axis=0)
         #: Length of the model, in its own unit: the longest side of its box along these axes.
         self.body_length = float((high - low).max())
         self._center = (low + high) / 2 @ self._axes
-        ranges, errors = self._native.levels()
-        for array in (ranges, errors):
-            array.setflags(write=False)
-        self._levels = ranges, errors
+
+    @property
+    def frame(self) -> NDArray[np.float64]:
+        """Matrix from the frame of a member to the space of the model, for columns.
+
+        A member at a matrix ``m`` of :meth:`Flock.transforms` is an instance of the model at
+        ``m @ numpy.linalg.inv(table.frame)``.
+        """
+        matrix = np.eye(4)
+        matrix[:3, :3] = self._axes.T * self.body_length
+        matrix[:3, 3] = self._center
+        return matrix
 
     @property
     def vertices(self) -> NDArray[np.float32]:
@@ -84,14 +94,23 @@ class LevelTable:
         return self._native.triangles
 
     @property
+    def materials(self) -> tuple[list[str], NDArray[np.uint32]] | None:
+        """Names of the materials, and the material of each triangle, if there are any."""
+        return self._native.materials()
+
+    @property
     def ranges(self) -> NDArray[np.int64]:
-        """First triangle of each level, and the one behind its last, of shape (levels, 2)."""
-        return self._levels[0]
+        """First triangle of each level, and the one behind its last: a read-only view of shape
+        (levels, 2).
+        """
+        return self._native.ranges
 
     @property
     def errors(self) -> NDArray[np.float32]:
-        """Greatest distance of the model's vertices from each level, in body lengths."""
-        return self._levels[1]
+        """Greatest distance of the model's vertices from each level, in body lengths: a read-only
+        view.
+        """
+        return self._native.errors[:, 0]
 
     @property
     def depth(self) -> int:
@@ -113,19 +132,21 @@ class LevelTable:
         """Returns a picture of shape (height, width, 4), every member at its level.
 
         ``levels`` are those of :meth:`Selector.select`. ``obstacles`` are in body lengths, with +y
-        up, as those of a :class:`Film`.
+        up, as those of a :class:`Film`. Impostors have one size: members that are smaller by their
+        ``scales`` are drawn at the coarsest level of the whole model in place of one.
         """
-        arguments = flock._arguments()
-        chosen = np.asarray(levels)
+        arguments, seen, origin = seen_arguments(flock, camera)
+        chosen = as_array(levels, "levels")
         count = len(arguments["positions"])
         if chosen.shape != (count,) or chosen.dtype != np.uint16:
             shape, dtype = chosen.shape, chosen.dtype
             raise MeshlodError(f"levels must be uint16 of shape ({count},), not {dtype} of {shape}")
-        seen = camera_arguments(camera, flock)
-        around = [_native_of(mesh) for mesh in obstacles]
-        pixels = self._native.draw(
-            arguments, np.require(chosen, np.uint16, ALIGNED), seen, around
-        )
+        scales = None
+        if flock.scales is not None:
+            scales = np.require(flock._sizes(count), np.float32, ALIGNED)
+        around = _natives_of(obstacles, flock._turn() @ origin / flock._unit())
+        levels = np.require(chosen, np.uint16, ALIGNED)
+        pixels = self._native.draw(arguments, levels, seen, around, scales)
         width, height = seen[3]
         return np.frombuffer(pixels, dtype=np.uint8).reshape(height, width, 4)
 
@@ -136,15 +157,15 @@ class LevelTable:
         return f"LevelTable({len(self)} levels, {len(self.vertices)} vertices)"
 
 
-def _axes(forward: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns the rotation from the axes of a model to left, up and heading."""
-    heading = forward / np.linalg.norm(forward)
-    left = np.cross(up, heading)
-    left /= np.linalg.norm(left)
-    return np.stack([left, np.cross(heading, left), heading])
-
-
-def _native_of(mesh: Any) -> _native.NativeMesh:
-    if not isinstance(mesh, Mesh):
-        raise MeshlodError(f"obstacles must be Meshes, not {type(mesh).__name__}")
-    return mesh._native
+def _natives_of(obstacles: Any, origin: NDArray[np.float64]) -> list[_native.NativeMesh]:
+    """Returns obstacles, moved so that ``origin`` is at 0."""
+    if isinstance(obstacles, Mesh) or not hasattr(obstacles, "__iter__"):
+        kind = type(obstacles).__name__
+        raise MeshlodError(f"obstacles must be a sequence of Meshes, not {kind}")
+    meshes = list(obstacles)
+    for mesh in meshes:
+        if not isinstance(mesh, Mesh):
+            raise MeshlodError(f"obstacles must be Meshes, not {type(mesh).__name__}")
+    if origin.any():
+        meshes = [Mesh(mesh.vertices - origin, mesh.faces) for mesh in meshes]
+    return [mesh._native for mesh in meshes]

@@ -9,19 +9,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .._arrays import ALIGNED, as_rows
-from .._asked import number, triple, word
+from .._arrays import ALIGNED, as_column, as_rows
+from .._asked import number, triple
 from .._errors import MeshlodError
+from ._frames import frames, turn_to_y_up
+from ._instances import taken_apart
 
 if TYPE_CHECKING:
     from .._native import FlockArguments
     from ._level_table import LevelTable
-
-#: Rotations from worlds with y or z up to one with y up, for columns.
-TO_Y_UP = {"y": np.eye(3), "z": np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])}
-
-#: Deviation from an upright member of one size, as a part of its length, which is rounding.
-TOLERANCE = 1e-2
 
 
 @dataclass(frozen=True)
@@ -54,10 +50,13 @@ class Flock:
     speeds: ArrayLike | None = None
     #: Schools, in the order of their members; the policies of the paper look at them.
     schools: Sequence[School] = ()
-    #: Longest side of a member's box.
+    #: Longest side of a member's box; with ``scales``, of the largest member.
     body_length: float = 1.0
     #: Axis that is up, ``"y"`` or ``"z"``.
     up: str = "y"
+    #: Size of each member in parts of ``body_length``, of shape (n,), above 0 and at most 1; all
+    #: are 1 by default. Levels are chosen as if all were 1.
+    scales: ArrayLike | None = None
 
     @classmethod
     def of_instances(
@@ -72,57 +71,85 @@ class Flock:
 
         ``transforms`` has the shape (n, 4, 4), for columns: rotation, one scale, and the
         translation in the last column. The largest member is ``body_length`` long; smaller ones
-        get the levels of a member of that size.
+        have ``scales``, and get the levels that members of the largest size would get.
         """
-        matrices = np.asarray(transforms)
-        if matrices.ndim != 3 or matrices.shape[1:] != (4, 4) or matrices.dtype.kind not in "fiu":
-            shape, dtype = matrices.shape, matrices.dtype
-            raise MeshlodError(f"transforms must have the shape (n, 4, 4), not {dtype} of {shape}")
-        linear = matrices[:, :3, :3].astype(np.float64)
-        if not np.isfinite(matrices).all():
-            row = int(np.argmin(np.isfinite(matrices).all(axis=(1, 2))))
-            raise MeshlodError(f"transforms: row {row} is not finite")
-        scales = np.cbrt(np.linalg.det(linear))
-        frames = linear @ table._axes.T
-        scaled = scales[:, None, None]
-        upright = _frames(frames[:, :, 2], up) * scaled
-        wrong = np.abs(frames - upright).max(axis=(1, 2)) > TOLERANCE * scales
-        if wrong.any() or (scales <= 0).any():
-            row = int(np.argmax(wrong | (scales <= 0)))
-            must = "must turn an upright member without mirror, roll, or more than one scale"
-            raise MeshlodError(f"transforms: row {row} {must}")
-        positions = linear @ table._center + matrices[:, :3, 3]
-        length = table.body_length * float(scales.max(initial=0.0)) or 1.0
-        return cls(positions, frames[:, :, 2], speeds, body_length=length, up=up)
+        from ._level_table import LevelTable
+
+        if not isinstance(table, LevelTable):
+            raise MeshlodError(f"table must be a LevelTable, not {type(table).__name__}")
+        found = taken_apart(transforms, table._axes, table._center, up)
+        length = table.body_length * found.scale
+        places = found.positions, found.headings
+        return cls(*places, speeds, body_length=length, up=up, scales=found.scales)
 
     def transforms(self) -> NDArray[np.float32]:
-        """Matrices that place the vertices of a table in the world, of shape (n, 4, 4)."""
-        positions = as_rows(self.positions, "positions", np.float64)
+        """Matrices that place the vertices of a table in the world, of shape (n, 4, 4).
+
+        They are for columns, with the translation in the last one, and C-contiguous, row after row.
+        """
+        positions, headings = self._places()
+        lengths = self._unit() * self._sizes(len(positions))
         matrices = np.zeros((len(positions), 4, 4), np.float32)
-        headings = as_rows(self.headings, "headings", np.float64, len(positions))
-        matrices[:, :3, :3] = _frames(headings, self.up) * number("body_length", self.body_length)
+        matrices[:, :3, :3] = frames(headings, self.up) * lengths[:, None, None]
         matrices[:, :3, 3] = positions
         matrices[:, 3, 3] = 1
         return matrices
 
-    def _arguments(self) -> FlockArguments:
-        """Returns the flock in body lengths, with y up."""
+    def _arguments(self, origin: NDArray[np.float64]) -> FlockArguments:
+        """Returns the flock in body lengths from ``origin``, with y up."""
         length, turn = self._unit(), self._turn()
-        positions = as_rows(self.positions, "positions", np.float64)
-        headings = as_rows(self.headings, "headings", np.float64, len(positions))
-        speeds = np.zeros(len(positions)) if self.speeds is None else np.asarray(self.speeds)
-        if speeds.shape != (len(positions),) or speeds.dtype.kind not in "fiu":
-            shape, dtype = speeds.shape, speeds.dtype
-            must = f"speeds must have the shape ({len(positions)},)"
-            raise MeshlodError(f"{must}, not {dtype} of {shape}")
+        positions, headings = self._places()
         with np.errstate(over="ignore"):
             # What overflows is infinite, which is refused with its row.
+            places = (positions - origin) @ turn.T / length
             return {
-                "positions": np.require(positions @ turn.T / length, np.float32, ALIGNED),
+                "positions": np.require(places, np.float32, ALIGNED),
                 "headings": np.require(headings @ turn.T, np.float32, ALIGNED),
-                "speeds": np.require(speeds / length, np.float32, ALIGNED),
-                "schools": [_school(school, turn, length) for school in self.schools],
+                "speeds": np.require(self._speeds(len(positions)) / length, np.float32, ALIGNED),
+                "schools": self._schools(origin),
             }
+
+    def _places(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Returns positions and headings that are finite, and headings that have a direction."""
+        positions = as_rows(self.positions, "positions", np.float64)
+        headings = as_rows(self.headings, "headings", np.float64, len(positions))
+        finite = np.isfinite(positions)
+        if not finite.all():
+            row = int(np.argmin(finite.all(axis=1)))
+            given = positions[row].tolist()
+            raise MeshlodError(f"positions: row {row} must be finite, not {given}")
+        with np.errstate(over="ignore", invalid="ignore"):
+            squared = np.einsum("ij,ij->i", headings, headings)
+        known = (squared > 0) & np.isfinite(squared)
+        if not known.all():
+            row = int(np.argmin(known))
+            must = f"must have a direction, not {headings[row].tolist()}"
+            raise MeshlodError(f"headings: row {row} {must}")
+        return positions, headings
+
+    def _speeds(self, count: int) -> NDArray[Any]:
+        return np.zeros(count) if self.speeds is None else as_column(self.speeds, "speeds", count)
+
+    def _sizes(self, count: int) -> NDArray[Any]:
+        """Returns the size of each member in parts of the body length."""
+        if self.scales is None:
+            return np.ones(count)
+        scales = as_column(self.scales, "scales", count)
+        wrong = ~((scales > 0) & (scales <= 1))
+        if wrong.any():
+            row = int(np.argmax(wrong))
+            must = "must be greater than 0 and at most 1: body_length is that of the largest member"
+            raise MeshlodError(f"scales: row {row} {must}")
+        return scales
+
+    def _schools(self, origin: NDArray[np.float64]) -> list[Any]:
+        """Returns schools in numbers."""
+        try:
+            schools = list(self.schools)
+        except TypeError:
+            must = "schools must be a sequence of Schools"
+            raise MeshlodError(f"{must}, not {self.schools!r}") from None
+        return [_school(school, origin, self._turn(), self._unit()) for school in schools]
 
     def _unit(self) -> float:
         length = number("body_length", self.body_length)
@@ -131,38 +158,24 @@ class Flock:
         return length
 
     def _turn(self) -> NDArray[np.float64]:
-        return _turn(self.up)
+        return turn_to_y_up(self.up)
 
     def __repr__(self) -> str:
-        return f"Flock({len(np.asarray(self.positions))} members)"
+        try:
+            return f"Flock({len(self.positions)} members)"  # type: ignore[arg-type]
+        except TypeError:
+            return f"Flock(positions={self.positions!r})"
 
 
-def _turn(up: Any) -> NDArray[np.float64]:
-    """Returns the rotation to a world with y up."""
-    if word("up", up) not in TO_Y_UP:
-        raise MeshlodError(f"up must be y or z, not {up}")
-    return TO_Y_UP[up]
-
-
-def _frames(headings: NDArray[np.float64], up: str) -> NDArray[np.float64]:
-    """Returns frames of members, whose columns are left, up and heading, unit vectors."""
-    turn = _turn(up)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        z = headings @ turn.T
-        z = z / np.linalg.norm(z, axis=1, keepdims=True)
-        x = np.stack([z[:, 2], np.zeros(len(z)), -z[:, 0]], axis=1)
-        length = np.linalg.norm(x, axis=1, keepdims=True)
-        x = np.where(length > 1e-6, x / length, [1.0, 0.0, 0.0])
-    return turn.T @ np.stack([x, np.cross(z, x), z], axis=2)
-
-
-def _school(school: Any, turn: NDArray[np.float64], length: float) -> Any:
+def _school(
+    school: Any, origin: NDArray[np.float64], turn: NDArray[np.float64], length: float
+) -> Any:
     """Returns a school in numbers."""
     if not isinstance(school, School) or not isinstance(school.members, range):
         raise MeshlodError(f"schools must be Schools with a range of members, not {school!r}")
     if school.members.step != 1 or school.members.start < 0:
         raise MeshlodError(f"a school's members must be consecutive rows, not {school.members}")
-    leader = (turn @ triple("leader", school.leader) / length).tolist()
+    leader = (turn @ (np.array(triple("leader", school.leader)) - origin) / length).tolist()
     heading = (turn @ triple("heading", school.heading)).tolist()
     radii = [radius / length for radius in triple("radii", school.radii)]
     members = [school.members.start, max(school.members.start, school.members.stop)]

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _native
-from .._arrays import ALIGNED
+from .._arrays import ALIGNED, as_array
 from .._asked import number, whole, word
 from .._errors import MeshlodError
 from .._query import Camera
-from ._camera import camera_arguments
+from ._camera import seen_arguments
 from ._level_table import LevelTable
 from ._members import Flock
 
@@ -26,9 +26,24 @@ IMPOSTOR = 65534
 class Selector:
     """A policy that chooses a level for every member, and remembers those of the frame before.
 
-    ``policy`` is ``"ours"``, by what each triangle adds to the picture; ``"budget"``, by the size
-    on the screen; ``"screen-error"``, ``"distance"``, ``"speed"``, ``"eccentricity"``; those of the
-    paper, ``"relative-distance"``, ``"direction"``, ``"layer"`` and ``"paper"``; or ``"none"``.
+    Row i must be the same member in every frame. So cull by ``visible``, not by leaving rows out;
+    use one selector for each camera, and a new one after a cut. Threads take turns at a selector.
+
+    ``policy`` is one of:
+
+    - ``"ours"``: spends the budget where a triangle adds most to the picture. It knows which side
+      of a member is seen, and leaves out faces that turn their backs.
+    - ``"budget"``: shares the budget by the size on the screen, as engines do; a member keeps its
+      level until its size has passed the switch by a tenth.
+    - ``"screen-error"``: the coarsest level whose error spans at most one pixel.
+    - ``"distance"``: triangles in proportion to one by the distance from the camera.
+    - ``"speed"``: by distance, and fewer the faster a member crosses the screen.
+    - ``"eccentricity"``: by distance, and fewer the farther a member is from where the viewer
+      looks.
+    - ``"relative-distance"``, ``"direction"``, ``"layer"``: by the paper's factors, which are the
+      distance of the leader and the place in the school, the side of the school that is seen, and
+      the depth in the school. ``"paper"`` is all three. Members need ``schools`` for them.
+    - ``"none"``: every member in view at full detail.
     """
 
     __slots__ = ("_native", "_table", "_triangles")
@@ -55,12 +70,11 @@ class Selector:
         ``triangles`` is the budget of the policies ``"ours"`` and ``"budget"``, by default a tenth
         of those of all members at full detail; they keep to it where the coarsest levels of all
         members in view allow. ``detail`` is the fineness of the other policies: 2 keeps detail to
-        twice the distance. A member whose body length spans fewer pixels than ``impostors_below``
-        is an impostor. ``visible`` is a mask of members; the others are hidden.
+        twice the distance. A member is an impostor if ``flock.body_length`` spans fewer pixels than
+        ``impostors_below`` at its place. ``visible`` is a mask of members; the others are hidden.
+        Members farther than a million body lengths from the camera are refused.
         """
-        if not isinstance(flock, Flock):
-            raise MeshlodError(f"flock must be a Flock, not {type(flock).__name__}")
-        arguments = flock._arguments()
+        arguments, seen, _ = seen_arguments(flock, camera)
         count = len(arguments["positions"])
         if triangles is None:
             triangles = max(1, count * int(self._table.ranges[0, 1]) // 10)
@@ -72,7 +86,7 @@ class Selector:
             raise MeshlodError(f"impostors_below must be greater than 0, not {impostors_below!r}")
         levels, self._triangles = self._native.select(
             arguments,
-            camera_arguments(camera, flock),
+            seen,
             whole("triangles", triangles, 0, 2**53),
             fine,
             below,
@@ -90,7 +104,7 @@ def _mask(visible: Any, count: int) -> NDArray[np.bool_] | None:
     """Returns a mask of ``count`` members."""
     if visible is None:
         return None
-    mask = np.asarray(visible)
+    mask = as_array(visible, "visible")
     if mask.dtype != np.bool_ or mask.shape != (count,):
         shape, dtype = mask.shape, mask.dtype
         raise MeshlodError(f"visible must be bool of shape ({count},), not {dtype} of {shape}")

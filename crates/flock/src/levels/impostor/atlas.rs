@@ -22,7 +22,11 @@ pub(super) fn draw(
     axes: &[[Vec3; 2]],
     half_width: f32,
 ) -> Result<Picture, TableError> {
-    let mesh = table.mesh(0);
+    let mut mesh = table.mesh(0);
+    if look.materials.is_none() {
+        // Colours or one plain material: its labels would refer to others.
+        mesh.materials = None;
+    }
     let materials = look.materials_over(&table.layers);
     let style = Style {
         size: [options.side_px; 2],

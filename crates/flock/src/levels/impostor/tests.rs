@@ -1,6 +1,7 @@
 use std::sync::Arc;
 
 use glam::Vec3;
+use meshlod_mesh::Labels;
 use meshlod_picture::{Background, Picture};
 
 use super::*;
@@ -103,4 +104,17 @@ fn odd_eyes_and_options_are_no_trouble() {
         let drawn = Impostor::draw(&table, &Look::default(), &options);
         assert!(matches!(drawn, Err(TableError::Option(_))));
     }
+}
+
+#[test]
+fn materials_that_the_look_does_not_have_are_no_trouble() {
+    let mut mesh = meshlod_samples::fish(1_000);
+    let of_face = (0..mesh.faces.len()).map(|face| face as u32 % 2).collect();
+    mesh.materials = Some(Labels { names: vec!["skin".into(), "eye".into()], of_face });
+    let options =
+        ChainOptions { axes: ModelAxes::FISH, directions: 2, step: 0.2, ..ChainOptions::default() };
+    let table = LevelTable::new(&mesh, &Look::default(), &options).unwrap();
+    assert_eq!(table.materials.as_ref().unwrap().names.len(), 2);
+    let impostor = Impostor::draw(&table, &Look::default(), &small()).unwrap();
+    assert!(impostor.atlas.rgba().iter().skip(3).step_by(4).any(|&alpha| alpha == 255));
 }
