@@ -39,11 +39,11 @@ pub fn make<T, E: ToString>(
     Ok(made)
 }
 
-/// Why a file was not made.
+/// Reason why a file was not made.
 pub enum MakeError {
     /// The system refused it.
     File(IoError),
-    /// What it should hold cannot be made.
+    /// The contents of the file cannot be made.
     Work(String),
 }
 
