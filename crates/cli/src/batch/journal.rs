@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
@@ -92,10 +92,20 @@ impl Journal {
 
 /// Opens a journal to add lines, after the end of a line that was cut off.
 fn open(path: &Path) -> io::Result<File> {
-    let whole = fs::read(path).map_or(true, |bytes| bytes.last().is_none_or(|&last| last == b'\n'));
-    let mut file = OpenOptions::new().append(true).create(true).open(path)?;
-    if !whole {
+    let mut file = OpenOptions::new().read(true).append(true).create(true).open(path)?;
+    if !ends_with_line(&mut file)? {
         file.write_all(b"\n")?;
     }
     Ok(file)
+}
+
+/// Reports whether the last line of a file is whole, or there is none.
+fn ends_with_line(file: &mut File) -> io::Result<bool> {
+    if file.seek(SeekFrom::End(0))? == 0 {
+        return Ok(true);
+    }
+    let mut last = [0];
+    file.seek(SeekFrom::End(-1))?;
+    file.read_exact(&mut last)?;
+    Ok(last == *b"\n")
 }
