@@ -7,8 +7,6 @@ use pyo3::create_exception;
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 
-use crate::new_file::MakeError;
-
 create_exception!(
     meshlod,
     MeshlodError,
@@ -32,14 +30,6 @@ pub fn raised_by_file(error: IoError) -> PyErr {
             None => PyOSError::new_err(error.to_string()),
         },
         _ => raised(error),
-    }
-}
-
-/// Makes an exception of an error with a file that work makes.
-pub fn raised_by_making(error: MakeError) -> PyErr {
-    match error {
-        MakeError::File(error) => raised_by_file(error),
-        MakeError::Work(text) => raised(text),
     }
 }
 

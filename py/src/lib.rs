@@ -15,7 +15,6 @@ mod flock;
 mod lent_out;
 mod mesh;
 mod model;
-mod new_file;
 mod numpy_views;
 mod query;
 mod report;

@@ -1,17 +1,20 @@
 //! Multiresolution files: building them, and meshes extracted from them.
 
 use std::fs::File;
-use std::path::PathBuf;
+use std::path::{PathBuf, absolute};
 
+use meshlod::io::write_file;
 use meshlod::multires::{ErrorKind, FileError, ModelFile};
-use meshlod::{BuildOptions, ExtractOptions, ExtractReport, IoError, extract_reported};
+use meshlod::{
+    BuildOptions, ExtractOptions, ExtractReport, IoError, LevelsError, build_bytes,
+    extract_reported,
+};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::cut::NativeCut;
-use crate::errors::{raised, raised_by_file, raised_by_making};
+use crate::errors::{raised, raised_by_file};
 use crate::mesh::NativeMesh;
-use crate::new_file::make;
 use crate::query::{CameraArguments, SentQuery};
 use crate::work::{Watch, run};
 
@@ -44,10 +47,18 @@ pub fn build(
     };
     let options = BuildOptions { lossless, errors, ..BuildOptions::default() };
     let mesh = mesh.shared();
-    let work = move |watch: &mut Watch| {
-        make(watch, &path, |path| meshlod::build(&mesh, path, &options)).map(drop)
+    // The folder of the process may change while the work runs.
+    let target = absolute(&path)?;
+    let work = move |watch: &mut Watch| -> Result<(), LevelsError> {
+        let built = build_bytes(&mesh, &options);
+        let (bytes, _) = built.map_err(|source| LevelsError::File { path, source })?;
+        watch.commit();
+        Ok(write_file(&target, &bytes)?)
     };
-    run(py, None, work)?.map_err(raised_by_making)
+    run(py, None, work)?.map_err(|error| match error {
+        LevelsError::Io(error) => raised_by_file(error),
+        other => raised(other),
+    })
 }
 
 #[pymethods]

@@ -1,21 +1,23 @@
 //! Functions for all that is done with a mesh besides simplifying it.
 
-use std::path::PathBuf;
+use std::path::{PathBuf, absolute};
 
 use meshlod::check::{CheckOptions, HoleLimits, RepairOptions, Severity, Stitch};
 use meshlod::codec::CompressionTarget;
+use meshlod::io::write_file;
 use meshlod::measure::{DistanceOptions, area, distance, volume};
 use meshlod::mesh::LayerKind;
 use meshlod::picture::{Camera, UpAxis, View, Wireframe};
 use meshlod::strip::{StripOptions, StripQuality, stripify};
-use meshlod::{CompressOptions, OwnedPaint, check_report, normals_of};
+use meshlod::{
+    CompressOptions, CompressedFileError, OwnedPaint, check_report, compress_bytes, normals_of,
+};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
-use crate::errors::{raised, raised_by_making};
+use crate::errors::{raised, raised_by_file};
 use crate::mesh::NativeMesh;
-use crate::new_file::make;
 use crate::report;
 use crate::work::{Watch, run};
 
@@ -136,10 +138,18 @@ pub fn compress(
     let target = error.map_or(CompressionTarget::Bits(bits), CompressionTarget::Error);
     let options = CompressOptions { target, ..CompressOptions::default() };
     let mesh = mesh.shared();
-    let work = move |watch: &mut Watch| {
-        make(watch, &path, |path| meshlod::compress(&mesh, path, &options))
+    // The folder of the process may change while the work runs.
+    let target = absolute(&path)?;
+    let work = move |watch: &mut Watch| -> Result<_, CompressedFileError> {
+        let (bytes, report) = compress_bytes(&mesh, &path, &options)?;
+        watch.commit();
+        write_file(&target, &bytes)?;
+        Ok(report)
     };
-    let report = run(py, None, work)?.map_err(raised_by_making)?;
+    let report = run(py, None, work)?.map_err(|error| match error {
+        CompressedFileError::Io(error) => raised_by_file(error),
+        other => raised(other),
+    })?;
     Ok((report.bytes, report.reached))
 }
 

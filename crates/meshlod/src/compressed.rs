@@ -126,6 +126,19 @@ pub fn compress(
     compress_with(mesh, Vec::new(), path, options)
 }
 
+/// Compresses a mesh as [`compress`] does, and returns the bytes of the file. Only the suffix of
+/// `path` counts.
+///
+/// # Errors
+/// As [`compress`], but for those of the file system.
+pub fn compress_bytes(
+    mesh: &Mesh,
+    path: &Path,
+    options: &CompressOptions,
+) -> Result<(Vec<u8>, CompressReport), CompressedFileError> {
+    encode(mesh, Vec::new(), path, options)
+}
+
 /// Compresses a scene to a file as [`compress`] does: all its meshes, each once, as [`place_scene`]
 /// merges them, and nodes, materials with images, skins and animations beside them. Decompress it
 /// with [`decompress_scene`](crate::decompress_scene).
@@ -148,14 +161,23 @@ fn compress_with(
     path: &Path,
     options: &CompressOptions,
 ) -> Result<CompressReport, CompressedFileError> {
-    let suffix = path.extension().map(|suffix| suffix.to_ascii_lowercase());
-    let (bytes, report) = match suffix.as_ref().and_then(|suffix| suffix.to_str()) {
-        Some("mlq") => for_drawing(mesh, resources, options)?,
-        Some("mlz") => for_transport(mesh, &resources, options)?,
-        _ => return Err(CompressedFileError::UnknownFormat(path.to_owned())),
-    };
+    let (bytes, report) = encode(mesh, resources, path, options)?;
     write_file(path, &bytes)?;
     Ok(report)
+}
+
+fn encode(
+    mesh: &Mesh,
+    resources: Vec<u8>,
+    path: &Path,
+    options: &CompressOptions,
+) -> Result<(Vec<u8>, CompressReport), CompressedFileError> {
+    let suffix = path.extension().map(|suffix| suffix.to_ascii_lowercase());
+    match suffix.as_ref().and_then(|suffix| suffix.to_str()) {
+        Some("mlq") => for_drawing(mesh, resources, options),
+        Some("mlz") => for_transport(mesh, &resources, options),
+        _ => Err(CompressedFileError::UnknownFormat(path.to_owned())),
+    }
 }
 
 fn for_drawing(

@@ -109,13 +109,20 @@ pub enum LevelsError {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn build(mesh: &Mesh, path: &Path, options: &BuildOptions) -> Result<BuildReport, LevelsError> {
-    let (bytes, report) = encode(mesh, options)
+    let (bytes, report) = build_bytes(mesh, options)
         .map_err(|source| LevelsError::File { path: path.to_owned(), source })?;
     write_file(path, &bytes)?;
     Ok(report)
 }
 
-fn encode(mesh: &Mesh, options: &BuildOptions) -> Result<(Vec<u8>, BuildReport), FileError> {
+/// Builds all levels of detail of a mesh as [`build`] does, and returns the bytes of the file.
+///
+/// # Errors
+/// As [`build`], but for those of the file system.
+pub fn build_bytes(
+    mesh: &Mesh,
+    options: &BuildOptions,
+) -> Result<(Vec<u8>, BuildReport), FileError> {
     let record = if options.lossless { Forest::lossless } else { Forest::new };
     let simplify = Options { method: options.method, ..Options::default() };
     let (mesh, simplify) = constrained(mesh, &options.constraints, simplify)

@@ -362,7 +362,7 @@ pub use appearance::{OwnedPaint, normals_of};
 pub use check_report::{CheckReport, check_report};
 #[cfg(feature = "codec")]
 pub use compressed::{
-    CompressOptions, CompressReport, CompressedFileError, compress, compress_scene,
+    CompressOptions, CompressReport, CompressedFileError, compress, compress_bytes, compress_scene,
 };
 #[cfg(feature = "codec")]
 pub use compressed_strips::compressed_strips;
@@ -383,7 +383,7 @@ pub use extract::{ExtractOptions, ExtractReport, extract, extract_reported};
 #[cfg(feature = "check")]
 pub use fuse::fuse_scene;
 #[cfg(feature = "multires")]
-pub use levels::{BuildOptions, BuildReport, LevelsError, build};
+pub use levels::{BuildOptions, BuildReport, LevelsError, build, build_bytes};
 #[cfg(feature = "io")]
 pub use locks::join_locks;
 #[cfg(feature = "picture")]

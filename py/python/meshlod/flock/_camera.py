@@ -62,13 +62,18 @@ def _camera_arguments(
     _check_up(forward, turn @ up, flock)
     if width < height:
         # Flocks have it along the shorter side of the picture.
-        fov = 2 * np.arctan(np.tan(fov / 2) * width / height)
+        fov = fov_along(width, fov, height)
     velocity, gaze = (0.0, 0.0, 0.0), (0.0, 0.0)
     if isinstance(camera, FlockCamera):
         velocity, gaze = triple("velocity", camera.velocity), pair("gaze", camera.gaze)
     at = (turn @ np.subtract(eye, origin) / length).tolist()
     moved = (turn @ velocity / length).tolist()
-    return at, (forward / length).tolist(), float(fov), [width, height], moved, list(gaze)
+    return at, (forward / length).tolist(), fov, [width, height], moved, list(gaze)
+
+
+def fov_along(side: int, fov: float, other: int) -> float:
+    """Returns the field of view along one side of a picture, from that along the other."""
+    return float(2 * np.arctan(np.tan(fov / 2) * side / other))
 
 
 def _check_up(forward: NDArray[np.float64], top: NDArray[np.float64], flock: Flock) -> None:

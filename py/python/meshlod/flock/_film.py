@@ -8,7 +8,7 @@ from .. import _native
 from .._asked import number, size_px, whole, word
 from .._errors import MeshlodError
 from .._mesh import Mesh
-from ._camera import FlockCamera
+from ._camera import FlockCamera, fov_along
 from ._members import Flock, School
 
 
@@ -50,7 +50,7 @@ class Film:
         swim = [School(range(*members), *places) for members, *places in schools]
         eye, forward, fov, (width, height), velocity, gaze = camera
         if width < height:
-            fov = float(2 * np.arctan(np.tan(fov / 2) * height / width))
+            fov = fov_along(height, fov, width)
         look = tuple(np.add(eye, forward).tolist())
         seen = FlockCamera(
             eye=tuple(eye), look=look, fov=fov, size=(width, height), velocity=tuple(velocity)
