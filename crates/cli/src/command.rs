@@ -2,12 +2,12 @@
 
 use clap::{Parser, Subcommand};
 
-use crate::answer::Answer;
-use crate::args::GlobalArgs;
 use crate::compare::Compare;
 use crate::demo::Demo;
-use crate::failure::Failure;
+use crate::options::args::GlobalArgs;
 use crate::session::Session;
+use crate::session::answer::Answer;
+use crate::session::failure::Failure;
 use crate::verbs::{
     batch, build, check, completions, compress, convert, decompress, extract, flock, info, lods,
     man, measure, render, repair, replay, run, sample, simplify, strip, view,

@@ -5,44 +5,21 @@
 //! for findings. Programs and the Python package call [`run`].
 #![forbid(unsafe_code)]
 
-mod answer;
-mod args;
 mod batch;
 mod check;
 mod command;
 mod compare;
-mod constraints;
 mod demo;
-mod distance;
-mod error_bound;
-mod failure;
-mod files;
 mod flock;
-mod fuse;
-mod kept_error;
-mod locks;
-mod model_file;
-mod model_query;
-mod model_scene;
-mod numbers;
-mod own_files;
+mod options;
 mod page;
-mod parse;
-mod poses;
-mod progress;
-mod query_args;
 mod recipe;
-mod report_head;
-mod scene_files;
 mod sequence;
 mod session;
-mod simplify_report;
 mod simplify_run;
-mod table;
-mod topology;
+mod text;
 mod verbs;
 mod view;
-mod volume;
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -50,11 +27,11 @@ use std::process::exit;
 
 use clap::{CommandFactory, FromArgMatches};
 
-use crate::answer::Answer;
 use crate::command::{Cli, Verb, Work};
-use crate::failure::Failure;
-use crate::progress::Progress;
 use crate::session::Session;
+use crate::session::answer::Answer;
+use crate::session::failure::Failure;
+use crate::session::progress::Progress;
 
 /// Exit code that shells report for Ctrl-C; also used for SIGTERM and SIGHUP.
 const INTERRUPTED: i32 = 130;
@@ -78,7 +55,10 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
         Err(failure) => {
             session.complain(&failure);
             if session.json {
-                answer::print_json(&report_head::of_failure(Some(&verb), &failure));
+                session::answer::print_json(&session::report_head::of_failure(
+                    Some(&verb),
+                    &failure,
+                ));
             }
             failure.exit_code()
         }
@@ -100,7 +80,7 @@ fn refuse(usage: &clap::Error, json: bool) -> u8 {
     let _ = usage.print();
     if json && usage.use_stderr() {
         let failure = Failure::usage(recipe::one_line(usage));
-        answer::print_json(&report_head::of_failure(None, &failure));
+        session::answer::print_json(&session::report_head::of_failure(None, &failure));
     }
     u8::try_from(usage.exit_code()).unwrap_or(2)
 }
@@ -168,7 +148,7 @@ fn perform(name: &mut String, cli: Cli, session: &mut Session) -> Result<Answer,
             answer(line.verb, session)?
         }
     };
-    answer.json = report_head::with_head(name, answer.json);
+    answer.json = session::report_head::with_head(name, answer.json);
     Ok(answer)
 }
 

@@ -7,9 +7,9 @@ use meshlod::io::{Node, write_file};
 use meshlod::simplify::{Progressive, Simplifier};
 use meshlod::{Mesh, Options, Scene};
 
-use crate::failure::Failure;
-use crate::files;
 use crate::session::Session;
+use crate::session::failure::Failure;
+use crate::session::files;
 use crate::simplify_run;
 
 /// Fails if a sequence file cannot be written, before any work is done.

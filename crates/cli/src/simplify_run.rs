@@ -9,8 +9,8 @@ use meshlod::{
     Borders, ConditionedScene, Mesh, Options, Report, Scene, SceneError, SceneSimplifier, Target,
 };
 
-use crate::failure::Failure;
 use crate::session::Session;
+use crate::session::failure::Failure;
 
 /// A simplified scene with its report.
 pub struct Simplified {
@@ -134,7 +134,7 @@ pub fn measure(
 ) -> Option<Distance> {
     let (original, options) = original?;
     session.progress.stage("measuring");
-    crate::distance::of_level(original, scene, level, &options)
+    crate::text::distance::of_level(original, scene, level, &options)
         .inspect_err(|error| session.warn(format_args!("not measured: {error}")))
         .ok()
 }

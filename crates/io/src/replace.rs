@@ -61,7 +61,8 @@ fn target_of(temporary: &str) -> Option<(&str, &str)> {
 
 /// Writes a file with `fill`; the old one stays as it is until the new one is complete.
 ///
-/// A target that is not a regular file (a pipe, a device) is written in place.
+/// Missing folders are made. A target that is not a regular file (a pipe, a device) is written in
+/// place.
 ///
 /// # Errors
 /// Errors of the system and those of `fill`; no temporary file is left behind.
@@ -100,6 +101,9 @@ pub(crate) fn stage<E: From<io::Error>>(
     if fs::metadata(&target).is_ok_and(|found| !found.is_file()) {
         fill_file(OpenOptions::new().write(true).open(&target)?, fill)?;
         return Ok(Staged { place: None });
+    }
+    if let Some(folder) = target.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        fs::create_dir_all(folder)?;
     }
     let (temporary, file) = Temporary::beside(&target)?;
     if let Ok(found) = fs::metadata(&target) {

@@ -2,12 +2,14 @@
 
 use meshlod_check::{ContactPolicy, Fused, LockOptions};
 use meshlod_io::Scene;
-use meshlod_mesh::{Lock, Locks, Mesh, VertexId};
+use meshlod_mesh::{Borders, Lock, Locks, Mesh, VertexId};
 use meshlod_simplify::{Options, SimplifyError, Topology};
 
+use crate::Bound;
 use crate::contacts::scene_locks;
 use crate::fuse::fuse_scene;
 use crate::locks::join_locks;
+use crate::place::world_bounds;
 
 /// Constraints on a simplification: its topology, its boundaries, and vertices that stay.
 ///
@@ -33,9 +35,11 @@ use crate::locks::join_locks;
 pub struct Constraints {
     /// Changes that are allowed to the topology of the surface.
     pub topology: Topology,
-    /// Largest component that may vanish, by the diagonal of its bounding box in world units; see
+    /// Treatment of boundary edges that lie on each other.
+    pub borders: Borders,
+    /// Largest component that may vanish, by the diagonal of its bounding box; see
     /// [`Options::vanish_below`].
-    pub vanish_below: Option<f64>,
+    pub vanish_below: Option<Bound>,
     /// True to unite closed components that intersect before anything else; see [`fuse_scene`].
     pub fuse: bool,
     /// True to lock every vertex of a boundary edge.
@@ -75,7 +79,7 @@ impl Constraints {
     /// Locks that do not match the scene.
     pub fn options(&self, scene: &Scene, options: Options) -> Result<Options, SimplifyError> {
         let locks = join_locks(scene, &self.locks_of_meshes(scene))?;
-        Ok(self.with_locks(locks, options))
+        Ok(self.with_locks(locks, scene, options))
     }
 
     /// Merges a scene into one mesh in world space, and adds the constraints to the options for the
@@ -90,7 +94,8 @@ impl Constraints {
         options: Options,
     ) -> Result<(Mesh, Options), SimplifyError> {
         let locks = flat_locks(&scene, &self.locks_of_meshes(&scene))?;
-        Ok((scene.into_mesh(), self.with_locks(locks, options)))
+        let options = self.with_locks(locks, &scene, options);
+        Ok((scene.into_mesh(), options))
     }
 
     pub(crate) fn locks_of_meshes(&self, scene: &Scene) -> Vec<Locks> {
@@ -104,8 +109,10 @@ impl Constraints {
         }
     }
 
-    fn with_locks(&self, locks: Locks, options: Options) -> Options {
-        let Self { topology, vanish_below, lock_boundary, .. } = *self;
+    fn with_locks(&self, locks: Locks, scene: &Scene, options: Options) -> Options {
+        let Self { topology, lock_boundary, .. } = *self;
+        let length = |bound: Bound| bound.length(world_bounds(scene).diagonal());
+        let vanish_below = self.vanish_below.map(length);
         Options { topology, vanish_below, lock_boundary, locks, ..options }
     }
 }
@@ -181,7 +188,7 @@ mod tests {
     fn every_constraint_reaches_the_options() {
         let constraints = Constraints {
             topology: Topology::Keep,
-            vanish_below: Some(2.0),
+            vanish_below: Some(Bound::Length(2.0)),
             lock_boundary: true,
             ..Constraints::default()
         };

@@ -281,6 +281,7 @@
 #[doc = include_str!("../README.md")]
 struct ReadmeExample;
 
+mod bound;
 mod bounded;
 mod conditioned;
 
@@ -306,8 +307,12 @@ mod decompressed;
 mod exact_volume;
 #[cfg(feature = "multires")]
 mod extract;
+#[cfg(feature = "io")]
+mod files;
 #[cfg(feature = "check")]
 mod fuse;
+#[cfg(feature = "io")]
+pub mod jobs;
 #[cfg(feature = "multires")]
 mod levels;
 #[cfg(feature = "io")]
@@ -352,6 +357,7 @@ pub use meshlod_samples as samples;
 #[cfg(feature = "strip")]
 pub use meshlod_strip as strip;
 
+pub use bound::Bound;
 pub use conditioned::{simplify, simplify_observed};
 pub use meshlod_mesh::{Borders, Mesh};
 pub use meshlod_simplify::{Method, Options, Report, SimplifyError, Target, Topology};
@@ -380,6 +386,10 @@ pub use decompressed::{decompress, decompress_bytes, decompress_model, decompres
 pub use exact_volume::{closed_volume, conserve_volumes, digits_of};
 #[cfg(feature = "multires")]
 pub use extract::{ExtractOptions, ExtractReport, extract, extract_reported};
+#[cfg(feature = "codec")]
+pub use files::{AnyFile, AnyFileError, FileBytes};
+#[cfg(feature = "io")]
+pub use files::{FileKind, Output};
 #[cfg(feature = "check")]
 pub use fuse::fuse_scene;
 #[cfg(feature = "multires")]

@@ -6,12 +6,12 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::{Instant, UNIX_EPOCH};
 
-use crate::answer::{Answer, Outcome};
 use crate::batch::plan::FileJob;
 use crate::batch::report::{FileReport, Status};
 use crate::command::VerbLine;
-use crate::failure::Failure;
 use crate::session::Session;
+use crate::session::answer::{Answer, Outcome};
+use crate::session::failure::Failure;
 
 /// Size of a file, and when it was changed, by which it is known again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

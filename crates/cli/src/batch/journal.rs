@@ -15,7 +15,7 @@ use serde_json::json;
 use crate::batch::file::FileState;
 use crate::batch::plan::FileJob;
 use crate::batch::report::{FileReport, Status};
-use crate::failure::Failure;
+use crate::session::failure::Failure;
 
 /// Name of the journal in an output folder.
 const NAME: &str = ".meshlod-batch.jsonl";

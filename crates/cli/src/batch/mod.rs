@@ -21,18 +21,18 @@ use clap::Parser;
 use meshlod::io::{remove_abandoned, write_file};
 use serde_json::json;
 
-use crate::answer::{Answer, Outcome};
-use crate::args::GlobalArgs;
 use crate::batch::journal::Journal;
 use crate::batch::plan::{FileJob, Plan};
 use crate::batch::report::{FileReport, Status, table};
 use crate::batch::workers::{Crew, run_jobs};
 use crate::command::VerbLine;
-use crate::failure::Failure;
-use crate::files;
-use crate::numbers::{count, plural, value};
+use crate::options::args::GlobalArgs;
 use crate::recipe::{Recipe, one_line};
 use crate::session::Session;
+use crate::session::answer::{Answer, Outcome};
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::text::numbers::{count, plural, value};
 use crate::verbs::batch::Batch;
 
 /// Options that name one file to write, which many runs would overwrite in turn.

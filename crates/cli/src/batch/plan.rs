@@ -7,10 +7,10 @@ use std::path::{Component, Path, PathBuf};
 use glob::{MatchOptions, Pattern, glob_with};
 use meshlod::Format;
 
-use crate::failure::Failure;
-use crate::files;
-use crate::own_files::OwnFormat;
-use crate::parse::Suffix;
+use crate::options::parse::Suffix;
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::session::own_files::OwnFormat;
 
 /// One file of a batch.
 #[derive(Clone, Debug, PartialEq)]

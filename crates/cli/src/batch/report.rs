@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use crate::batch::file::FileState;
 use crate::batch::plan::FileJob;
-use crate::files;
+use crate::session::files;
 
 /// State of a file in a batch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -6,13 +6,13 @@ use std::thread;
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use crate::args::GlobalArgs;
 use crate::batch::file::{FileState, run_file};
 use crate::batch::plan::FileJob;
 use crate::batch::report::FileReport;
-use crate::failure::Failure;
+use crate::options::args::GlobalArgs;
 use crate::recipe::Recipe;
 use crate::session::STACK_BYTES;
+use crate::session::failure::Failure;
 
 /// Number of files at a time, and what each is run with.
 pub struct Crew<'g> {

@@ -9,10 +9,10 @@ use crate::check::group::Group;
 use crate::check::inspection::Inspection;
 use crate::check::places::{coordinates, ids, objects};
 use crate::check::sites::Sites;
-use crate::numbers::{count, value};
 use crate::page::counts::Counts;
 use crate::page::facts::facts;
 use crate::page::figures::whole;
+use crate::text::numbers::{count, value};
 
 /// Limit of places listed of a group; the JSON has more.
 const MOST_PLACES: usize = 25;

@@ -10,8 +10,8 @@ use meshlod::mesh::{Lock, Locks, VertexId};
 use meshlod::{Format, ReadOptions, Scene};
 use serde_json::{Value, json};
 
-use crate::failure::Failure;
-use crate::files;
+use crate::session::failure::Failure;
+use crate::session::files;
 
 const FORMAT: &str = "meshlod-locks";
 const VERSION: u64 = 1;

@@ -15,13 +15,13 @@ use crate::check::marks::{Mark, Marks};
 use crate::check::places::short;
 use crate::check::sites::Sites;
 use crate::check::text;
-use crate::failure::Failure;
-use crate::files;
-use crate::numbers::{count, plural, value};
 use crate::page::document::{Document, document};
 use crate::page::figures::{figure, whole};
 use crate::page::inline_picture::InlinePicture;
 use crate::page::renderer::view_from;
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::text::numbers::{count, plural, value};
 
 /// Limit of object pairs in the table; the JSON has more.
 const MOST_PAIRS: usize = 60;

@@ -4,7 +4,7 @@ use meshlod::check::Finding;
 
 use crate::check::inspection::Inspection;
 use crate::check::sites::Sites;
-use crate::numbers::{count, value};
+use crate::text::numbers::{count, value};
 
 /// Describes the vertices and faces of a finding by their ids.
 pub fn ids(finding: &Finding, sites: &Sites) -> String {

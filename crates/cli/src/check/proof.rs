@@ -7,13 +7,13 @@ use meshlod::measured_poses;
 use meshlod::multires::{Archive, FileError, HeightField, ModelFile, Rtin};
 use serde_json::json;
 
-use crate::answer::Answer;
-use crate::failure::Failure;
-use crate::files;
-use crate::model_file;
-use crate::model_scene;
-use crate::numbers::{count, faces, plural};
 use crate::session::Session;
+use crate::session::answer::Answer;
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::session::model_file;
+use crate::text::model_scene;
+use crate::text::numbers::{count, faces, plural};
 
 /// Proves that no mesh extracted from a multiresolution file has a crack, or fails with the reason.
 pub fn prove(path: &Path, session: &Session) -> Result<Answer, Failure> {

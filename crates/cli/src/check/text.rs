@@ -6,8 +6,8 @@ use crate::check::group::{Grade, Group};
 use crate::check::inspection::Inspection;
 use crate::check::places::{coordinates, ids, objects, short};
 use crate::check::sites::Sites;
-use crate::numbers::{count, faces, plural, value};
-use crate::table::aligned;
+use crate::text::numbers::{count, faces, plural, value};
+use crate::text::table::aligned;
 
 /// Limit of object pairs on a terminal; JSON and page have more.
 const MOST_PAIRS: usize = 12;

@@ -7,17 +7,17 @@ use meshlod::picture::{ReferenceImages, Style};
 use meshlod::{Method, Options, Topology};
 
 use crate::compare::output::Output;
-use crate::constraints::ConstraintArgs;
-use crate::failure::Failure;
-use crate::fuse::FuseReport;
+use crate::options::constraints::ConstraintArgs;
+use crate::options::fuse::FuseReport;
+use crate::options::parse::LevelSize;
+use crate::options::topology;
 use crate::page::chain::{Chain, ChainBuilder, ChainSetup, Level};
 use crate::page::renderer::{LARGE, LevelPictures, SubjectRenderer};
 use crate::page::subject::Subject;
-use crate::parse::LevelSize;
 use crate::session::Session;
-use crate::simplify_report;
+use crate::session::failure::Failure;
 use crate::simplify_run::{self, ReadyScene};
-use crate::topology;
+use crate::text::simplify_report;
 
 /// A mesh, and the sizes and methods for which to compare simplifications of it.
 pub struct Comparison<'s> {

@@ -18,17 +18,17 @@ use meshlod::io::write_file;
 use meshlod::picture::View;
 use meshlod::{Method, Options, single_sided_materials};
 
-use crate::answer::Answer;
-use crate::args::{ReadArgs, SamplingArgs, ViewArgs};
-use crate::constraints::ConstraintArgs;
-use crate::failure::Failure;
-use crate::files;
-use crate::fuse::FuseReport;
-use crate::locks::InputScene;
+use crate::options::args::{ReadArgs, SamplingArgs, ViewArgs};
+use crate::options::constraints::ConstraintArgs;
+use crate::options::fuse::FuseReport;
+use crate::options::locks::InputScene;
+use crate::options::parse::{self, LevelSize};
 use crate::page::style::{self, OwnedPaint, SubjectStyle};
 use crate::page::subject::Subject;
-use crate::parse::{self, LevelSize};
 use crate::session::Session;
+use crate::session::answer::Answer;
+use crate::session::failure::Failure;
+use crate::session::files;
 use comparison::Comparison;
 use output::Output;
 

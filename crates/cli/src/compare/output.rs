@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use meshlod::io::Precision;
 use meshlod::{Format, IoError, Method, Scene, WriteOptions, write};
 
-use crate::files;
-use crate::parse::LevelSize;
+use crate::options::parse::LevelSize;
 use crate::session::Session;
+use crate::session::files;
 
 /// Output folder, and the format of the meshes written to it.
 pub struct Output {

@@ -5,11 +5,11 @@ use meshlod::measure::Distance;
 
 use crate::compare::comparison::{Comparison, ComparisonResult, MethodResult};
 use crate::compare::section::{anchor, section};
-use crate::numbers::{count, plural};
 use crate::page::chain::Level;
 use crate::page::chart::{Across, Chart, Series, chart};
 use crate::page::document::{Document, document};
 use crate::page::facts::facts;
+use crate::text::numbers::{count, plural};
 
 /// Builds the HTML page of a comparison.
 pub fn page(comparison: &Comparison<'_>, outcome: &ComparisonResult) -> Markup {

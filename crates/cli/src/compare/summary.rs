@@ -5,12 +5,12 @@ use serde_json::{Value, json};
 use crate::compare::comparison::{COMPARED_SIDE, Comparison, ComparisonResult, MethodResult};
 use crate::compare::output::Output;
 use crate::compare::verdict;
-use crate::files;
-use crate::numbers;
 use crate::page::chain::{Chain, Level};
 use crate::page::columns::{Column, legend};
 use crate::page::level_figures::LevelFigures;
-use crate::table::aligned;
+use crate::session::files;
+use crate::text::numbers;
+use crate::text::table::aligned;
 
 /// Returns all measurements as JSON, with file names relative to the output folder.
 pub fn json(comparison: &Comparison<'_>, outcome: &ComparisonResult, output: &Output) -> Value {

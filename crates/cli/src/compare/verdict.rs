@@ -5,9 +5,9 @@ use meshlod::measure::Distance;
 use serde_json::{Value, json};
 
 use crate::compare::comparison::ComparisonResult;
+use crate::options::parse::LevelSize;
 use crate::page::chain::Level;
 use crate::page::figures::{digits, seconds};
-use crate::parse::LevelSize;
 
 /// Relative difference up to which two figures count as equal: a distance from 100,000 samples is
 /// repeated within 0.2 %, and a time on an idle machine within one.

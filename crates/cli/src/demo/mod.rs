@@ -20,10 +20,10 @@ use clap::Args;
 use meshlod::Method;
 use meshlod::io::write_file;
 
-use crate::answer::Answer;
-use crate::failure::Failure;
-use crate::files;
 use crate::session::Session;
+use crate::session::answer::Answer;
+use crate::session::failure::Failure;
+use crate::session::files;
 use pipeline::Pipeline;
 use sample_report::SampleReport;
 

@@ -6,8 +6,8 @@ use crate::demo::pipeline::{self, Pipeline};
 use crate::demo::sample_report::{SAMPLES, SampleReport};
 use crate::demo::title_picture::TitlePicture;
 use crate::demo::{next_steps, section};
-use crate::numbers::count;
 use crate::page::document::{Document, document};
+use crate::text::numbers::count;
 
 /// Builds the HTML page of the demo.
 pub fn page(reports: &[SampleReport], pipeline: &Pipeline, title_picture: &TitlePicture) -> Markup {

@@ -8,12 +8,12 @@ use meshlod::{Borders, Mesh, Method, Options, Scene, WriteOptions, write};
 
 use crate::demo::samples::DemoSample;
 use crate::demo::{METHODS, main_method};
-use crate::failure::Failure;
+use crate::options::parse::LevelSize;
 use crate::page::chain::{Chain, ChainBuilder, ChainSetup, Level, LevelMesh};
 use crate::page::renderer::{LevelPictures, SIZE, SubjectRenderer};
 use crate::page::subject::Subject;
-use crate::parse::LevelSize;
 use crate::session::Session;
+use crate::session::failure::Failure;
 use crate::simplify_run::{self, ReadyScene};
 use crate::verbs::lods::switching::Camera;
 

@@ -9,12 +9,12 @@ use serde_json::{Value, json};
 
 use crate::demo::DemoResult;
 use crate::demo::sample_report::{SAMPLES, SampleReport};
-use crate::files;
-use crate::numbers::{count, percent, value};
 use crate::page::chain::{Chain, Level};
 use crate::page::counts::Counts;
 use crate::page::level_figures::LevelFigures;
-use crate::table::aligned;
+use crate::session::files;
+use crate::text::numbers::{count, percent, value};
+use crate::text::table::aligned;
 
 /// Returns all measurements and file paths as JSON.
 pub fn json(result: &DemoResult) -> Value {

@@ -7,10 +7,10 @@ use meshlod::io::write_file;
 use meshlod::picture::{Background, Camera, Style, render, side_by_side};
 
 use crate::demo::sample_report::SampleReport;
-use crate::failure::Failure;
-use crate::numbers::count;
 use crate::page::inline_picture::InlinePicture;
 use crate::page::renderer;
+use crate::session::failure::Failure;
+use crate::text::numbers::count;
 
 /// Width and height of one of its four tiles.
 const SIZE: [u32; 2] = [400, 320];

@@ -7,15 +7,15 @@ use meshlod::flock::levels::{ChainOptions, LevelTable, Look, ModelAxes};
 use meshlod::mesh::{Borders, ConditionOptions, Locks, Search, condition};
 use meshlod::{Mesh, Method};
 
-use crate::args::ReadArgs;
-use crate::failure::Failure;
-use crate::files;
 use crate::flock::axes::{self, Forward, SignedAxis};
 use crate::flock::sample_fish::textured_fish;
-use crate::numbers::count;
+use crate::options::args::ReadArgs;
+use crate::options::parse;
 use crate::page::style::{self, OwnedPaint};
-use crate::parse;
 use crate::session::Session;
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::text::numbers::count;
 
 /// Options for the model of the members.
 #[derive(Args)]

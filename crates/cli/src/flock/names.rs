@@ -2,8 +2,8 @@
 
 use meshlod::flock::select::PolicyName;
 
-use crate::numbers::count;
-use crate::parse;
+use crate::options::parse;
+use crate::text::numbers::count;
 
 /// Upper limit of `--members`.
 const MAX_MEMBERS: usize = 5_000_000;

@@ -10,10 +10,10 @@ use meshlod::flock::select::InstanceLevel;
 use meshlod::flock::{Flock, FlockCamera};
 use meshlod::io::write_file;
 
-use crate::failure::Failure;
-use crate::files;
-use crate::numbers::count;
 use crate::session::Session;
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::text::numbers::count;
 
 /// Frames of a film while they are recorded.
 pub struct Recorder {

@@ -4,7 +4,7 @@ use meshlod::Mesh;
 use meshlod::flock::scene::{Scenario, ScenarioName, ScenarioOptions, SceneError};
 use meshlod::samples;
 
-use crate::failure::Failure;
+use crate::session::failure::Failure;
 
 /// Settings that all scenes of a run share.
 #[derive(Clone, Copy, Debug)]

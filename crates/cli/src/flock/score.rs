@@ -10,13 +10,13 @@ use meshlod::flock::select::InstanceLevel;
 use meshlod::picture::Background;
 use serde_json::json;
 
-use crate::answer::Answer;
-use crate::failure::Failure;
-use crate::files;
 use crate::flock::evaluate::check_extent;
 use crate::flock::model::FlockModel;
-use crate::numbers::count;
 use crate::session::Session;
+use crate::session::answer::Answer;
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::text::numbers::count;
 
 /// Most frames that are drawn, evenly spread over the recording.
 const SCORED: usize = 30;

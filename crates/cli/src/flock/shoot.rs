@@ -12,13 +12,13 @@ use meshlod::flock::scene::Film;
 use meshlod::flock::select::{Budget, InstanceLevel, PolicyName, Selector};
 use meshlod::io::write_file;
 
-use crate::failure::Failure;
-use crate::files;
 use crate::flock::figures::{Figures, FrameFigures, switches};
 use crate::flock::model::FlockModel;
 use crate::flock::record::Recorder;
-use crate::numbers::{count, plural};
 use crate::session::Session;
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::text::numbers::{count, plural};
 use crate::verbs::flock::Flock;
 
 /// Files and figures of a film.

@@ -4,10 +4,10 @@ use meshlod::flock::levels::LevelTable;
 use meshlod::flock::select::Budget;
 use serde_json::{Value, json};
 
-use crate::files;
 use crate::flock::model::FlockModel;
 use crate::flock::shoot::Take;
-use crate::numbers::{count, faces, percent, plural, value};
+use crate::session::files;
+use crate::text::numbers::{count, faces, percent, plural, value};
 use crate::verbs::flock::Flock;
 
 /// Film with its model, levels and figures.

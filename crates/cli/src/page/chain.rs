@@ -7,11 +7,11 @@ use meshlod::measure::{
 };
 use meshlod::{Mesh, Method, Report, Target};
 
-use crate::failure::Failure;
+use crate::options::parse::LevelSize;
 use crate::page::counts::Counts;
 use crate::page::subject::Subject;
-use crate::parse::LevelSize;
 use crate::session::Session;
+use crate::session::failure::Failure;
 use crate::simplify_run::{ReadyScene, SimplifyRun};
 
 /// Builder of successive levels of one mesh by one method.

@@ -2,10 +2,10 @@
 
 use meshlod::measure::Distance;
 
-use crate::numbers::count;
 use crate::page::chain::Level;
 use crate::page::counts::Counts;
 use crate::page::figures::{digits, drift, power_of_ten, seconds};
+use crate::text::numbers::count;
 
 /// A measurement of simplified meshes, as the column of a table.
 pub struct Column {

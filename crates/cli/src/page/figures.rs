@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use crate::numbers;
+use crate::text::numbers;
 
 /// Shows a number as `text`, with its exact value as an attribute, as in the JSON output.
 pub fn figure(exact: f64, text: &str) -> Markup {

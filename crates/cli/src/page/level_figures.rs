@@ -4,12 +4,12 @@ use meshlod::Method;
 use meshlod::simplify::Refusals;
 use serde::Serialize;
 
-use crate::distance::DistanceFigures;
+use crate::options::parse::LevelSize;
+use crate::options::volume::VolumeNotConserved;
 use crate::page::chain::Level;
 use crate::page::counts::Counts;
-use crate::parse::LevelSize;
-use crate::simplify_report::ContractionFigures;
-use crate::volume::VolumeNotConserved;
+use crate::text::distance::DistanceFigures;
+use crate::text::simplify_report::ContractionFigures;
 
 /// Measurements of a level for programs.
 #[derive(Serialize)]

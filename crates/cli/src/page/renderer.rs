@@ -4,13 +4,13 @@ use meshlod::Mesh;
 use meshlod::measure::{PreparedSurface, vertex_errors};
 use meshlod::picture::{Background, Camera, Lighting, Normals, Paint, Style, View, render};
 
-use crate::failure::Failure;
-use crate::numbers;
 use crate::page::heat;
 use crate::page::inline_picture::InlinePicture;
 use crate::page::refine::refined;
 use crate::page::style::SubjectStyle;
 use crate::page::subject::Subject;
+use crate::session::failure::Failure;
+use crate::text::numbers;
 
 /// Width and height of the pictures in pixels: twice the displayed size, for high-resolution
 /// screens.

@@ -4,8 +4,8 @@ use meshlod::picture::{Materials, Normals, Style, Wireframe};
 use meshlod::{Mesh, Scene, materials_of};
 pub use meshlod::{OwnedPaint, normals_of};
 
-use crate::failure::Failure;
 use crate::session::Session;
+use crate::session::failure::Failure;
 
 /// Drawing style of a mesh and its simplified levels.
 #[derive(Clone, Debug)]

@@ -3,9 +3,9 @@
 use meshlod::measure::PreparedSurface;
 use meshlod::{Mesh, Scene};
 
-use crate::failure::Failure;
 use crate::page::counts::Counts;
 use crate::page::style::SubjectStyle;
+use crate::session::failure::Failure;
 
 /// A scene shown on a page, with its counts and drawing style.
 pub struct Subject {

@@ -15,11 +15,11 @@ use clap::Parser;
 use clap::error::{ContextKind, ContextValue};
 
 use crate::command::VerbLine;
-use crate::failure::Failure;
-use crate::files;
 pub use crate::recipe::spell::{Spelled, VerbOptions};
 pub use crate::recipe::text::Syntax;
 use crate::recipe::text::{Fault, entries};
+use crate::session::failure::Failure;
+use crate::session::files;
 
 /// Largest file that is read as a recipe.
 const MAX_BYTES: u64 = 1 << 16;

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 
-use crate::failure::Failure;
-use crate::parse;
+use crate::options::parse;
 use crate::recipe::{Recipe, Spelled, VerbOptions};
+use crate::session::failure::Failure;
 use crate::verbs::simplify::Simplify;
 
 /// Simplify many files, or do with them what a recipe says

@@ -18,19 +18,19 @@ use meshlod::{
     Target, model_limits,
 };
 
-use crate::answer::Answer;
-use crate::args::{AttributeErrorArgs, ReadArgs};
-use crate::constraints::{ConstraintArgs, FlatInput};
-use crate::failure::Failure;
-use crate::fuse;
-use crate::model_file;
-use crate::model_scene::{self, ErrorPoses};
-use crate::numbers::{percent, value};
-use crate::parse::{self, Bound};
-use crate::scene_files;
+use crate::options::args::{AttributeErrorArgs, ReadArgs};
+use crate::options::constraints::{ConstraintArgs, FlatInput};
+use crate::options::fuse;
+use crate::options::parse::{self, Bound};
+use crate::options::volume;
 use crate::session::Session;
+use crate::session::answer::Answer;
+use crate::session::failure::Failure;
+use crate::session::model_file;
+use crate::session::scene_files;
+use crate::text::model_scene::{self, ErrorPoses};
+use crate::text::numbers::{percent, value};
 use crate::verbs::build::report::{Built, Levels};
-use crate::volume;
 
 /// Write all levels of a mesh or scene to one multiresolution file (.mlod). The topology is kept,
 /// and locks hold in every level: tied vertices are locked. Nodes, materials, images, skins, morph

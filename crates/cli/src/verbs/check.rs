@@ -10,18 +10,18 @@ use meshlod::io::write_file;
 use meshlod::mesh::Lock;
 use meshlod::{Scene, scene_locks};
 
-use crate::answer::{Answer, Outcome};
-use crate::args::ReadArgs;
 use crate::check::group::Grade;
 use crate::check::inspection::{Inspection, InspectionOptions};
 use crate::check::lock_file::{self, FileRows};
 use crate::check::sites::Sites;
 use crate::check::{page, proof, report, text};
-use crate::failure::Failure;
-use crate::files;
-use crate::model_file;
-use crate::parse;
+use crate::options::args::ReadArgs;
+use crate::options::parse;
 use crate::session::Session;
+use crate::session::answer::{Answer, Outcome};
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::session::model_file;
 
 /// Find defects of a mesh and contacts between its objects; exit with 3 on errors
 #[derive(Args)]

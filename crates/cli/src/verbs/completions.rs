@@ -4,9 +4,9 @@ use clap::{Args, CommandFactory};
 use clap_complete::{Shell, generate};
 use serde_json::json;
 
-use crate::answer::Answer;
 use crate::command::Cli;
-use crate::failure::Failure;
+use crate::session::answer::Answer;
+use crate::session::failure::Failure;
 
 /// Print a script that completes verbs and options in a shell
 ///

@@ -16,17 +16,17 @@ use meshlod::codec::{CompressionTarget, Reconstruction, Scheme};
 use meshlod::{Mesh, Scene, SceneCounts, model_limits};
 use serde_json::json;
 
-use crate::answer::{Answer, Outcome};
-use crate::args::{AttributeErrorArgs, ReadArgs};
-use crate::constraints::ConstraintArgs;
-use crate::failure::Failure;
-use crate::files;
-use crate::fuse;
-use crate::model_scene::{self, ErrorPoses};
-use crate::numbers::percent;
-use crate::parse::{self, Bound};
-use crate::scene_files;
+use crate::options::args::{AttributeErrorArgs, ReadArgs};
+use crate::options::constraints::ConstraintArgs;
+use crate::options::fuse;
+use crate::options::parse::{self, Bound};
 use crate::session::Session;
+use crate::session::answer::{Answer, Outcome};
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::session::scene_files;
+use crate::text::model_scene::{self, ErrorPoses};
+use crate::text::numbers::percent;
 
 use self::place::Placed;
 use self::report::{CompressedFile, StripCounts};

@@ -6,14 +6,14 @@ use clap::Args;
 use meshlod::{Format, Mesh, Scene};
 use serde_json::{Value, json};
 
-use crate::answer::Answer;
-use crate::args::{ReadArgs, WriteArgs};
-use crate::failure::Failure;
-use crate::files;
-use crate::model_scene::shown_faces;
-use crate::numbers::{count, faces};
-use crate::scene_files;
+use crate::options::args::{ReadArgs, WriteArgs};
 use crate::session::Session;
+use crate::session::answer::Answer;
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::session::scene_files;
+use crate::text::model_scene::shown_faces;
+use crate::text::numbers::{count, faces};
 
 /// Write a mesh in another format, or the same one; what the format cannot hold is named
 #[derive(Args)]

@@ -7,14 +7,14 @@ use clap::Args;
 use meshlod::decompress_model;
 use serde_json::{Value, json};
 
-use crate::answer::Answer;
-use crate::args::WriteArgs;
-use crate::failure::Failure;
-use crate::files;
-use crate::model_scene;
-use crate::numbers::{count, faces, value};
-use crate::scene_files;
+use crate::options::args::WriteArgs;
 use crate::session::Session;
+use crate::session::answer::Answer;
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::session::scene_files;
+use crate::text::model_scene;
+use crate::text::numbers::{count, faces, value};
 
 /// Decode a compressed file (.mlq or .mlz): to glTF as the scene it was made of, else as its surface
 #[derive(Args)]

@@ -13,17 +13,17 @@ use meshlod::{
     CutVolumeError, Format, Mesh, ModelScene, conserve_cut_volume, digits_of, shown_rounding,
 };
 
-use crate::answer::{Answer, Outcome};
-use crate::args::WriteArgs;
-use crate::failure::Failure;
-use crate::files;
-use crate::kept_error::{KeptError, PosedError};
-use crate::model_file;
-use crate::model_query::QueryArgs;
-use crate::model_scene;
-use crate::numbers::value;
-use crate::scene_files;
+use crate::options::args::WriteArgs;
+use crate::options::model_query::QueryArgs;
 use crate::session::Session;
+use crate::session::answer::{Answer, Outcome};
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::session::model_file;
+use crate::session::scene_files;
+use crate::text::kept_error::{KeptError, PosedError};
+use crate::text::model_scene;
+use crate::text::numbers::value;
 use report::Extracted;
 
 /// Extract one level from a multiresolution file: fine where it is needed, coarse elsewhere. glTF

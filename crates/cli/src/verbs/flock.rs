@@ -8,16 +8,16 @@ use clap::Args;
 use meshlod::flock::scene::{Film, ScenarioName};
 use meshlod::flock::select::{Budget, PolicyName};
 
-use crate::answer::Answer;
-use crate::args::ReadArgs;
-use crate::failure::Failure;
-use crate::files;
 use crate::flock::model::{FlockModel, ModelArgs};
 use crate::flock::scene::SceneSettings;
 use crate::flock::summary::Summary;
 use crate::flock::{evaluate, names, record, score, shoot};
-use crate::parse;
+use crate::options::args::ReadArgs;
+use crate::options::parse;
 use crate::session::Session;
+use crate::session::answer::Answer;
+use crate::session::failure::Failure;
+use crate::session::files;
 
 /// Film schools of a model, every member only as fine as a policy decides
 ///

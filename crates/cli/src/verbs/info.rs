@@ -11,14 +11,14 @@ use meshlod::{Mesh, Scene};
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::answer::Answer;
-use crate::args::ReadArgs;
-use crate::failure::Failure;
-use crate::files;
-use crate::numbers::{coordinate, count, faces, value};
-use crate::own_files::{self, OwnFormat};
+use crate::options::args::ReadArgs;
 use crate::session::Session;
-use crate::table::aligned;
+use crate::session::answer::Answer;
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::session::own_files::{self, OwnFormat};
+use crate::text::numbers::{coordinate, count, faces, value};
+use crate::text::table::aligned;
 use crate::verbs::info::contents::Contents;
 
 /// Print what a file contains: counts, bounds, area, volume, closed or open; textures, skins,

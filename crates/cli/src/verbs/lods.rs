@@ -9,21 +9,21 @@ use meshlod::io::write_file;
 use meshlod::simplify::Digits;
 use meshlod::{Format, Scene, Topology, digits_of, world_bounds};
 
-use crate::answer::{Answer, Outcome};
-use crate::args::{ReadArgs, WriteArgs};
-use crate::distance;
-use crate::failure::Failure;
-use crate::files;
-use crate::fuse;
-use crate::locks::InputScene;
-use crate::model_scene;
-use crate::parse::{self, LevelSize};
-use crate::scene_files;
+use crate::options::args::{ReadArgs, WriteArgs};
+use crate::options::fuse;
+use crate::options::locks::InputScene;
+use crate::options::parse::{self, LevelSize};
+use crate::options::volume::ExactVolumeArgs;
 use crate::session::Session;
-use crate::simplify_report;
+use crate::session::answer::{Answer, Outcome};
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::session::scene_files;
 use crate::simplify_run::{self, ReadyScene, Simplified, SimplifyRun};
+use crate::text::distance;
+use crate::text::model_scene;
+use crate::text::simplify_report;
 use crate::verbs::simplify::MethodArgs;
-use crate::volume::ExactVolumeArgs;
 
 use self::switching::Camera;
 

@@ -8,11 +8,11 @@ use clap_mangen::Man as ManualPage;
 use meshlod::io::write_file;
 use serde_json::json;
 
-use crate::answer::Answer;
 use crate::command::Cli;
-use crate::failure::Failure;
-use crate::files;
 use crate::session::Session;
+use crate::session::answer::Answer;
+use crate::session::failure::Failure;
+use crate::session::files;
 
 /// Print the manual page, or write a page for each verb to a folder
 ///

@@ -10,16 +10,16 @@ use meshlod::mesh::Connectivity;
 use meshlod::{Mesh, Scene};
 use serde::Serialize;
 
-use crate::answer::Answer;
-use crate::args::{ReadArgs, SamplingArgs};
-use crate::distance::{self, CertifiedFigures, DistanceFigures};
-use crate::failure::Failure;
-use crate::files;
-use crate::numbers::{change, value};
-use crate::parse;
-use crate::poses::{FarthestFigures, FarthestPose};
+use crate::options::args::{ReadArgs, SamplingArgs};
+use crate::options::parse;
 use crate::session::Session;
-use crate::table::aligned;
+use crate::session::answer::Answer;
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::text::distance::{self, CertifiedFigures, DistanceFigures};
+use crate::text::numbers::{change, value};
+use crate::text::poses::{FarthestFigures, FarthestPose};
+use crate::text::table::aligned;
 
 /// Measure the distance between two meshes, both ways
 #[derive(Args)]

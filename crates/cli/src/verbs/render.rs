@@ -10,17 +10,17 @@ use meshlod::picture::{
 use meshlod::{Mesh, single_sided_materials};
 use serde_json::json;
 
-use crate::answer::Answer;
-use crate::args::{ReadArgs, ViewArgs};
-use crate::distance;
-use crate::failure::Failure;
-use crate::files;
-#[cfg(feature = "view")]
-use crate::numbers::count;
-use crate::numbers::{percent, value};
+use crate::options::args::{ReadArgs, ViewArgs};
+use crate::options::parse;
 use crate::page::style::{self, OwnedPaint, normals_of};
-use crate::parse;
 use crate::session::Session;
+use crate::session::answer::Answer;
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::text::distance;
+#[cfg(feature = "view")]
+use crate::text::numbers::count;
+use crate::text::numbers::{percent, value};
 #[cfg(feature = "view")]
 use crate::view::still;
 

@@ -12,16 +12,16 @@ use meshlod::check::{
 use meshlod::{Format, Scene, repair_scene};
 use serde::Serialize;
 
-use crate::answer::Answer;
-use crate::args::{ReadArgs, WriteArgs};
-use crate::failure::Failure;
-use crate::files;
-use crate::fuse::{self, FuseArgs, FuseReport};
-use crate::numbers::{count, faces, plural, value};
-use crate::parse;
-use crate::scene_files;
+use crate::options::args::{ReadArgs, WriteArgs};
+use crate::options::fuse::{self, FuseArgs, FuseReport};
+use crate::options::parse;
 use crate::session::Session;
-use crate::table::aligned;
+use crate::session::answer::Answer;
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::session::scene_files;
+use crate::text::numbers::{count, faces, plural, value};
+use crate::text::table::aligned;
 
 /// Repair the defects that can be repaired safely, and report every step.
 ///

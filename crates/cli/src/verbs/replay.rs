@@ -7,15 +7,15 @@ use meshlod::simplify::Progressive;
 use meshlod::{Scene, Target};
 use serde_json::json;
 
-use crate::answer::{Answer, Outcome};
-use crate::args::{ReadArgs, WriteArgs};
-use crate::failure::Failure;
-use crate::files;
-use crate::numbers::{count, faces};
-use crate::parse;
-use crate::scene_files;
+use crate::options::args::{ReadArgs, WriteArgs};
+use crate::options::parse;
 use crate::sequence;
 use crate::session::Session;
+use crate::session::answer::{Answer, Outcome};
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::session::scene_files;
+use crate::text::numbers::{count, faces};
 
 /// Restore any level recorded by simplify --sequence
 #[derive(Args)]

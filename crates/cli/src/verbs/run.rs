@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::failure::Failure;
 use crate::recipe::Recipe;
+use crate::session::failure::Failure;
 
 /// Run a recipe: a verb with its options in a TOML or JSON file. Keys are the long names of the
 /// options, and verb, input and output: verb = "simplify", ratio = "10%", measured = true. Paths in a

@@ -8,14 +8,14 @@ use meshlod::Scene;
 use meshlod::samples;
 use serde_json::json;
 
-use crate::answer::Answer;
-use crate::args::WriteArgs;
-use crate::failure::Failure;
-use crate::files;
-use crate::numbers::{self, count};
-use crate::parse;
-use crate::scene_files;
+use crate::options::args::WriteArgs;
+use crate::options::parse;
 use crate::session::Session;
+use crate::session::answer::Answer;
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::session::scene_files;
+use crate::text::numbers::{self, count};
 
 /// Write a procedural mesh of any size
 #[derive(Args)]

@@ -12,22 +12,22 @@ use meshlod::{
     Format, Mesh, Method, Options, Report, Scene, Target, digits_of, moved_at_most, world_bounds,
 };
 
-use crate::answer::{Answer, Outcome};
-use crate::args::{ReadArgs, WriteArgs};
-use crate::constraints::ConstraintArgs;
-use crate::distance;
-use crate::error_bound::{AskedError, ProvedError};
-use crate::failure::Failure;
-use crate::files;
-use crate::locks::InputScene;
-use crate::parse::{self, Bound};
-use crate::scene_files;
+use crate::options::args::{ReadArgs, WriteArgs};
+use crate::options::constraints::ConstraintArgs;
+use crate::options::locks::InputScene;
+use crate::options::parse::{self, Bound};
+use crate::options::topology;
+use crate::options::volume::ExactVolumeArgs;
 use crate::sequence;
 use crate::session::Session;
-use crate::simplify_report;
+use crate::session::answer::{Answer, Outcome};
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::session::scene_files;
 use crate::simplify_run::{self, ReadyScene, Simplified, SimplifyRun};
-use crate::topology;
-use crate::volume::ExactVolumeArgs;
+use crate::text::distance;
+use crate::text::error_bound::{AskedError, ProvedError};
+use crate::text::simplify_report;
 
 /// Reduce a mesh to fewer faces
 #[derive(Args)]

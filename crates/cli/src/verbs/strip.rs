@@ -18,17 +18,17 @@ use meshlod::strip::{
 };
 use meshlod::{Options, Scene, SimplifyError};
 
-use crate::answer::{Answer, Outcome};
-use crate::args::ReadArgs;
-use crate::constraints::{ConstraintArgs, FlatInput};
-use crate::failure::Failure;
-use crate::kept_error::KeptError;
-use crate::model_query::QueryArgs;
-use crate::model_scene;
-use crate::numbers;
-use crate::parse::{self, LevelSize};
-use crate::query_args::{self, ErrorLimit};
+use crate::options::args::ReadArgs;
+use crate::options::constraints::{ConstraintArgs, FlatInput};
+use crate::options::model_query::QueryArgs;
+use crate::options::parse::{self, LevelSize};
+use crate::options::query_args::{self, ErrorLimit};
 use crate::session::Session;
+use crate::session::answer::{Answer, Outcome};
+use crate::session::failure::Failure;
+use crate::text::kept_error::KeptError;
+use crate::text::model_scene;
+use crate::text::numbers;
 use options::{EffortArg, FilterArg, QualityArg};
 use output::StripOutput;
 

@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::answer::Answer;
-use crate::args::ReadArgs;
-use crate::failure::Failure;
 use crate::flock::model::ModelArgs;
-use crate::parse;
+use crate::options::args::ReadArgs;
+use crate::options::parse;
 use crate::session::Session;
+use crate::session::answer::Answer;
+use crate::session::failure::Failure;
 use crate::view::school_args::SchoolArgs;
 
 /// Open meshes or a school in a window

@@ -8,12 +8,12 @@ use meshlod_view::script::{Script, ScriptFilm};
 use meshlod_view::stage::Loaded;
 use serde_json::{Value, json};
 
-use crate::answer::Answer;
-use crate::args::ReadArgs;
-use crate::failure::Failure;
-use crate::files;
-use crate::numbers::count;
+use crate::options::args::ReadArgs;
 use crate::session::Session;
+use crate::session::answer::Answer;
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::text::numbers::count;
 
 /// Draws the frames that a script describes.
 pub fn run(

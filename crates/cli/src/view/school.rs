@@ -6,13 +6,13 @@ use meshlod::flock::levels::{Impostor, ImpostorOptions};
 use meshlod_view::Gpu;
 use meshlod_view::viewer::{SchoolReport, SchoolWindowOptions, run_school};
 
-use crate::answer::Answer;
-use crate::failure::Failure;
-use crate::files;
 use crate::flock::model::FlockModel;
 use crate::flock::scene::SceneSettings;
-use crate::numbers::{count, plural};
 use crate::session::Session;
+use crate::session::answer::Answer;
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::text::numbers::{count, plural};
 use crate::verbs::view::View;
 
 /// Frames a second of the simulated film, of which the window skips what it has no time for.

@@ -5,7 +5,7 @@ use meshlod::flock::scene::ScenarioName;
 use meshlod::flock::select::PolicyName;
 
 use crate::flock::names;
-use crate::parse;
+use crate::options::parse;
 
 /// Options of the window of a school.
 #[derive(Args)]

@@ -10,7 +10,7 @@ use meshlod_view::{
     Canvas, CutQuery, CutTolerance, Gpu, Renderer, TargetFormat, ViewError, render, view_camera,
 };
 
-use crate::failure::Failure;
+use crate::session::failure::Failure;
 
 /// File that is drawn as it is stored.
 pub struct Stored {

@@ -3,11 +3,11 @@
 use meshlod_view::ViewError;
 use meshlod_view::viewer::{self, ViewerOptions, ViewerReport};
 
-use crate::answer::{Answer, Outcome};
-use crate::failure::Failure;
-use crate::files;
-use crate::numbers::{count, faces};
 use crate::session::Session;
+use crate::session::answer::{Answer, Outcome};
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::text::numbers::{count, faces};
 use crate::verbs::view::View;
 
 pub fn run(verb: View, session: &Session) -> Result<Answer, Failure> {

@@ -1,7 +1,7 @@
 //! Scenes that come out of a file of one mesh, multiresolution or compressed.
 
 use meshlod_io::gltf::{SkeletonImage, SourceDocument};
-use meshlod_io::{ParseError, Scene};
+use meshlod_io::{Note, ParseError, Scene};
 use meshlod_mesh::Mesh;
 use meshlod_multires::{Archive, FileError, Source};
 use thiserror::Error;
@@ -36,6 +36,22 @@ pub struct MissingParts {
     pub images: usize,
     /// True if there are no key frames, so that the scene has no animations.
     pub animations: bool,
+}
+
+impl MissingParts {
+    /// Returns notes on the missing parts, also those of which none is missing.
+    pub fn notes(&self) -> Vec<Note> {
+        let Self { scene, previews, images, animations } = *self;
+        let note = |count, one, many| {
+            Note::left_out(count, one, many).detailed(", which the truncated file lacks")
+        };
+        vec![
+            note(scene.into(), "set of nodes and materials", ""),
+            note(previews, "image but for a smaller version", "images but for smaller versions"),
+            note(images, "image", "images"),
+            note(animations.into(), "set of animations", ""),
+        ]
+    }
 }
 
 /// Reason why the scene of a multiresolution or compressed file cannot be read.

@@ -7,7 +7,7 @@ use meshlod::mesh::VertexId;
 use meshlod::{Mesh, Scene, WriteOptions, write};
 
 use crate::demo::pipeline::steps::BROKEN;
-use crate::failure::Failure;
+use crate::session::failure::Failure;
 
 /// Writes a mesh with a hole, a tear, reversed faces and duplicate faces.
 pub fn write_file(mesh: &Mesh, folder: &Path) -> Result<(), Failure> {

@@ -15,13 +15,13 @@ use std::path::Path;
 use clap::Parser;
 use serde_json::{Value, json};
 
-use crate::answer::Answer;
 use crate::command::VerbLine;
 use crate::demo::sample_report::SampleReport;
-use crate::failure::Failure;
-use crate::files;
 use crate::page::inline_picture::InlinePicture;
 use crate::session::Session;
+use crate::session::answer::Answer;
+use crate::session::failure::Failure;
+use crate::session::files;
 use pictures::StepPainter;
 use steps::{Figure, STEPS, Step};
 

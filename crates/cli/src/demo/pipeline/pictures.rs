@@ -9,16 +9,16 @@ use meshlod::picture::{Background, Camera, Lighting, Normals, Paint, Picture, St
 use meshlod::strip::Strips;
 use serde_json::Value;
 
-use crate::args::ReadArgs;
 use crate::check::drawing::{Drawing, Part};
 use crate::check::inspection::{Inspection, InspectionOptions};
 use crate::demo::pipeline::steps::{BROKEN, Figure, STRIPS, Step};
-use crate::failure::Failure;
-use crate::files;
+use crate::options::args::ReadArgs;
 use crate::page::inline_picture::InlinePicture;
 use crate::page::renderer::view;
 use crate::page::subject::Subject;
 use crate::session::Session;
+use crate::session::failure::Failure;
+use crate::session::files;
 
 /// Width and height of the pictures in pixels.
 const SIZE: [u32; 2] = [480, 400];

@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 
-use crate::numbers;
 use crate::page::figures::digits;
+use crate::text::numbers;
 
 /// A step of the pipeline.
 pub struct Step {

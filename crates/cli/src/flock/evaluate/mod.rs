@@ -17,13 +17,13 @@ use meshlod::flock::select::policies::Factors;
 use meshlod::flock::select::{Budget, PolicyName};
 use meshlod::io::write_file;
 
-use crate::answer::Answer;
-use crate::failure::Failure;
-use crate::files;
 use crate::flock::evaluate::pictures::Pictures;
 use crate::flock::model::FlockModel;
-use crate::numbers::count;
 use crate::session::Session;
+use crate::session::answer::Answer;
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::text::numbers::count;
 use crate::verbs::flock::Flock;
 
 /// Extent of an evaluation.

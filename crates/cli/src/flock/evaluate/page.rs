@@ -8,8 +8,8 @@ use crate::flock::evaluate::summary::{PAIRS, arms, needed_share, ratio_text, sha
 use crate::flock::evaluate::{
     BUDGET, FLIPS, OURS, OURS_VISIBLE, Report, SCREEN_ERROR, SHOWN_SHARE,
 };
-use crate::numbers::count;
 use crate::page::document::{Document, document};
+use crate::text::numbers::count;
 
 /// Builds the whole page.
 pub fn page(report: &Report<'_>) -> Markup {

@@ -8,8 +8,8 @@ use meshlod::flock::levels::{LevelTable, Look};
 use meshlod::flock::select::{Budget, PolicyName, Selector};
 use meshlod::picture::{Picture, grid};
 
-use crate::failure::Failure;
 use crate::flock::evaluate::{BUDGET, OURS, SHOWN_SHARE};
+use crate::session::failure::Failure;
 
 /// Pictures by file name.
 #[derive(Default)]

@@ -5,10 +5,10 @@ use std::path::Path;
 use meshlod::flock::evaluate::Interval;
 use serde_json::{Value, json};
 
-use crate::files;
 use crate::flock::evaluate::{BUDGET, FLIPS, OURS, OURS_VISIBLE, Report, SCREEN_ERROR};
-use crate::numbers::count;
-use crate::table::aligned;
+use crate::session::files;
+use crate::text::numbers::count;
+use crate::text::table::aligned;
 
 /// Pairs of arms whose triangles at equal image error are compared.
 pub const PAIRS: [[&str; 2]; 5] = [

@@ -8,11 +8,11 @@ use meshlod::{Mesh, Method, PoseCounts, SceneCounts};
 use serde::Serialize;
 
 use super::Build;
-use crate::files;
-use crate::fuse::FuseReport;
-use crate::model_file;
-use crate::model_scene::ErrorPoses;
-use crate::numbers::{count, faces, value};
+use crate::options::fuse::FuseReport;
+use crate::session::files;
+use crate::session::model_file;
+use crate::text::model_scene::ErrorPoses;
+use crate::text::numbers::{count, faces, value};
 
 /// File contents with the figures to report.
 pub(super) struct Built {

@@ -4,8 +4,8 @@ use meshlod::Scene;
 use meshlod::check::ContactPolicy;
 
 use super::{Compress, Kind, SchemeArg};
-use crate::failure::Failure;
-use crate::locks::{LockArgs, PolicyArg};
+use crate::options::locks::{LockArgs, PolicyArg};
+use crate::session::failure::Failure;
 
 impl Compress {
     /// Chooses a scheme that rounds equal positions equally if contacts are tied, and refuses locks

@@ -8,8 +8,8 @@ use meshlod::io::gltf::{
 use meshlod::{Format, Scene};
 
 use super::{Compress, CompressedFile, SchemeArg};
-use crate::failure::Failure;
-use crate::scene_files::unused_parts;
+use crate::session::failure::Failure;
+use crate::session::scene_files::unused_parts;
 
 impl Compress {
     pub(super) fn gltf(&self, scene: Scene) -> Result<CompressedFile, Failure> {

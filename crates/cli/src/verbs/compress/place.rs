@@ -3,9 +3,9 @@
 use meshlod::{Constraints, Mesh, Options, PackedScene, Scene, SceneCounts, place_scene};
 
 use super::Compress;
-use crate::failure::Failure;
-use crate::files;
 use crate::session::Session;
+use crate::session::failure::Failure;
+use crate::session::files;
 
 /// Scene that is ready to be compressed.
 pub(super) struct Placed {

@@ -10,9 +10,9 @@ use meshlod::io::Note;
 use meshlod::mesh::{AttributeBounds, LayerKind};
 use serde::Serialize;
 
-use crate::files;
-use crate::fuse::FuseReport;
-use crate::numbers::{count, faces, percent, value};
+use crate::options::fuse::FuseReport;
+use crate::session::files;
+use crate::text::numbers::{count, faces, percent, value};
 
 /// Compressed file with the figures to report.
 pub struct CompressedFile {

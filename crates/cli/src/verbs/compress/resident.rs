@@ -5,8 +5,8 @@ use meshlod::strip::StripQuality;
 use meshlod::{Mesh, compressed_strips};
 
 use super::{Compress, CompressedFile, SchemeArg, StripCounts};
-use crate::failure::Failure;
-use crate::scene_files::unused_parts;
+use crate::session::failure::Failure;
+use crate::session::scene_files::unused_parts;
 
 impl Compress {
     pub(super) fn resident(&self, mesh: &Mesh, scene: Vec<u8>) -> Result<CompressedFile, Failure> {

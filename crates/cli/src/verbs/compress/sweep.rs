@@ -6,12 +6,12 @@ use meshlod::measure::{Distance, surface_distance};
 use serde_json::{Value, json};
 
 use super::Compress;
-use crate::distance;
-use crate::failure::Failure;
-use crate::files;
-use crate::numbers::{count, percent, value};
 use crate::session::Session;
-use crate::table::aligned;
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::text::distance;
+use crate::text::numbers::{count, percent, value};
+use crate::text::table::aligned;
 
 /// A mesh in some number of parts.
 struct SweepRow {

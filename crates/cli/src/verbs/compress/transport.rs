@@ -7,8 +7,8 @@ use meshlod::codec::{
 };
 
 use super::{Compress, CompressedFile};
-use crate::failure::Failure;
-use crate::scene_files::unused_parts;
+use crate::session::failure::Failure;
+use crate::session::scene_files::unused_parts;
 
 impl Compress {
     pub(super) fn transport(&self, mesh: &Mesh, scene: &[u8]) -> Result<CompressedFile, Failure> {

@@ -7,9 +7,9 @@ use meshlod::multires::Level;
 use meshlod::simplify::VolumeResidual;
 use serde::Serialize;
 
-use crate::files;
-use crate::kept_error::{KeptError, KeptFigures};
-use crate::numbers::{count, faces, plural, value};
+use crate::session::files;
+use crate::text::kept_error::{KeptError, KeptFigures};
+use crate::text::numbers::{count, faces, plural, value};
 
 /// File that was written, and whether it is what was asked for.
 pub struct Done<'a> {

@@ -7,7 +7,7 @@ use meshlod::io::Image;
 use meshlod::io::gltf::AnimationFacts;
 use serde::Serialize;
 
-use crate::numbers::{count, plural, value};
+use crate::text::numbers::{count, plural, value};
 
 /// Contents of a scene beside its surface, under the keys of JSON.
 #[derive(Serialize)]

@@ -10,13 +10,13 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::{ChainLayout, LodLevel, Lods};
-use crate::distance::DistanceFigures;
-use crate::files;
-use crate::numbers::{count, percent, value};
-use crate::simplify_report::{self, InputFigures, RunFigures};
+use crate::options::topology::{self, ConditioningFigures};
+use crate::session::files;
 use crate::simplify_run::{ReadyScene, Simplified};
-use crate::table::aligned;
-use crate::topology::{self, ConditioningFigures};
+use crate::text::distance::DistanceFigures;
+use crate::text::numbers::{count, percent, value};
+use crate::text::simplify_report::{self, InputFigures, RunFigures};
+use crate::text::table::aligned;
 
 /// Figures of a chain for programs.
 #[derive(Serialize)]

@@ -5,7 +5,7 @@ use meshlod::measure::Distance;
 use meshlod::mesh::Bounds;
 use serde_json::{Value, json};
 
-use crate::parse;
+use crate::options::parse;
 
 /// Camera for which the distances of the levels are computed.
 #[derive(Clone, Copy, Args)]

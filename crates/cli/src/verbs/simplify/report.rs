@@ -6,15 +6,15 @@ use meshlod::Method;
 use serde::Serialize;
 
 use super::{Simplify, Task};
-use crate::distance::{self, DistanceFigures};
-use crate::error_bound::{ErrorFigures, ProvedError};
-use crate::files;
-use crate::fuse::{self, FuseReport};
-use crate::numbers::{count, faces, percent, value};
-use crate::simplify_report::{self, ContractionFigures, InputFigures, RunFigures};
+use crate::options::fuse::{self, FuseReport};
+use crate::options::topology::{self, ConditioningFigures};
+use crate::options::volume::{self, VolumeNotConserved};
+use crate::session::files;
 use crate::simplify_run::Simplified;
-use crate::topology::{self, ConditioningFigures};
-use crate::volume::{self, VolumeNotConserved};
+use crate::text::distance::{self, DistanceFigures};
+use crate::text::error_bound::{ErrorFigures, ProvedError};
+use crate::text::numbers::{count, faces, percent, value};
+use crate::text::simplify_report::{self, ContractionFigures, InputFigures, RunFigures};
 
 /// A finished run, with all that is reported of it.
 pub(super) struct FinishedRun<'r> {

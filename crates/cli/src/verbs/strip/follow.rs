@@ -7,15 +7,15 @@ use meshlod::strip::{CutStrips, Difference, StripIndices, StripStatistics};
 use serde::Serialize;
 
 use super::{Strip, report};
-use crate::answer::{Answer, Outcome};
-use crate::failure::Failure;
-use crate::files;
-use crate::model_file;
-use crate::model_scene;
-use crate::numbers::count;
-use crate::query_args::ErrorLimit;
+use crate::options::query_args::ErrorLimit;
 use crate::session::Session;
-use crate::table::aligned;
+use crate::session::answer::{Answer, Outcome};
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::session::model_file;
+use crate::text::model_scene;
+use crate::text::numbers::count;
+use crate::text::table::aligned;
 
 /// Strips of a cut, and what it took to get there from the one before, under the keys of JSON.
 #[derive(Serialize)]

@@ -5,12 +5,12 @@ use meshlod::multires::FileError;
 use meshlod::{Format, Scene, shown_rounding};
 
 use super::{Strip, output};
-use crate::failure::Failure;
-use crate::files;
-use crate::kept_error::KeptError;
-use crate::model_file;
-use crate::model_scene;
 use crate::session::Session;
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::session::model_file;
+use crate::text::kept_error::KeptError;
+use crate::text::model_scene;
 
 /// Scene of a cut.
 pub(super) struct CutScene {

@@ -9,11 +9,11 @@ use meshlod::{Scene, scene_strips};
 use serde_json::{Value, json};
 
 use super::StrippedLevel;
-use crate::constraints::FlatInput;
-use crate::failure::Failure;
-use crate::files;
-use crate::scene_files;
+use crate::options::constraints::FlatInput;
 use crate::session::Session;
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::session::scene_files;
 
 /// File of strips to write, with what it needs of the input.
 pub(super) struct StripOutput<'o> {

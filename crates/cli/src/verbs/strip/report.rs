@@ -6,9 +6,9 @@ use meshlod::strip::StripStatistics;
 use serde::Serialize;
 
 use super::{Strip, StripSource, StrippedLevel};
-use crate::files;
-use crate::fuse::FuseReport;
-use crate::kept_error::{KeptError, KeptFigures};
+use crate::options::fuse::FuseReport;
+use crate::session::files;
+use crate::text::kept_error::{KeptError, KeptFigures};
 
 /// Figures of the strips of all levels.
 #[derive(Serialize)]

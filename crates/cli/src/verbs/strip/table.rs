@@ -1,8 +1,8 @@
 //! Table of the strip measurements of all levels.
 
-use crate::numbers::count;
-use crate::simplify_report;
-use crate::table::aligned;
+use crate::text::numbers::count;
+use crate::text::simplify_report;
+use crate::text::table::aligned;
 
 use super::{Strip, StripSource, StrippedLevel};
 
@@ -39,7 +39,7 @@ impl Strip {
         if left_out > 0 {
             text += &format!(
                 "left out: {}, degenerate or duplicate\n",
-                crate::numbers::faces(left_out)
+                crate::text::numbers::faces(left_out)
             );
         }
         if !source.simplify_time.is_zero() {

@@ -9,7 +9,7 @@ use meshlod::strip::{MergeTree, Strips, difference};
 use meshlod::{SimplifyError, Target};
 
 use super::StrippedLevel;
-use crate::constraints::FlatInput;
+use crate::options::constraints::FlatInput;
 
 /// Compares the triangles drawn at each level with the faces left by simplifying to it, and at full
 /// size with the cleaned faces of the mesh: their vertices, attributes and materials.

@@ -2,13 +2,13 @@
 
 use clap::{Args, ValueEnum};
 use meshlod::mesh::Conditioning;
-use meshlod::{Borders, ConditionedScene, Scene, Topology, world_bounds};
+use meshlod::{Borders, ConditionedScene, Topology};
 use serde::Serialize;
 
-use crate::failure::Failure;
-use crate::numbers::{count, value};
-use crate::parse::{self, Bound};
+use crate::options::parse::{self, Bound};
 use crate::session::Session;
+use crate::session::failure::Failure;
+use crate::text::numbers::{count, value};
 
 /// Options for what may happen to the topology of a mesh.
 #[derive(Args, Clone)]
@@ -22,12 +22,7 @@ pub struct TopologyArgs {
     /// other methods nothing vanishes]
     #[arg(long, value_name = "SIZE", value_parser = parse::bound, allow_hyphen_values = true)]
     vanish_below: Option<Bound>,
-    /// Former name of --vanish-below; without a size no component vanishes
-    #[arg(long, value_name = "SIZE", num_args = 0..=1, default_missing_value = "0", hide = true,
-        require_equals = true, value_parser = parse::bound, allow_negative_numbers = true,
-        conflicts_with = "vanish_below")]
-    keep_objects: Option<Bound>,
-    /// Leave boundary edges apart that lie exactly on each other, in place of sewing them together
+    /// Do not sew boundary edges that coincide exactly
     #[arg(long)]
     no_stitch: bool,
 }
@@ -44,15 +39,14 @@ enum TopologyArg {
 }
 
 impl TopologyArgs {
-    /// Returns the limit of components that may vanish, as a length in world units.
-    pub fn vanish_below(&self, scene: &Scene) -> Result<Option<f64>, Failure> {
-        let size = self.vanish_below.or(self.keep_objects);
+    /// Returns the limit of components that may vanish.
+    pub fn vanish_below(&self) -> Result<Option<Bound>, Failure> {
         if self.topology == Some(TopologyArg::Keep) && self.vanish_below.is_some() {
             return Err(Failure::usage(
                 "--vanish-below does not go with --topology keep, with which nothing vanishes",
             ));
         }
-        Ok(size.map(|size| size.length(world_bounds(scene).diagonal())))
+        Ok(self.vanish_below)
     }
 
     /// Returns what may happen to the topology.

@@ -5,13 +5,13 @@ use std::path::Path;
 use clap::Args;
 use meshlod::{Constraints, Mesh, Options, PlacedScene, Scene, Target, VertexLocking, place_scene};
 
-use crate::args::ReadArgs;
-use crate::failure::Failure;
-use crate::files;
-use crate::fuse::{FuseArgs, FuseReport};
-use crate::locks::{InputScene, LockArgs};
+use crate::options::args::ReadArgs;
+use crate::options::fuse::{FuseArgs, FuseReport};
+use crate::options::locks::{InputScene, LockArgs};
+use crate::options::topology::TopologyArgs;
 use crate::session::Session;
-use crate::topology::TopologyArgs;
+use crate::session::failure::Failure;
+use crate::session::files;
 
 /// Options for what simplification must keep.
 #[derive(Args)]
@@ -94,7 +94,8 @@ impl ConstraintArgs {
     fn constraints(&self, input: &InputScene<'_>) -> Result<Constraints, Failure> {
         Ok(Constraints {
             topology: self.topology.kind(),
-            vanish_below: self.topology.vanish_below(input.scene)?,
+            borders: self.topology.borders(),
+            vanish_below: self.topology.vanish_below()?,
             fuse: self.fuse.fuse,
             lock_boundary: self.locks.lock_boundary,
             locks: self.locks.locking(input)?,

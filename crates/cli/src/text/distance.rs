@@ -9,9 +9,9 @@ use meshlod::measure::{
 use meshlod::{Mesh, Scene, io::SceneMesh};
 use serde::Serialize;
 
-use crate::failure::Failure;
-use crate::numbers;
-use crate::table::aligned;
+use crate::session::failure::Failure;
+use crate::text::numbers;
+use crate::text::table::aligned;
 
 /// Joins the meshes of a scene into one surface in world space without attributes, with `meshes` in
 /// place of its own.

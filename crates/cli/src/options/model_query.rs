@@ -7,13 +7,13 @@ use clap::{Args, ValueEnum};
 use meshlod::multires::{Extract, FileError, ModelFile, Query, ViewCamera};
 use meshlod::{VerifiedExtract, extract_verified, measure_extract};
 
-use crate::failure::Failure;
-use crate::kept_error::{Asked, KeptError, Known};
-use crate::model_file;
-use crate::numbers::faces;
-use crate::parse::{self, Bound};
-use crate::query_args::{self, ErrorLimit, FocusArg, QueryRequest};
+use crate::options::parse::{self, Bound};
+use crate::options::query_args::{self, ErrorLimit, FocusArg, QueryRequest};
 use crate::session::Session;
+use crate::session::failure::Failure;
+use crate::session::model_file;
+use crate::text::kept_error::{Asked, KeptError, Known};
+use crate::text::numbers::faces;
 
 /// Options of verbs that read one cut out of a multiresolution file.
 #[derive(Args)]

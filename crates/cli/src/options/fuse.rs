@@ -5,8 +5,8 @@ use meshlod::check::Fused;
 use meshlod::{Constraints, Scene, Target};
 use serde::Serialize;
 
-use crate::numbers::{count, faces, plural};
 use crate::session::Session;
+use crate::text::numbers::{count, faces, plural};
 
 /// Option to fuse objects.
 #[derive(Args)]

@@ -4,9 +4,9 @@ use std::fmt;
 
 use meshlod::multires::{Focus, Ground, GroundShape, Query, Tolerance, ViewCamera};
 
-use crate::failure::Failure;
-use crate::numbers::percent;
-use crate::parse::{self, Bound};
+use crate::options::parse::{self, Bound};
+use crate::session::failure::Failure;
+use crate::text::numbers::percent;
 
 /// Largest error allowed in the focus region of a multiresolution query.
 #[derive(Clone, Copy, Debug, PartialEq)]

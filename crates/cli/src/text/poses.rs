@@ -5,11 +5,11 @@ use meshlod::measure::{DistanceOptions, surface_distance};
 use meshlod::{Mesh, Scene, posed_mesh};
 use serde::Serialize;
 
-use crate::distance;
-use crate::failure::Failure;
-use crate::files;
-use crate::numbers::{count, plural, value};
 use crate::session::Session;
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::text::distance;
+use crate::text::numbers::{count, plural, value};
 
 /// Pose in which two scenes are farthest apart.
 pub struct FarthestPose {

@@ -5,8 +5,8 @@ use std::io::{self, ErrorKind, Write};
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use crate::failure::Failure;
 use crate::session::Session;
+use crate::session::failure::Failure;
 
 /// Outcome of a command that has an answer; it sets the exit code.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

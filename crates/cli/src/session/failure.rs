@@ -6,7 +6,7 @@ use std::path::Path;
 use meshlod::IoError;
 use serde_json::{Value, json};
 
-use crate::files;
+use crate::session::files;
 
 /// Reason why a command failed, as one line: `FILE: place: reason`.
 #[derive(Debug)]

@@ -10,10 +10,10 @@ use meshlod::io::{Note, gltf, obj, off, ply, read_bytes, smf, stl};
 use meshlod::io::{write_file, write_lods, write_strips};
 use meshlod::{Format, Mesh, ReadOptions, Scene, WriteOptions};
 
-use crate::args::WriteArgs;
-use crate::failure::Failure;
-use crate::files::{check_output, is_pipe, name, pipe_format};
+use crate::options::args::WriteArgs;
 use crate::session::Session;
+use crate::session::failure::Failure;
+use crate::session::files::{check_output, is_pipe, name, pipe_format};
 
 /// Writes a scene to a file or standard output.
 pub fn write(

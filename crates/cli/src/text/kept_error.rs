@@ -4,8 +4,8 @@ use meshlod::multires::Tolerance;
 use meshlod::{PoseCounts, Verification};
 use serde::Serialize;
 
-use crate::model_file;
-use crate::numbers::{count, percent, plural, value};
+use crate::session::model_file;
+use crate::text::numbers::{count, percent, plural, value};
 
 /// Error that was asked for.
 #[derive(Clone, Copy, PartialEq)]

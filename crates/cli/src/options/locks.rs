@@ -7,9 +7,9 @@ use clap::{Args, ValueEnum};
 use meshlod::check::ContactPolicy;
 use meshlod::{Scene, VertexLocking};
 
-use crate::args::ReadArgs;
 use crate::check::lock_file::{self, FileRows};
-use crate::failure::Failure;
+use crate::options::args::ReadArgs;
+use crate::session::failure::Failure;
 
 /// Options that keep vertices in place.
 #[derive(Args)]

@@ -7,10 +7,10 @@ use meshlod::io::{Note, merged_instances};
 use meshlod::multires::{ModelFile, Query};
 use meshlod::{Format, MissingParts, ModelScene, PoseCounts, Scene, SceneCounts, SceneQueryError};
 
-use crate::failure::Failure;
-use crate::model_file;
-use crate::numbers::count;
 use crate::session::Session;
+use crate::session::failure::Failure;
+use crate::session::model_file;
+use crate::text::numbers::count;
 
 /// Poses other than that of the file for which errors hold.
 #[derive(Clone, Copy)]

@@ -8,12 +8,12 @@ use meshlod::multires::{ModelFile, Query};
 use meshlod::{ReadOptions, Scene, decompress_model};
 use serde_json::{Value, json};
 
-use crate::failure::Failure;
-use crate::files;
-use crate::model_file;
-use crate::model_scene;
-use crate::numbers::{count, value};
 use crate::session::Session;
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::session::model_file;
+use crate::text::model_scene;
+use crate::text::numbers::{count, value};
 
 /// A file format of our own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

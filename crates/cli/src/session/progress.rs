@@ -56,6 +56,16 @@ impl Progress {
         Watch { bar: &self.bar, gone: 0, shown: 0 }
     }
 
+    /// Shows how many steps of a stage are done, as a part where their number is known.
+    pub fn step(&self, done: usize, of: Option<usize>) {
+        if let Some(of) = of.filter(|_| done == 0) {
+            let style = ProgressStyle::with_template("{spinner} {msg} {bar:40} {percent}%");
+            self.bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+            self.bar.set_length(of as u64);
+        }
+        self.bar.set_position(done as u64);
+    }
+
     /// Shows how many of a known number of things are done.
     pub fn part(&self, what: &str, done: usize, of: usize) {
         if done == 0 {

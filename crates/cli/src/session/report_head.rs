@@ -4,7 +4,7 @@
 
 use serde_json::{Map, Value};
 
-use crate::failure::Failure;
+use crate::session::failure::Failure;
 
 /// Name of the format, under the key `format`.
 const FORMAT: &str = "meshlod-report";

@@ -1,4 +1,17 @@
-//! State shared by all commands: output format, messages and threads.
+//! The run of a verb: what it answers, where it fails, what it says on the way.
+//!
+//! [`Session`] is what every verb gets. Read on in [`answer`] and [`failure`] for how a verb ends,
+//! and in [`files`], [`scene_files`] and [`own_files`] for what it reads and writes.
+
+pub mod answer;
+pub mod failure;
+pub mod files;
+pub mod hearing;
+pub mod model_file;
+pub mod own_files;
+pub mod progress;
+pub mod report_head;
+pub mod scene_files;
 
 use std::fmt;
 use std::io::Write;
@@ -10,11 +23,10 @@ use meshlod::Format;
 use meshlod::io::{Note, NoteKind};
 use serde_json::{Value, json};
 
-use crate::answer::Answer;
-use crate::args::GlobalArgs;
-use crate::failure::Failure;
-use crate::files;
-use crate::progress::Progress;
+use crate::options::args::GlobalArgs;
+use crate::session::answer::Answer;
+use crate::session::failure::Failure;
+use crate::session::progress::Progress;
 
 /// Stack of a thread that does the work of a verb: that of a main thread.
 pub const STACK_BYTES: usize = 8 << 20;

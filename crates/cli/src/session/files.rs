@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use meshlod::io::{IoError, read_bytes, write_file};
 use meshlod::{Format, Scene};
 
-use crate::args::ReadArgs;
-use crate::failure::Failure;
-use crate::own_files::{self, OwnFormat};
+use crate::options::args::ReadArgs;
 use crate::session::Session;
+use crate::session::failure::Failure;
+use crate::session::own_files::{self, OwnFormat};
 
 /// Returns true if a path is `-`, which stands for standard input or output.
 pub fn is_pipe(path: &Path) -> bool {

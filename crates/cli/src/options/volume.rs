@@ -8,8 +8,8 @@ use meshlod::{
 };
 use serde::Serialize;
 
-use crate::numbers::percent;
 use crate::session::Session;
+use crate::text::numbers::percent;
 
 /// Relative change of volume up to which the text does not mention it.
 const UNSEEN: f64 = 1e-4;

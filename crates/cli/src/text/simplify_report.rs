@@ -6,7 +6,7 @@ use meshlod::simplify::{Contractions, Held, Refusal, Refusals};
 use meshlod::{Report, Topology};
 use serde::Serialize;
 
-use crate::numbers::{count, faces, value};
+use crate::text::numbers::{count, faces, value};
 
 /// Numbers of edges and faces contracted, with the share of edges.
 #[derive(Serialize)]

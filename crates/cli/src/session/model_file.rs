@@ -7,10 +7,10 @@ use meshlod::PoseCounts;
 use meshlod::io::Note;
 use meshlod::multires::{Archive, Certificate, ErrorKind, FileError, Fit, ModelFile, Source};
 
-use crate::failure::Failure;
-use crate::files;
-use crate::numbers::{count, percent, plural, value};
 use crate::session::Session;
+use crate::session::failure::Failure;
+use crate::session::files;
+use crate::text::numbers::{count, percent, plural, value};
 
 /// File name suffix of multiresolution files.
 pub const SUFFIX: &str = "mlod";

@@ -7,7 +7,7 @@ use meshlod::mesh::AttributeBounds;
 use meshlod::picture::{UpAxis, View};
 use meshlod::{Format, ReadOptions, Scene, WriteOptions};
 
-use crate::parse::{self, Suffix, ViewDirection};
+use crate::options::parse::{self, Suffix, ViewDirection};
 
 /// Options of every verb.
 #[derive(Clone, Args)]

@@ -5,8 +5,8 @@ use meshlod::simplify::Digits;
 use meshlod::{Mesh, Report, Scene, Target, rounding_of_level};
 use serde::Serialize;
 
-use crate::distance;
-use crate::numbers::value;
+use crate::text::distance;
+use crate::text::numbers::value;
 
 /// Part of the error that rounding may take before coordinates are written with 64 bits.
 const UNSEEN: f64 = 0.005;

@@ -2,28 +2,10 @@
 
 use std::fmt;
 
+pub use meshlod::Bound;
 use meshlod::{Format, Method, Target};
 
-use crate::numbers::{count, plural};
-
-/// Length in model units, or relative to the diagonal of the scene.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Bound {
-    /// Length in model units.
-    Length(f64),
-    /// Fraction of the diagonal of the scene.
-    OfDiagonal(f64),
-}
-
-impl Bound {
-    /// Converts the length to model units, given the diagonal of the scene.
-    pub fn length(self, diagonal: f64) -> f64 {
-        match self {
-            Self::Length(length) => length,
-            Self::OfDiagonal(part) => part * diagonal,
-        }
-    }
-}
+use crate::text::numbers::{count, plural};
 
 /// Requested size of a simplified mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]

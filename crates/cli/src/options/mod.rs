@@ -1,0 +1,11 @@
+//! Groups of options that verbs share, each with the plain data that it stands for.
+
+pub mod args;
+pub mod constraints;
+pub mod fuse;
+pub mod locks;
+pub mod model_query;
+pub mod parse;
+pub mod query_args;
+pub mod topology;
+pub mod volume;

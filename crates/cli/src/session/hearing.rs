@@ -1,0 +1,59 @@
+//! A session that hears a job: its stages, its steps and its remarks.
+
+use std::path::Path;
+
+use meshlod::jobs::{About, JobError, Remark, Watch};
+
+use crate::session::Session;
+use crate::session::failure::Failure;
+
+/// A session that hears a job about one file.
+pub struct Hearing<'s> {
+    session: &'s Session,
+    input: &'s Path,
+    output: &'s Path,
+}
+
+impl<'s> Hearing<'s> {
+    /// Creates the watch of a job that works on `input` for `output`, which may be the same.
+    pub fn new(session: &'s Session, input: &'s Path, output: &'s Path) -> Self {
+        Self { session, input, output }
+    }
+
+    /// Names the file or option that an error of the job is about.
+    pub fn failure(&self, error: JobError) -> Failure {
+        match error {
+            JobError::Request { field: "", reason } => Failure::usage(reason),
+            JobError::Request { field, reason } => {
+                Failure::usage(format_args!("{}: {reason}", option(field)))
+            }
+            JobError::Input(error) => Failure::at(self.input, error),
+            JobError::Output(error) => Failure::at(self.output, error),
+            error => Failure::new(error),
+        }
+    }
+}
+
+impl Watch for Hearing<'_> {
+    fn stage(&self, stage: &str) {
+        self.session.progress.stage(stage);
+    }
+
+    fn step(&self, done: usize, of: Option<usize>) {
+        self.session.progress.step(done, of);
+    }
+
+    fn remark(&self, Remark { about, text }: &Remark) {
+        match about {
+            About::Field(name) => self.session.warn(format_args!("{}: {text}", option(name))),
+            About::Input => self.session.warn(Failure::at(self.input, text)),
+            About::Output => self.session.warn(Failure::at(self.output, text)),
+            _ => self.session.warn(text),
+        }
+    }
+}
+
+/// Spells a field of a request as the option that sets it: `exact_volume` as `--exact-volume`.
+fn option(field: &str) -> String {
+    format!("--{}", field.replace('_', "-"))
+}

@@ -1,0 +1,10 @@
+//! What verbs print: numbers, tables and the lines of reports, as text and as JSON.
+
+pub mod distance;
+pub mod error_bound;
+pub mod kept_error;
+pub mod model_scene;
+pub mod numbers;
+pub mod poses;
+pub mod simplify_report;
+pub mod table;

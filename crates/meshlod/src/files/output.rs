@@ -1,0 +1,160 @@
+//! Where a result goes, and in which format.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use meshlod_io::gltf::{Level, LodLayout, StripMesh};
+use meshlod_io::{
+    Format, IoError, Note, Scene, WriteOptions, write, write_file, write_lods, write_strips,
+};
+
+use crate::files::FileKind;
+
+/// A file to be written: its path, and what its suffix says that it is.
+///
+/// Missing folders are made when it is written. Scenes are written one at a time in a process, since
+/// an image takes a name that is free.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Output {
+    path: PathBuf,
+    kind: FileKind,
+}
+
+impl Output {
+    /// Creates an output, and checks that a file can be there, before any work is done.
+    ///
+    /// # Errors
+    /// An unknown suffix, a path that is a folder, and a folder that is a file.
+    pub fn new(path: impl Into<PathBuf>) -> Result<Self, IoError> {
+        let path = path.into();
+        check_place(&path)?;
+        Ok(Self { kind: FileKind::of_path(&path)?, path })
+    }
+
+    /// Returns the path.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Returns the kind of file that is written.
+    pub fn kind(&self) -> FileKind {
+        self.kind
+    }
+
+    /// Returns notes on what the file will lack of a scene, with a format that keeps everything as
+    /// the remedy, where there is one.
+    pub fn limits(&self, scene: &Scene, options: &WriteOptions) -> Vec<Note> {
+        let FileKind::Mesh(format) = self.kind else { return Vec::new() };
+        let mut notes = remedied(scene, scene.limits_of(format));
+        notes.extend(scene.precision_limits(format, options.precision));
+        notes
+    }
+
+    /// Writes a scene, with the files that belong to it.
+    ///
+    /// # Errors
+    /// Those of [`meshlod_io::write`]; a kind of our own, which a job packs: see
+    /// [`write_bytes`](Self::write_bytes).
+    pub fn write(&self, scene: &Scene, options: &WriteOptions) -> Result<(), IoError> {
+        let _naming = naming();
+        write(&self.path, scene, options)
+    }
+
+    /// Writes a scene and its coarser levels as glTF.
+    ///
+    /// # Errors
+    /// Those of [`meshlod_io::write_lods`].
+    pub fn write_levels(
+        &self,
+        scene: &Scene,
+        levels: &[Level],
+        layout: LodLayout,
+    ) -> Result<(), IoError> {
+        let _naming = naming();
+        write_lods(&self.path, scene, levels, layout)
+    }
+
+    /// Writes a scene as glTF, with strips for faces.
+    ///
+    /// # Errors
+    /// Those of [`meshlod_io::write_strips`].
+    pub fn write_strips(&self, scene: &Scene, strips: &[StripMesh]) -> Result<(), IoError> {
+        let _naming = naming();
+        write_strips(&self.path, scene, strips)
+    }
+
+    /// Writes a file that a job has packed.
+    ///
+    /// # Errors
+    /// Errors of the system.
+    pub fn write_bytes(&self, bytes: &[u8]) -> Result<(), IoError> {
+        write_file(&self.path, bytes)
+    }
+}
+
+/// Adds to what a format lacks of a scene the name of another that holds all of it, if there is one
+/// and nothing else is to do.
+fn remedied(scene: &Scene, limits: Vec<Note>) -> Vec<Note> {
+    let holds = |(format, _): &(Format, &str)| scene.limits_of(*format).is_empty();
+    let mut formats = [(Format::Glb, ".glb"), (Format::Obj, ".obj")].into_iter();
+    let Some((_, suffix)) = formats.find(|format| !limits.is_empty() && holds(format)) else {
+        return limits;
+    };
+    let keeps = format!("{suffix} keeps everything");
+    let remedy = |note: Note| match note.remedy {
+        Some(_) => note,
+        None => note.remedied(keeps.clone()),
+    };
+    limits.into_iter().map(remedy).collect()
+}
+
+/// Fails if no file can be at a path: if it is a folder, or one of its folders is a file.
+///
+/// Folders may be missing: they are made when the file is written.
+fn check_place(path: &Path) -> Result<(), IoError> {
+    let fault = |reason: &str| Err(IoError::system(path, io::Error::other(reason)));
+    if path.is_dir() {
+        return fault("is a folder; name a file to write");
+    }
+    let exists = |folder: &&Path| !folder.as_os_str().is_empty() && folder.exists();
+    match path.ancestors().skip(1).find(exists) {
+        Some(folder) if !folder.is_dir() => fault("its folder is a file"),
+        _ => Ok(()),
+    }
+}
+
+/// Has one thread at a time write scenes: an image gets a name that is free, and takes it only once
+/// it is complete.
+fn naming() -> MutexGuard<'static, ()> {
+    static NAMING: Mutex<()> = Mutex::new(());
+    NAMING.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_samples as samples;
+
+    use super::*;
+
+    #[test]
+    fn the_folder_of_an_output_is_made() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a/b/torus.ply");
+        let torus = Scene::from_mesh("torus", samples::torus(100));
+        Output::new(&path).unwrap().write(&torus, &WriteOptions::default()).unwrap();
+        assert!(path.exists());
+    }
+
+    #[test]
+    fn an_output_that_cannot_be_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("file");
+        std::fs::write(&file, "").unwrap();
+        let refused = |path: PathBuf| Output::new(path).unwrap_err().to_string();
+        assert!(refused(folder.path().into()).contains("is a folder"));
+        assert!(refused(file.join("a.ply")).contains("its folder is a file"));
+        assert!(refused(file.join("b/a.ply")).contains("its folder is a file"));
+        assert!(refused(folder.path().join("a.txt")).contains("unknown suffix"));
+    }
+}

@@ -1,0 +1,177 @@
+//! What a job says while it runs, and how it is cancelled.
+
+use std::fmt;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+
+use meshlod_simplify::Observe;
+
+use crate::jobs::JobError;
+
+/// Receiver of what a job says while it runs. Every method has a default: `()` hears nothing.
+///
+/// A job may call it from any of its threads.
+pub trait Watch: Sync {
+    /// Called when a stage begins: `measuring`, `building connectivity`.
+    fn stage(&self, stage: &str) {
+        let _ = stage;
+    }
+
+    /// Called when `done` steps of the stage are done; `of` is their number, where it is known.
+    fn step(&self, done: usize, of: Option<usize>) {
+        let _ = (done, of);
+    }
+
+    /// Returns true to end the job with [`JobError::Cancelled`] at its next step.
+    fn is_cancelled(&self) -> bool {
+        false
+    }
+
+    /// Called with what a user should know: something that a request asks for had no effect, or
+    /// something of the input is lost.
+    fn remark(&self, remark: &Remark) {
+        let _ = remark;
+    }
+}
+
+impl Watch for () {}
+
+/// Something that a user should know, in one line.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Remark {
+    /// The thing that the remark is about.
+    pub about: About,
+    /// The remark, without that thing.
+    pub text: String,
+}
+
+/// Part of a job that a remark is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum About {
+    /// The job as a whole.
+    Job,
+    /// A field of its request, by its name.
+    Field(&'static str),
+    /// What it works on.
+    Input,
+    /// What it returns.
+    Output,
+}
+
+impl Remark {
+    /// Creates a remark about a part of a job.
+    pub fn new(about: About, text: impl fmt::Display) -> Self {
+        Self { about, text: text.to_string() }
+    }
+
+    /// Creates a remark about a field of a request.
+    pub fn field(name: &'static str, text: impl fmt::Display) -> Self {
+        Self::new(About::Field(name), text)
+    }
+}
+
+impl fmt::Display for Remark {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.about {
+            About::Job => f.write_str(&self.text),
+            About::Field(name) => write!(f, "{name}: {}", self.text),
+            About::Input => write!(f, "input: {}", self.text),
+            About::Output => write!(f, "output: {}", self.text),
+        }
+    }
+}
+
+/// Observer of a simplification that reports the faces removed and ends it when it is cancelled.
+pub(crate) struct Contractions<'w> {
+    watch: &'w dyn Watch,
+    gone: usize,
+    /// Number of removed faces when the watch was last called.
+    said: usize,
+    /// Number of faces to remove, where it is known.
+    of: Option<usize>,
+}
+
+/// Faces removed between two calls of the watch, each of which costs more than a contraction.
+const FACES_A_STEP: usize = 8192;
+
+impl<'w> Contractions<'w> {
+    pub(crate) fn new(watch: &'w dyn Watch, of: Option<usize>) -> Self {
+        watch.step(0, of);
+        Self { watch, gone: 0, said: 0, of }
+    }
+}
+
+impl Observe for Contractions<'_> {
+    fn needs_surface(&self) -> bool {
+        false
+    }
+
+    fn gone(&mut self, faces: usize) {
+        self.gone += faces;
+        if self.gone >= self.said + FACES_A_STEP {
+            self.said = self.gone;
+            self.watch.step(self.gone, self.of);
+            check(self.watch);
+        }
+    }
+}
+
+/// Payload with which a cancelled job unwinds.
+struct Unwound;
+
+/// Ends a job that runs under [`cancellable`], if it is cancelled, by unwinding to there.
+pub(crate) fn check(watch: &dyn Watch) {
+    if watch.is_cancelled() {
+        // No panic: nothing is printed.
+        resume_unwind(Box::new(Unwound));
+    }
+}
+
+/// Runs a job, and returns [`JobError::Cancelled`] if [`check`] has ended it.
+pub(crate) fn cancellable<T>(job: impl FnOnce() -> Result<T, JobError>) -> Result<T, JobError> {
+    match catch_unwind(AssertUnwindSafe(job)) {
+        Ok(done) => done,
+        Err(payload) if payload.is::<Unwound>() => Err(JobError::Cancelled),
+        Err(defect) => resume_unwind(defect),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use meshlod_samples as samples;
+    use meshlod_simplify::{Options, Simplifier, Target};
+
+    use super::*;
+
+    /// Watch that cancels a job after some steps.
+    struct After(AtomicUsize);
+
+    impl Watch for After {
+        fn step(&self, _: usize, _: Option<usize>) {
+            let left = self.0.load(Ordering::Relaxed);
+            self.0.store(left.saturating_sub(1), Ordering::Relaxed);
+        }
+
+        fn is_cancelled(&self) -> bool {
+            self.0.load(Ordering::Relaxed) == 0
+        }
+    }
+
+    fn run(steps: usize) -> Result<usize, JobError> {
+        let mesh = samples::sphere(60_000);
+        let watch = After(AtomicUsize::new(steps));
+        cancellable(|| {
+            let mut simplifier =
+                Simplifier::new(&mesh, &Options::default()).map_err(JobError::input)?;
+            let report = simplifier.run(Target::Faces(100), &mut Contractions::new(&watch, None));
+            Ok(report.map_err(JobError::input)?.output_faces)
+        })
+    }
+
+    #[test]
+    fn a_job_ends_where_it_is_cancelled() {
+        assert!(matches!(run(3), Err(JobError::Cancelled)));
+        assert!(run(usize::MAX).unwrap() <= 100);
+    }
+}
