@@ -18,7 +18,7 @@ pub fn run_command(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
     })
 }
 
-/// Steps in which the progress of a command is told.
+/// Resolution of reported progress.
 const STEPS: usize = 1 << 20;
 
 /// Runs the command without a word on the standard streams, and returns its JSON. `progress` is

@@ -37,7 +37,7 @@ struct Line {
 }
 
 impl Journal {
-    /// Makes a journal of which nothing is known, to add lines to.
+    /// Opens a journal for appending, without reading it.
     pub fn new(folder: &Path) -> Self {
         Self { path: folder.join(NAME), made: BTreeMap::new(), file: None }
     }

@@ -113,7 +113,7 @@ fn field(value: &Value) -> String {
 }
 
 impl FileReport {
-    /// Creates the report of a file of which nothing is known.
+    /// Creates the report of a file before anything is known about it.
     pub fn planned(job: &FileJob) -> Self {
         Self {
             input: files::name(&job.input),

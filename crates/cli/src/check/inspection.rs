@@ -79,7 +79,7 @@ impl Inspection {
         self.groups.iter().map(|(&group, &count)| (group, count))
     }
 
-    /// Iterates over the first findings of a group, of which there is at least one.
+    /// Iterates over the first findings of a group; at least one.
     pub fn first_of(&self, group: Group) -> impl Iterator<Item = &Finding> {
         self.findings.iter().filter(move |(of, _)| *of == group).map(|(_, finding)| finding)
     }

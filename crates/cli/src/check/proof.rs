@@ -107,7 +107,7 @@ fn prove_field(
     Ok(Answer::new(json, text))
 }
 
-/// Describes the part of a truncated file of which nothing is proved; empty if it is whole.
+/// Describes the unproved part of a truncated file; empty if the file is whole.
 fn unproved_text(file: &ModelFile<File>) -> String {
     let [there, all] = file.pieces();
     let piece = file.piece_name();

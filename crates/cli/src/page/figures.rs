@@ -45,7 +45,7 @@ pub fn drift(percent: f64) -> String {
     }
 }
 
-/// Formats a signed quantity of which only the order of magnitude matters.
+/// Formats a signed quantity by its order of magnitude.
 pub fn power_of_ten(number: f64) -> String {
     if number == 0.0 { "0".into() } else { format!("{number:+.0e}") }
 }

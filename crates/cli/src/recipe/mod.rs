@@ -119,7 +119,7 @@ impl Recipe {
         VerbLine::try_parse_from(self.arguments(paths)).map_err(|error| self.failure(&error))
     }
 
-    /// Returns the recipe as arguments, the first of which is the name of the program, with these
+    /// Returns the recipe as arguments, beginning with the name of the program, with these
     /// paths in place of its own.
     pub fn arguments(&self, paths: &[PathBuf]) -> Vec<OsString> {
         let all = self.places.len().max(paths.len());

@@ -12,7 +12,7 @@ pub struct Progress {
     listener: Option<Listener>,
 }
 
-/// Function that is told how many of a known number of things are done.
+/// Callback with the number of things done and their total.
 pub type Listener = Box<dyn Fn(usize, usize) + Send + Sync>;
 
 impl Progress {

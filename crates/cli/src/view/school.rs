@@ -15,7 +15,7 @@ use crate::session::files;
 use crate::text::numbers::{count, plural};
 use crate::verbs::view::View;
 
-/// Frames a second of the simulated film, of which the window skips what it has no time for.
+/// Frames per second of the simulated film; the window skips frames that it has no time for.
 const FPS: f64 = 120.0;
 
 /// Builds the levels of the model, and opens the window.

@@ -9,8 +9,8 @@ use meshlod_simplify::{Excess, ExcessFace};
 use meshlod_spatial::Bvh;
 use rayon::prelude::*;
 
-/// Part by which a face may exceed what it is compared with: so much lower is that, and nothing
-/// exceeds the error itself. The smaller, the more costs the proof, and the more faces it saves.
+/// Relative slack: faces are compared with a limit lowered by this much, so that none exceeds the
+/// error itself. A smaller slack saves more faces and makes the proof more expensive.
 const SLACK: f64 = 0.01;
 
 /// Limit on the divisions of faces in each direction. Where errors are far below a thousandth of a

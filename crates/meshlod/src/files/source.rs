@@ -8,7 +8,7 @@ use meshlod_multires::Source;
 /// Bytes of a file that is read in parts.
 #[derive(Debug)]
 pub enum FileBytes {
-    /// A file on a disk, of which only what is needed is read.
+    /// A file on a disk; only the needed parts are read.
     Disk(File),
     /// A file that is in memory.
     Memory(Vec<u8>),

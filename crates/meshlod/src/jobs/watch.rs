@@ -90,7 +90,7 @@ pub(crate) struct Contractions<'w> {
     of: Option<usize>,
 }
 
-/// Faces removed between two calls of the watch, each of which costs more than a contraction.
+/// Faces removed between two calls of the watch: one costs more than a contraction.
 const FACES_A_STEP: usize = 8192;
 
 impl<'w> Contractions<'w> {

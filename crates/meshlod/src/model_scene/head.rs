@@ -28,7 +28,7 @@ pub(super) struct Head {
 pub(super) struct MeshEntry {
     /// Column-major matrix from the mesh's own space to that of the levels.
     pub placement: [[f64; 4]; 4],
-    /// True if that is where the only node that shows it has it.
+    /// True if that is its place under the only node that shows it.
     pub is_only: bool,
     /// Number of the objects that the mesh itself has; `None` if it is one object.
     pub objects: Option<u32>,
@@ -36,7 +36,8 @@ pub(super) struct MeshEntry {
     pub layers: Vec<[u32; 2]>,
 }
 
-/// Material label of the levels: a material, and how many earlier labels of the same mesh have it.
+/// Material label of the levels: a material, and the number of earlier labels of the same mesh
+/// with that material.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Slot {
     pub material: Option<u32>,

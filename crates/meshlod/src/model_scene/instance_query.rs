@@ -12,12 +12,12 @@ use thiserror::Error;
 use super::placement::stretch;
 use super::{ModelScene, ModelSceneError};
 
-/// Most places of one mesh that are told apart. More are taken together, as one that asks for the
-/// least tolerance of all in the whole mesh.
+/// Maximum number of instances of a mesh that are queried separately; beyond that, the strictest
+/// tolerance applies to the whole mesh.
 const MOST_PLACES: usize = 1024;
 /// Part of the diagonal of a mesh by which its levels may be larger than its finest one.
 const MARGIN: f64 = 0.25;
-/// Product of the greatest stretches forth and back from which on a transform is no similarity.
+/// Condition number above which a transform is no similarity.
 const SIMILAR: f64 = 1.0 + 1e-9;
 
 /// Reason why a query about a scene cannot be put to the levels of its meshes.
@@ -32,7 +32,8 @@ pub enum SceneQueryError {
 }
 
 impl ModelScene {
-    /// Puts a query about the scene to the levels of its meshes, of which each has its own place.
+    /// Translates a query about the scene into one about the levels of its meshes, each in its own
+    /// place.
     ///
     /// Where a mesh is shown several times, **its levels are as fine as the most demanding of its
     /// instances needs**, wherever these are: regions and cameras are moved into the place of the
@@ -107,7 +108,7 @@ impl InstancePlace {
         Self { mesh, placement, world, to_levels, growth: stretch(out), growth_back }
     }
 
-    /// Returns true if the mesh is shown where the levels have it.
+    /// Returns true if the scene shows the mesh at its place in the levels.
     fn is_of_levels(&self) -> bool {
         self.to_levels == Some(DMat4::IDENTITY)
     }
@@ -221,7 +222,7 @@ fn tolerances(tolerance: &Tolerance<'_>, around: &Bounds) -> [f64; 2] {
     }
 }
 
-/// Returns a query for the point that the scene shows closest to another, and where the levels have it.
+/// Returns a query at the scene point closest to `point`, and that point in the space of the levels.
 fn at_point<'f>(
     meshes: &[&Mesh],
     places: &[InstancePlace],

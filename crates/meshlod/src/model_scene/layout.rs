@@ -16,7 +16,7 @@ pub struct SceneLayout {
     pub materials: Vec<u32>,
     /// Mesh of the scene of each object label of the levels; empty if all are of one mesh.
     pub meshes: Vec<u32>,
-    /// Every place where a mesh is shown; empty if each is where the levels have it.
+    /// Every place where a mesh is shown; empty if all are at their places in the levels.
     pub instances: Vec<LevelInstance>,
 }
 

@@ -20,7 +20,7 @@ use super::slots::{material_of, slots_of, slots_of_labels};
 use crate::posed::PosedMesh;
 use crate::{Constraints, PoseCounts, ScenePoses, VertexLocking, join_locks, locks};
 
-/// A scene merged into one mesh in world space, of which levels are made or which is compressed.
+/// A scene merged into one mesh in world space, ready for levels or compression.
 #[derive(Clone, Debug)]
 pub struct PlacedScene {
     /// Every mesh that the scene shows, once, as its largest instance.

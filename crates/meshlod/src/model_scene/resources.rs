@@ -4,7 +4,7 @@ use meshlod_multires::{Archive, FileError, Resource, Source, pack_resource, unpa
 
 /// Numbered resources of a scene: the head first, and then its parts.
 pub(super) trait Resources {
-    /// Returns the number of resources, of which a truncated file lacks the last.
+    /// Returns the number of resources; a truncated file lacks the last ones.
     fn count(&self) -> usize;
 
     /// Returns true if there is a resource of this number, and all of it.

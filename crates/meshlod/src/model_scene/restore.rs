@@ -30,16 +30,16 @@ pub struct ModelScene {
 pub struct MissingParts {
     /// True if the file ends before nodes and materials.
     pub scene: bool,
-    /// Number of images of which there is a smaller version only.
+    /// Number of images that exist as a smaller version only.
     pub previews: usize,
-    /// Number of images of which there is nothing.
+    /// Number of images that are missing altogether.
     pub images: usize,
     /// True if there are no key frames, so that the scene has no animations.
     pub animations: bool,
 }
 
 impl MissingParts {
-    /// Returns notes on the missing parts, also those of which none is missing.
+    /// Returns notes on all kinds of parts, with a count of 0 where none is missing.
     pub fn notes(&self) -> Vec<Note> {
         let Self { scene, previews, images, animations } = *self;
         let note = |count, one, many| {

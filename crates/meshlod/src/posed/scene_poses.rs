@@ -12,9 +12,8 @@ use super::shown::Shown;
 /// Poses of a scene in which the errors of its levels are measured.
 ///
 /// They are those of its animations at key times, at most 64, and the pose of its nodes without
-/// animation. Each shows every mesh of the levels once, as one of the nodes that show it. Poses in
-/// which all meshes only move, without a change of shape or size, are not among them: an error there
-/// is the one it is without.
+/// animation. Each shows every mesh of the levels once, as one of the nodes that show it. Rigid
+/// poses, in which no mesh changes its shape or size, are left out: they do not change the errors.
 #[derive(Clone, Debug, Default)]
 pub struct ScenePoses {
     animator: Animator,
@@ -39,7 +38,7 @@ pub struct PoseCounts {
     pub animations: u32,
 }
 
-/// Mesh of a scene as its levels have it.
+/// Mesh of a scene in the form that its levels have.
 #[derive(Clone, Debug)]
 pub(crate) struct PosedMesh {
     /// From the levels to the mesh's own space.
@@ -58,8 +57,8 @@ const MOST: usize = 64;
 const FAR: f64 = 1e6;
 
 impl ScenePoses {
-    /// Chooses poses of a scene, of whose meshes the levels are made of `mesh`; `None` if it has no
-    /// animations, and its nodes bend no mesh.
+    /// Chooses the poses of a scene whose meshes were merged into `mesh`; `None` if it has no
+    /// animations and its nodes bend no mesh.
     ///
     /// Cost: linear in the mesh, for each pose.
     pub(crate) fn new(scene: &Scene, meshes: &[Option<PosedMesh>], mesh: &Mesh) -> Option<Self> {
@@ -175,7 +174,7 @@ impl Posing for ScenePoses {
     }
 }
 
-/// Wedges of the mesh of which levels are made.
+/// Wedges of the mesh that the levels are made from.
 struct PosedCorners {
     positions: Vec<[f64; 3]>,
     objects: Vec<u32>,
