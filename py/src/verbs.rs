@@ -2,7 +2,8 @@
 
 use std::path::{PathBuf, absolute};
 
-use meshlod::check::{CheckOptions, HoleLimits, RepairOptions, Severity, Stitch};
+use meshlod::jobs::{self, CheckRequest};
+use meshlod::check::{HoleLimits, RepairOptions, Severity, Stitch};
 use meshlod::codec::CompressionTarget;
 use meshlod::io::write_file;
 use meshlod::measure::{DistanceOptions, area, distance, volume};
@@ -10,7 +11,7 @@ use meshlod::mesh::LayerKind;
 use meshlod::picture::{Camera, UpAxis, View, Wireframe};
 use meshlod::strip::{StripOptions, StripQuality, stripify};
 use meshlod::{
-    CompressOptions, CompressedFileError, OwnedPaint, check_report, compress_bytes, normals_of,
+    CompressOptions, CompressedFileError, OwnedPaint, compress_bytes, normals_of,
 };
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -54,7 +55,8 @@ pub fn sizes(py: Python<'_>, mesh: &NativeMesh) -> PyResult<(f64, f64)> {
 #[pyfunction]
 pub fn check(py: Python<'_>, mesh: &NativeMesh) -> PyResult<Vec<(&'static str, usize, bool)>> {
     let mesh = mesh.shared();
-    let report = run(py, None, move |_| check_report(&mesh, &CheckOptions::default(), 0))?;
+    let request = CheckRequest { limit: 0, ..CheckRequest::default() };
+    let report = run(py, None, move |_| jobs::check(&mesh, &request, &()))?.map_err(raised)?;
     let is_error = |kind: meshlod::check::Kind| kind.severity() == Severity::Error;
     let found = report.summary.found();
     Ok(found.map(|(kind, count)| (kind.name(), count, is_error(kind))).collect())

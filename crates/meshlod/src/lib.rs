@@ -146,19 +146,21 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`check_report`] lists what is wrong with a mesh, and where its objects touch. [`check`] has the
+//! [`jobs::check`] lists what is wrong with a mesh, and where its objects touch. [`check`] has the
 //! kinds of findings, repair, and locks that keep simplification from opening a contact:
 //!
 //! ```
-//! use meshlod::check::{CheckOptions, RepairOptions, repair};
-//! use meshlod::{check_report, samples};
+//! use meshlod::check::{RepairOptions, repair};
+//! use meshlod::jobs::{CheckRequest, check};
+//! use meshlod::samples;
 //!
 //! let mut mesh = samples::torus(1_000);
 //! mesh.faces.push(mesh.faces[7]);
-//! let report = check_report(&mesh, &CheckOptions::default(), 100);
+//! let report = check(&mesh, &CheckRequest::default(), &())?;
 //! assert!(report.has_errors(), "a face is there twice");
 //! let (repaired, _) = repair(&mesh, &RepairOptions::default());
-//! assert!(check_report(&repaired, &CheckOptions::default(), 100).is_clean());
+//! assert!(check(&repaired, &CheckRequest::default(), &())?.is_clean());
+//! # Ok::<(), meshlod::jobs::JobError>(())
 //! ```
 //!
 //! [`strip`] draws a mesh as triangle strips, one set for all levels: each vertex is replaced by
@@ -287,8 +289,6 @@ mod conditioned;
 
 #[cfg(feature = "picture")]
 mod appearance;
-#[cfg(feature = "check")]
-mod check_report;
 #[cfg(feature = "codec")]
 mod compressed;
 #[cfg(feature = "codec")]
@@ -364,8 +364,6 @@ pub use meshlod_simplify::{Method, Options, Report, SimplifyError, Target, Topol
 
 #[cfg(feature = "picture")]
 pub use appearance::{OwnedPaint, normals_of};
-#[cfg(feature = "check")]
-pub use check_report::{CheckReport, check_report};
 #[cfg(feature = "codec")]
 pub use compressed::{
     CompressOptions, CompressReport, CompressedFileError, compress, compress_bytes, compress_scene,

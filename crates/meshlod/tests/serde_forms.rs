@@ -15,6 +15,7 @@ use meshlod::flock::scene::{ScenarioName, ScenarioOptions};
 use meshlod::flock::select::policies::Factors;
 use meshlod::flock::select::{Budget, PolicyName};
 use meshlod::io::{Precision, Weld};
+use meshlod::jobs::{CheckRequest, check};
 use meshlod::measure::{BeyondOptions, CertifiedOptions, DistanceOptions};
 use meshlod::mesh::{AttributeBounds, ConditionOptions, Lock, Locks, Search, VertexId};
 use meshlod::multires::{ErrorKind, Focus, Ground, GroundShape, Storage, UpdateLimits};
@@ -22,7 +23,7 @@ use meshlod::simplify::AttributeWeights;
 use meshlod::strip::{CacheAware, Prices, StripOptions, StripQuality};
 use meshlod::{
     BuildOptions, CompressOptions, Constraints, Method, Options, ReadOptions, Target, Topology,
-    VertexLocking, WriteOptions, check_report, samples, simplify,
+    VertexLocking, WriteOptions, samples, simplify,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -245,7 +246,9 @@ fn a_report_of_a_check_tells_kinds_apart() {
     let face = mesh.faces.len();
     mesh.faces.push(mesh.faces[7]);
     mesh.positions.push([0.0; 3]);
-    let json = to_value(check_report(&mesh, &CheckOptions::default(), 1)).unwrap();
+    let json =
+        to_value(check(&mesh, &CheckRequest { limit: 1, ..Default::default() }, &()).unwrap())
+            .unwrap();
     assert_eq!(json["summary"]["duplicate-face"], 1);
     assert_eq!(json["summary"]["bad-index"], Value::Null, "only what was found");
     let findings = json["findings"].as_array().unwrap();

@@ -2,7 +2,7 @@
 
 use meshlod::check::Kind;
 
-use crate::check::group::{Grade, Group};
+use meshlod::jobs::{Grade, Group};
 
 /// Explanation of a group of findings. Words between backticks are commands.
 pub struct Advice {

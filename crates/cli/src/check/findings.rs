@@ -4,8 +4,6 @@ use maud::{Markup, html};
 use meshlod::check::Finding;
 
 use crate::check::advice::{Advice, advice};
-use crate::check::contacts::KINDS;
-use crate::check::group::Group;
 use crate::check::inspection::Inspection;
 use crate::check::places::{coordinates, ids, objects};
 use crate::check::sites::Sites;
@@ -13,6 +11,8 @@ use crate::page::counts::Counts;
 use crate::page::facts::facts;
 use crate::page::figures::whole;
 use crate::text::numbers::{count, value};
+use meshlod::jobs::CONTACT_KINDS;
+use meshlod::jobs::Group;
 
 /// Limit of places listed of a group; the JSON has more.
 const MOST_PLACES: usize = 25;
@@ -23,9 +23,9 @@ pub fn findings(inspection: &Inspection, sites: &Sites) -> Markup {
         section id="findings" {
             h2 { "Findings" }
             div.intro { (facts(&Counts::of(&inspection.mesh))) }
-            @if inspection.groups().next().is_some() {
+            @if inspection.report.groups().next().is_some() {
                 (overview(inspection))
-                @for (group, number) in inspection.groups() { (places(inspection, sites, group, number)) }
+                @for (group, number) in inspection.report.groups() { (places(inspection, sites, group, number)) }
             }
         }
     }
@@ -37,7 +37,7 @@ fn overview(inspection: &Inspection) -> Markup {
             thead { tr {
                 th scope="col" { "Kind" } th scope="col" { "Count" } th scope="col" { "What to do" }
             } }
-            tbody { @for (group, number) in inspection.groups() { tr {
+            tbody { @for (group, number) in inspection.report.groups() { tr {
                 th scope="row" {
                     (badge(group)) " " a href=(format!("#{}", anchor(group))) { (group.kind.name()) }
                 }
@@ -51,9 +51,9 @@ fn overview(inspection: &Inspection) -> Markup {
 /// Lists the first places of a group: ids, objects and coordinates.
 fn places(inspection: &Inspection, sites: &Sites, group: Group, number: usize) -> Markup {
     let Advice { about, .. } = advice(group);
-    let listed: Vec<&Finding> = inspection.first_of(group).take(MOST_PLACES).collect();
+    let listed: Vec<&Finding> = inspection.report.of_group(group).take(MOST_PLACES).collect();
     let more = number - listed.len();
-    let several = inspection.owners.objects.names.len() > 1;
+    let several = inspection.report.owners.objects.names.len() > 1;
     let label = format!("Places: {}", group.kind.name());
     html! {
         h3.places id=(anchor(group)) { (group.kind.name()) " " (badge(group)) }
@@ -81,7 +81,7 @@ fn places(inspection: &Inspection, sites: &Sites, group: Group, number: usize) -
 fn detail(finding: &Finding) -> String {
     match finding {
         Finding::SelfIntersection { intersection, .. } | Finding::Contact { intersection, .. } => {
-            let kind = KINDS.iter().find(|(kind, _)| *kind == intersection.kind);
+            let kind = CONTACT_KINDS.iter().find(|(kind, _)| *kind == intersection.kind);
             let kind = kind.map_or("", |(_, name)| name);
             match intersection.depth > 0.0 {
                 true => format!("{kind}, {} deep", value(intersection.depth)),

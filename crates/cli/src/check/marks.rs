@@ -4,7 +4,7 @@ use meshlod::Mesh;
 use meshlod::check::{Finding, Objects};
 use meshlod::mesh::{FaceId, VertexId};
 
-use crate::check::group::is_touch;
+use meshlod::jobs::is_touch;
 
 /// A defect or contact that pictures mark by a colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

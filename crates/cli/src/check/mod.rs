@@ -5,10 +5,8 @@
 //! flattened scene to those of its meshes. [`lock_file`] writes and reads locks.
 
 mod advice;
-mod contacts;
 pub mod drawing;
 mod findings;
-pub mod group;
 pub mod inspection;
 pub mod lock_file;
 mod marks;

@@ -7,7 +7,6 @@ use meshlod::Mesh;
 use meshlod::io::write_file;
 use meshlod::picture::Camera;
 
-use crate::check::contacts::{KINDS, ObjectPair};
 use crate::check::drawing::{Drawing, Part, SIZE, views};
 use crate::check::findings::findings;
 use crate::check::inspection::Inspection;
@@ -22,6 +21,7 @@ use crate::page::renderer::view_from;
 use crate::session::failure::Failure;
 use crate::session::files;
 use crate::text::numbers::{count, plural, value};
+use meshlod::jobs::{CONTACT_KINDS, ObjectPair};
 
 /// Limit of object pairs in the table; the JSON has more.
 const MOST_PAIRS: usize = 60;
@@ -48,7 +48,7 @@ fn page(name: &str, inspection: &Inspection, sites: &Sites) -> Result<Markup, Fa
         }
         _ => html! {},
     };
-    let contacts = inspection.contacts.len() > 0;
+    let contacts = inspection.report.contacts.len() > 0;
     let links = [("findings", "Findings"), ("contacts", "Contacts")];
     let links = links.into_iter().filter(|(id, _)| contacts || *id != "contacts");
     Ok(document(Document {
@@ -67,9 +67,9 @@ fn page(name: &str, inspection: &Inspection, sites: &Sites) -> Result<Markup, Fa
 }
 
 fn lead(inspection: &Inspection) -> String {
-    let objects = inspection.owners.objects.names.len();
+    let objects = inspection.report.owners.objects.names.len();
     let of = format!("{} object{}", count(objects), plural(objects));
-    match inspection.summary.total() {
+    match inspection.report.summary.total() {
         0 => format!("No findings in {of}."),
         _ => format!("{of}: {}.", text::verdict(inspection)),
     }
@@ -140,7 +140,7 @@ fn meeting(pair: &ObjectPair) -> Markup {
 }
 
 fn contact_table(inspection: &Inspection) -> Markup {
-    let pairs = inspection.contacts.by_size();
+    let pairs = inspection.report.contacts.by_size();
     let more = pairs.len().saturating_sub(MOST_PAIRS);
     let number = |number: usize| html! { @if number > 0 { (whole(number)) } @else { "–" } };
     html! {
@@ -153,12 +153,12 @@ fn contact_table(inspection: &Inspection) -> Markup {
             div.scroll tabindex="0" role="region" aria-label="Contacts" { table {
                 thead { tr {
                     th scope="col" { "Objects" } th scope="col" { "face pairs" }
-                    @for (_, name) in KINDS { th scope="col" { (name) } }
+                    @for (_, name) in CONTACT_KINDS { th scope="col" { (name) } }
                     th scope="col" { "deepest" }
                 } }
                 tbody { @for (objects, pair) in pairs.iter().take(MOST_PAIRS) { tr {
                     th scope="row" {
-                        (short(inspection.name(objects[0]))) " – " (short(inspection.name(objects[1])))
+                        (short(inspection.report.name(objects[0]))) " – " (short(inspection.report.name(objects[1])))
                         " " (meeting(pair))
                     }
                     td { (number(pair.faces())) }

@@ -49,13 +49,13 @@ pub fn coordinates(finding: &Finding, inspection: &Inspection) -> String {
 
 /// Names the objects of a finding; empty if the mesh is a single object, or the finding has none.
 pub fn objects(finding: &Finding, inspection: &Inspection) -> String {
-    if inspection.owners.objects.names.len() < 2 {
+    if inspection.report.owners.objects.names.len() < 2 {
         return String::new();
     }
     /// Objects named before the others are counted.
     const MOST: usize = 3;
-    let objects = inspection.owners.of(finding);
-    let names = objects.iter().take(MOST).map(|&object| short(inspection.name(object)));
+    let objects = inspection.report.owners.of(finding);
+    let names = objects.iter().take(MOST).map(|&object| short(inspection.report.name(object)));
     let more = objects.len().saturating_sub(MOST);
     let more = (more > 0).then(|| format!("{} more", count(more)));
     names.chain(more).collect::<Vec<_>>().join(" – ")

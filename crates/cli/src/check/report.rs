@@ -3,44 +3,46 @@
 use meshlod::check::{Finding, Intersection, Kind, ObjectId};
 use serde_json::{Value, json};
 
-use crate::check::contacts::KINDS;
-use crate::check::group::{Grade, Group};
 use crate::check::inspection::Inspection;
 use crate::check::sites::Sites;
+use meshlod::jobs::CONTACT_KINDS;
+use meshlod::jobs::{CheckReport, Grade};
 
 /// Returns the report of a mesh check as JSON: counts by kind, findings, contacts by pair of
 /// objects.
 pub fn json(inspection: &Inspection, sites: &Sites) -> Value {
-    let Inspection { mesh, owners, summary, limit, .. } = inspection;
+    let Inspection { mesh, report, .. } = inspection;
+    let CheckReport { owners, summary, limit, .. } = report;
     let objects = &owners.objects;
-    let looked_for = || Kind::ALL.into_iter().filter(|&kind| inspection.kinds.contains(kind));
+    let looked_for =
+        || Kind::ALL.into_iter().filter(|&kind| inspection.report.kinds.contains(kind));
     let counts = looked_for().map(|kind| (kind.name().to_owned(), summary.count(kind).into()));
-    let left_out = looked_for().map(|kind| (kind, inspection.left_out(kind)));
+    let left_out = looked_for().map(|kind| (kind, inspection.report.left_out(kind)));
     let left_out = left_out.filter(|&(_, count)| count > 0);
-    let pairs = inspection.contacts.by_size();
+    let pairs = inspection.report.contacts.by_size();
     json!({
         "vertices": mesh.positions.len(),
         "faces": mesh.faces.len(),
         "objects": objects.names.len(),
         "components": objects.components,
         "clean": summary.total() == 0,
-        "errors": inspection.count(Grade::Error),
-        "warnings": inspection.count(Grade::Warning),
-        "touches": inspection.count(Grade::Touch),
+        "errors": inspection.report.count(Grade::Error),
+        "warnings": inspection.report.count(Grade::Warning),
+        "touches": inspection.report.count(Grade::Touch),
         "counts": Value::Object(counts.collect()),
-        "findings": inspection.listed().map(|finding| of(inspection, finding)).collect::<Vec<_>>(),
+        "findings": listed(report).map(|finding| of(inspection, finding)).collect::<Vec<_>>(),
         "findings_left_out": Value::Object(
             left_out.map(|(kind, count)| (kind.name().to_owned(), count.into())).collect()
         ),
         "contacts": pairs.iter().take(*limit).map(|(objects, pair)| {
             let mut json = json!({
                 "objects": objects,
-                "names": objects.map(|object| inspection.name(object)),
+                "names": objects.map(|object| inspection.report.name(object)),
                 "face_pairs": pair.faces(),
                 "deepest": touch(&pair.deepest),
                 "deepest_faces": pair.faces,
             });
-            for ((_, name), count) in KINDS.into_iter().zip(pair.counts) {
+            for ((_, name), count) in CONTACT_KINDS.into_iter().zip(pair.counts) {
                 json[name] = count.into();
             }
             json
@@ -51,8 +53,14 @@ pub fn json(inspection: &Inspection, sites: &Sites) -> Value {
 }
 
 /// Returns the JSON of a finding with its kind, position and ids.
-fn of(inspection: &Inspection, (group, finding): &(Group, Finding)) -> Value {
+/// Iterates over the findings to list: none, if their limit is 0.
+fn listed(report: &CheckReport) -> impl Iterator<Item = &Finding> {
+    report.findings.iter().filter(|_| report.limit > 0)
+}
+
+fn of(inspection: &Inspection, finding: &Finding) -> Value {
     let mut json = ids(inspection, finding);
+    let group = inspection.report.owners.group(finding);
     json["kind"] = json!(group.kind);
     json["severity"] = group.grade.name().into();
     json["place"] = json!(finding.place(&inspection.mesh));
@@ -60,7 +68,7 @@ fn of(inspection: &Inspection, (group, finding): &(Group, Finding)) -> Value {
 }
 
 fn ids(inspection: &Inspection, finding: &Finding) -> Value {
-    let name = |object: &ObjectId| inspection.name(*object);
+    let name = |object: &ObjectId| inspection.report.name(*object);
     match finding {
         Finding::NonFiniteVertex { vertex } | Finding::UnusedVertex { vertex } => {
             json!({ "vertices": [vertex] })
@@ -92,6 +100,6 @@ fn ids(inspection: &Inspection, finding: &Finding) -> Value {
 }
 
 fn touch(touch: &Intersection) -> Value {
-    let name = KINDS.iter().find(|(kind, _)| *kind == touch.kind).map(|(_, name)| name);
+    let name = CONTACT_KINDS.iter().find(|(kind, _)| *kind == touch.kind).map(|(_, name)| name);
     json!({ "kind": name, "depth": touch.depth, "place": touch.point })
 }

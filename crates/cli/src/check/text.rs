@@ -1,13 +1,13 @@
 //! Text report of a mesh check.
 
 use crate::check::advice::advice;
-use crate::check::contacts::{KINDS, ObjectPair};
-use crate::check::group::{Grade, Group};
 use crate::check::inspection::Inspection;
 use crate::check::places::{coordinates, ids, objects, short};
 use crate::check::sites::Sites;
 use crate::text::numbers::{count, faces, plural, value};
 use crate::text::table::aligned;
+use meshlod::jobs::{CONTACT_KINDS, ObjectPair};
+use meshlod::jobs::{Grade, Group};
 
 /// Limit of object pairs on a terminal; JSON and page have more.
 const MOST_PAIRS: usize = 12;
@@ -15,8 +15,8 @@ const MOST_PAIRS: usize = 12;
 /// Formats the report: a table of groups with the first finding of each, what to do about them, a
 /// table of contacts, and totals.
 pub fn text(inspection: &Inspection, sites: &Sites) -> String {
-    let objects = inspection.owners.objects.names.len();
-    let components = inspection.owners.objects.components;
+    let objects = inspection.report.owners.objects.names.len();
+    let components = inspection.report.owners.objects.components;
     let mut text = format!(
         "{}, {} object{}, {} component{}\n",
         faces(inspection.mesh.faces.len()),
@@ -34,7 +34,7 @@ pub fn text(inspection: &Inspection, sites: &Sites) -> String {
 /// Formats the numbers of errors, warnings and touches in words.
 pub fn verdict(inspection: &Inspection) -> String {
     let [errors, warnings, touches] =
-        [Grade::Error, Grade::Warning, Grade::Touch].map(|grade| inspection.count(grade));
+        [Grade::Error, Grade::Warning, Grade::Touch].map(|grade| inspection.report.count(grade));
     let defects = format!(
         "{} error{}, {} warning{}",
         count(errors),
@@ -51,7 +51,7 @@ pub fn verdict(inspection: &Inspection) -> String {
 }
 
 fn groups(inspection: &Inspection, sites: &Sites) -> String {
-    let found: Vec<(Group, usize)> = inspection.groups().collect();
+    let found: Vec<(Group, usize)> = inspection.report.groups().collect();
     let row = |&(group, number): &(Group, usize)| {
         let name = format!("{:<7}  {}", group.grade.name(), group.kind.name());
         [name, count(number)]
@@ -66,7 +66,7 @@ fn groups(inspection: &Inspection, sites: &Sites) -> String {
 
 /// Describes the place of the first finding of a group, by ids, objects and position.
 fn first(inspection: &Inspection, sites: &Sites, group: Group) -> String {
-    let Some(finding) = inspection.first_of(group).next() else { return String::new() };
+    let Some(finding) = inspection.report.of_group(group).next() else { return String::new() };
     let mut text = ids(finding, sites);
     if finding.place(&inspection.mesh).is_none() {
         return text;
@@ -85,21 +85,23 @@ fn remedies(inspection: &Inspection) -> String {
         let name = format!("{} ({})", group.kind.name(), group.grade.name());
         format!("  {name}: {}\n", advice(group).remedy.replace('`', ""))
     };
-    let lines: String = inspection.groups().map(line).collect();
+    let lines: String = inspection.report.groups().map(line).collect();
     if lines.is_empty() { lines } else { format!("what to do\n{lines}") }
 }
 
 /// Formats the table of object pairs, those with the most face pairs first.
 fn contacts(inspection: &Inspection) -> String {
-    let pairs = inspection.contacts.by_size();
+    let pairs = inspection.report.contacts.by_size();
     if pairs.is_empty() {
         return String::new();
     }
-    let names =
-        ["", "face pairs"].into_iter().chain(KINDS.map(|(_, name)| name)).chain(["deepest"]);
+    let names = ["", "face pairs"]
+        .into_iter()
+        .chain(CONTACT_KINDS.map(|(_, name)| name))
+        .chain(["deepest"]);
     let mut rows = vec![names.map(str::to_owned).collect::<Vec<String>>()];
     rows.extend(pairs.iter().take(MOST_PAIRS).map(|(objects, pair)| {
-        let [a, b] = objects.map(|object| short(inspection.name(object)));
+        let [a, b] = objects.map(|object| short(inspection.report.name(object)));
         row(format!("  {a} – {b}"), pair)
     }));
     let table = aligned(&rows);
@@ -110,7 +112,7 @@ fn contacts(inspection: &Inspection) -> String {
 
 /// Says how many pairs of objects meet, and how many of them only touch.
 pub fn meetings(inspection: &Inspection) -> String {
-    let pairs = inspection.contacts.by_size();
+    let pairs = inspection.report.contacts.by_size();
     let touching = pairs.iter().filter(|(_, pair)| pair.only_touches()).count();
     let all = format!("{} pair{} of objects", count(pairs.len()), plural(pairs.len()));
     match pairs.len() - touching {

@@ -7,11 +7,11 @@ use meshlod::check::{
     BroadPhase, CheckOptions, ContactPolicy, Kind, Kinds, LockOptions, ObjectsBy,
 };
 use meshlod::io::write_file;
+use meshlod::jobs::CheckRequest;
 use meshlod::mesh::Lock;
 use meshlod::{Scene, scene_locks};
 
-use crate::check::group::Grade;
-use crate::check::inspection::{Inspection, InspectionOptions};
+use crate::check::inspection::Inspection;
 use crate::check::lock_file::{self, FileRows};
 use crate::check::sites::Sites;
 use crate::check::{page, proof, report, text};
@@ -21,7 +21,9 @@ use crate::session::Session;
 use crate::session::answer::{Answer, Outcome};
 use crate::session::failure::Failure;
 use crate::session::files;
+use crate::session::hearing::Hearing;
 use crate::session::model_file;
+use meshlod::jobs::Grade;
 
 /// Find defects of a mesh and contacts between its objects; exit with 3 on errors
 #[derive(Args)]
@@ -95,14 +97,11 @@ impl Check {
             session.progress.stage("finding locks");
             written.push(self.write_locks(path, &scene)?);
         }
-        session.progress.stage("checking");
         let sites = Sites::of(&scene);
-        let order = InspectionOptions {
-            options: self.options(),
-            limit: self.limit,
-            marks: self.out.is_some(),
-        };
-        let inspection = Inspection::of(scene.into_mesh(), order);
+        let request = CheckRequest { options: self.options(), limit: self.limit };
+        let hearing = Hearing::new(session, &self.input, &self.input);
+        let inspection = Inspection::of(scene.into_mesh(), &request, self.out.is_some(), &hearing)
+            .map_err(|error| hearing.failure(error))?;
         if let Some(folder) = &self.out {
             session.progress.stage("drawing the page");
             written.push(page::write(folder, &files::name(&self.input), &inspection, &sites)?);
@@ -114,8 +113,9 @@ impl Check {
         for file in written {
             text += &format!("{file}\n");
         }
-        let denied = self.deny == Some(Deny::Warnings) && inspection.count(Grade::Warning) > 0;
-        let outcome = Outcome::Found.when(inspection.count(Grade::Error) > 0 || denied);
+        let denied =
+            self.deny == Some(Deny::Warnings) && inspection.report.count(Grade::Warning) > 0;
+        let outcome = Outcome::Found.when(inspection.report.count(Grade::Error) > 0 || denied);
         Ok(Answer { outcome, ..Answer::new(json, text) })
     }
 

@@ -9,9 +9,16 @@
 //! A job reads no file and writes none. [`AnyFile`](crate::AnyFile) opens what it works on,
 //! [`Output`](crate::Output) says where the result goes and in which format.
 
+#[cfg(feature = "check")]
+mod check;
 mod error;
 mod watch;
 
+#[cfg(feature = "check")]
+pub use check::{
+    CONTACT_KINDS, CheckReport, CheckRequest, Contacts, Grade, Group, ObjectPair, Ownership, check,
+    check_each, is_touch,
+};
 pub use error::JobError;
 pub use watch::{About, Remark, Watch};
 pub(crate) use watch::{Contractions, cancellable};

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
+use meshlod::Method;
 use meshlod::check::Kind;
+use meshlod::jobs::CheckReport;
 use meshlod::multires::{Focus, ViewCamera};
 use meshlod::picture::Camera;
-use meshlod::{CheckReport, Method};
 
 use crate::stage::{Loaded, LoadedContent, SubjectId};
 use crate::{CutQuery, CutTolerance};

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Instant;
 
-use meshlod::check::CheckOptions;
+use meshlod::jobs::{self, CheckReport, CheckRequest};
 use meshlod::measure::{PreparedSurface, vertex_errors};
 use meshlod::picture::{Normals, Picture};
 use meshlod::simplify::Observe;
 use meshlod::{
-    Borders, CheckReport, ConditionedScene, Method, Options, OwnedPaint, ReadOptions, Report,
-    Scene, SceneSimplifier, Target, check_report,
+    Borders, ConditionedScene, Method, Options, OwnedPaint, ReadOptions, Report, Scene,
+    SceneSimplifier, Target,
 };
 
 use super::document::{DocumentId, LevelDistance};
@@ -258,7 +258,8 @@ pub(crate) fn compare(
 
 /// Checks a document.
 pub(crate) fn check(document: DocumentId, loaded: &Loaded, watch: &Watch) -> Outcome<News> {
-    let report = check_report(&loaded.mesh, &CheckOptions::default(), FINDINGS_LISTED);
+    let request = CheckRequest { limit: FINDINGS_LISTED, ..CheckRequest::default() };
+    let report = jobs::check(&loaded.mesh, &request, &()).map_err(|error| error.to_string())?;
     if watch.is_cancelled() {
         return Ok(None);
     }

@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use meshlod::Mesh;
-use meshlod::check::CheckOptions;
+use meshlod::jobs::CheckRequest;
 use meshlod::mesh::VertexId;
 use meshlod::picture::{Background, Camera, Lighting, Normals, Paint, Picture, Style, render};
 use meshlod::strip::Strips;
 use serde_json::Value;
 
 use crate::check::drawing::{Drawing, Part};
-use crate::check::inspection::{Inspection, InspectionOptions};
+use crate::check::inspection::Inspection;
 use crate::demo::pipeline::steps::{BROKEN, Figure, STRIPS, Step};
 use crate::options::args::ReadArgs;
 use crate::page::inline_picture::InlinePicture;
@@ -52,8 +52,8 @@ impl<'p> StepPainter<'p> {
     }
 
     fn defects(&self, mesh: Mesh) -> Result<Picture, Failure> {
-        let order = InspectionOptions { options: CheckOptions::default(), limit: 1, marks: true };
-        let Inspection { mesh, marks, .. } = Inspection::of(mesh, order);
+        let inspected = Inspection::of(mesh, &CheckRequest::default(), true, &());
+        let Inspection { mesh, marks, .. } = inspected.map_err(Failure::new)?;
         let drawing = Drawing::new(&mesh, marks.as_ref().expect("asked for"), Part::Whole);
         drawing.picture(&self.camera).map_err(Failure::new)
     }

@@ -61,7 +61,7 @@ fn list(findings: &mut Findings, ui: &mut Ui, out: &mut Vec<Action>) {
 fn of_kind(
     kind: Kind,
     selected: Option<usize>,
-    report: &meshlod::CheckReport,
+    report: &meshlod::jobs::CheckReport,
     count: usize,
     ui: &mut Ui,
     out: &mut Vec<Action>,
@@ -71,7 +71,7 @@ fn of_kind(
     let area = ScrollArea::vertical().id_salt(kind.name()).max_height(LIST_HEIGHT);
     area.auto_shrink([false, true]).show_rows(ui, 22.0, listed.len(), |ui, rows| {
         for &(index, finding) in &listed[rows] {
-            let text = RichText::new(title(finding, &report.objects)).size(12.0);
+            let text = RichText::new(title(finding, &report.owners.objects)).size(12.0);
             let label = ui.add(egui::Button::selectable(selected == Some(index), text).truncate());
             if label.clicked() {
                 out.push(Action::SelectFinding(index));

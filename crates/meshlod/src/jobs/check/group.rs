@@ -2,12 +2,12 @@
 
 use std::collections::HashSet;
 
-use meshlod::Mesh;
-use meshlod::check::{Finding, IntersectionKind, Kind, ObjectId, Objects, Severity};
-use meshlod::mesh::{FaceId, VertexId};
+use meshlod_check::{Finding, IntersectionKind, Kind, ObjectId, Objects, Severity};
+use meshlod_mesh::{FaceId, Mesh, VertexId};
 
 /// Urgency of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 pub enum Grade {
     /// Most programs reject the mesh or process it incorrectly.
     Error,
@@ -19,12 +19,16 @@ pub enum Grade {
 
 /// Findings of one kind and grade; errors come first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Group {
+    /// Urgency of the findings.
     pub grade: Grade,
+    /// Kind of the findings.
     pub kind: Kind,
 }
 
 impl Grade {
+    /// Returns the name that reports use: `error`, `warning` or `touch`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Error => "error",
@@ -35,13 +39,17 @@ impl Grade {
 }
 
 /// Objects that the vertices and faces of a mesh belong to.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Ownership {
+    /// The objects of the mesh.
     pub objects: Objects,
     /// Object of the first face at each vertex; `None` for a vertex that no face uses.
     of_vertex: Vec<Option<ObjectId>>,
 }
 
 impl Ownership {
+    /// Finds the owner of every vertex.
     pub fn new(mesh: &Mesh, objects: Objects) -> Self {
         let mut of_vertex = vec![None; mesh.positions.len()];
         for (face, &object) in mesh.faces.iter().zip(&objects.of_face) {
@@ -114,7 +122,7 @@ pub fn is_touch(kind: IntersectionKind) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use meshlod::check::ObjectsBy;
+    use meshlod_check::ObjectsBy;
 
     use super::*;
 

@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use meshlod::check::{Intersection, IntersectionKind, ObjectId};
-use meshlod::mesh::FaceId;
+use meshlod_check::{Intersection, IntersectionKind, ObjectId};
+use meshlod_mesh::FaceId;
 
-use crate::check::group::is_touch;
+use super::group::is_touch;
 
 /// All contacts between two objects, with the deepest of them.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ObjectPair {
     /// Number of touching face pairs by kind of contact: vertex, edge, crossing, overlap.
     pub counts: [usize; 4],
@@ -19,7 +19,7 @@ pub struct ObjectPair {
 }
 
 /// All kinds of contact with their names, in the order of [`ObjectPair::counts`].
-pub const KINDS: [(IntersectionKind, &str); 4] = [
+pub const CONTACT_KINDS: [(IntersectionKind, &str); 4] = [
     (IntersectionKind::Point, "vertex"),
     (IntersectionKind::Segment, "edge"),
     (IntersectionKind::Crossing, "crossing"),
@@ -27,11 +27,11 @@ pub const KINDS: [(IntersectionKind, &str); 4] = [
 ];
 
 /// Contacts of a mesh by pairs of objects that meet.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Contacts(BTreeMap<[ObjectId; 2], ObjectPair>);
 
 impl Contacts {
-    pub fn add(&mut self, objects: [ObjectId; 2], faces: [FaceId; 2], touch: Intersection) {
+    pub(super) fn add(&mut self, objects: [ObjectId; 2], faces: [FaceId; 2], touch: Intersection) {
         let new = || ObjectPair { counts: [0; 4], deepest: touch, faces };
         let pair = self.0.entry(objects).or_insert_with(new);
         pair.counts[touch.kind as usize] += 1;
@@ -43,6 +43,11 @@ impl Contacts {
     /// Returns the number of pairs of objects that meet.
     pub fn len(&self) -> usize {
         self.0.len()
+    }
+
+    /// Returns true if no two objects meet.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
     }
 
     /// Returns the pairs of objects, those with the most touching faces first; ties are broken by
@@ -62,6 +67,6 @@ impl ObjectPair {
 
     /// Returns whether the objects touch, but nowhere pass through or lie in each other.
     pub fn only_touches(&self) -> bool {
-        KINDS.iter().all(|(kind, _)| is_touch(*kind) || self.counts[*kind as usize] == 0)
+        CONTACT_KINDS.iter().all(|(kind, _)| is_touch(*kind) || self.counts[*kind as usize] == 0)
     }
 }

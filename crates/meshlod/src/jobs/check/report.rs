@@ -1,0 +1,116 @@
+//! Findings of a check, counted and listed.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use meshlod_check::{Finding, Kind, Kinds, ObjectId, Objects, Severity, Summary};
+use meshlod_mesh::Mesh;
+
+use super::{CheckRequest, Contacts, Grade, Group, Ownership};
+
+/// Findings of a check: how many of each kind and urgency, the first of them, and the contacts
+/// between objects.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct CheckReport {
+    /// The objects of the mesh, with the owners of its vertices.
+    #[cfg_attr(feature = "serde", serde(flatten))]
+    pub owners: Ownership,
+    /// Kinds that were looked for.
+    pub kinds: Kinds,
+    /// Number of findings of each kind.
+    pub summary: Summary,
+    /// The first findings of each group, at least one, in the order in which they were found.
+    pub findings: Vec<Finding>,
+    /// Maximum number of findings listed of each group.
+    pub limit: usize,
+    /// Contacts by pairs of objects.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub contacts: Contacts,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    groups: BTreeMap<Group, usize>,
+}
+
+impl CheckReport {
+    /// Creates the report of a check that has found nothing yet.
+    pub(super) fn new(mesh: &Mesh, request: &CheckRequest) -> Self {
+        let CheckRequest { options, limit } = request;
+        Self {
+            owners: Ownership::new(mesh, Objects::of(mesh, options.objects)),
+            kinds: options.kinds,
+            summary: Summary::default(),
+            findings: Vec::new(),
+            limit: *limit,
+            contacts: Contacts::default(),
+            groups: BTreeMap::new(),
+        }
+    }
+
+    pub(super) fn add(&mut self, finding: &Finding) {
+        self.summary.add(finding);
+        let group = self.owners.group(finding);
+        let count = self.groups.entry(group).or_default();
+        *count += 1;
+        if *count <= self.limit.max(1) {
+            self.findings.push(finding.clone());
+        }
+        if let &Finding::Contact { objects, faces, intersection } = finding {
+            self.contacts.add(objects, faces, intersection);
+        }
+    }
+
+    /// Returns true if nothing was found.
+    pub fn is_clean(&self) -> bool {
+        self.summary.total() == 0
+    }
+
+    /// Returns true if a finding is an error.
+    pub fn has_errors(&self) -> bool {
+        self.summary.worst() == Some(Severity::Error)
+    }
+
+    /// Iterates over the listed findings of a kind.
+    pub fn of(&self, kind: Kind) -> impl Iterator<Item = &Finding> {
+        self.findings.iter().filter(move |finding| finding.kind() == kind)
+    }
+
+    /// Iterates over the groups of findings with their numbers, errors first.
+    pub fn groups(&self) -> impl Iterator<Item = (Group, usize)> {
+        self.groups.iter().map(|(&group, &count)| (group, count))
+    }
+
+    /// Iterates over the first findings of a group; at least one.
+    pub fn of_group(&self, group: Group) -> impl Iterator<Item = &Finding> {
+        self.findings.iter().filter(move |finding| self.owners.group(finding) == group)
+    }
+
+    /// Returns the number of findings of a kind that are not listed.
+    pub fn left_out(&self, kind: Kind) -> usize {
+        let groups = self.groups().filter(|(group, _)| group.kind == kind);
+        groups.map(|(_, count)| count.saturating_sub(self.limit)).sum()
+    }
+
+    /// Returns the number of findings of an urgency.
+    pub fn count(&self, grade: Grade) -> usize {
+        self.groups().filter(|(group, _)| group.grade == grade).map(|(_, count)| count).sum()
+    }
+
+    /// Returns the name of an object; empty if it has none.
+    pub fn name(&self, object: ObjectId) -> &str {
+        self.owners.objects.names.get(object.0 as usize).map_or("", String::as_str)
+    }
+}
+
+/// Prints the number of findings of each kind, a line each, or `clean`.
+impl fmt::Display for CheckReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.is_clean() {
+            return f.write_str("clean");
+        }
+        for (i, (kind, count)) in self.summary.found().enumerate() {
+            let newline = if i == 0 { "" } else { "\n" };
+            write!(f, "{newline}{}: {count}", kind.name())?;
+        }
+        Ok(())
+    }
+}
