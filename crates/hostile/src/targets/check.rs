@@ -1,5 +1,3 @@
-#![no_main]
-
 use std::ops::ControlFlow;
 
 use meshlod_check::{
@@ -7,6 +5,8 @@ use meshlod_check::{
     findings, fuse, repair,
 };
 use meshlod_mesh::{Attributes, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId};
+
+use crate::accept::accept;
 
 /// Faces over few vertices, where nearly everything is wrong. Byte 0 chooses the number of
 /// vertices, byte 1 the attributes and whether holes are closed; coordinates and faces follow.
@@ -74,7 +74,8 @@ fn untold(mesh: &Mesh, one_sided: usize) -> Vec<Finding> {
     findings(mesh, &CheckOptions { kinds, ..CheckOptions::default() })
 }
 
-libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("check"), |bytes: &[u8]| {
+/// Finds, repairs and fuses few faces with nearly every defect.
+pub fn run(bytes: &[u8]) {
     let Some((mesh, options)) = mesh(bytes) else { return };
     let mut summary = Summary::default();
     let _ = check(&mesh, &CheckOptions::default(), &mut |finding| {
@@ -82,15 +83,15 @@ libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("check"), |bytes: &[u8]| {
         ControlFlow::Continue(())
     });
     let (mended, report) = repair(&mesh, &options);
-    meshlod_fuzz::accept(&mended);
+    accept(&mended);
     let left = untold(&mended, report.count(RepairStep::NotOrientable));
     assert!(left.is_empty(), "{left:?} is left of {summary:?} after {report:?}");
     let (fused, _) = fuse(&mended, |face| face.index() % 5 != 4);
-    meshlod_fuzz::accept(&fused);
+    accept(&fused);
     // Split vertices coincide, and welding joins them again. Borders that obstructed each other can
     // be stitched once the hole behind one of them is closed.
     if options.weld.is_none() && options.holes.is_none() {
         let (again, twice) = repair(&mended, &options);
         assert!(again == mended, "repaired twice: {report:?}, then {twice:?}");
     }
-});
+}

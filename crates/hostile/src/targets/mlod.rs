@@ -1,12 +1,13 @@
-#![no_main]
-
-use meshlod_fuzz::models;
 use meshlod_multires::{
     Archive, Cut, Focus, HeightField, Implicit, Level, Model, ModelFile, Query, Rtin,
     RtinExtractor, Tolerance, UpdateLimits, ViewCamera,
 };
 
-libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("mlod"), |bytes: &[u8]| {
+use crate::accept::accept;
+use crate::models;
+
+/// Opens a file of all levels, queries it, and walks its cuts.
+pub fn run(bytes: &[u8]) {
     // With the right checksums, more mutations get past the header.
     let mut bytes = bytes.to_vec();
     models::seal(&mut bytes);
@@ -15,7 +16,7 @@ libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("mlod"), |bytes: &[u8]| {
         Ok(ModelFile::HeightField(field, _)) => walk_field(&field),
         Err(_) => {}
     }
-});
+}
 
 /// Runs queries directly on an uncertified file, and walks the certified models read from it.
 fn take_parts(archive: &Archive<Vec<u8>>) {
@@ -25,10 +26,10 @@ fn take_parts(archive: &Archive<Vec<u8>>) {
     let queries = queries(archive.diagonal());
     for query in &queries {
         if let Ok(taken) = archive.extract(query) {
-            accept(&taken.level);
+            accept_level(&taken.level);
         }
         if let Ok(taken) = archive.extract_at_most(50, query) {
-            accept(&taken.level);
+            accept_level(&taken.level);
         }
     }
     for chunks in [archive.chunk_count() / 2, archive.chunk_count()] {
@@ -45,14 +46,14 @@ fn walk(implicit: &Implicit, queries: &[Query<'_>]) {
         let change =
             cut.update(query, &UpdateLimits::default()).expect("the query was accepted before");
         assert!(change.done, "there is all the time");
-        accept(&cut.level());
+        accept_level(&cut.level());
     }
     let model = Model::from_implicit(implicit).expect("the model has a certificate");
     let mut extractor = model.extractor();
     for query in queries {
-        accept(extractor.exact(query).expect("the query is valid"));
+        accept_level(extractor.exact(query).expect("the query is valid"));
         for faces in [0, 1 + implicit.full_faces() / 2, usize::MAX] {
-            accept(extractor.at_most(faces, query).expect("the query is valid"));
+            accept_level(extractor.at_most(faces, query).expect("the query is valid"));
         }
     }
 }
@@ -63,17 +64,17 @@ fn walk_field(field: &HeightField) {
     let mut extractor = RtinExtractor::new(&model);
     for query in &queries(field.bounds().diagonal()) {
         if let Ok(level) = model.level(query) {
-            accept(&level);
+            accept_level(&level);
         }
         if let Ok(level) = extractor.at_most(100, query) {
-            accept(level);
+            accept_level(level);
         }
     }
     assert!(is_sound, "right triangles have no cracks, whatever the heights");
 }
 
-fn accept(level: &Level) {
-    meshlod_fuzz::accept(&level.mesh());
+fn accept_level(level: &Level) {
+    accept(&level.mesh());
 }
 
 /// Queries of all kinds, in the scale of the file.

@@ -1,8 +1,9 @@
-#![no_main]
-
 use meshlod_io::gltf::{Skeleton, SkeletonImage, write_glb};
 
-libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("skeleton"), |bytes: &[u8]| {
+use crate::accept::accept_scene;
+
+/// Makes scenes of a skeleton, the document of a scene without its meshes.
+pub fn run(bytes: &[u8]) {
     for (meshes, images) in [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1)] {
         for has_animations in [false, true] {
             let skeleton = Skeleton {
@@ -14,9 +15,9 @@ libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("skeleton"), |bytes: &[u8]
             };
             let image = SkeletonImage { bytes: b"\x89PNG".to_vec(), is_preview: has_animations };
             if let Ok(scene) = skeleton.into_scene(vec![image; images], has_animations) {
-                meshlod_fuzz::accept_scene(&scene);
+                accept_scene(&scene);
                 let _ = write_glb(&scene, &[]);
             }
         }
     }
-});
+}

@@ -1,11 +1,12 @@
-#![no_main]
-
 use meshlod_io::{Precision, obj};
 
-libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("obj"), |bytes: &[u8]| {
+use crate::accept::accept_scene;
+
+/// Reads an OBJ that is its own library, and writes it.
+pub fn run(bytes: &[u8]) {
     // Any material library it names is the file itself, so that this reader is reached too.
     if let Ok(scene) = obj::read(bytes, &mut |_| Some(bytes.to_vec())) {
-        meshlod_fuzz::accept_scene(&scene);
+        accept_scene(&scene);
         // Smoothing groups come back.
         let mut out = Vec::new();
         if obj::write(&scene, Precision::F64, &mut out, &[]).is_ok()
@@ -15,4 +16,4 @@ libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("obj"), |bytes: &[u8]| {
             assert_eq!(groups(&back), groups(&scene));
         }
     }
-});
+}

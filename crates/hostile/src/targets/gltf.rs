@@ -1,10 +1,11 @@
-#![no_main]
-
 use meshlod_io::{Weld, gltf};
 
-libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("gltf"), |bytes: &[u8]| {
+use crate::accept::accept_scene;
+
+/// Reads glTF that is its own buffers and images, and writes it.
+pub fn run(bytes: &[u8]) {
     if let Ok(scene) = gltf::read(bytes, &mut |_| Some(bytes.to_vec()), Weld::Exact) {
-        meshlod_fuzz::accept_scene(&scene);
+        accept_scene(&scene);
         // The parts of the document that are carried through must not trip the writer.
         let _ = gltf::write_glb(&scene, &[]);
         let how = gltf::Compression { meshopt: bytes.len() % 2 == 0, ..Default::default() };
@@ -12,4 +13,4 @@ libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("gltf"), |bytes: &[u8]| {
             gltf::read(&glb, &mut |_| None, Weld::Exact).expect("written glTF can be read");
         }
     }
-});
+}

@@ -1,7 +1,7 @@
-#![no_main]
-
 use meshlod_io::gltf::{Skeleton, SkeletonImage, write_glb};
 use meshlod_io::{Scene, obj};
+
+use crate::accept::accept_scene;
 
 const OBJ: &[u8] = b"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl wood\nf 1 2 3\n";
 
@@ -15,9 +15,10 @@ fn read(library: &[u8]) -> Option<Scene> {
     obj::read(OBJ, &mut file).ok()
 }
 
-libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("mtl"), |bytes: &[u8]| {
+/// Reads a library of materials, and writes it twice.
+pub fn run(bytes: &[u8]) {
     let Some(scene) = read(bytes) else { return };
-    meshlod_fuzz::accept_scene(&scene);
+    accept_scene(&scene);
     // What is written says the same, and is written the same again.
     let write = |scene: &Scene| {
         let mut out = Vec::new();
@@ -34,8 +35,9 @@ libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("mtl"), |bytes: &[u8]| {
     assert_eq!(write(&again), written);
     let skeleton = Skeleton::of(&scene, vec![true]).expect("one mesh");
     let images = scene.images.iter();
-    let images = images.map(|image| SkeletonImage { bytes: image.bytes.clone(), is_preview: false });
+    let images =
+        images.map(|image| SkeletonImage { bytes: image.bytes.clone(), is_preview: false });
     let back = skeleton.into_scene(images.collect(), true).expect("our own skeleton");
     assert_eq!(back.materials, scene.materials);
     let _ = write_glb(&scene, &[]);
-});
+}

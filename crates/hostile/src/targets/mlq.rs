@@ -1,8 +1,9 @@
-#![no_main]
-
 use meshlod_codec::Compressed;
 
-libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("mlq"), |bytes: &[u8]| {
+use crate::accept::accept;
+
+/// Decodes a resident mesh, whole and by patches.
+pub fn run(bytes: &[u8]) {
     // With the right checksums, more mutations get past the header.
     let mut bytes = bytes.to_vec();
     Compressed::seal(&mut bytes);
@@ -12,11 +13,11 @@ libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("mlq"), |bytes: &[u8]| {
         assert!((0..strips.parts()).all(|part| strips.indices(part).count() == count(part)));
     }
     if let Ok(mesh) = compressed.decode() {
-        meshlod_fuzz::accept(&mesh);
+        accept(&mesh);
     }
     for at in 0..compressed.patches() {
         if let Ok(mesh) = compressed.patch(at) {
-            meshlod_fuzz::accept(&mesh);
+            accept(&mesh);
         }
     }
-});
+}

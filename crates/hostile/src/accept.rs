@@ -1,17 +1,7 @@
-//! Shared code of the fuzz targets: seeds, and checks of anything a reader accepts.
-//!
-//! `cargo fuzz run -s none ply` runs one of them.
-
-pub mod draco;
-mod kept;
-pub mod models;
-mod seeds;
+//! Checks of anything a reader accepts.
 
 use meshlod_io::Scene;
 use meshlod_mesh::Mesh;
-
-pub use kept::keep;
-pub use seeds::plant;
 
 /// Checks a mesh returned by a reader.
 ///

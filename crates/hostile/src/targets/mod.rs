@@ -1,0 +1,51 @@
+//! The targets, one a file: what each does with hostile bytes, and what must hold then.
+
+mod check;
+mod draco;
+mod gltf;
+mod mlod;
+mod mlq;
+mod mlz;
+mod mtl;
+mod obj;
+mod off;
+mod ply;
+mod progressive;
+mod simplify;
+mod skeleton;
+mod smf;
+mod stl;
+
+/// Name and function of each target.
+const TARGETS: [(&str, fn(&[u8])); 15] = [
+    ("check", check::run),
+    ("draco", draco::run),
+    ("gltf", gltf::run),
+    ("mlod", mlod::run),
+    ("mlq", mlq::run),
+    ("mlz", mlz::run),
+    ("mtl", mtl::run),
+    ("obj", obj::run),
+    ("off", off::run),
+    ("ply", ply::run),
+    ("progressive", progressive::run),
+    ("simplify", simplify::run),
+    ("skeleton", skeleton::run),
+    ("smf", smf::run),
+    ("stl", stl::run),
+];
+
+/// Lists the names of the targets.
+pub fn targets() -> impl Iterator<Item = &'static str> {
+    TARGETS.iter().map(|(name, _)| *name)
+}
+
+/// Runs a target with an input.
+///
+/// # Panics
+/// If the input breaks what the target checks: a defect of ours. If there is no such target.
+pub fn run(target: &str, input: &[u8]) {
+    let named = TARGETS.iter().find(|(name, _)| *name == target);
+    let (_, run) = named.unwrap_or_else(|| panic!("there is no target {target}"));
+    run(input);
+}
