@@ -1,12 +1,12 @@
 //! Measures the distance of simplified meshes from their originals, for meshlod and other programs.
 
-use crate::peer::{Indexed, simplify_with_update};
 use anyhow::Result;
 use meshlod::measure::{Distance, DistanceOptions, PreparedSurface, surface_distance};
 use meshlod::mesh::Mesh;
 use meshlod::simplify::{Method, Options, Target, simplify};
 
 use crate::lab::table::Table;
+use crate::peer::{Indexed, simplify_with_update};
 
 /// A recorded result of another program: mean, RMS and maximum in percent of the diagonal.
 struct Peer {

@@ -1,11 +1,11 @@
 //! Measures the time of mesh checks, for meshes of a hundred thousand to four million faces.
 
-use crate::{least_seconds, one_core};
 use anyhow::Result;
 use meshlod::check::{BroadPhase, CheckOptions, Kind, Kinds, findings};
 use meshlod::mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId};
 
 use crate::lab::table::Table;
+use crate::{least_seconds, one_core};
 
 const ROUNDS: usize = 5;
 /// Mesh files, and the number of 1:4 subdivisions.

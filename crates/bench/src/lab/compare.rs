@@ -4,8 +4,6 @@
 //! Compares `lindstrom-turk` on bare geometry with meshoptimizer's simplify with update, its most
 //! accurate. CPU time on one core, without file input and output.
 
-use crate::peer::{Indexed, simplify_with_update};
-use crate::{Ratio, alternate, one_core};
 use anyhow::{Context, Result, bail, ensure};
 use meshlod::measure::{DistanceOptions, PreparedSurface, surface_distance, volume};
 use meshlod::mesh::{Connectivity, Mesh};
@@ -13,6 +11,8 @@ use meshlod::simplify::{Method, Options, Target, simplify};
 use serde_json::{Value, json};
 
 use crate::lab::table::Table;
+use crate::peer::{Indexed, simplify_with_update};
+use crate::{Ratio, alternate, one_core};
 
 const OPTIONS: &str = "--meshes NAME,... --ratios 10%,... --rounds N --json";
 

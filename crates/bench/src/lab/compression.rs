@@ -5,7 +5,6 @@ mod global;
 mod rates;
 mod sent;
 
-use crate::least_seconds;
 use anyhow::{Context, Result};
 use meshlod::Mesh;
 use meshlod::codec::{
@@ -17,6 +16,7 @@ use meshlod::mesh::AttributeBounds;
 use self::global::{Rounding, global};
 use crate::lab::folders::root;
 use crate::lab::table::Table;
+use crate::least_seconds;
 
 /// The meshes of the paper, or meshes of the same size.
 const PAPER_MESHES: [&str; 5] =

@@ -1,11 +1,11 @@
 //! The tables of the face constriction paper [LJ05], with measurements of meshlod beside them.
 
-use crate::{Ratio, alternate, one_core};
 use anyhow::Result;
 use meshlod::mesh::Mesh;
 use meshlod::simplify::{Method, Options, Report, Target, simplify};
 
 use crate::lab::table::Table;
+use crate::{Ratio, alternate, one_core};
 
 const ROUNDS: usize = 9;
 

@@ -4,7 +4,6 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::one_core;
 use anyhow::{Context, Result};
 use meshlod::flock::levels::{ChainOptions, LevelTable, Look, ModelAxes};
 use meshlod::flock::select::{Budget, PolicyName, Selector};
@@ -15,6 +14,7 @@ use serde_json::Value;
 
 use super::command::Program;
 use crate::lab::table::Table;
+use crate::one_core;
 
 /// Shares of the triangles of full detail at which image errors are listed.
 const SHARES: [f64; 4] = [0.01, 0.02, 0.05, 0.1];

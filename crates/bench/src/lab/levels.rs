@@ -1,6 +1,5 @@
 //! Measures the multiresolution model: its size on disk and in memory, and the speed of queries.
 
-use crate::{least_seconds, one_core};
 use anyhow::Result;
 use meshlod::measure::{DistanceOptions, distance};
 use meshlod::mesh::{Bounds, Mesh};
@@ -12,6 +11,7 @@ use meshlod::simplify::Simplifier;
 use meshlod::{Options, Target, Topology};
 
 use crate::lab::table::Table;
+use crate::{least_seconds, one_core};
 
 const MESHES: [&str; 4] = ["bunny.ply", "horse-97k.ply", "igea.ply", "dragon.ply"];
 const ROUNDS: usize = 5;
@@ -22,53 +22,61 @@ const FRAMES: i32 = 200;
 /// Approximate numbers of updates per chunk.
 const CHUNKS: [usize; 3] = [1 << 10, 1 << 12, 1 << 14];
 
+/// Headings of the table of sizes.
+const ROOM: [&str; 12] = [
+    "bytes per vertex",
+    "in memory",
+    "compact",
+    "face list",
+    "explicit",
+    "file: 1,024 per chunk",
+    "4,096",
+    "16,384",
+    "moved, %",
+    "first mesh, bytes",
+    "its max error, %",
+    "read for a ball of 2 % at full detail, %",
+];
+/// Headings of the table of times to build.
+const BUILD: [&str; 6] = [
+    "build",
+    "to exhaustion, s",
+    "recorded, ×",
+    "whole file, ×",
+    "packing, M updates/s",
+    "certificate, µs per update",
+];
+/// Headings of the table of speeds of queries.
+const RATES: [&str; 13] = [
+    "million faces per second",
+    "one tolerance: .3 %",
+    ".03 %",
+    ".003 %",
+    "0",
+    "exact: 1 px",
+    ".25 px",
+    ".02 px",
+    "saturated: 1 px",
+    ".25 px",
+    ".02 px",
+    "from the base, 0",
+    "compact",
+];
+/// Headings of the table of sizes beside the smallest cut.
+const MORE: [&str; 7] = [
+    "more faces than exact, %",
+    "saturated for a range of 4: 1 px",
+    ".5 px",
+    ".25 px",
+    ".1 px",
+    "by wings: 1 px",
+    "folds by exact, wings",
+];
+
+/// Returns the tables of sizes, of times to build, and of queries.
 pub fn section() -> Result<String> {
-    let mut room = Table::new([
-        "bytes per vertex",
-        "in memory",
-        "compact",
-        "face list",
-        "explicit",
-        "file: 1,024 per chunk",
-        "4,096",
-        "16,384",
-        "moved, %",
-        "first mesh, bytes",
-        "its max error, %",
-        "read for a ball of 2 % at full detail, %",
-    ]);
-    let mut build = Table::new([
-        "build",
-        "to exhaustion, s",
-        "recorded, ×",
-        "whole file, ×",
-        "packing, M updates/s",
-        "certificate, µs per update",
-    ]);
-    let mut rates = Table::new([
-        "million faces per second",
-        "one tolerance: .3 %",
-        ".03 %",
-        ".003 %",
-        "0",
-        "exact: 1 px",
-        ".25 px",
-        ".02 px",
-        "saturated: 1 px",
-        ".25 px",
-        ".02 px",
-        "from the base, 0",
-        "compact",
-    ]);
-    let mut more = Table::new([
-        "more faces than exact, %",
-        "saturated for a range of 4: 1 px",
-        ".5 px",
-        ".25 px",
-        ".1 px",
-        "by wings: 1 px",
-        "folds by exact, wings",
-    ]);
+    let [mut room, mut build] = [Table::new(ROOM), Table::new(BUILD)];
+    let [mut rates, mut more] = [Table::new(RATES), Table::new(MORE)];
     let mut following = String::new();
     for file in MESHES {
         let Some(mesh) = crate::read(file)? else { continue };

@@ -2,12 +2,12 @@
 
 use std::time::Instant;
 
-use crate::{alternate, one_core};
 use anyhow::{Context, Result};
 use meshlod::measure::{DistanceOptions, PreparedSurface, surface_distance};
 use meshlod::simplify::{Options, Target, simplify};
 
 use crate::lab::table::Table;
+use crate::{alternate, one_core};
 
 const ROUNDS: usize = 7;
 

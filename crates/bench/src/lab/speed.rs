@@ -1,11 +1,11 @@
 //! Measures the speed of simplification against meshoptimizer, in alternating rounds on one core.
 
-use crate::peer::{Indexed, simplify_with_update};
-use crate::{Ratio, alternate, one_core};
 use anyhow::Result;
 use meshlod::simplify::{Method, Options, Target, simplify};
 
 use crate::lab::table::Table;
+use crate::peer::{Indexed, simplify_with_update};
+use crate::{Ratio, alternate, one_core};
 
 const ROUNDS: usize = 5;
 const METHODS: [Method; 6] = [

@@ -5,7 +5,6 @@ mod drawn;
 mod sent;
 mod whole;
 
-use crate::{least_seconds, one_core};
 use anyhow::{Context, Result};
 use meshlod::Target;
 use meshlod::strip::{LevelStrips, MergeTree, StripEffort};
@@ -13,6 +12,7 @@ use meshlod::strip::{LevelStrips, MergeTree, StripEffort};
 use self::sent::{BASES, Base, Levels, Model};
 use crate::lab::folders::root;
 use crate::lab::table::Table;
+use crate::{least_seconds, one_core};
 
 /// Models of [KY05].
 const MODELS: [&str; 4] = ["bishop.obj", "eight.off", "femur.off", "triceratops.off"];

@@ -1,7 +1,6 @@
 //! Measures image errors of simplified textured meshes, for meshlod and meshoptimizer's
 //! simplification with attributes.
 
-use crate::peer::{Settings, SimplifyOptions, Update, simplify_with_attributes};
 use anyhow::{Context, Result};
 use meshlod::mesh::Mesh;
 use meshlod::multires::{Archive, Forest, Query, Storage, StoredErrors};
@@ -13,6 +12,7 @@ use meshlod::{
 };
 
 use crate::lab::table::Table;
+use crate::peer::{Settings, SimplifyOptions, Update, simplify_with_attributes};
 
 const MODELS: [&str; 5] =
     ["flight-helmet/FlightHelmet.gltf", "duck.glb", "pirate.obj", "spot.obj", "fish-bream.obj"];

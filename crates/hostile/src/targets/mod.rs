@@ -1,4 +1,8 @@
 //! The targets, one a file: what each does with hostile bytes, and what must hold then.
+//!
+//! Scenes are read by `ply`, `obj`, `mtl`, `stl`, `off`, `smf` and `gltf`, of which `draco` and
+//! `skeleton` are parts; files of our own by `mlod`, `mlq`, `mlz` and `progressive`. The bytes of
+//! `check` and `simplify` are small meshes.
 
 mod check;
 mod draco;

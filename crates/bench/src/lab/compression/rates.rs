@@ -1,6 +1,5 @@
 //! Rate-distortion plots of the compression schemes.
 
-use crate::peer::meshopt_codec;
 use anyhow::Result;
 use meshlod::Mesh;
 use meshlod::codec::{CompressionTarget, Reconstruction, Scheme, compress};
@@ -9,6 +8,7 @@ use meshlod::mesh::AttributeBounds;
 use super::distance_of;
 use super::global::{Rounding, global, numbers};
 use crate::lab::plot::{Line, Plot, page};
+use crate::peer::meshopt_codec;
 
 const MESHES: [&str; 2] = ["bunny.ply", "horse.ply"];
 const BITS: [u32; 5] = [8, 10, 11, 12, 14];

@@ -1,11 +1,11 @@
 //! Measures compressed files for transmission, by meshlod and Draco.
 
-use crate::{least_seconds, one_core};
 use anyhow::{Context, Result};
 use meshlod::Mesh;
 use meshlod::codec::{Transport, TransportFile, TransportOptions};
 
 use crate::lab::table::Table;
+use crate::{least_seconds, one_core};
 
 /// Bytes per triangle of Draco with 11 bits and compression level 7, the whole mesh in one piece,
 /// measured with its own program.

@@ -1,12 +1,12 @@
 //! Ways to simplify a mesh of many components, for comparison.
 
-use crate::peer::simplify_with_border_lock;
 use anyhow::Result;
 use meshlod::check::{ContactPolicy, LockOptions, fuse, locks};
 use meshlod::mesh::{Labels, Lock, Locks, Mesh, VertexId, face_components};
 use meshlod::simplify::{History, Options, Simplifier, Target};
 
 use super::open::{lying_on, newly_open, open_sides, positions_after};
+use crate::peer::simplify_with_border_lock;
 
 /// A way to simplify a mesh of many components.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

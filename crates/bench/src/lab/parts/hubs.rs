@@ -1,6 +1,5 @@
 //! A sample made non-manifold, beside the sample itself.
 
-use crate::fixtures::{doubled_back_to_back, with_merged_vertices};
 use anyhow::Result;
 use meshlod::measure::PreparedSurface;
 use meshlod::mesh::Mesh;
@@ -9,6 +8,7 @@ use meshlod::samples;
 use super::Tools;
 use super::deviation::{Deviation, cell, is_at_most, ratio};
 use super::inputs::{bare, write};
+use crate::fixtures::{doubled_back_to_back, with_merged_vertices};
 use crate::lab::table::Table;
 
 const FACES: usize = 100_000;

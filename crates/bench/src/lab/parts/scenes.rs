@@ -1,6 +1,5 @@
 //! Random scenes, beside removing their smallest pieces whole.
 
-use crate::fixtures::scene;
 use anyhow::Result;
 use meshlod::measure::PreparedSurface;
 use meshlod::mesh::{Bounds, Mesh, face_components};
@@ -9,6 +8,7 @@ use super::Tools;
 use super::cache::Cache;
 use super::deviation::{Deviation, is_at_most, ratio};
 use super::inputs::{bare, write};
+use crate::fixtures::scene;
 use crate::lab::table::Table;
 
 const SCENES: u64 = 100;

@@ -1,6 +1,5 @@
 //! Textured models of many parts, beside meshoptimizer's simplification with attributes.
 
-use crate::peer::{Settings, SimplifyOptions, Update, simplify_with_attributes};
 use anyhow::Result;
 use meshlod::mesh::Mesh;
 use meshlod::picture::{Materials, ReferenceImages, Style};
@@ -11,6 +10,7 @@ use super::Tools;
 use super::cache::Cache;
 use crate::lab::table::Table;
 use crate::lab::textured::PEER;
+use crate::peer::{Settings, SimplifyOptions, Update, simplify_with_attributes};
 
 const MODELS: [&str; 8] = [
     "pirate.obj",

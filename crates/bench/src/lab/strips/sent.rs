@@ -1,11 +1,12 @@
 //! Measures the number of vertices that triangle strips send at each level.
 
-use crate::peer::meshopt_strips;
 use meshlod::mesh::VertexId;
 use meshlod::strip::{
     Difference, Filter, MergeTree, SkipStrip, StripEffort, StripOptions, StripQuality,
     StripStatistics, Strips, difference, stripify,
 };
+
+use crate::peer::meshopt_strips;
 
 /// Triangle strips of the full-resolution mesh, from which those of all levels are derived.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -1,7 +1,5 @@
 //! Measures triangle strips of whole meshes, built by meshlod and meshoptimizer.
 
-use crate::least_seconds;
-use crate::peer::meshopt_strips;
 use anyhow::Result;
 use meshlod::mesh::VertexId;
 use meshlod::strip::{
@@ -11,6 +9,8 @@ use meshlod::strip::{
 
 use crate::lab::plot::{Line, Plot, page};
 use crate::lab::table::Table;
+use crate::least_seconds;
+use crate::peer::meshopt_strips;
 
 const MESHES: [&str; 5] =
     ["bunny.ply", "horse-97k.ply", "fandisk.off", "fandisk-32k.ply", "igea.ply"];

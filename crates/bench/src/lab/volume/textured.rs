@@ -3,7 +3,6 @@
 
 use std::path::Path;
 
-use crate::fixtures::{charted, in_materials};
 use anyhow::Result;
 use meshlod::io::{Precision, Scene};
 use meshlod::mesh::Mesh;
@@ -15,6 +14,7 @@ use meshlod::{
 };
 
 use super::RATIOS;
+use crate::fixtures::{charted, in_materials};
 use crate::lab::table::Table;
 
 /// Closed models, and open ones, of which only the closed parts have a volume.
