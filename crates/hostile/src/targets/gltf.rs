@@ -8,7 +8,8 @@ pub fn run(bytes: &[u8]) {
         accept_scene(&scene);
         // The parts of the document that are carried through must not trip the writer.
         let _ = gltf::write_glb(&scene, &[]);
-        let how = gltf::Compression { meshopt: bytes.len() % 2 == 0, ..Default::default() };
+        let how =
+            gltf::Compression { meshopt: bytes.len().is_multiple_of(2), ..Default::default() };
         if let Ok((glb, _)) = gltf::write_compressed_glb(&scene, &[], &how) {
             gltf::read(&glb, &mut |_| None, Weld::Exact).expect("written glTF can be read");
         }

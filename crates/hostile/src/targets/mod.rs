@@ -20,8 +20,10 @@ mod skeleton;
 mod smf;
 mod stl;
 
+type Target = fn(&[u8]);
+
 /// Name and function of each target.
-const TARGETS: [(&str, fn(&[u8])); 15] = [
+const TARGETS: [(&str, Target); 15] = [
     ("check", check::run),
     ("draco", draco::run),
     ("gltf", gltf::run),

@@ -94,8 +94,12 @@ mod tests {
     use crate::project::Text;
 
     fn found(files: &[(&str, &str)]) -> Circles {
+        found_in("simplify", files)
+    }
+
+    fn found_in(krate: &str, files: &[(&str, &str)]) -> Circles {
         let texts = files.iter().map(|(path, text)| Text {
-            path: format!("crates/simplify/src/{path}"),
+            path: format!("crates/{krate}/src/{path}"),
             text: (*text).into(),
         });
         let sources: Vec<_> = texts.map(|text| Source::new(&text)).collect();
@@ -138,7 +142,7 @@ mod tests {
         for (count, errors) in [(6, 0), (7, 1)] {
             let files = files(count);
             let files: Vec<_> = files.iter().map(|(path, text)| (&path[..], &text[..])).collect();
-            assert_eq!(found(&files).errors.len(), errors, "{count}");
+            assert_eq!(found_in("mesh", &files).errors.len(), errors, "{count}");
         }
     }
 
