@@ -49,7 +49,7 @@ pub fn check(sources: &[Source], crates: &[Crate<'_>]) -> LongFunctions {
         }
     }
     let short = unseen.iter().map(|[path, name]| format!("{path}: `{name}` is no longer long"));
-    found.notes.extend(short.map(|what| format!("{what}; take it from the list of known ones")));
+    found.notes.extend(short.map(|what| format!("{what}; take it out of known.rs")));
     found
 }
 
