@@ -1,6 +1,7 @@
 //! Invariants that every method must keep on every mesh.
 
 use std::collections::{HashMap, HashSet};
+use std::sync::LazyLock;
 
 use glam::DVec3;
 use meshlod_fixtures as fixtures;
@@ -114,21 +115,33 @@ fn run(mesh: &Mesh, method: Method, ratio: f64) -> (Mesh, Report) {
     Runner { method, on_policy_engine: false }.run(mesh, ratio)
 }
 
-fn each_level(check: impl Fn(&str, &Mesh, &Mesh, &Report)) {
+/// A level of a mesh, and the words for both.
+struct Made {
+    what: String,
+    mesh: Mesh,
+    level: Mesh,
+    report: Report,
+}
+
+/// Levels of all meshes by every method, made once for all tests.
+static LEVELS: LazyLock<Vec<Made>> = LazyLock::new(|| {
+    let options = Options { topology: Topology::Keep, ..Options::default() };
+    let mut levels = Vec::new();
     for (name, mesh) in meshes() {
-        let options = Options { topology: Topology::Keep, ..Options::default() };
         for runner in Runner::all() {
             for ratio in [0.5, 0.1, 0.0] {
                 let (level, report) = runner.go(&mesh, Target::Ratio(ratio), &options);
-                check(&format!("{name} by {runner:?} to {ratio}"), &mesh, &level, &report);
+                let what = format!("{name} by {runner:?} to {ratio}");
+                levels.push(Made { what, mesh: mesh.clone(), level, report });
             }
         }
     }
-}
+    levels
+});
 
 #[test]
 fn a_level_is_as_closed_manifold_and_oriented_as_its_mesh() {
-    each_level(|what, mesh, level, _| {
+    for Made { what, mesh, level, .. } in &*LEVELS {
         let (before, after) = (topology(mesh), topology(level));
         assert_eq!(before.components, after.components, "{what}");
         assert_eq!(before.euler, after.euler, "{what}");
@@ -139,12 +152,12 @@ fn a_level_is_as_closed_manifold_and_oriented_as_its_mesh() {
         if before.inconsistent_edges == 0 {
             assert_eq!(after.inconsistent_edges, 0, "{what}");
         }
-    });
+    }
 }
 
 #[test]
 fn a_level_is_valid_and_has_no_face_twice() {
-    each_level(|what, _, level, report| {
+    for Made { what, level, report, .. } in &*LEVELS {
         level.validate().unwrap_or_else(|error| panic!("{what}: {error}"));
         assert_eq!(level.faces.len(), report.output_faces, "{what}");
         assert!(level.used_vertices().iter().all(|&used| used), "{what}");
@@ -155,7 +168,7 @@ fn a_level_is_valid_and_has_no_face_twice() {
             assert!(sorted[0] < sorted[1] && sorted[1] < sorted[2], "{what}: {face:?}");
             assert!(seen.insert(sorted), "{what}: {face:?} stands twice");
         }
-    });
+    }
 }
 
 #[test]

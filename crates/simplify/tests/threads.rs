@@ -1,6 +1,7 @@
 //! The kernel on meshes of several parts: any number of threads, any order of the file.
 
 use std::collections::HashSet;
+use std::sync::LazyLock;
 
 use meshlod_fixtures as fixtures;
 use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId};
@@ -26,16 +27,16 @@ fn run(method: Method, mesh: &Mesh, target: Target) -> (Mesh, Report) {
 }
 
 /// Meshes of several partitions, with boundaries, with flats, in pieces, and non-manifold.
-fn large() -> Vec<(&'static str, Mesh)> {
+static LARGE: LazyLock<[(&str, Mesh); 5]> = LazyLock::new(|| {
     let terrain = Mesh { attributes: None, ..samples::terrain(120_000) };
-    vec![
+    [
         ("torus", samples::torus(120_000)),
         ("terrain", terrain),
         ("flat", fixtures::grid(240)),
         ("pieces", pieces(&samples::sphere(60), 2_000)),
         ("crossing", crossing(&fixtures::grid(200))),
     ]
-}
+});
 
 /// Places copies of a mesh side by side.
 fn pieces(of: &Mesh, count: u32) -> Mesh {
@@ -102,12 +103,12 @@ fn euler(mesh: &Mesh) -> (i64, usize, usize) {
 #[test]
 fn any_number_of_threads_gives_the_same_bytes() {
     for method in KERNEL_METHODS {
-        for (name, mesh) in large() {
+        for (name, mesh) in &*LARGE {
             let bound = Target::Error(0.005 * mesh.bounds().diagonal());
-            for target in [Target::Ratio(0.5), Target::Ratio(0.03), bound] {
-                let runs =
-                    [1, 2, 5].map(|threads| run_with(threads, &mesh, target, &options(method)));
-                assert!(runs.iter().all(|run| *run == runs[0]), "{name} {target:?}");
+            for target in [Target::Ratio(0.03), bound] {
+                let [one, three] =
+                    [1, 3].map(|threads| run_with(threads, mesh, target, &options(method)));
+                assert!(one == three, "{name} {target:?}");
             }
         }
     }
@@ -116,10 +117,10 @@ fn any_number_of_threads_gives_the_same_bytes() {
 #[test]
 fn targets_are_met_to_the_face_and_topology_is_kept() {
     for method in KERNEL_METHODS {
-        for (name, mesh) in large() {
-            let before = euler(&mesh);
-            for faces in [mesh.faces.len() - 1, mesh.faces.len() / 2, mesh.faces.len() / 3 + 1] {
-                let (level, report) = run(method, &mesh, Target::Faces(faces));
+        for (name, mesh) in &*LARGE {
+            let before = euler(mesh);
+            for faces in [mesh.faces.len() - 1, mesh.faces.len() / 3 + 1] {
+                let (level, report) = run(method, mesh, Target::Faces(faces));
                 assert!(report.reached, "{name} {faces}");
                 assert!((faces - 1..=faces).contains(&level.faces.len()), "{name} {faces}");
                 assert_eq!(level.faces.len(), report.output_faces);
@@ -134,9 +135,9 @@ fn targets_are_met_to_the_face_and_topology_is_kept() {
 #[test]
 fn observers_see_the_same_level() {
     for method in KERNEL_METHODS {
-        for (name, mesh) in large() {
-            let (level, _) = run(method, &mesh, Target::Ratio(0.05));
-            let mut simplifier = Simplifier::new(&mesh, &options(method)).unwrap();
+        for (name, mesh) in &*LARGE {
+            let (level, _) = run(method, mesh, Target::Ratio(0.05));
+            let mut simplifier = Simplifier::new(mesh, &options(method)).unwrap();
             let mut history = History::default();
             simplifier.run(Target::Ratio(0.05), &mut history).unwrap();
             assert!(simplifier.settled_level(&mut VolumeLoss::default()) == level, "{name}");
@@ -153,9 +154,9 @@ fn observers_see_the_same_level() {
 #[test]
 fn targets_of_a_few_faces_end() {
     for method in KERNEL_METHODS {
-        for (name, mesh) in large() {
-            for faces in [0, 1, 4] {
-                let (level, report) = run(method, &mesh, Target::Faces(faces));
+        for (name, mesh) in &*LARGE {
+            for faces in [0, 4] {
+                let (level, report) = run(method, mesh, Target::Faces(faces));
                 assert_eq!(report.reached, level.faces.len() <= faces, "{name}");
                 assert!(!level.faces.is_empty(), "{name}");
                 assert!(level.faces.len() < mesh.faces.len() / 10, "{name}: {}", level.faces.len());

@@ -5,6 +5,7 @@ mod blocks;
 mod links;
 mod output;
 mod pictures;
+mod program;
 mod session;
 mod summary;
 
@@ -13,7 +14,6 @@ use std::path::PathBuf;
 use anyhow::{Context, Result, bail};
 
 use crate::project::Project;
-use crate::results::Program;
 use session::Programs;
 use summary::{CHAPTERS, chapters};
 
@@ -36,10 +36,10 @@ struct Options {
 pub fn run(project: &Project, arguments: &[String]) -> Result<()> {
     let options = Options::parse(arguments)?;
     let program = match &options.program {
-        Some(path) => Program::at(path),
-        None => Program::build(project)?,
+        Some(path) => path.clone(),
+        None => program::build(project)?,
     };
-    let programs = Programs { meshlod: program.path(), python: options.python.as_deref() };
+    let programs = Programs { meshlod: &program, python: options.python.as_deref() };
     let pictures = project.root().join(CHAPTERS).join(pictures::FOLDER);
     let mut errors = Vec::new();
     let mut made = Vec::new();

@@ -2,6 +2,9 @@
 
 mod arrows;
 mod circles;
+mod folders;
+mod functions;
+mod known;
 mod lengths;
 mod modules;
 mod prose;
@@ -26,11 +29,12 @@ pub fn run(project: &Project) -> Result<()> {
     let sources: Vec<_> = files.iter().map(source::Source::new).collect();
     let crates = modules::crates(&sources);
     let lengths = lengths::check(&files);
+    let functions = functions::check(&sources, &crates);
     let circles = circles::check(&crates);
-    for note in lengths.notes.iter().chain(&circles.notes) {
+    for note in [lengths.notes, functions.notes, circles.notes, folders::check(&sources)].concat() {
         println!("note: {note}");
     }
-    let mut errors = [lengths.errors, circles.errors].concat();
+    let mut errors = [lengths.errors, functions.errors, circles.errors].concat();
     errors.extend(references::check(&files, &pages));
     let manifests = [project.files("crates", "Cargo.toml")?, project.files("py", "Cargo.toml")?];
     errors.extend(arrows::check(&manifests.concat(), &pages)?);

@@ -4,23 +4,24 @@
 //! rustdoc takes `[GH97]` in a comment for a link to an item. That warning is ignored if the key is
 //! in docs/REFERENCES.md.
 
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 use anyhow::{Context, Result, bail};
 use serde_json::Value;
 
 use crate::check::keys_of;
-use crate::project::Project;
+use crate::project::{Project, cargo};
 
-/// Builds the documentation of all crates in the workspace and prints the warnings.
-pub fn run(project: &Project) -> Result<()> {
+/// Builds the documentation of all crates in the workspace, with more options of cargo, and prints
+/// the warnings.
+pub fn run(project: &Project, options: &[String]) -> Result<()> {
     let references = project.read("docs/REFERENCES.md")?;
     let keys = keys_of(&references);
-    let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+    let output = cargo(project)
         .args(["doc", "--release", "--no-deps", "--workspace", "--quiet", "--message-format=json"])
         .args(["--features", "meshlod-cli/view,meshlod-view/viewer"])
+        .args(options)
         .env("RUSTDOCFLAGS", "-Wrustdoc::broken_intra_doc_links")
-        .current_dir(project.root())
         .stderr(Stdio::inherit())
         .output()
         .context("cargo doc")?;

@@ -1,25 +1,25 @@
-//! `cargo xtask VERB`: checks, documentation and measurements of the project itself.
+//! `cargo xtask VERB`: checks and documentation of the project itself, and the way to its figures.
 #![forbid(unsafe_code)]
 
 mod book;
 mod check;
-mod compare;
 mod doc;
+mod lab;
 mod project;
-mod results;
-mod table;
 
 use std::process::ExitCode;
 
 use project::Project;
 
 const USAGE: &str = "usage: cargo xtask VERB
-  check    check references, arrows between crates, imports, names of types, phrases, lengths of files,
-           and the links of the book
+  check    check references, arrows between crates, imports, names of types, phrases, lengths of files
+           and functions, and the links of the book
   book [CHAPTER...] [--write] [--python PATH] [--program PATH]
            run what the chapters of docs/book show and compare what it prints and draws, or write that
            into them
-  doc      build the documentation of all crates; warnings are errors
+  doc [OPTION...]
+           build the documentation of all crates, with more options of cargo; warnings are errors
+These run in the laboratory, the program `lab` of the crate bench, which is built first:
   results [SECTION...]  remake docs/RESULTS.md, or only the sections with such titles
   policies             draw and measure fish of several parts by each policy for contacts, in docs/notes/contacts
   textured [MODEL...]  compare image errors of levels with meshoptimizer's
@@ -29,18 +29,17 @@ const USAGE: &str = "usage: cargo xtask VERB
                        compare speed, distance and volume with meshoptimizer's simplify with update";
 
 fn main() -> ExitCode {
-    let mut arguments = std::env::args().skip(1);
-    let verb = arguments.next();
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let (verb, rest) = match arguments.split_first() {
+        Some((verb, rest)) => (verb.as_str(), rest),
+        None => ("", &[][..]),
+    };
     let project = Project::here();
-    let outcome = match verb.as_deref() {
-        Some("book") => book::run(&project, &arguments.collect::<Vec<_>>()),
-        Some("check") => check::run(&project),
-        Some("compare") => compare::run(&arguments.collect::<Vec<_>>()),
-        Some("doc") => doc::run(&project),
-        Some("results") => results::run(&project, &arguments.collect::<Vec<_>>()),
-        Some("policies") => results::policies(&project),
-        Some("parts") => results::parts(&project, &arguments.collect::<Vec<_>>()),
-        Some("textured") => results::textured(&arguments.collect::<Vec<_>>()),
+    let outcome = match verb {
+        "book" => book::run(&project, rest),
+        "check" => check::run(&project),
+        "doc" => doc::run(&project, rest),
+        _ if lab::VERBS.contains(&verb) => lab::run(&project, &arguments),
         _ => {
             eprintln!("{USAGE}");
             return ExitCode::from(2);

@@ -1,6 +1,7 @@
 //! The project's root folder and its text files.
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use anyhow::{Context, Result};
 
@@ -20,6 +21,13 @@ pub struct Text {
 
 /// Folders without hand-written files.
 const GENERATED: [&str; 5] = ["target", "corpus", "artifacts", "out", "v"];
+
+/// Returns a call of the cargo that runs this program, in the project's root.
+pub fn cargo(project: &Project) -> Command {
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.current_dir(project.root());
+    cargo
+}
 
 impl Project {
     /// Returns the project that this program was compiled from.

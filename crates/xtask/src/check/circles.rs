@@ -2,8 +2,11 @@
 
 use std::collections::BTreeSet;
 
+use crate::check::known::CIRCLES;
 use crate::check::modules::Crate;
 
+/// Number of files above which a circle is an error.
+const LARGE: usize = 6;
 /// Folder whose files must not import each other in a circle.
 const LAYERED: &str = "crates/simplify/src/kernel/";
 
@@ -12,7 +15,7 @@ const LAYERED: &str = "crates/simplify/src/kernel/";
 pub struct Circles {
     /// The largest import circle of each crate, for information.
     pub notes: Vec<String>,
-    /// Import circles within the folder that must be layered, which are errors.
+    /// Circles of more files than a crate may have, and circles in the folder that must be layered.
     pub errors: Vec<String>,
 }
 
@@ -21,8 +24,13 @@ pub fn check(crates: &[Crate<'_>]) -> Circles {
     let mut found = Circles::default();
     for krate in crates {
         let imports = krate.imports();
-        let largest = circles(&imports, |_| true).into_iter().max_by_key(BTreeSet::len);
-        found.notes.extend(largest.map(|circle| describe(krate, &circle)));
+        let known = CIRCLES.iter().find(|(name, _)| *name == krate.name);
+        let allowed = known.map_or(LARGE, |(_, allowed)| *allowed);
+        let mut all = circles(&imports, |_| true);
+        all.sort_by_key(BTreeSet::len);
+        let smaller = all.partition_point(|circle| circle.len() <= allowed);
+        found.errors.extend(all[smaller..].iter().map(|circle| describe(krate, circle)));
+        found.notes.extend(all[..smaller].last().map(|circle| describe(krate, circle)));
         let is_layered = |at: usize| krate.modules[at].file.starts_with(LAYERED);
         let layered = circles(&imports, is_layered);
         found.errors.extend(layered.iter().map(|circle| describe(krate, circle)));
@@ -86,8 +94,12 @@ mod tests {
     use crate::project::Text;
 
     fn found(files: &[(&str, &str)]) -> Circles {
+        found_in("simplify", files)
+    }
+
+    fn found_in(krate: &str, files: &[(&str, &str)]) -> Circles {
         let texts = files.iter().map(|(path, text)| Text {
-            path: format!("crates/simplify/src/{path}"),
+            path: format!("crates/{krate}/src/{path}"),
             text: (*text).into(),
         });
         let sources: Vec<_> = texts.map(|text| Source::new(&text)).collect();
@@ -116,6 +128,22 @@ mod tests {
         let note =
             "crates/simplify: 2 of 4 files (2 lines) import each other in a circle: a.rs b.rs";
         assert_eq!(found(&files), Circles { notes: vec![note.into()], errors: Vec::new() });
+    }
+
+    #[test]
+    fn a_large_circle_is_an_error() {
+        let files = |count: usize| {
+            let each = (0..count).map(|i| {
+                let text = format!("use crate::f{}::F;", (i + 1) % count);
+                (format!("f{i}.rs"), text)
+            });
+            each.chain([("lib.rs".into(), String::new())]).collect::<Vec<_>>()
+        };
+        for (count, errors) in [(6, 0), (7, 1)] {
+            let files = files(count);
+            let files: Vec<_> = files.iter().map(|(path, text)| (&path[..], &text[..])).collect();
+            assert_eq!(found_in("mesh", &files).errors.len(), errors, "{count}");
+        }
     }
 
     #[test]

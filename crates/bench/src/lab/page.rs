@@ -1,0 +1,115 @@
+//! `cargo xtask results`: measures everything again and rewrites docs/RESULTS.md.
+
+use anyhow::{Context, Result, bail};
+
+use crate::lab::folders::root;
+use crate::lab::{
+    accuracy, check, compression, constriction, contacts, flock, levels, machine, memory, parts,
+    reading, speed, strips, textured, volume,
+};
+
+type Section = fn() -> Result<String>;
+
+/// Sections and their titles, in the order of the page.
+const SECTIONS: [(&str, Section); 15] = [
+    // First, while this process is still small: see the module.
+    ("Memory and determinism", memory::section),
+    ("Accuracy", accuracy::section),
+    ("Volume", volume::section),
+    ("Volume of textured models", volume::textured::section),
+    ("Face constriction", constriction::section),
+    ("Textured", textured::section),
+    ("Many parts", parts::section),
+    ("Speed of simplification", speed::section),
+    ("Check", check::section),
+    ("Contacts", contacts::section),
+    ("All levels", levels::section),
+    ("Strips", strips::section),
+    ("Compression", compression::section),
+    ("Flocks", flock::section),
+    ("Reading and measuring", reading::section),
+];
+
+/// Section that `py/bench.py` makes, as it needs other packages of Python. It is kept as it is.
+const OF_PYTHON: &str = "\n## Python\n\n";
+
+/// Makes all tables of measurements, and writes docs/RESULTS.md and a dated copy in docs/records.
+///
+/// Takes some minutes. Tables whose meshes are missing say so. With `names`, only the sections
+/// whose title contains one of them are remade, and marked with the date.
+///
+/// # Errors
+/// A name that no title contains, before any work; a table that cannot be made.
+pub fn run(names: &[String]) -> Result<()> {
+    check_names(names)?;
+    let machine = machine::describe();
+    let results = root().join("docs/RESULTS.md");
+    let all = std::fs::read_to_string(&results);
+    let of_python = all.as_ref().map_or("", |all| section_of(all, OF_PYTHON)).to_owned();
+    let old = if names.is_empty() { String::new() } else { all? };
+    let mut page = match old.split_once("\n## ") {
+        Some((head, _)) => head.to_owned(),
+        None => format!(
+            "# Results\n\nMade by `cargo xtask results` on {}, {}. Distances are measured in both directions with \
+             500,000 samples each and all vertices, in % of the diagonal of the input's bounding box.\n",
+            machine.date, machine.what
+        ),
+    };
+    for (title, section) in SECTIONS {
+        let is_asked = names.iter().any(|name| is_named(title, name));
+        let heading = format!("\n## {title}\n\n");
+        if !names.is_empty() && !is_asked {
+            page.push_str(section_of(&old, &heading));
+            continue;
+        }
+        eprintln!("{title} …");
+        page.push_str(&heading);
+        if is_asked {
+            page.push_str(&format!("Remade on {}, {}.\n\n", machine.date, machine.what));
+        }
+        page.push_str(&section()?);
+    }
+    page.push_str(&of_python);
+    let record = root().join(format!("docs/records/{}.md", machine.date));
+    for path in [results, record] {
+        std::fs::create_dir_all(path.parent().context("a file has a folder")?)?;
+        std::fs::write(&path, &page).with_context(|| path.display().to_string())?;
+    }
+    print!("{page}");
+    Ok(())
+}
+
+/// Returns a section of a page with its heading, or an empty string if there is no such section.
+fn section_of<'p>(page: &'p str, heading: &str) -> &'p str {
+    let Some(start) = page.find(heading) else { return "" };
+    let end = page[start + heading.len()..].find("\n## ");
+    &page[start..end.map_or(page.len(), |end| start + heading.len() + end)]
+}
+
+fn check_names(names: &[String]) -> Result<()> {
+    let unknown = |name: &&String| !SECTIONS.iter().any(|(title, _)| is_named(title, name));
+    match names.iter().find(unknown) {
+        Some(name) => {
+            let titles = SECTIONS.map(|(title, _)| title).join(", ");
+            bail!("no section title contains {name:?}; the sections are {titles}")
+        }
+        None => Ok(()),
+    }
+}
+
+fn is_named(title: &str, name: &str) -> bool {
+    title.to_lowercase().contains(&name.to_lowercase())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_section_ends_where_the_next_begins() {
+        let page = "# Results\n\n## A\n\none\n\n### B\n\ntwo\n\n## B\n\nthree\n";
+        assert_eq!(section_of(page, "\n## A\n\n"), "\n## A\n\none\n\n### B\n\ntwo\n");
+        assert_eq!(section_of(page, "\n## B\n\n"), "\n## B\n\nthree\n");
+        assert_eq!(section_of(page, "\n## C\n\n"), "");
+    }
+}
