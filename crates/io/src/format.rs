@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use meshlod_mesh::UnknownName;
 
-use crate::IoError;
+use crate::error::IoError;
 
 /// File format of a mesh or scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -16,47 +16,36 @@
 //! ```
 #![forbid(unsafe_code)]
 
-#[cfg(feature = "draco")]
-mod contained;
 mod error;
 mod files;
-mod flatten;
 mod format;
 pub mod gltf;
-mod image_file;
-mod influences;
 mod limits;
-mod line_writer;
-mod material;
 pub mod meshopt;
-mod normals;
 mod notes;
 pub mod obj;
 pub mod off;
+mod options;
 pub mod ply;
 mod polygon;
 mod precision;
 mod remarks;
-mod replace;
 mod scene;
 pub mod smf;
-mod staged;
 pub mod stl;
-mod text_cursor;
+mod text;
 mod vertex_attributes;
 
 pub use error::{FileLocation, IoError, ParseError, Unsupported};
-pub use files::{
-    ReadOptions, Resolve, Weld, WriteOptions, read, read_bytes, write, write_compressed,
-    write_lods, write_strips,
-};
-pub use flatten::{MeshInstance, transform};
+pub use files::replace::{abandon_files, remove_abandoned, write_file};
+pub use files::{read, read_bytes, write, write_compressed, write_lods, write_strips};
 pub use format::Format;
-pub use image_file::ImageHeader;
 pub use limits::merged_instances;
-pub use material::{Material, MtlMap, MtlStatement, Shading};
 pub use meshlod_mesh::{merge_equal_wedges, weld};
 pub use notes::{Note, NoteKind};
+pub use options::{ReadOptions, Resolve, Weld, WriteOptions};
 pub use precision::Precision;
-pub use replace::{abandon_files, remove_abandoned, write_file};
+pub use scene::flatten::{MeshInstance, transform};
+pub use scene::image_file::ImageHeader;
+pub use scene::material::{Material, MtlMap, MtlStatement, Shading};
 pub use scene::{Image, Node, Scene, SceneMesh};

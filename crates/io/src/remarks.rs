@@ -5,8 +5,8 @@ use std::io;
 
 use serde_json::{Value, json};
 
-use crate::line_writer::LineWriter;
-use crate::text_cursor::text_of;
+use crate::text::cursor::text_of;
+use crate::text::line_writer::LineWriter;
 
 /// Writes comments as lines of a text format.
 pub(crate) fn write(remarks: &[String], lines: &mut LineWriter) -> io::Result<()> {

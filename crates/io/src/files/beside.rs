@@ -5,7 +5,9 @@ use std::ffi::OsString;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-use crate::{Format, Note};
+use crate::files::names::bare_name;
+use crate::format::Format;
+use crate::notes::Note;
 
 /// Largest image or material library that is read, in bytes.
 const MOST_OF_ONE: u64 = 1 << 30;
@@ -114,24 +116,6 @@ impl Beside {
 fn is_image_name(path: &Path) -> bool {
     let suffix = path.extension().unwrap_or_default().to_ascii_lowercase();
     IMAGES.iter().any(|&image| suffix == image)
-}
-
-/// Returns the last part of an absolute name of any system, as of `/a/b.png` and `C:\a\b.png`;
-/// `None` of a relative name, or of several names in a row.
-pub(super) fn bare_name(name: &str) -> Option<&str> {
-    let mut words = name.split_ascii_whitespace();
-    let is_one = words.next().is_some_and(is_absolute) && !words.any(is_absolute);
-    let bare = name.rsplit(['/', '\\']).next()?;
-    (is_one && !matches!(bare, "" | "." | "..")).then_some(bare)
-}
-
-fn is_absolute(name: &str) -> bool {
-    let is_separator = |byte: &u8| matches!(byte, b'/' | b'\\');
-    match name.as_bytes() {
-        [drive, b':', separator, ..] if drive.is_ascii_alphabetic() => is_separator(separator),
-        [first, ..] => is_separator(first),
-        [] => false,
-    }
 }
 
 /// Lists a folder by names in lower case; of several that become one, the first in order.

@@ -4,10 +4,12 @@ use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::beside::{Beside, bare_name};
-use super::inner_path;
-use crate::staged::StagedFiles;
-use crate::{Format, Image, IoError, Unsupported};
+use super::beside::Beside;
+use super::names::{bare_name, inner_path};
+use super::staged::StagedFiles;
+use crate::error::{IoError, Unsupported};
+use crate::format::Format;
+use crate::scene::Image;
 
 /// Stages an image under its name in the folder of `path`, unless it is already there. An existing
 /// file with different contents is not overwritten.

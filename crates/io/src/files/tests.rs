@@ -2,7 +2,7 @@ use meshlod_fixtures::{cube, seam_strip, shared_broken, shared_mesh};
 use tempfile::tempdir;
 
 use super::*;
-use crate::{Image, Material, Weld};
+use crate::{Image, Material, Precision, Weld};
 
 fn read_default(path: &Path) -> Result<Scene, IoError> {
     read(path, &ReadOptions::default())

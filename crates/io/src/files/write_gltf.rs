@@ -7,10 +7,13 @@ use std::path::Path;
 use serde::Deserialize;
 
 use super::images::stage_image;
-use super::stem;
-use crate::gltf::{CompressionReport, GltfFiles, Uri, parse_uri};
-use crate::staged::{StagedFiles, is_mentioned, is_part_name, obsolete_parts, part_name};
-use crate::{IoError, Unsupported};
+use super::names::stem;
+use super::staged::{StagedFiles, is_mentioned, is_part_name, obsolete_parts, part_name};
+use crate::error::{IoError, Unsupported};
+use crate::gltf::document::uri;
+use crate::gltf::document::uri::Uri;
+use crate::gltf::write::output::GltfFiles;
+use crate::gltf::write::settings::CompressionReport;
 
 /// Writes the files that `encode` makes, given how to name the buffer by its bytes.
 pub(super) fn write_gltf(
@@ -68,7 +71,7 @@ fn buffers_of(path: &Path) -> BTreeSet<String> {
     let bytes = if is_file { fs::read(path).unwrap_or_default() } else { Vec::new() };
     let document: OldDocument = serde_json::from_slice(&bytes).unwrap_or_default();
     let uris = document.buffers.into_iter().filter_map(|buffer| buffer.uri);
-    let name = |uri: String| match parse_uri(&uri) {
+    let name = |uri: String| match uri::parse(&uri) {
         Ok(Uri::File(name)) => Some(name.trim_start_matches("./").to_owned()),
         _ => None,
     };

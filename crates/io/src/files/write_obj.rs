@@ -7,11 +7,15 @@ use std::path::Path;
 
 use super::beside::Beside;
 use super::images::{stage_image, use_own_names};
-use super::stem;
-use crate::obj::{self, mtl};
-use crate::staged::{StagedFiles, is_mentioned, is_part_name, obsolete_parts, part_name};
-use crate::text_cursor::text_of;
-use crate::{Format, IoError, Precision, Scene};
+use super::names::stem;
+use super::staged::{StagedFiles, is_mentioned, is_part_name, obsolete_parts, part_name};
+use crate::error::IoError;
+use crate::format::Format;
+use crate::obj;
+use crate::obj::mtl;
+use crate::precision::Precision;
+use crate::scene::Scene;
+use crate::text::cursor::text_of;
 
 /// Writes a scene; a library of the file that was at `path` stays if it says the same.
 pub(super) fn write_obj(path: &Path, scene: &Scene, precision: Precision) -> Result<(), IoError> {

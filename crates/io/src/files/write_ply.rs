@@ -4,8 +4,11 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::images::{stage_image, use_own_names};
-use crate::staged::StagedFiles;
-use crate::{IoError, Precision, Scene, ply};
+use super::staged::StagedFiles;
+use crate::error::IoError;
+use crate::ply;
+use crate::precision::Precision;
+use crate::scene::Scene;
 
 /// Writes the images that materials use beside a PLY file, and then the file.
 pub(super) fn write_ply(path: &Path, scene: &Scene, precision: Precision) -> Result<(), IoError> {

@@ -4,8 +4,11 @@ use std::collections::BTreeSet;
 
 use meshlod_mesh::{Layer, LayerKind, Mesh};
 
+use crate::format::Format;
+use crate::notes::Note;
 use crate::obj::color_splits;
-use crate::{Format, MeshInstance, Note, Scene, SceneMesh};
+use crate::scene::flatten::MeshInstance;
+use crate::scene::{Scene, SceneMesh};
 
 impl Scene {
     pub(super) fn layer_limits(&self, format: Format) -> Vec<Note> {

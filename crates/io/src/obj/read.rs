@@ -9,10 +9,12 @@ use super::mtl::{Library, resolve_materials};
 use super::polypaint::Polypaint;
 use super::skipped::Skipped;
 use super::smoothing::SmoothingRuns;
-use super::wedges::{self, CornerIds, Pools};
+use super::wedges;
+use super::wedges::{CornerIds, Pools};
+use crate::error::ParseError;
 use crate::polygon::triangulate;
-use crate::text_cursor::{TextCursor, quoted, text_of};
-use crate::{Node, ParseError, Scene, SceneMesh};
+use crate::scene::{Node, Scene, SceneMesh};
+use crate::text::cursor::{TextCursor, quoted, text_of};
 
 /// Parses an OBJ file as one mesh under one node; `resolve` loads the material library and the
 /// textures, or returns `None` if there is no such file.

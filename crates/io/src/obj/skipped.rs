@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::Note;
-use crate::text_cursor::text_of;
+use crate::notes::Note;
+use crate::text::cursor::text_of;
 
 /// Parts of an OBJ file that a reader left out.
 #[derive(Default)]

@@ -6,7 +6,7 @@ use std::io;
 
 use meshlod_mesh::{LayerKind, Mesh};
 
-use crate::line_writer::LineWriter;
+use crate::text::line_writer::LineWriter;
 
 /// Numbers of the distinct values of a layer, for each wedge.
 pub(super) struct ValueNumbers {

@@ -7,8 +7,10 @@ use meshlod_mesh::{Labels, LayerKind, Mesh};
 use super::colored_vertices::ColoredVertices;
 use super::mtl::{names, one_line};
 use super::value_numbers::{UvNumbers, ValueNumbers};
-use crate::line_writer::LineWriter;
-use crate::{Precision, Scene, remarks};
+use crate::precision::Precision;
+use crate::remarks;
+use crate::scene::Scene;
+use crate::text::line_writer::LineWriter;
 
 /// Writes all meshes that a scene shows, in world space, as one OBJ file; `libraries` are the file
 /// names of the material libraries, such as the one that [`write_mtl`](super::write_mtl) writes.

@@ -3,10 +3,12 @@
 use meshlod_mesh::{Attributes, LayerKind, Mesh, VertexId};
 
 use super::vertex_format::VertexFormat;
+use crate::error::ParseError;
+use crate::notes::Note;
 use crate::polygon::triangulate;
-use crate::text_cursor::TextCursor;
+use crate::scene::Scene;
+use crate::text::cursor::TextCursor;
 use crate::vertex_attributes::{named_layer, normalize_colors, per_vertex};
-use crate::{Note, ParseError, Scene};
 
 /// Parses an OFF file in text form, without its notes: see [`read_scene`].
 ///

@@ -1,7 +1,7 @@
 //! Attributes of OFF vertices: as the header names them, or as the lines of a plain file have them.
 
-use crate::ParseError;
-use crate::text_cursor::TextCursor;
+use crate::error::ParseError;
+use crate::text::cursor::TextCursor;
 
 /// Difference from length 1 that is rounding of a normal.
 const ROUNDING: f64 = 1e-2;

@@ -4,9 +4,11 @@ use std::io::{self, Write};
 
 use meshlod_mesh::{Attributes, LayerKind, Mesh};
 
-use crate::line_writer::LineWriter;
+use crate::precision::Precision;
+use crate::remarks;
+use crate::scene::Scene;
+use crate::text::line_writer::LineWriter;
 use crate::vertex_attributes::split_at_seams;
-use crate::{Precision, Scene, remarks};
 
 /// Writes a mesh as a text OFF file, with the normals, the first colours and the texture
 /// coordinates of its vertices, if it has them.

@@ -11,9 +11,12 @@ use super::face_values::FaceValues;
 use super::header::{Element, Header};
 use super::scalar::Scalar;
 use super::vertices::Vertices;
-use crate::image_file::is_image;
+use crate::notes::Note;
+use crate::options::Resolve;
+use crate::scene::image_file::is_image;
+use crate::scene::material::Material;
+use crate::scene::{Image, Node, Scene, SceneMesh};
 use crate::vertex_attributes::{named_layer, per_vertex};
-use crate::{Image, Material, Node, Note, Resolve, Scene, SceneMesh};
 
 /// Contents of the body of a file.
 pub(super) struct Body {

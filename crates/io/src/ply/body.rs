@@ -6,7 +6,7 @@ use meshlod_mesh::VertexId;
 
 use super::header::{Element, Shape, shown};
 use super::scalar::Scalar;
-use crate::ParseError;
+use crate::error::ParseError;
 
 /// Row being read; displayed in errors as `vertex 12 of 2903`, counted from 0.
 #[derive(Clone, Copy)]

@@ -6,7 +6,7 @@ use super::face_scalars::FaceScalars;
 use super::header::{Element, Property, Shape};
 use super::layers::{OTHER_COLORS, greatest};
 use super::scalar::Scalar;
-use crate::ParseError;
+use crate::error::ParseError;
 
 /// Names of the integer properties that say to which part of the model a face belongs.
 const LABELS: [&str; 14] = [

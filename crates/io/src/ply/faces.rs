@@ -5,7 +5,7 @@ use meshlod_mesh::VertexId;
 use super::body::{BodyReader, Row};
 use super::face_values::{FaceRow, FaceValues};
 use super::header::{Element, Shape};
-use crate::ParseError;
+use crate::error::ParseError;
 use crate::polygon::triangulate;
 
 /// Index that ends a strip within a list; no vertex has it.

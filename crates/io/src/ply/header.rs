@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use super::scalar::Scalar;
-use crate::ParseError;
+use crate::error::ParseError;
 
 /// Encoding of the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

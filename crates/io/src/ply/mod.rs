@@ -57,7 +57,9 @@ mod write;
 
 use meshlod_mesh::Mesh;
 
-use crate::{ParseError, Resolve, Scene};
+use crate::error::ParseError;
+use crate::options::Resolve;
+use crate::scene::Scene;
 use assemble::Body;
 use binary_body::BinaryBody;
 use body::BodyReader;

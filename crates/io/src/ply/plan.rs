@@ -8,8 +8,10 @@ use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh};
 use super::extras::PlyExtras;
 use super::face_values::is_label;
 use super::scalar::Scalar;
+use crate::notes::Note;
+use crate::scene::material::{Material, Shading};
+use crate::scene::{Image, Scene};
 use crate::vertex_attributes::{distinct_wedges, has_seams};
-use crate::{Image, Material, Note, Scene, Shading};
 
 /// Layout of a file. Faces hold what would split vertices, where PLY has a place for that.
 pub(super) struct Plan<'a> {

@@ -4,9 +4,10 @@ use meshlod_mesh::{Layer, LayerKind};
 
 use super::body::{BodyReader, Row};
 use super::header::{Element, Property, Shape};
-use super::layers::{self, LayerColumns};
+use super::layers;
+use super::layers::LayerColumns;
 use super::scalar::Scalar;
-use crate::ParseError;
+use crate::error::ParseError;
 
 /// Vertices of a file.
 #[derive(Default)]

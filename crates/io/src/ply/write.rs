@@ -9,10 +9,10 @@ use super::face_encoder::FaceEncoder;
 use super::layers;
 use super::plan::{Plan, is_color};
 use super::scalar::Scalar;
-use crate::obj::one_line;
-use crate::precision::Width;
+use crate::obj::mtl::one_line;
+use crate::precision::{Precision, Width};
+use crate::scene::{Image, Scene};
 use crate::vertex_attributes::{SplitMesh, SplitVertex, split_at_seams_of};
-use crate::{Image, Precision, Scene};
 
 /// Bytes buffered before they are written.
 const BLOCK: usize = 1 << 16;

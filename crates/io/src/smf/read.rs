@@ -3,10 +3,12 @@
 use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId, merge_equal_wedges};
 
 use super::scope::Scopes;
+use crate::error::ParseError;
+use crate::notes::Note;
 use crate::polygon::triangulate;
-use crate::text_cursor::{TextCursor, quoted};
+use crate::scene::Scene;
+use crate::text::cursor::{TextCursor, quoted};
 use crate::vertex_attributes::{named_layer, normalize_colors, per_vertex};
-use crate::{Note, ParseError, Scene};
 
 /// Parses an SMF file, without its notes: see [`read_scene`].
 ///

@@ -3,8 +3,8 @@
 
 use glam::{DMat3, DMat4, DVec2, DVec3};
 
-use crate::ParseError;
-use crate::text_cursor::{TextCursor, quoted};
+use crate::error::ParseError;
+use crate::text::cursor::{TextCursor, quoted};
 
 /// Limit on nesting: more than any real file needs, and little memory.
 const MOST_SCOPES: usize = 1000;

@@ -7,7 +7,8 @@ use meshlod_mesh::Mesh;
 
 use super::weld::Welder;
 use super::{invalid, normal};
-use crate::{Note, ParseError};
+use crate::error::ParseError;
+use crate::notes::Note;
 
 const HEADER: usize = 80;
 const PREAMBLE: usize = HEADER + 4;

@@ -16,7 +16,9 @@ use std::io::{Error, ErrorKind, Result as IoResult, Write};
 use glam::DVec3;
 use meshlod_mesh::Mesh;
 
-use crate::{ParseError, Precision, Scene};
+use crate::error::ParseError;
+use crate::precision::Precision;
+use crate::scene::Scene;
 
 pub use binary::write;
 pub use text::write as write_ascii;

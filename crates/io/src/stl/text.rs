@@ -6,8 +6,11 @@ use meshlod_mesh::{Labels, Mesh};
 
 use super::weld::Welder;
 use super::{invalid, normal};
-use crate::line_writer::LineWriter;
-use crate::{Note, ParseError, Precision, Scene};
+use crate::error::ParseError;
+use crate::notes::Note;
+use crate::precision::Precision;
+use crate::scene::Scene;
+use crate::text::line_writer::LineWriter;
 
 /// Reads all solids as one mesh: several become objects, one gives the mesh its name. Those without
 /// facets are noted.

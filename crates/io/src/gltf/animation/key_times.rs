@@ -7,7 +7,7 @@
 /// too; another gets some of its key times, evenly spread, with the first and the last. Where there
 /// are more clips than times, evenly spread ones get one each. Returns pairs of clip and time, in
 /// order.
-pub(super) fn choose(clips: &[Vec<f64>], most: usize) -> Vec<(usize, f64)> {
+pub(crate) fn choose(clips: &[Vec<f64>], most: usize) -> Vec<(usize, f64)> {
     let chosen = spread(clips.len(), most);
     let mut shares = vec![0; clips.len()];
     let keys = |clip: usize| clips[clip].len();

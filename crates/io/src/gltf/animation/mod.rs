@@ -1,7 +1,7 @@
 //! Animations of a glTF document, and the poses that they give its nodes.
 
 mod key_times;
-pub(super) mod packing;
+pub(crate) mod packing;
 mod sampler;
 mod skin;
 mod slerp;
@@ -10,9 +10,9 @@ mod track;
 use glam::{DMat4, DQuat, DVec3};
 use serde_json::Value;
 
-use super::document::Document;
-use super::schema::parse_target_name;
-use crate::Scene;
+use crate::gltf::document::Document;
+use crate::gltf::document::schema::parse_target_name;
+use crate::scene::Scene;
 use sampler::AnimatedProperty;
 pub use skin::Skin;
 use track::{Quantity, Track};

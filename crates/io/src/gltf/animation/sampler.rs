@@ -2,12 +2,12 @@
 
 use serde_json::Value;
 
-use crate::gltf::accessor::Values;
 use crate::gltf::document::Document;
+use crate::gltf::document::accessor::Values;
 
 /// How values between two keys are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Interpolation {
+pub(crate) enum Interpolation {
     Linear,
     Step,
     /// Hermite splines; each key has a tangent before its value and one after it.
@@ -16,7 +16,7 @@ pub(super) enum Interpolation {
 
 /// Property of a node that animations move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::gltf) enum AnimatedProperty {
+pub(crate) enum AnimatedProperty {
     Translation,
     Rotation,
     Scale,
@@ -26,7 +26,7 @@ pub(in crate::gltf) enum AnimatedProperty {
 
 impl AnimatedProperty {
     /// Returns the property of this name; `None` for those of extensions.
-    pub(super) fn named(path: &str) -> Option<Self> {
+    pub(crate) fn named(path: &str) -> Option<Self> {
         match path {
             "translation" => Some(Self::Translation),
             "rotation" => Some(Self::Rotation),
@@ -38,12 +38,12 @@ impl AnimatedProperty {
 }
 
 /// Arrays of a sampler, with a time or more.
-pub(super) struct Sampler {
-    pub(super) interpolation: Interpolation,
+pub(crate) struct Sampler {
+    pub(crate) interpolation: Interpolation,
     /// Seconds, strictly rising.
-    pub(super) times: Vec<f32>,
+    pub(crate) times: Vec<f32>,
     /// Values at these times; not yet known to be as many.
-    pub(super) output: Values,
+    pub(crate) output: Values,
 }
 
 impl Sampler {
@@ -52,7 +52,7 @@ impl Sampler {
     /// # Errors
     /// What is wrong with it: an unknown interpolation, accessors that are missing, times that do not
     /// rise.
-    pub(super) fn read(document: &Document<'_>, sampler: &Value) -> Result<Self, String> {
+    pub(crate) fn read(document: &Document<'_>, sampler: &Value) -> Result<Self, String> {
         let interpolation = match sampler.get("interpolation").map(Value::as_str) {
             None | Some(Some("LINEAR")) => Interpolation::Linear,
             Some(Some("STEP")) => Interpolation::Step,

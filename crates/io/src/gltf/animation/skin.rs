@@ -19,7 +19,7 @@ impl Skin {
     ///
     /// # Errors
     /// What is wrong with it.
-    pub(super) fn read(document: &Document<'_>, skin: usize) -> Result<Self, String> {
+    pub(crate) fn read(document: &Document<'_>, skin: usize) -> Result<Self, String> {
         let json = &document.json["skins"][skin];
         let node_count = document.json["nodes"].as_array().map_or(0, Vec::len);
         let joints = json["joints"].as_array().ok_or("it has no joints")?;

@@ -12,7 +12,7 @@ const MOST_HALVINGS: usize = 16;
 ///
 /// The arc is halved until it is straight, by sums and roots alone, so that the result is the same on
 /// every machine. Opposite quaternions have no arc between them, and give no direction.
-pub(super) fn slerp(mut from: DQuat, mut to: DQuat, mut part: f64) -> DQuat {
+pub(crate) fn slerp(mut from: DQuat, mut to: DQuat, mut part: f64) -> DQuat {
     for _ in 0..MOST_HALVINGS {
         if from.dot(to) >= STRAIGHT {
             break;

@@ -9,7 +9,7 @@ use crate::gltf::document::Document;
 
 /// Meaning of a track's numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Quantity {
+pub(crate) enum Quantity {
     /// Vectors or lists of weights, this long.
     Numbers(usize),
     /// Unit quaternions.
@@ -18,7 +18,7 @@ pub(super) enum Quantity {
 
 /// Values of one property at rising times.
 #[derive(Clone, Debug)]
-pub(super) struct Track {
+pub(crate) struct Track {
     times: Vec<f64>,
     interpolation: Interpolation,
     quantity: Quantity,
@@ -44,7 +44,7 @@ impl Track {
     /// # Errors
     /// What is wrong with it: those of [`Sampler::read`], values of another number, rotations without
     /// a direction.
-    pub(super) fn read(
+    pub(crate) fn read(
         document: &Document<'_>,
         sampler: &Value,
         quantity: Quantity,
@@ -67,13 +67,13 @@ impl Track {
         }
     }
 
-    pub(super) fn times(&self) -> &[f64] {
+    pub(crate) fn times(&self) -> &[f64] {
         &self.times
     }
 
     /// Returns the value at a time; before the first key that of the first, after the last that of
     /// the last.
-    pub(super) fn at(&self, time: f64) -> Vec<f64> {
+    pub(crate) fn at(&self, time: f64) -> Vec<f64> {
         let after = self.times.partition_point(|&key| key <= time);
         let Some(before) = after.checked_sub(1) else { return self.unit(self.key(0).to_vec()) };
         if after == self.times.len() || self.interpolation == Interpolation::Step {

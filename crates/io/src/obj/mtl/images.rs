@@ -3,8 +3,9 @@
 use std::collections::HashMap;
 
 use super::statement::{image_names, names_image, options, word_of};
-use crate::image_file::is_image;
-use crate::{Image, MtlMap, MtlStatement};
+use crate::scene::Image;
+use crate::scene::image_file::is_image;
+use crate::scene::material::{MtlMap, MtlStatement};
 
 /// MtlImages loaded so far, each once.
 #[derive(Default)]

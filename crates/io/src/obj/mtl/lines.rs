@@ -1,7 +1,7 @@
 //! Lines of an MTL library.
 
-use crate::ParseError;
-use crate::text_cursor::{TextCursor, text_of};
+use crate::error::ParseError;
+use crate::text::cursor::{TextCursor, text_of};
 
 /// Line of a library, which a backslash at its end continues.
 #[derive(Debug, PartialEq)]

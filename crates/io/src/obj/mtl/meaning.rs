@@ -2,10 +2,13 @@
 
 use std::borrow::Cow;
 
-use super::statement::{self, MapOption};
-use crate::image_file::has_colors;
-use crate::text_cursor::TextCursor;
-use crate::{Image, Material, MtlStatement, ParseError, Shading};
+use super::statement;
+use super::statement::MapOption;
+use crate::error::ParseError;
+use crate::scene::Image;
+use crate::scene::image_file::has_colors;
+use crate::scene::material::{Material, MtlStatement, Shading};
+use crate::text::cursor::TextCursor;
 
 /// Properties that the statements of a material say.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Properties of materials that have both a field and statements of MTL.
 
 use super::meaning::Meaning;
-use crate::{Material, MtlMap, MtlStatement};
+use crate::scene::material::{Material, MtlMap, MtlStatement};
 
 /// MtlProperty of a material, and the statements that say it.
 pub(super) struct MtlProperty {

@@ -6,7 +6,9 @@ use super::images::MtlImages;
 use super::lines::lines;
 use super::meaning::{Said, meaning};
 use super::statement::{split_word, word_of};
-use crate::{Image, Material, MtlStatement, Note};
+use crate::notes::Note;
+use crate::scene::Image;
+use crate::scene::material::{Material, MtlStatement};
 
 /// Materials of all libraries of a file.
 #[derive(Default)]

@@ -8,7 +8,8 @@ use super::meaning::meaning;
 use super::properties::{PROPERTIES, color};
 use super::read::Library;
 use super::statement::word_of;
-use crate::{Image, Material, MtlStatement, Scene};
+use crate::scene::material::{Material, MtlStatement};
+use crate::scene::{Image, Scene};
 
 /// Writes the materials of a scene as an MTL file, under the names that the OBJ writer
 /// [`write`](super::super::write()) uses.

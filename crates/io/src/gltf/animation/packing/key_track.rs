@@ -8,11 +8,11 @@ use crate::gltf::animation::slerp;
 use crate::gltf::document::Document;
 
 /// Value of a sampler: a unit quaternion, or a vector with a fourth component of zero.
-pub(in crate::gltf) type KeyValue = [f64; 4];
+pub(crate) type KeyValue = [f64; 4];
 
 /// Keys of a sampler, at least one, in the order of their times.
 #[derive(Clone, Debug)]
-pub(in crate::gltf) struct KeyTrack {
+pub(crate) struct KeyTrack {
     pub property: AnimatedProperty,
     /// If true, each key holds until the next; if not, poses in between are interpolated.
     pub is_step: bool,
@@ -79,29 +79,29 @@ fn unit(q: KeyValue) -> Option<KeyValue> {
     ((length - 1.0).abs() <= 1e-3).then(|| q.map(|x| x / length))
 }
 
-pub(in crate::gltf) fn dot(a: KeyValue, b: KeyValue) -> f64 {
+pub(crate) fn dot(a: KeyValue, b: KeyValue) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Returns the distance of two poses as points.
-pub(in crate::gltf) fn distance(a: KeyValue, b: KeyValue) -> f64 {
+pub(crate) fn distance(a: KeyValue, b: KeyValue) -> f64 {
     let off = mixed(a, b, [1.0, -1.0]);
     dot(off, off).sqrt()
 }
 
 /// Returns the sign of a quaternion that is nearer to another; both signs are one rotation.
-pub(in crate::gltf) fn nearer(to: KeyValue, q: KeyValue) -> KeyValue {
+pub(crate) fn nearer(to: KeyValue, q: KeyValue) -> KeyValue {
     if dot(to, q) < 0.0 { q.map(|x| -x) } else { q }
 }
 
 /// Returns the angle between two unit quaternions as points of the sphere, half that of the
 /// rotation between them.
-pub(in crate::gltf) fn arc(a: KeyValue, b: KeyValue) -> f64 {
+pub(crate) fn arc(a: KeyValue, b: KeyValue) -> f64 {
     2.0 * (0.5 * distance(a, b)).min(1.0).asin()
 }
 
 /// Interpolates along the arc between two unit quaternions, by their own signs.
-pub(super) fn slerp(a: KeyValue, b: KeyValue, part: f64) -> KeyValue {
+pub(crate) fn slerp(a: KeyValue, b: KeyValue, part: f64) -> KeyValue {
     let [from, to] = [a, b].map(DQuat::from_array);
     slerp::slerp(from, to, part).to_array()
 }

@@ -6,7 +6,7 @@ use super::key_track::{KeyTrack, KeyValue, arc, distance, nearer, slerp};
 const MOST_KEYS: usize = 256;
 
 /// Track with the poses that its keys are rounded to.
-pub(super) struct RoundedTrack {
+pub(crate) struct RoundedTrack {
     pub track: KeyTrack,
     /// Rounded pose of every key.
     pub rounded: Vec<KeyValue>,
@@ -71,7 +71,7 @@ impl RoundedTrack {
 /// Intervals are as long as the tolerance of every track allows, as far as doubling finds. `None` if
 /// a track is not close to its rounded poses even with all its keys. Cost: O(n log m) for n keys of
 /// all tracks, m = [`MOST_KEYS`].
-pub(super) fn select(tracks: &[&RoundedTrack]) -> Option<Vec<usize>> {
+pub(crate) fn select(tracks: &[&RoundedTrack]) -> Option<Vec<usize>> {
     let count = tracks.first()?.track.times.len();
     let mut keys = vec![0];
     let mut from = 0;

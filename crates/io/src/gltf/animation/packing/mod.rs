@@ -4,7 +4,7 @@
 //! times a third. Whatever is not understood stays as it is: cubic splines, weights of morph
 //! targets, pointers, and samplers that break the rules of the specification.
 
-pub(in crate::gltf) mod key_track;
+pub(crate) mod key_track;
 mod keys;
 mod rounding;
 
@@ -12,14 +12,13 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Value, json};
 
-use self::key_track::KeyTrack;
-use self::keys::{RoundedTrack, select};
-use self::rounding::{Rounded, round};
-use super::sampler::AnimatedProperty;
-use crate::gltf::accessor::component;
-use crate::gltf::buffer_builder::BufferBuilder;
-use crate::gltf::compress::Compression;
-use crate::gltf::document::Document;
+use crate::gltf::animation::sampler::AnimatedProperty;
+use crate::gltf::document::{Document, component};
+use crate::gltf::write::buffer::BufferBuilder;
+use crate::gltf::write::settings::Compression;
+use key_track::KeyTrack;
+use keys::{RoundedTrack, select};
+use rounding::{Rounded, round};
 
 /// Place of a sampler: its animation, and its index there.
 type SamplerPlace = (usize, usize);
@@ -35,7 +34,7 @@ struct PackedTrack {
 
 /// Samplers that get new keys.
 #[derive(Default)]
-pub(in crate::gltf) struct PackedAnimations {
+pub(crate) struct PackedAnimations {
     tracks: Vec<PackedTrack>,
     places: BTreeSet<SamplerPlace>,
 }
@@ -191,7 +190,7 @@ fn share_keys(tracks: &[&RoundedTrack], members: &[usize], kept: &mut [Option<Ve
 }
 
 /// Returns the property that each sampler moves; `None` where its channels do not agree.
-pub(in crate::gltf) fn properties(animation: &Value) -> BTreeMap<usize, Option<AnimatedProperty>> {
+pub(crate) fn properties(animation: &Value) -> BTreeMap<usize, Option<AnimatedProperty>> {
     let mut properties = BTreeMap::new();
     let channels = animation.get("channels").and_then(Value::as_array);
     for channel in channels.into_iter().flatten() {

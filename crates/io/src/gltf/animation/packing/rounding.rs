@@ -4,7 +4,7 @@ use super::key_track::{KeyTrack, KeyValue, distance, nearer};
 use crate::meshopt::{Filter, apply_filter, encode_exponential, encode_quaternion};
 
 /// Poses of all keys of a track as they are stored, and as they are decoded.
-pub(super) struct Rounded {
+pub(crate) struct Rounded {
     /// Elements, encoded for the filter.
     pub bytes: Vec<u8>,
     /// Bytes of an element.
@@ -21,7 +21,7 @@ const ROUNDING: f64 = 0.6;
 
 /// Rounds the poses of a track to as few bits as the tolerance allows: with `filters` for a meshopt
 /// stream, without to shorts and floats. `None` if there is no such form.
-pub(super) fn round(track: &KeyTrack, tolerance: f64, filters: bool) -> Option<Rounded> {
+pub(crate) fn round(track: &KeyTrack, tolerance: f64, filters: bool) -> Option<Rounded> {
     match track.is_rotation() {
         true => rotations(track, tolerance, filters),
         false => vectors(track, tolerance, filters),

@@ -1,0 +1,119 @@
+//! Limits of formats for coordinates: how far writing them moves vertices.
+
+use meshlod_mesh::Mesh;
+
+use crate::format::Format;
+use crate::gltf::write::new_document::local_space::to_local;
+use crate::notes::Note;
+use crate::precision::{Precision, fits_f32, rounding};
+use crate::scene::Scene;
+
+impl Scene {
+    /// Returns the largest change of a coordinate when the scene is written in a format and read
+    /// back, in the units of its meshes; infinite for a coordinate that cannot be written.
+    pub fn rounding(&self, format: Format, precision: Precision) -> f64 {
+        let precision = precision.of(self.meshes.iter().map(|mesh| &mesh.mesh));
+        let of_mesh = |mesh: &Mesh| self.mesh_rounding(mesh, format, precision);
+        self.meshes.iter().map(|mesh| of_mesh(&mesh.mesh)).fold(0.0, f64::max)
+    }
+
+    /// Returns the largest change of a coordinate of one mesh of the scene in a format that has the
+    /// bits of `precision`, as [`Scene::rounding`] does for all.
+    pub fn mesh_rounding(&self, mesh: &Mesh, format: Format, precision: Precision) -> f64 {
+        match (format, precision) {
+            (Format::Gltf | Format::Glb, _) => self.gltf_rounding(mesh),
+            (Format::Stl, _) if !self.has_solids => rounding(mesh),
+            (Format::Ply, Precision::F32) => rounding(mesh),
+            (_, Precision::F64) => 0.0,
+            // The shortest decimal of an `f32` usually parses to a different `f64`.
+            (_, Precision::F32 | Precision::Auto) => {
+                let read = |x: f64| (x as f32).to_string().parse().unwrap_or(f64::INFINITY);
+                let coordinates = mesh.positions.as_flattened().iter();
+                coordinates.map(|&x: &f64| (read(x) - x).abs()).fold(0.0, f64::max)
+            }
+        }
+    }
+
+    fn gltf_rounding(&self, mesh: &Mesh) -> f64 {
+        if self.source.is_some() || fits_f32(mesh) {
+            return rounding(mesh);
+        }
+        let mut local = Mesh::new(mesh.positions.clone(), mesh.faces.clone());
+        to_local(&mut local);
+        rounding(&local)
+    }
+
+    /// Notes the vertices that a precision that was asked for moves in a format that could keep them,
+    /// if that changes the shape.
+    pub fn precision_limits(&self, format: Format, precision: Precision) -> Option<Note> {
+        let has_both = match format {
+            Format::Ply | Format::Obj | Format::Off | Format::Smf => true,
+            Format::Stl => self.has_solids,
+            Format::Gltf | Format::Glb => false,
+        };
+        if precision != Precision::F32 || !has_both {
+            return None;
+        }
+        let (most, count) = changes(&self.shown_mesh())?;
+        let why = format!(" by up to {most:.1e}");
+        let note = Note::changed(count, "vertex rounded", "vertices rounded").detailed(&why);
+        Some(note.remedied("--precision auto or f64 keeps them"))
+    }
+
+    /// Returns the largest change of a coordinate in a format that has 32 bits alone, if those
+    /// change the shape, and the number of vertices it moves.
+    pub(crate) fn unavoidable_rounding(&self, format: Format) -> Option<(f64, usize)> {
+        let all: Vec<(f64, usize)> = match format {
+            Format::Stl if self.has_solids => Vec::new(),
+            Format::Stl => changes(&self.shown_mesh()).into_iter().collect(),
+            Format::Gltf | Format::Glb => {
+                let of_mesh = |mesh: &Mesh| {
+                    if self.source.is_some() || fits_f32(mesh) {
+                        return changes(mesh);
+                    }
+                    let mut local = Mesh::new(mesh.positions.clone(), mesh.faces.clone());
+                    to_local(&mut local);
+                    changes(&local)
+                };
+                self.meshes.iter().filter_map(|mesh| of_mesh(&mesh.mesh)).collect()
+            }
+            Format::Ply | Format::Obj | Format::Off | Format::Smf => Vec::new(),
+        };
+        all.into_iter().reduce(|(a, n), (b, m)| (a.max(b), n + m))
+    }
+}
+
+/// Returns the largest change of a coordinate of a mesh in 32 bits, if those change its shape, and
+/// the number of vertices that they move.
+fn changes(mesh: &Mesh) -> Option<(f64, usize)> {
+    let is_inexact = |p: &&[f64; 3]| p.iter().any(|&x| f64::from(x as f32) != x);
+    let count = mesh.positions.iter().filter(is_inexact).count();
+    (!fits_f32(mesh)).then(|| (rounding(mesh), count))
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_fixtures::grid;
+
+    use super::*;
+
+    fn at(mut mesh: Mesh, scale: f64, offset: [f64; 3]) -> Mesh {
+        for position in &mut mesh.positions {
+            *position = [0, 1, 2].map(|i| position[i] * scale + offset[i]);
+        }
+        mesh
+    }
+
+    #[test]
+    fn rounding_that_was_asked_for_is_noted_where_it_changes_the_shape() {
+        let note = |scale, format, precision| {
+            let scene = Scene::from_mesh("", at(grid(3), scale, [500_000.0, 5_400_000.0, 100.0]));
+            scene.precision_limits(format, precision).map(|note| note.to_string())
+        };
+        let text = note(0.013, Format::Ply, Precision::F32).unwrap();
+        assert!(text.contains("vertices rounded by up to 3.9e-2"), "{text}");
+        assert_eq!(note(0.013, Format::Ply, Precision::Auto), None);
+        assert_eq!(note(0.013, Format::Glb, Precision::F32), None);
+        assert_eq!(note(0.5, Format::Ply, Precision::F32), None);
+    }
+}
