@@ -135,8 +135,8 @@ impl fmt::Display for Note {
     }
 }
 
-/// Formats a number with commas between groups of three digits.
-fn grouped(number: usize) -> String {
+/// Formats a count with commas as thousands separators: 871,414.
+pub fn grouped(number: usize) -> String {
     let digits = number.to_string();
     let mut text = String::new();
     for (i, digit) in digits.chars().enumerate() {

@@ -55,7 +55,9 @@ fn remark(text: &str) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use crate::{Format, Precision, ReadOptions, Scene, gltf, obj, off, ply, read_bytes, smf};
+    use crate::{
+        Format, Precision, ReadOptions, Scene, WriteOptions, obj, ply, read_bytes, write_to,
+    };
 
     const PLY: &str = "ply\nformat ascii 1.0\ncomment by  hand\nobj_info scan 7\n\
         element vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
@@ -72,17 +74,12 @@ mod tests {
         let expected = ["comment by  hand", "obj_info scan 7"];
         for format in [Format::Obj, Format::Off, Format::Smf, Format::Glb] {
             assert!(scene.limits_of(format).is_empty(), "{format:?}");
-            let (mut file, precision) = (Vec::new(), Precision::Auto);
-            match format {
-                Format::Obj => obj::write(&scene, precision, &mut file, &[]).unwrap(),
-                Format::Off => off::write_scene(&scene, precision, &mut file).unwrap(),
-                Format::Smf => smf::write_scene(&scene, precision, &mut file).unwrap(),
-                _ => file = gltf::write_glb(&scene, &[]).unwrap(),
-            }
+            let mut file = Vec::new();
+            write_to(&mut file, &scene, format, &WriteOptions::default()).unwrap();
             let back = read(&file, format);
             assert_eq!(back.ply.remarks, expected, "{format:?}");
             let mut again = Vec::new();
-            ply::write_scene(&back, precision, &mut again).unwrap();
+            ply::write_scene(&back, Precision::Auto, &mut again).unwrap();
             let text = String::from_utf8_lossy(&again).into_owned();
             assert!(text.contains("comment by  hand\nobj_info scan 7\n"), "{format:?}: {text}");
         }

@@ -35,7 +35,7 @@ impl Beside {
     pub fn of(path: &Path, format: Format) -> Self {
         Self {
             folder: path.parent().unwrap_or(Path::new("")).to_owned(),
-            has_no_buffers: !matches!(format, Format::Gltf | Format::Glb),
+            has_no_buffers: !format.is_gltf(),
             left: MOST_OF_ALL,
             listed: HashMap::new(),
             replaced: BTreeMap::new(),

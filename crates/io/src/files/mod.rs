@@ -4,26 +4,26 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
-use meshlod_mesh::{Mesh, VertexId, weld};
-
 use beside::Beside;
-use names::bare_name;
 use write_gltf::write_gltf;
 use write_obj::write_obj;
 use write_ply::write_ply;
 
-use crate::error::{IoError, ParseError, Unsupported};
+use self::missing_images::note_missing_images;
+use crate::error::{IoError, Unsupported};
 use crate::files::names::stem;
 use crate::format::Format;
+use crate::format::facts::Holds;
+use crate::gltf;
 use crate::gltf::write::levels::{Levels, LodLayout};
-use crate::notes::Note;
-use crate::options::{ReadOptions, Resolve, Weld, WriteOptions};
-use crate::scene::{Scene, influences, normals};
-use crate::{gltf, obj, off, ply, remarks, smf, stl};
+use crate::memory::{parse, write_to};
+use crate::options::{ReadOptions, WriteOptions};
+use crate::scene::Scene;
 use replace::replace;
 
 mod beside;
 mod images;
+pub(crate) mod missing_images;
 pub(crate) mod names;
 pub(crate) mod replace;
 mod staged;
@@ -57,81 +57,6 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Scene, IoError> {
     Ok(scene)
 }
 
-/// Parses the contents of a mesh file held in memory; `resolve` loads the files that it refers to.
-///
-/// # Errors
-/// The location and the reason if the contents are invalid.
-pub fn read_bytes(
-    bytes: &[u8],
-    format: Format,
-    resolve: Resolve<'_>,
-    options: &ReadOptions,
-) -> Result<Scene, ParseError> {
-    let mut scene = parse(bytes, format, resolve, options)?;
-    note_missing_images(&mut scene, None);
-    Ok(scene)
-}
-
-fn parse(
-    bytes: &[u8],
-    format: Format,
-    resolve: Resolve<'_>,
-    options: &ReadOptions,
-) -> Result<Scene, ParseError> {
-    let is_gltf = matches!(format, Format::Gltf | Format::Glb);
-    let mut scene = match format {
-        Format::Gltf | Format::Glb => gltf::read(bytes, resolve, options.weld)?,
-        Format::Obj => obj::read(bytes, resolve)?,
-        Format::Ply => ply::read_scene(bytes, resolve)?,
-        Format::Stl => stl::read_scene(bytes)?,
-        Format::Off => off::read_scene(bytes)?,
-        Format::Smf => smf::read_scene(bytes)?,
-    };
-    if matches!(format, Format::Obj | Format::Off | Format::Smf) {
-        scene.ply.remarks = remarks::of_text(bytes);
-    }
-    // glTF was welded as it was read: its document depends on it.
-    let meshes = if is_gltf { &mut [][..] } else { &mut scene.meshes };
-    for mesh in meshes {
-        match options.weld {
-            Weld::Within(epsilon) => drop(weld(&mut mesh.mesh, epsilon)),
-            Weld::Off if format == Format::Stl => unweld(&mut mesh.mesh),
-            Weld::Exact | Weld::Off => {}
-        }
-    }
-    normals::make_unit(&mut scene);
-    influences::note_sums(&mut scene);
-    Ok(scene)
-}
-
-/// Notes the images without bytes, and where the first was looked for, if that is known.
-fn note_missing_images(scene: &mut Scene, folder: Option<&Path>) {
-    let missing = scene.images.iter().filter(|image| image.bytes.is_empty());
-    let names: Vec<String> = missing.map(|image| image.name.clone()).collect();
-    let Some(first) = names.first() else { return };
-    let (one, many) = (
-        "image that was not found or cannot be used",
-        "images that were not found or cannot be used",
-    );
-    let mut note = Note::left_out(names.len(), one, many);
-    if let Some(folder) = folder {
-        note = note.remedied(image_remedy(first, folder));
-    }
-    scene.notes.push(note.named(names));
-}
-
-/// Says what to do about an image that a file in a folder names but that is not there.
-fn image_remedy(name: &str, folder: &Path) -> String {
-    if name.contains("://") {
-        return "images are not downloaded; save them beside the model, and name those".to_owned();
-    }
-    if ["<UDIM>", "<UVTILE>", "%(UDIM)d"].iter().any(|tiles| name.contains(tiles)) {
-        return "tiles of UDIM are not read; bake them into one image".to_owned();
-    }
-    let place = folder.join(bare_name(name).unwrap_or(name));
-    format!("put an image at {}", place.display())
-}
-
 /// Writes a scene as a mesh file, with the `.bin`, `.mtl` and image files that belong to it next to
 /// it.
 ///
@@ -148,14 +73,12 @@ fn image_remedy(name: &str, folder: &Path) -> String {
 /// scene that the format cannot store. A file that was at `path` before is then still there, with the
 /// files that it uses, and no new one.
 pub fn write(path: &Path, scene: &Scene, options: &WriteOptions) -> Result<(), IoError> {
-    let precision = options.precision;
-    match Format::of_path(path)? {
-        Format::Gltf | Format::Glb => write_lods(path, scene, &[], LodLayout::default()),
-        Format::Obj => write_obj(path, scene, precision),
-        Format::Ply => write_ply(path, scene, precision),
-        Format::Stl => write_one(path, |out| stl::write_scene(scene, precision, out)),
-        Format::Off => write_one(path, |out| off::write_scene(scene, precision, out)),
-        Format::Smf => write_one(path, |out| smf::write_scene(scene, precision, out)),
+    let format = Format::of_path(path)?;
+    match format.stores().holds {
+        Holds::Document => write_lods(path, scene, &[], LodLayout::default()),
+        Holds::Library => write_obj(path, scene, options.precision),
+        Holds::Properties => write_ply(path, scene, options.precision),
+        Holds::MeshAlone => write_one(path, |out| write_to(out, scene, format, options)),
     }
 }
 
@@ -243,14 +166,6 @@ pub fn write_compressed(
             "file",
             "only .glb and .gltf can be compressed; use one of those",
         ))),
-    }
-}
-
-/// Gives every corner a vertex of its own, as STL files have them.
-fn unweld(mesh: &mut Mesh) {
-    mesh.positions = mesh.faces.iter().flatten().map(|v| mesh.positions[v.index()]).collect();
-    for (i, vertex) in mesh.faces.iter_mut().flatten().enumerate() {
-        *vertex = VertexId::new(i);
     }
 }
 

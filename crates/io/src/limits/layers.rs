@@ -4,34 +4,36 @@ use std::collections::BTreeSet;
 
 use meshlod_mesh::{Layer, LayerKind, Mesh};
 
-use crate::format::Format;
+use crate::format::facts::{HeldLayers, SeamSplits, Stores};
 use crate::notes::Note;
 use crate::obj::color_splits;
 use crate::scene::flatten::MeshInstance;
 use crate::scene::{Scene, SceneMesh};
 
 impl Scene {
-    pub(super) fn layer_limits(&self, format: Format) -> Vec<Note> {
+    pub(super) fn layer_limits(&self, stores: &Stores) -> Vec<Note> {
         let shown = || self.instances().into_iter().map(|MeshInstance { mesh, .. }| mesh);
         let shown: BTreeSet<usize> = shown().collect();
         let meshes: Vec<&Mesh> = shown.iter().map(|&mesh| &self.meshes[mesh].mesh).collect();
         let layers =
             meshes.iter().filter_map(|mesh| mesh.attributes.as_ref()).flat_map(|a| &a.layers);
-        let sets = match format {
-            Format::Obj => self.shown_texture_sets(),
+        let sets = match stores.layers {
+            HeldLayers::BasicByMaterial => self.shown_texture_sets(),
             _ => BTreeSet::new(),
         };
         let lost: BTreeSet<String> =
-            layers.filter(|layer| !holds(format, layer, &sets)).map(title).collect();
+            layers.filter(|layer| !holds(stores.layers, layer, &sets)).map(title).collect();
         let split = |splits: fn(&Mesh) -> usize| {
             let is_new = !self.had_split_seams();
             if is_new { meshes.iter().map(|mesh| splits(mesh)).sum() } else { 0 }
         };
-        let all = if splits_seams(format) { split(seams) } else { 0 };
-        let of_colors = if format == Format::Obj { split(color_splits) } else { 0 };
-        let lacks_opacity = matches!(format, Format::Obj | Format::Smf);
+        let (all, of_colors) = match stores.seams {
+            SeamSplits::None => (0, 0),
+            SeamSplits::Colors => (0, split(color_splits)),
+            SeamSplits::All => (split(seams), 0),
+        };
         let translucent = meshes.iter().map(|mesh| translucent_vertices(mesh));
-        let translucent = if lacks_opacity { translucent.sum() } else { 0 };
+        let translucent = if stores.has_opacity { 0 } else { translucent.sum() };
         vec![
             Note::left_out(lost.len(), "vertex attribute", "vertex attributes").named(lost),
             Note::left_out(translucent, "opacity of a vertex", "opacities of vertices"),
@@ -81,19 +83,15 @@ impl Scene {
     }
 }
 
-/// Reports whether a format has a place for a layer; `sets` are the sets of texture coordinates that
-/// an OBJ file has.
-fn holds(format: Format, layer: &Layer, sets: &BTreeSet<u8>) -> bool {
-    match (format, layer.kind) {
-        (Format::Gltf | Format::Glb | Format::Ply, _) => true,
-        (Format::Stl, _) => false,
-        (Format::Obj, LayerKind::Uv(set)) => sets.contains(&set),
+/// Reports whether a format stores a layer; `sets` are the sets of texture coordinates that an OBJ file
+/// has.
+fn holds(held: HeldLayers, layer: &Layer, sets: &BTreeSet<u8>) -> bool {
+    match (held, layer.kind) {
+        (HeldLayers::All, _) => true,
+        (HeldLayers::None, _) => false,
+        (HeldLayers::BasicByMaterial, LayerKind::Uv(set)) => sets.contains(&set),
         (_, kind) => matches!(kind, LayerKind::Normal | LayerKind::Uv(0) | LayerKind::Color(0)),
     }
-}
-
-fn splits_seams(format: Format) -> bool {
-    matches!(format, Format::Off | Format::Smf)
 }
 
 /// Returns the name of a layer for people.

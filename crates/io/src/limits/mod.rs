@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use meshlod_mesh::{FaceLayerKind, Mesh};
 
 use crate::format::Format;
+use crate::format::facts::{Comments, Holds, Vertices};
 use crate::gltf::write::new_document::limits::new_document_limits;
 use crate::notes::Note;
 use crate::scene::Scene;
@@ -21,28 +22,22 @@ impl Scene {
     /// shape; not listed is that STL shares no vertices, which its readers mend.
     /// Cost: linear in the number of corners.
     pub fn limits_of(&self, format: Format) -> Vec<Note> {
-        let mut notes = match format {
-            Format::Gltf | Format::Glb if self.source.is_some() => Vec::new(),
-            Format::Gltf | Format::Glb => {
+        let stores = format.stores();
+        let mut notes = match stores.holds {
+            Holds::Document if self.source.is_some() => Vec::new(),
+            Holds::Document => {
                 let own = vec![self.unused_vertices(), self.face_scalar_limits()];
                 [new_document_limits(self), own, self.obj_limits()].concat()
             }
-            Format::Obj => {
+            Holds::Library => {
                 let scalars = vec![self.face_scalar_limits()];
                 let parts = [self.graph_limits(), self.mtl_limits(), scalars].concat();
-                [parts, self.layer_limits(format)].concat()
+                [parts, self.layer_limits(stores)].concat()
             }
-            Format::Ply => {
+            Holds::Properties => {
                 [self.graph_limits(), self.obj_limits(), crate::ply::limits(self)].concat()
             }
-            Format::Stl | Format::Off | Format::Smf => {
-                let own = match format {
-                    Format::Stl => [self.ply_limits(), vec![self.unused_vertices()]].concat(),
-                    _ => vec![self.face_scalar_limits()],
-                };
-                let parts = [self.graph_limits(), self.single_mesh_limits(format), own];
-                [parts.concat(), self.obj_limits(), self.layer_limits(format)].concat()
-            }
+            Holds::MeshAlone => self.lone_mesh_limits(format),
         };
         if let Some((most, count)) = self.unavoidable_rounding(format) {
             let why = format!(" by up to {most:.1e}: the format has 32-bit coordinates");
@@ -51,6 +46,15 @@ impl Scene {
         }
         notes.retain(|note| note.count > 0);
         notes
+    }
+
+    /// Reports whether a file of this format keeps the vertices that no face uses.
+    pub fn keeps_unused_vertices(&self, format: Format) -> bool {
+        match format.stores().vertices {
+            Vertices::Indexed => true,
+            Vertices::PerPrimitive => self.source.is_some(),
+            Vertices::PerCorner => false,
+        }
     }
 
     /// Lists what the [flattened](Self::flatten) scene lacks, a mesh that has the names of materials
@@ -77,10 +81,10 @@ impl Scene {
     pub fn lone_file_limits(&self, format: Format) -> Vec<Note> {
         let looks = crate::obj::mtl::defined(self);
         let of_colors = self.materials.iter().filter_map(|material| material.base_color_image);
-        let (looks, images): (_, BTreeSet<usize>) = match format {
-            Format::Obj => (looks, self.materials.iter().flat_map(Material::images).collect()),
-            Format::Ply => (Vec::new(), of_colors.collect()),
-            _ => return Vec::new(),
+        let (looks, images): (_, BTreeSet<usize>) = match format.stores().holds {
+            Holds::Library => (looks, self.materials.iter().flat_map(Material::images).collect()),
+            Holds::Properties => (Vec::new(), of_colors.collect()),
+            Holds::Document | Holds::MeshAlone => return Vec::new(),
         };
         // Images that were not found are noted by the reader.
         let images = images.iter().filter_map(|&image| self.images.get(image));
@@ -181,8 +185,27 @@ impl Scene {
         ]
     }
 
-    /// Lists what formats lack that hold one mesh without parts.
-    fn single_mesh_limits(&self, format: Format) -> Vec<Note> {
+    /// Lists what a format of one mesh alone lacks.
+    fn lone_mesh_limits(&self, format: Format) -> Vec<Note> {
+        let stores = format.stores();
+        let mut own = match stores.comments {
+            Comments::None => self.ply_limits(),
+            Comments::Lines | Comments::Own => vec![self.face_scalar_limits()],
+        };
+        if !self.keeps_unused_vertices(format) {
+            own.push(self.unused_vertices());
+        }
+        let parts = [self.graph_limits(), self.part_limits(format), own];
+        [parts.concat(), self.obj_limits(), self.layer_limits(stores)].concat()
+    }
+
+    /// Reports whether the scene is written as text of several solids.
+    fn is_written_as_solids(&self, format: Format) -> bool {
+        self.has_solids && format.stores().has_solids
+    }
+
+    /// Lists the materials, textures and names of objects that one mesh alone lacks.
+    fn part_limits(&self, format: Format) -> Vec<Note> {
         let shown: BTreeSet<usize> = self.instances().iter().map(|i| i.mesh).collect();
         let used: BTreeSet<usize> = shown
             .iter()
@@ -192,8 +215,8 @@ impl Scene {
         let images: BTreeSet<usize> = materials.clone().flat_map(Material::images).collect();
         let images: Vec<&str> =
             images.iter().filter_map(|&i| self.images.get(i)).map(|i| &*i.name).collect();
-        let has_names = format == Format::Stl && self.has_solids;
-        let objects = if has_names { Vec::new() } else { self.object_names() };
+        let objects =
+            if self.is_written_as_solids(format) { Vec::new() } else { self.object_names() };
         let named = materials.filter(|m| !m.name.is_empty()).map(|m| &*m.name);
         vec![
             Note::left_out(used.len(), "material", "materials").named(named),

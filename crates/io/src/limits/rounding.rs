@@ -3,6 +3,7 @@
 use meshlod_mesh::Mesh;
 
 use crate::format::Format;
+use crate::format::facts::Coordinates;
 use crate::gltf::write::new_document::local_space::to_local;
 use crate::notes::Note;
 use crate::precision::{Precision, fits_f32, rounding};
@@ -20,10 +21,9 @@ impl Scene {
     /// Returns the largest change of a coordinate of one mesh of the scene in a format that has the
     /// bits of `precision`, as [`Scene::rounding`] does for all.
     pub fn mesh_rounding(&self, mesh: &Mesh, format: Format, precision: Precision) -> f64 {
-        match (format, precision) {
-            (Format::Gltf | Format::Glb, _) => self.gltf_rounding(mesh),
-            (Format::Stl, _) if !self.has_solids => rounding(mesh),
-            (Format::Ply, Precision::F32) => rounding(mesh),
+        match (self.coordinates(format), precision) {
+            (Coordinates::Binary32, _) if format.is_gltf() => self.gltf_rounding(mesh),
+            (Coordinates::Binary32, _) | (Coordinates::Binary, Precision::F32) => rounding(mesh),
             (_, Precision::F64) => 0.0,
             // The shortest decimal of an `f32` usually parses to a different `f64`.
             (_, Precision::F32 | Precision::Auto) => {
@@ -46,11 +46,7 @@ impl Scene {
     /// Notes the vertices that a precision that was asked for moves in a format that could keep them,
     /// if that changes the shape.
     pub fn precision_limits(&self, format: Format, precision: Precision) -> Option<Note> {
-        let has_both = match format {
-            Format::Ply | Format::Obj | Format::Off | Format::Smf => true,
-            Format::Stl => self.has_solids,
-            Format::Gltf | Format::Glb => false,
-        };
+        let has_both = self.coordinates(format) != Coordinates::Binary32;
         if precision != Precision::F32 || !has_both {
             return None;
         }
@@ -63,23 +59,30 @@ impl Scene {
     /// Returns the largest change of a coordinate in a format that has 32 bits alone, if those
     /// change the shape, and the number of vertices it moves.
     pub(crate) fn unavoidable_rounding(&self, format: Format) -> Option<(f64, usize)> {
-        let all: Vec<(f64, usize)> = match format {
-            Format::Stl if self.has_solids => Vec::new(),
-            Format::Stl => changes(&self.shown_mesh()).into_iter().collect(),
-            Format::Gltf | Format::Glb => {
-                let of_mesh = |mesh: &Mesh| {
-                    if self.source.is_some() || fits_f32(mesh) {
-                        return changes(mesh);
-                    }
-                    let mut local = Mesh::new(mesh.positions.clone(), mesh.faces.clone());
-                    to_local(&mut local);
-                    changes(&local)
-                };
-                self.meshes.iter().filter_map(|mesh| of_mesh(&mesh.mesh)).collect()
+        if self.coordinates(format) != Coordinates::Binary32 {
+            return None;
+        }
+        if !format.is_gltf() {
+            return changes(&self.shown_mesh());
+        }
+        let of_mesh = |mesh: &Mesh| {
+            if self.source.is_some() || fits_f32(mesh) {
+                return changes(mesh);
             }
-            Format::Ply | Format::Obj | Format::Off | Format::Smf => Vec::new(),
+            let mut local = Mesh::new(mesh.positions.clone(), mesh.faces.clone());
+            to_local(&mut local);
+            changes(&local)
         };
-        all.into_iter().reduce(|(a, n), (b, m)| (a.max(b), n + m))
+        let all = self.meshes.iter().filter_map(|mesh| of_mesh(&mesh.mesh));
+        all.reduce(|(a, n), (b, m)| (a.max(b), n + m))
+    }
+
+    /// Returns the number type of the coordinates that this scene gets in a format.
+    fn coordinates(&self, format: Format) -> Coordinates {
+        match self.is_written_as_solids(format) {
+            true => Coordinates::Decimal,
+            false => format.stores().coordinates,
+        }
     }
 }
 

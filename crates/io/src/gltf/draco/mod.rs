@@ -17,8 +17,6 @@ use serde_json::Value;
 
 use crate::error::ParseError;
 use crate::gltf::document::buffers::Buffers;
-#[cfg(not(feature = "draco"))]
-use crate::gltf::document::extensions::compressed;
 use crate::gltf::document::extensions::{DRACO, drop_entry, forget_names};
 use crate::gltf::document::schema;
 use crate::gltf::document::schema::Accessor;
@@ -123,8 +121,9 @@ fn unpack(
 ) -> Result<(), ParseError> {
     match compressed.first() {
         None => Ok(()),
-        Some(Compressed { place, .. }) => {
-            Err(compressed(&format!("mesh {}, primitive {}", place.0, place.1), DRACO))
-        }
+        Some(Compressed { place, .. }) => Err(crate::gltf::document::extensions::compressed(
+            &format!("mesh {}, primitive {}", place.0, place.1),
+            DRACO,
+        )),
     }
 }
