@@ -1,6 +1,6 @@
 //! Reads and writes mesh files: PLY, OBJ, STL, OFF, SMF and glTF.
 //!
-//! Every format has a module of its own that turns bytes into a mesh or scene, or a typed error.
+//! Each format has its own module, which turns bytes into a mesh or scene, or a typed error.
 //!
 //! [`read()`] and [`write()`] choose the format by the file's suffix. The contents of a file are a
 //! [`Scene`], and [`Scene::flatten`] merges it into one mesh. A scene read from glTF keeps its

@@ -12,7 +12,7 @@ use crate::options::{ReadOptions, Resolve, Weld, WriteOptions};
 use crate::remarks;
 use crate::scene::{Scene, influences, normals};
 
-/// Parses the contents of a mesh file held in memory; `resolve` loads the files that it refers to.
+/// Parses the contents of a mesh file held in memory; `resolve` loads the files it refers to.
 ///
 /// # Errors
 /// The location and the reason if the contents are invalid.
@@ -44,7 +44,7 @@ pub(crate) fn parse(
     Ok(scene)
 }
 
-/// Welds or separates the vertices of each mesh as asked.
+/// Welds or separates the vertices of each mesh.
 fn weld_meshes(scene: &mut Scene, format: Format, how: Weld) {
     let vertices = format.stores().vertices;
     // glTF was welded as it was read: its document depends on it.
@@ -58,7 +58,7 @@ fn weld_meshes(scene: &mut Scene, format: Format, how: Weld) {
     }
 }
 
-/// Gives every corner a vertex of its own, as STL files have them.
+/// Gives every corner its own vertex, as in STL files.
 fn unweld(mesh: &mut Mesh) {
     mesh.positions = mesh.faces.iter().flatten().map(|v| mesh.positions[v.index()]).collect();
     for (i, vertex) in mesh.faces.iter_mut().flatten().enumerate() {
@@ -72,8 +72,8 @@ fn unweld(mesh: &mut Mesh) {
 /// material library, and PLY names images that are not written.
 ///
 /// # Errors
-/// Errors of `out`, and [`io::ErrorKind::InvalidData`] for parts of the scene that the format cannot
-/// store.
+/// Errors of `out`, and [`io::ErrorKind::InvalidData`] for parts of the scene that the format
+/// cannot store.
 pub fn write_to(
     out: &mut dyn Write,
     scene: &Scene,

@@ -24,7 +24,7 @@ pub enum Weld {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ReadOptions {
-    /// Choice of the vertices to merge, such as those at bit-identical positions.
+    /// Policy for merging vertices.
     pub weld: Weld,
 }
 
@@ -33,7 +33,7 @@ pub struct ReadOptions {
 #[serde(default, deny_unknown_fields)]
 pub struct WriteOptions {
     /// Precision of coordinates in PLY, OBJ, OFF, SMF and text STL. Binary STL and glTF always use
-    /// 32 bits; glTF counts them from a centre of the mesh where that is needed, see
+    /// 32 bits; glTF stores them relative to the centre of the mesh where necessary, see
     /// [`gltf::write_glb`].
     pub precision: Precision,
 }
@@ -41,6 +41,6 @@ pub struct WriteOptions {
 /// Callback that loads the files a mesh file refers to by name: buffers, images, material
 /// libraries.
 ///
-/// It receives the name as the file has it, with `%20` and other escapes decoded, and returns
-/// `None` if there is no such file.
+/// Takes the name in the file, with `%20` and other escapes decoded, and returns `None` if the file
+/// does not exist.
 pub type Resolve<'a> = &'a mut dyn FnMut(&str) -> Option<Vec<u8>>;

@@ -1,4 +1,4 @@
-//! Precision of written coordinates: how many bits a mesh needs, and what fewer of them change.
+//! Precision of written coordinates, and the bits that a mesh needs.
 
 use glam::DVec3;
 use meshlod_mesh::Mesh;
@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 pub enum Precision {
     /// 32-bit floats where they keep the shape, else 64-bit floats.
     ///
-    /// They keep it if no two vertices at different places become one, and no coordinate moves by
-    /// more than a thousandth of the mean length of an edge.
+    /// The shape is kept if no two vertices at different positions coincide, and no coordinate
+    /// moves by more than a thousandth of the mean edge length.
     #[default]
     Auto,
     /// 32-bit floats, which most programs read.
@@ -37,19 +37,19 @@ impl Precision {
 
 meshlod_mesh::by_name!(Precision, "precisions");
 
-/// Bits of a coordinate in a file.
+/// Width of a coordinate in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Width {
     F32,
     F64,
 }
 
-/// Part of the mean length of an edge by which a coordinate may move.
+/// Largest move of a coordinate, as a fraction of the mean edge length.
 const UNSEEN: f64 = 1e-3;
 
 impl Precision {
-    /// Returns [`Precision::F32`] or [`Precision::F64`]: for [`Precision::Auto`], the one that these
-    /// meshes need in formats that have both.
+    /// Returns [`Precision::F32`] or [`Precision::F64`]: for [`Precision::Auto`], the precision
+    /// that these meshes need.
     pub fn of<'a>(self, meshes: impl IntoIterator<Item = &'a Mesh>) -> Self {
         match self {
             Self::Auto if meshes.into_iter().all(fits_f32) => Self::F32,
@@ -58,7 +58,7 @@ impl Precision {
         }
     }
 
-    /// Returns the bits of the coordinates of a mesh.
+    /// Returns the width of the coordinates of a mesh.
     pub(crate) fn width(self, mesh: &Mesh) -> Width {
         match self.of([mesh]) {
             Self::F64 => Width::F64,
@@ -67,14 +67,14 @@ impl Precision {
     }
 }
 
-/// Returns the largest change of a coordinate of a mesh in 32 bits, in model units; infinite for a
-/// coordinate beyond their range.
+/// Returns the largest change of a coordinate by rounding to 32 bits, in model units; infinite if a
+/// coordinate exceeds their range.
 pub(crate) fn rounding(mesh: &Mesh) -> f64 {
     let moves = mesh.positions.as_flattened().iter().map(|&x| (f64::from(x as f32) - x).abs());
     moves.fold(0.0, f64::max)
 }
 
-/// Reports whether 32 bits keep the shape of a mesh, as [`Precision::Auto`] says.
+/// Reports whether 32 bits keep the shape of a mesh, as defined by [`Precision::Auto`].
 ///
 /// Cost: one pass over the coordinates if all are exact in 32 bits, else linear in the mesh.
 pub(crate) fn fits_f32(mesh: &Mesh) -> bool {
@@ -82,7 +82,7 @@ pub(crate) fn fits_f32(mesh: &Mesh) -> bool {
     moves == 0.0 || (moves.is_finite() && moves <= UNSEEN * mean_edge(mesh) && !merges(mesh))
 }
 
-/// Returns the mean length of the edges of all faces; infinite without faces.
+/// Returns the mean edge length over all faces; infinite without faces.
 fn mean_edge(mesh: &Mesh) -> f64 {
     if mesh.faces.is_empty() {
         return f64::INFINITY;
@@ -92,7 +92,7 @@ fn mean_edge(mesh: &Mesh) -> f64 {
     mesh.faces.iter().map(|&face| length(mesh.triangle(face))).sum()
 }
 
-/// Reports whether two vertices at different places have one place in 32 bits.
+/// Reports whether rounding to 32 bits makes two distinct positions equal.
 fn merges(mesh: &Mesh) -> bool {
     let mut first: FxHashMap<[u32; 3], usize> = FxHashMap::default();
     first.reserve(mesh.positions.len());

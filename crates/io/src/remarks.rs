@@ -1,5 +1,5 @@
-//! Comments of PLY files in other formats: lines `# comment …` and `# obj_info …` of text formats,
-//! and an array in the extras of glTF's asset.
+//! PLY comments in other formats: `# comment …` and `# obj_info …` lines in text formats, an array
+//! in the extras of the asset in glTF.
 
 use std::io;
 
@@ -19,7 +19,7 @@ pub(crate) fn write(remarks: &[String], lines: &mut LineWriter) -> io::Result<()
     Ok(())
 }
 
-/// Finds the comments that [`write`] wrote, above the first line of data.
+/// Finds the comments written by [`write`], above the first line of data.
 pub(crate) fn of_text(bytes: &[u8]) -> Vec<String> {
     let mut remarks = Vec::new();
     for line in bytes.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii) {
@@ -39,13 +39,13 @@ pub(crate) fn put(remarks: &[String], document: &mut Value) {
     }
 }
 
-/// Finds the comments that [`put`] put into a glTF document.
+/// Finds the comments stored by [`put`] in a glTF document.
 pub(crate) fn of_document(document: &Value) -> Vec<String> {
     let comments = document["asset"]["extras"]["comments"].as_array();
     comments.into_iter().flatten().filter_map(|text| remark(text.as_str()?)).collect()
 }
 
-/// Returns a line that may stand in the header of a PLY file.
+/// Returns the text if it is a valid comment line of a PLY header.
 fn remark(text: &str) -> Option<String> {
     let is_remark = matches!(text.split_ascii_whitespace().next(), Some("comment" | "obj_info"));
     let is_line = !text.contains(['\n', '\r']) && text.trim() == text;

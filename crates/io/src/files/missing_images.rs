@@ -1,4 +1,4 @@
-//! Notes on images that a scene names but that were not found.
+//! Notes on images that were not found.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use super::names::bare_name;
 use crate::notes::Note;
 use crate::scene::Scene;
 
-/// Notes the images without bytes, and where the first was looked for, if that is known.
+/// Notes the images without bytes, with the expected path of the first one if the folder is known.
 pub(crate) fn note_missing_images(scene: &mut Scene, folder: Option<&Path>) {
     let missing = scene.images.iter().filter(|image| image.bytes.is_empty());
     let names: Vec<String> = missing.map(|image| image.name.clone()).collect();
@@ -22,7 +22,7 @@ pub(crate) fn note_missing_images(scene: &mut Scene, folder: Option<&Path>) {
     scene.notes.push(note.named(names));
 }
 
-/// Says what to do about an image that a file in a folder names but that is not there.
+/// Returns advice on a missing image of a file in this folder.
 fn image_remedy(name: &str, folder: &Path) -> String {
     if name.contains("://") {
         return "images are not downloaded; save them beside the model, and name those".to_owned();

@@ -31,10 +31,9 @@ mod write_gltf;
 mod write_obj;
 mod write_ply;
 
-/// Reads a mesh file and the files that it refers to, such as buffers and images, from its folder.
+/// Reads a mesh file, and the buffers, images and other files it refers to from its folder.
 ///
-/// Images and material libraries with absolute paths are read from that folder, too, by the last
-/// part of their names, with a note.
+/// Absolute paths of images and material libraries are replaced by their last part, with a note.
 ///
 /// # Errors
 /// One line that names the file, the location in it and the reason: an unknown suffix, a missing
@@ -57,21 +56,19 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Scene, IoError> {
     Ok(scene)
 }
 
-/// Writes a scene as a mesh file, with the `.bin`, `.mtl` and image files that belong to it next to
-/// it.
+/// Writes a scene as a mesh file, with its `.bin`, `.mtl` and image files beside it.
 ///
-/// Files are written under temporary names and renamed when all are complete, the one at `path`
-/// last, so that it never meets the files of another version: where the file there uses a buffer or
-/// library that differs, the new one is called `stem-2.bin` or `stem-2.mtl`, and the old one is
-/// removed at the end. PLY, STL, OFF and SMF store a single mesh: the result of [`Scene::flatten`].
-/// An existing image with different contents is not overwritten: for OBJ and PLY, the new one is
-/// called `image-2.png` then; for glTF it is an error. Material libraries that already say what the
-/// scene does stay.
+/// Files are written under temporary names and renamed once all are complete, the one at `path`
+/// last, so that versions never mix: if the old file uses a different buffer or library, the new
+/// one is called `stem-2.bin` or `stem-2.mtl`, and the old one is removed at the end. PLY, STL, OFF
+/// and SMF store a single mesh: the result of [`Scene::flatten`]. An existing image with different
+/// contents is not overwritten: for OBJ and PLY, the new one is called `image-2.png`; for glTF it
+/// is an error. Material libraries that already define the materials of the scene stay.
 ///
 /// # Errors
 /// One line that names the file: an unknown suffix, an error of the system, or the part of the
-/// scene that the format cannot store. A file that was at `path` before is then still there, with the
-/// files that it uses, and no new one.
+/// scene that the format cannot store. An old file at `path` then stays with its companions, and no
+/// new file is left.
 pub fn write(path: &Path, scene: &Scene, options: &WriteOptions) -> Result<(), IoError> {
     let format = Format::of_path(path)?;
     match format.stores().holds {
@@ -82,9 +79,9 @@ pub fn write(path: &Path, scene: &Scene, options: &WriteOptions) -> Result<(), I
     }
 }
 
-/// Writes a scene and its coarser levels of detail as glTF or GLB, laid out as asked.
+/// Writes a scene and its coarser levels of detail as glTF or GLB in the given layout.
 ///
-/// See [`gltf::write_glb`] for details.
+/// See [`gltf::write_lods_glb`] for details.
 ///
 /// # Errors
 /// Errors of [`write()`]; also any other suffix, and levels whose number of meshes differs from the

@@ -1,9 +1,9 @@
-//! Names of files, as mesh files spell them.
+//! File names in mesh files.
 
 use std::path::{Component, Path, PathBuf};
 
-/// Returns the last part of an absolute name of any system, as of `/a/b.png` and `C:\a\b.png`;
-/// `None` of a relative name, or of several names in a row.
+/// Returns the last part of an absolute path of any system, such as `/a/b.png` or `C:\a\b.png`;
+/// `None` for a relative path, or several paths in a row.
 pub(super) fn bare_name(name: &str) -> Option<&str> {
     let mut words = name.split_ascii_whitespace();
     let is_one = words.next().is_some_and(is_absolute) && !words.any(is_absolute);

@@ -29,9 +29,9 @@ pub fn abandon_files() {
     }
 }
 
-/// Removes temporary files that processes which were killed have left beside these paths.
+/// Removes temporary files that killed processes have left beside these paths.
 ///
-/// Those of processes that are alive stay, where `/proc` tells of them. Cost: reads each folder once.
+/// Files of running processes stay, on systems with `/proc`. Cost: reads each folder once.
 pub fn remove_abandoned<'p>(paths: impl IntoIterator<Item = &'p Path>) {
     let mut folders: BTreeMap<&Path, BTreeSet<&str>> = BTreeMap::new();
     for path in paths {
@@ -51,7 +51,7 @@ pub fn remove_abandoned<'p>(paths: impl IntoIterator<Item = &'p Path>) {
     }
 }
 
-/// Returns the name that a temporary file would have got, and the number of its process.
+/// Returns the final name of a temporary file, and the id of its process.
 fn target_of(temporary: &str) -> Option<(&str, &str)> {
     let (target, numbers) = temporary.strip_prefix('.')?.rsplit_once('.')?;
     let (process, number) = numbers.split_once('-')?;
@@ -79,7 +79,7 @@ pub(crate) struct Staged {
 }
 
 impl Staged {
-    /// Puts the file in its place.
+    /// Moves the file to its final name.
     pub fn rename(self) -> io::Result<()> {
         match self.place {
             Some((temporary, target)) => temporary.rename(&target),
@@ -134,7 +134,7 @@ pub(crate) fn mark_unfinished(path: &Path) {
     unfinished().push(path.to_owned());
 }
 
-/// Takes the mark off a file.
+/// Unmarks a file.
 pub(crate) fn forget(path: &Path) {
     unfinished().retain(|other| other != path);
 }

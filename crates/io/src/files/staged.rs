@@ -1,7 +1,7 @@
 //! Several files that belong together, replaced as one.
 //!
-//! No system renames several files at once. So that a document never meets a part of another
-//! version, whenever the process ends:
+//! No system renames several files at once. Whenever the process ends, a document only ever refers
+//! to parts of its own version:
 //!
 //! 1. Every file is written completely under a temporary name, the document included. A full disk
 //!    shows here, and nothing has changed.
@@ -23,7 +23,7 @@ use crate::gltf::document::uri;
 #[derive(Default)]
 pub(crate) struct StagedFiles {
     parts: Vec<(PathBuf, Staged)>,
-    /// Folders made for them, outermost first.
+    /// Folders created for the files, outermost first.
     folders: Vec<PathBuf>,
     is_done: bool,
 }
@@ -51,12 +51,10 @@ impl StagedFiles {
         self.parts.iter().any(|(other, _)| other == path)
     }
 
-    /// Writes the document, renames the parts and then the document, and removes the parts that are
-    /// of no more use.
+    /// Writes the document, renames the parts and then the document, and removes obsolete parts.
     ///
     /// # Errors
-    /// Errors of the system and of `fill`. No new file is left then, and the old document is still
-    /// there.
+    /// Errors of the system and of `fill`. The old document then stays, and no new file is left.
     pub fn finish(
         mut self,
         document: &Path,
@@ -112,7 +110,7 @@ impl Drop for StagedFiles {
     }
 }
 
-/// Parts that were not there before; removed on drop, unless the document has come.
+/// New parts, removed on drop unless the document was renamed.
 struct Created(Vec<PathBuf>);
 
 impl Drop for Created {
@@ -125,15 +123,15 @@ impl Drop for Created {
     }
 }
 
-/// Chooses the name for a part of a document, `stem.suffix` or else `stem-2.suffix` and so on: one
-/// that is not taken, as by the document that is there now.
+/// Chooses the name for a part of a document, `stem.suffix` or else `stem-2.suffix` and so on: the
+/// first name that is not taken, for instance by the current document.
 pub(crate) fn part_name(stem: &str, suffix: &str, is_taken: impl Fn(&str) -> bool) -> String {
     let numbered = (2..).map(|number: u32| format!("{stem}-{number}.{suffix}"));
     let mut names = std::iter::once(format!("{stem}.{suffix}")).chain(numbered);
     names.find(|name| !is_taken(name)).unwrap_or_default()
 }
 
-/// Reports whether [`part_name`] gives parts of a document such names.
+/// Reports whether a name has the form that [`part_name`] gives parts.
 pub(crate) fn is_part_name(name: &str, stem: &str, suffix: &str) -> bool {
     let middle =
         name.strip_prefix(stem).and_then(|rest| rest.strip_suffix(suffix)?.strip_suffix('.'));
@@ -143,8 +141,8 @@ pub(crate) fn is_part_name(name: &str, stem: &str, suffix: &str) -> bool {
     })
 }
 
-/// Lists the old parts beside a document that the new version does not use and no other document of
-/// the folder mentions.
+/// Lists the old parts of a document that neither its new version nor another document in the
+/// folder uses.
 pub(crate) fn obsolete_parts(
     document: &Path,
     old: &BTreeSet<String>,

@@ -1,4 +1,4 @@
-//! Writing a glTF document with the buffer and the images that it refers to.
+//! Writing a glTF document with its buffer and images.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -15,7 +15,7 @@ use crate::gltf::document::uri::Uri;
 use crate::gltf::write::output::GltfFiles;
 use crate::gltf::write::settings::CompressionReport;
 
-/// Writes the files that `encode` makes, given how to name the buffer by its bytes.
+/// Writes the files made by `encode`, which takes a function that names the buffer by its bytes.
 pub(super) fn write_gltf(
     path: &Path,
     encode: impl FnOnce(&dyn Fn(&[u8]) -> String) -> Result<(GltfFiles, CompressionReport), Unsupported>,
@@ -54,8 +54,8 @@ pub(super) fn write_gltf(
     Ok(report)
 }
 
-/// Returns the file names of the buffers of a document in the same folder; none if there is no
-/// document, or none that can be read.
+/// Returns the file names of the buffers of a document in the same folder; empty if there is no
+/// readable document.
 fn buffers_of(path: &Path) -> BTreeSet<String> {
     #[derive(Default, Deserialize)]
     #[serde(default)]

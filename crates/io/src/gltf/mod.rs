@@ -1,7 +1,15 @@
 //! glTF 2.0 and GLB. Parts of a document other than geometry are passed through unchanged.
 //!
-//! `document` is the file as it is, `read` makes a scene of it, `write` a document of a scene; `draco`
-//! decompresses, `animation` poses nodes and packs their tracks, `skeleton` keeps scenes without geometry.
+//! | room | holds |
+//! |---|---|
+//! | `document` | the file: container, JSON, buffers, accessors, and the [`SourceDocument`] of a scene |
+//! | `read` | scenes from documents |
+//! | `draco` | decompression of primitives, before they are read |
+//! | `write` | documents from scenes: new geometry, levels, strips, compression |
+//! | `animation` | poses of nodes, and packing of key frames |
+//! | `skeleton` | scenes without geometry, as bytes |
+//!
+//! `read` and `write` use `document`; `write` also uses `read`, to find the meshes that changed.
 
 mod animation;
 pub(crate) mod document;

@@ -1,4 +1,4 @@
-//! Limits of formats for attributes: layers that they lack, and seams that split vertices.
+//! Attributes that a format cannot hold, and seams that split vertices.
 
 use std::collections::BTreeSet;
 
@@ -55,8 +55,8 @@ impl Scene {
         self.source.as_ref().map_or_else(Vec::new, |source| source.texture_sets())
     }
 
-    /// Returns the sets of texture coordinates that an OBJ file has: those of the materials of the
-    /// meshes, and the first for faces without.
+    /// Returns the sets of texture coordinates in an OBJ file: the sets that shown materials use,
+    /// and the first one for other faces.
     fn shown_texture_sets(&self) -> BTreeSet<u8> {
         let sets = self.texture_sets();
         let shown: BTreeSet<usize> = self.instances().iter().map(|i| i.mesh).collect();
@@ -76,15 +76,15 @@ impl Scene {
         }
     }
 
-    /// Reports whether vertices were split at seams in the file that the scene was read from, so
-    /// that to split them again changes nothing.
+    /// Reports whether the source file had its vertices split at seams, so that splitting them
+    /// again changes nothing.
     pub(crate) fn had_split_seams(&self) -> bool {
         self.source.is_some() || self.has_split_seams
     }
 }
 
-/// Reports whether a format stores a layer; `sets` are the sets of texture coordinates that an OBJ file
-/// has.
+/// Reports whether a format stores a layer; `sets` are the sets of texture coordinates in an OBJ
+/// file.
 fn holds(held: HeldLayers, layer: &Layer, sets: &BTreeSet<u8>) -> bool {
     match (held, layer.kind) {
         (HeldLayers::All, _) => true,
@@ -94,7 +94,7 @@ fn holds(held: HeldLayers, layer: &Layer, sets: &BTreeSet<u8>) -> bool {
     }
 }
 
-/// Returns the name of a layer for people.
+/// Returns the name of a layer for messages.
 fn title(layer: &Layer) -> String {
     match layer.kind {
         LayerKind::Normal => "normals".to_owned(),

@@ -1,4 +1,4 @@
-//! Limits of each format: the parts of a scene that it cannot hold.
+//! Parts of a scene that a format cannot hold.
 
 use std::collections::BTreeSet;
 
@@ -15,12 +15,12 @@ mod layers;
 mod rounding;
 
 impl Scene {
-    /// Lists what a file of this format cannot hold of the scene, or holds in another form; empty if
-    /// all of it arrives.
+    /// Lists the parts of the scene that a file of this format lacks or holds in another form;
+    /// empty if nothing is lost.
     ///
-    /// Rounded coordinates are listed where the format has 32 bits alone, which do not keep the
-    /// shape; not listed is that STL shares no vertices, which its readers mend.
-    /// Cost: linear in the number of corners.
+    /// Rounding of coordinates is listed if the format has only 32 bits and they do not keep the
+    /// shape. STL's lack of shared vertices is not listed, since its readers weld them. Cost:
+    /// linear in the number of corners.
     pub fn limits_of(&self, format: Format) -> Vec<Note> {
         let stores = format.stores();
         let mut notes = match stores.holds {
@@ -57,8 +57,8 @@ impl Scene {
         }
     }
 
-    /// Lists what the [flattened](Self::flatten) scene lacks, a mesh that has the names of materials
-    /// and objects alone. Comments of PLY files are not listed.
+    /// Lists the parts that the [flattened](Self::flatten) scene lacks, where materials and objects
+    /// are only names. PLY comments are not listed.
     pub fn mesh_limits(&self) -> Vec<Note> {
         let plain = Material::default();
         // A material that no library defines is grey and has no lines.
@@ -76,8 +76,8 @@ impl Scene {
         notes
     }
 
-    /// Lists what a file of this format lacks if it is written alone, without the library and the
-    /// images that belong beside it.
+    /// Lists the parts lost if a file of this format is written without its material library and
+    /// images.
     pub fn lone_file_limits(&self, format: Format) -> Vec<Note> {
         let looks = crate::obj::mtl::defined(self);
         let of_colors = self.materials.iter().filter_map(|material| material.base_color_image);
@@ -99,22 +99,22 @@ impl Scene {
         notes.into_iter().map(|note| note.remedied(remedy)).collect()
     }
 
-    /// Lists what glTF lacks of a new scene whose meshes stay whole, as strips and compressed ones
-    /// do: the names of their objects.
+    /// Lists the parts lost if meshes are written to glTF as a whole, as strips and compressed
+    /// meshes are: the names of their objects.
     pub fn whole_mesh_limits(&self) -> Vec<Note> {
         let names = if self.source.is_some() { Vec::new() } else { self.object_names() };
         let note = Note::left_out(names.len(), "name of an object", "names of objects");
         vec![note.named(names)]
     }
 
-    /// Counts the vertices that no face uses, which formats of faces alone lack.
+    /// Counts the vertices that no face uses.
     fn unused_vertices(&self) -> Note {
         let unused = |mesh: &Mesh| mesh.used_vertices().iter().filter(|&&used| !used).count();
         let count = self.meshes.iter().map(|mesh| unused(&mesh.mesh)).sum();
         Note::left_out(count, "unused vertex", "unused vertices")
     }
 
-    /// Lists what formats without comments lack of a scene that was read from PLY.
+    /// Lists the parts of a PLY file that formats without comments lack.
     pub fn ply_limits(&self) -> Vec<Note> {
         let words = |word: &'static str| {
             self.ply.remarks.iter().filter(move |line| line.starts_with(word)).count()
@@ -135,7 +135,7 @@ impl Scene {
         Note::left_out(names.len(), "property of faces", "properties of faces").named(names)
     }
 
-    /// Lists what formats other than OBJ lack of a scene that was read from there.
+    /// Lists the parts of an OBJ file that other formats lack.
     pub fn obj_limits(&self) -> Vec<Note> {
         let groups = self.meshes.iter().filter_map(|mesh| mesh.mesh.smoothing());
         let groups = groups.flat_map(|layer| &layer.values).map(|&group| group as u32);
@@ -145,7 +145,7 @@ impl Scene {
         vec![note.named(names)]
     }
 
-    /// Lists what formats without nodes lack.
+    /// Lists the parts that formats without nodes lack.
     fn graph_limits(&self) -> Vec<Note> {
         let instances = self.instances();
         let mut shown = vec![false; self.meshes.len()];
@@ -185,7 +185,7 @@ impl Scene {
         ]
     }
 
-    /// Lists what a format of one mesh alone lacks.
+    /// Lists the parts that a format of a single mesh lacks.
     fn lone_mesh_limits(&self, format: Format) -> Vec<Note> {
         let stores = format.stores();
         let mut own = match stores.comments {
@@ -204,7 +204,7 @@ impl Scene {
         self.has_solids && format.stores().has_solids
     }
 
-    /// Lists the materials, textures and names of objects that one mesh alone lacks.
+    /// Lists the materials, textures and names of objects, which a single mesh lacks.
     fn part_limits(&self, format: Format) -> Vec<Note> {
         let shown: BTreeSet<usize> = self.instances().iter().map(|i| i.mesh).collect();
         let used: BTreeSet<usize> = shown
@@ -231,7 +231,7 @@ impl Scene {
     }
 }
 
-/// Notes that instances of meshes become one mesh, if they are several.
+/// Notes that several instances of meshes become one mesh.
 pub fn merged_instances(count: usize) -> Note {
     let merged = if count > 1 { count } else { 0 };
     Note::changed(merged, "", "instances of meshes merged into one mesh")

@@ -1,4 +1,4 @@
-//! Limits of formats for coordinates: how far writing them moves vertices.
+//! Rounding of coordinates by a format.
 
 use meshlod_mesh::Mesh;
 
@@ -11,15 +11,15 @@ use crate::scene::Scene;
 
 impl Scene {
     /// Returns the largest change of a coordinate when the scene is written in a format and read
-    /// back, in the units of its meshes; infinite for a coordinate that cannot be written.
+    /// back, in model units; infinite for a coordinate that cannot be written.
     pub fn rounding(&self, format: Format, precision: Precision) -> f64 {
         let precision = precision.of(self.meshes.iter().map(|mesh| &mesh.mesh));
         let of_mesh = |mesh: &Mesh| self.mesh_rounding(mesh, format, precision);
         self.meshes.iter().map(|mesh| of_mesh(&mesh.mesh)).fold(0.0, f64::max)
     }
 
-    /// Returns the largest change of a coordinate of one mesh of the scene in a format that has the
-    /// bits of `precision`, as [`Scene::rounding`] does for all.
+    /// Returns the largest change of a coordinate of one mesh of the scene, see
+    /// [`Scene::rounding`].
     pub fn mesh_rounding(&self, mesh: &Mesh, format: Format, precision: Precision) -> f64 {
         match (self.coordinates(format), precision) {
             (Coordinates::Binary32, _) if format.is_gltf() => self.gltf_rounding(mesh),
@@ -43,8 +43,8 @@ impl Scene {
         rounding(&local)
     }
 
-    /// Notes the vertices that a precision that was asked for moves in a format that could keep them,
-    /// if that changes the shape.
+    /// Notes the vertices that a requested precision rounds although the format could store them
+    /// exactly, if rounding changes the shape.
     pub fn precision_limits(&self, format: Format, precision: Precision) -> Option<Note> {
         let has_both = self.coordinates(format) != Coordinates::Binary32;
         if precision != Precision::F32 || !has_both {
@@ -56,8 +56,8 @@ impl Scene {
         Some(note.remedied("--precision auto or f64 keeps them"))
     }
 
-    /// Returns the largest change of a coordinate in a format that has 32 bits alone, if those
-    /// change the shape, and the number of vertices it moves.
+    /// Returns the largest change of a coordinate and the number of rounded vertices, if the format
+    /// has only 32 bits and they change the shape.
     pub(crate) fn unavoidable_rounding(&self, format: Format) -> Option<(f64, usize)> {
         if self.coordinates(format) != Coordinates::Binary32 {
             return None;
@@ -77,7 +77,7 @@ impl Scene {
         all.reduce(|(a, n), (b, m)| (a.max(b), n + m))
     }
 
-    /// Returns the number type of the coordinates that this scene gets in a format.
+    /// Returns the number type of the coordinates of this scene in a format.
     fn coordinates(&self, format: Format) -> Coordinates {
         match self.is_written_as_solids(format) {
             true => Coordinates::Decimal,
@@ -86,8 +86,8 @@ impl Scene {
     }
 }
 
-/// Returns the largest change of a coordinate of a mesh in 32 bits, if those change its shape, and
-/// the number of vertices that they move.
+/// Returns the largest change of a coordinate and the number of rounded vertices, if 32 bits change
+/// the shape of a mesh.
 fn changes(mesh: &Mesh) -> Option<(f64, usize)> {
     let is_inexact = |p: &&[f64; 3]| p.iter().any(|&x| f64::from(x as f32) != x);
     let count = mesh.positions.iter().filter(is_inexact).count();

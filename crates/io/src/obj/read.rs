@@ -17,15 +17,15 @@ use crate::scene::{Node, Scene, SceneMesh};
 use crate::text::cursor::{TextCursor, quoted, text_of};
 
 /// Parses an OBJ file as one mesh under one node; `resolve` loads the material library and the
-/// textures, or returns `None` if there is no such file.
+/// textures, or returns `None` if a file does not exist.
 ///
 /// Polygons are triangulated. A `v` gives three coordinates and, if present, a colour; a `vt` gives
 /// two coordinates. Values of `vt`, `vn` and colours that are not finite become 0, and are counted.
-/// Corners that lack what others have get 0, too. Colours above 1 are taken to be out of 255; those
-/// in comments `#MRGB`, the polypaint of ZBrush, hold where no vertex has another. `o` wins over
-/// `g`. A material whose library or image is missing keeps its name. Materials that no face uses come
-/// last. Lines, points, curves, faces with fewer than three corners and everything else that is not a
-/// face are counted in [`Scene::notes`].
+/// Corners without a value that others have get 0, too. Colours above 1 are divided by 255. Colours
+/// in comments `#MRGB`, the polypaint of ZBrush, are used if no vertex has another. `o` wins over
+/// `g`. A material whose library or image is missing keeps its name. Materials that no face uses
+/// come last. Lines, points, curves, faces with fewer than three corners and other statements are
+/// counted in [`Scene::notes`].
 ///
 /// Cost: O(n), n = bytes, plus that of triangulating concave polygons.
 /// # Errors
@@ -52,8 +52,8 @@ struct Corner {
     ids: CornerIds,
 }
 
-/// Polygon that refers to elements later in the file. Meanwhile, `n - 2` placeholder faces stand
-/// for it.
+/// Polygon that refers to elements later in the file, for which `n - 2` placeholder faces are
+/// added.
 struct Forward {
     line: usize,
     first_face: usize,
@@ -75,7 +75,7 @@ struct ObjReader<'a> {
     libraries: Vec<String>,
     skipped: Skipped,
     polypaint: Polypaint,
-    /// Error of the first face with too few corners, for a file without others.
+    /// Error about the first face with too few corners, in case the file has no others.
     first_thin: Option<ParseError>,
     /// Current polygon, its vertices and its triangles.
     polygon: Vec<Corner>,
@@ -170,8 +170,8 @@ impl<'a> ObjReader<'a> {
         if self.text.more() { self.vertex_extras() } else { Ok(()) }
     }
 
-    /// Reads the numbers after a position: `w`, `r g b`, `r g b a` or `w r g b`, told apart by
-    /// their count. Of four, the first is taken as red.
+    /// Reads the numbers after a position: `w`, `r g b`, `r g b a` or `w r g b`, distinguished by
+    /// their count. The first of four is taken as red.
     fn vertex_extras(&mut self) -> Result<(), ParseError> {
         let mut extras = [0.0; 4];
         let mut count = 0;
@@ -293,8 +293,8 @@ impl<'a> ObjReader<'a> {
         self.index(what, count).map(Some)
     }
 
-    /// Reads an index counted from 1 or, if negative, back from the last of `count` elements so
-    /// far.
+    /// Reads an index counted from 1 or, if negative, back from the last of the `count` preceding
+    /// elements.
     #[inline]
     fn index(&mut self, what: &str, count: usize) -> Result<NonZeroU32, ParseError> {
         let written = self.text.integer("an index is missing")?;

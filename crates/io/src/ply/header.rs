@@ -130,7 +130,7 @@ struct Draft {
     remarks: Vec<String>,
     textures: Vec<String>,
     unknown: Vec<String>,
-    /// Names of the elements so far.
+    /// Names of the preceding elements.
     element_names: HashSet<String>,
     /// Names of the properties of the last element.
     property_names: HashSet<String>,
@@ -154,7 +154,7 @@ impl Draft {
         }
     }
 
-    /// Keeps a comment, or the name of the texture that it announces.
+    /// Keeps a comment, or the texture name in it.
     fn add_remark(&mut self, line: &str) {
         let line = line.trim();
         let name = line.strip_prefix("comment").map(str::trim_start);

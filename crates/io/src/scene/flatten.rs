@@ -62,11 +62,11 @@ impl Scene {
     /// Merges all meshes that the scene shows into a single mesh in world space.
     ///
     /// Normals are transformed by the inverse transpose and stay unit vectors; a mirroring node
-    /// flips winding and tangents. The layers are the union over all meshes: where a mesh lacks one,
-    /// colours are white, normals those of the faces around, tangents unit vectors, and other
-    /// values 0. Material label `i` is `Scene::materials[i]`; faces without a material share one more
-    /// label, named "". Objects are taken from the mesh, or else each node becomes one; a single node
-    /// without a name gives no objects.
+    /// flips winding and tangents. The layers are the union over all meshes: where a mesh lacks
+    /// one, colours are white, normals come from the adjacent faces, tangents are unit vectors, and
+    /// other values 0. Material label `i` is `Scene::materials[i]`; faces without a material share
+    /// one more label, named "". Objects are taken from the mesh, or else each node becomes one; a
+    /// single node without a name gives no objects.
     ///
     /// Cost: linear in the size of the result.
     pub fn flatten(&self) -> Mesh {
@@ -91,7 +91,7 @@ impl Scene {
         flat
     }
 
-    /// Flattens the scene as [`Scene::flatten`] does, without copying a single untransformed mesh.
+    /// Flattens the scene like [`Scene::flatten`], without copying a single untransformed mesh.
     pub fn into_mesh(mut self) -> Mesh {
         let Some(only) = self.only_mesh() else { return self.flatten() };
         let instances = self.instances();
@@ -113,7 +113,8 @@ impl Scene {
         }
     }
 
-    /// Returns the material labels that [`Scene::flatten`] gives the faces of [`Scene::shown_mesh`].
+    /// Returns the material labels that [`Scene::flatten`] gives the faces of
+    /// [`Scene::shown_mesh`].
     pub(crate) fn shown_materials(&self) -> Option<Labels> {
         self.flat_materials(&self.instances())
     }
@@ -222,8 +223,8 @@ impl Scene {
     }
 }
 
-/// Moves a mesh by a column-major 4×4 matrix, as [`Scene::flatten`] moves it: normals and tangents
-/// turn with it, and a mirroring matrix turns its faces over.
+/// Transforms a mesh by a column-major 4×4 matrix, with its normals and tangents; a mirroring
+/// matrix flips the winding.
 ///
 /// Cost: linear.
 pub fn transform(mesh: &mut Mesh, transform: &[[f64; 4]; 4]) {

@@ -13,7 +13,7 @@ pub struct ImageHeader {
 }
 
 impl Image {
-    /// Reads the header of the image and nothing else; `None` if it is of no common type.
+    /// Reads only the header of the image; `None` if its type is unknown.
     pub fn header(&self) -> Option<ImageHeader> {
         let bytes = &self.bytes[..];
         let format = image_type(&self.name, bytes)?;
@@ -32,7 +32,7 @@ impl Image {
     }
 }
 
-/// Types that files begin with, as the first bytes and the name.
+/// Magic bytes of image types.
 const BEGINNINGS: [(&[u8], &str); 18] = [
     (b"\x89PNG", "PNG"),
     (b"\xff\xd8\xff", "JPEG"),
@@ -54,9 +54,9 @@ const BEGINNINGS: [(&[u8], &str); 18] = [
     (b"Pf", "PFM"),
 ];
 
-/// Returns the name of the type of an image; `None` if it is of no common type.
+/// Returns the name of the type of an image; `None` if it is unknown.
 ///
-/// TGA files have no beginning of their own: the name must say so, and the header be possible.
+/// TGA files have no magic bytes: they need the suffix and a plausible header.
 fn image_type(name: &str, bytes: &[u8]) -> Option<&'static str> {
     if let Some((_, kind)) = BEGINNINGS.iter().find(|(start, _)| bytes.starts_with(start)) {
         return Some(kind);
@@ -78,7 +78,7 @@ pub(crate) fn is_image(name: &str, bytes: &[u8]) -> bool {
     image_type(name, bytes).is_some()
 }
 
-/// Returns the MIME type of an image, if glTF or one of its extensions has the type.
+/// Returns the MIME type of an image, if glTF or one of its extensions supports it.
 pub(crate) fn mime_type(bytes: &[u8]) -> Option<&'static str> {
     match image_type("", bytes)? {
         "PNG" => Some("image/png"),
@@ -89,13 +89,13 @@ pub(crate) fn mime_type(bytes: &[u8]) -> Option<&'static str> {
     }
 }
 
-/// Reports whether a new glTF document can hold an encoded image: a PNG, a JPEG or, by an extension,
-/// a WebP.
+/// Reports whether a new glTF document can hold an encoded image: a PNG, a JPEG or, by an
+/// extension, a WebP.
 pub(crate) fn holds_image(bytes: &[u8]) -> bool {
     matches!(mime_type(bytes), Some("image/png" | "image/jpeg" | "image/webp"))
 }
 
-/// Reports whether an image is a PNG or JPEG with colours, which a map of heights has not.
+/// Reports whether an image is a PNG or JPEG with colours, unlike a height map.
 pub(crate) fn has_colors(bytes: &[u8]) -> bool {
     match image_type("", bytes) {
         // The colour type is in the header, behind width, height and depth.
@@ -105,7 +105,7 @@ pub(crate) fn has_colors(bytes: &[u8]) -> bool {
     }
 }
 
-/// Finds the frame header of a JPEG, behind segments of any kind.
+/// Finds the frame header of a JPEG after any other segments.
 fn jpeg_frame(bytes: &[u8]) -> Option<&[u8]> {
     let mut at = 2;
     while let Some(&[0xff, marker]) = bytes.get(at..at + 2) {

@@ -1,4 +1,4 @@
-//! Joints and their weights as glTF wants them: of each vertex, the weights sum to 1.
+//! Joints and their weights; in glTF, the weights of a vertex sum to 1.
 
 use meshlod_mesh::{Layer, LayerKind, WedgeId};
 
@@ -9,21 +9,21 @@ use crate::notes::Note;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Weights {
     Floats,
-    /// Multiples of 1/255, of which there are 255 at a vertex.
+    /// Multiples of 1/255 that sum to 1.
     Bytes,
 }
 
-/// Difference of a sum of 32-bit weights from 1 that is their rounding.
+/// Largest rounding error of a sum of 32-bit weights.
 const ROUNDING: f64 = 1e-7;
 
-/// Difference of a sum from 1 that is rounding of weights that are bytes.
+/// Largest rounding error of a sum of byte weights.
 const ROUNDING_OF_BYTES: f64 = 1e-2;
 
 /// Components of joints and weights.
 const WIDTH: usize = 4;
 
-/// Notes how many vertices of a scene have joint weights that do not sum to 1. Renderers differ in
-/// what they make of them, so meshes that do not change keep them; see [`normalize`].
+/// Notes the number of vertices whose joint weights do not sum to 1. Renderers differ in their
+/// treatment, so unchanged meshes keep them; see [`normalize`].
 ///
 /// Cost: linear in the weights.
 pub(crate) fn note_sums(scene: &mut Scene) {
@@ -48,8 +48,8 @@ pub(crate) fn note_sums(scene: &mut Scene) {
     }
 }
 
-/// Scales the weights of each vertex, over all its sets, to the sum 1, and makes joints without
-/// weight 0. Vertices without any positive weight keep what they have.
+/// Scales the weights of each vertex, over all its sets, to the sum 1, and sets joints without
+/// weight to 0. Vertices without positive weights stay unchanged.
 ///
 /// `values` has the values of each layer, of these kinds, at all vertices.
 pub(crate) fn normalize(kinds: &[LayerKind], values: &mut [Vec<f32>], how: Weights) {
@@ -82,7 +82,7 @@ pub(crate) fn normalize(kinds: &[LayerKind], values: &mut [Vec<f32>], how: Weigh
     }
 }
 
-/// Pairs each layer of weights with that of its joints, if there is one.
+/// Pairs each layer of weights with its layer of joints, if any.
 fn sets(kinds: &[LayerKind]) -> Vec<(usize, Option<usize>)> {
     let find = |kind| kinds.iter().position(|&other| other == kind);
     let set = |(at, &kind)| match kind {
@@ -92,7 +92,7 @@ fn sets(kinds: &[LayerKind]) -> Vec<(usize, Option<usize>)> {
     kinds.iter().enumerate().filter_map(set).collect()
 }
 
-/// Rounds weights to multiples of 1/255 that sum to 1: down, and then up those that lost most.
+/// Rounds weights to multiples of 1/255 that sum to 1, by the largest remainder method.
 fn share_bytes(weights: &mut [f64], sum: f64) {
     let exact: Vec<f64> = weights.iter().map(|weight| weight / sum * 255.0).collect();
     let mut bytes: Vec<f64> = exact.iter().map(|x| x.floor()).collect();

@@ -11,17 +11,17 @@ pub struct Material {
     pub name: String,
     /// Base colour of the material, linear RGBA.
     pub base_color: [f32; 4],
-    /// Texture that multiplies the base colour, by index into [`Scene::images`](crate::Scene::images).
+    /// Texture that multiplies the base colour, by index into
+    /// [`Scene::images`](crate::Scene::images).
     pub base_color_image: Option<usize>,
-    /// False if faces of this material are seen from the front only, where their corners run
-    /// counterclockwise. Only glTF has such materials.
+    /// False if faces are visible only from the front, where their corners run counterclockwise.
+    /// Only glTF has such materials.
     pub is_double_sided: bool,
     /// How the surface reflects and emits light.
     pub shading: Shading,
     /// Lines that define the material in an MTL library, all but `newmtl`; empty for other formats.
     ///
-    /// They are written to MTL as they are, except those that say something else than the fields
-    /// above.
+    /// They are written to MTL unchanged, except lines that contradict the fields above.
     pub mtl: Vec<MtlStatement>,
 }
 
@@ -100,7 +100,7 @@ impl Default for Shading {
 }
 
 impl Material {
-    /// Returns the images that the material uses, some maybe more than once.
+    /// Returns the images of the material, possibly with duplicates.
     pub fn images(&self) -> impl Iterator<Item = usize> {
         let Shading { metallic_image, roughness_image, normal_image, .. } = self.shading;
         let Shading { emission_image, opacity_image, .. } = self.shading;
@@ -118,8 +118,7 @@ impl Material {
 }
 
 impl Shading {
-    /// Returns the one image that holds the metalness and the roughness, if there is one: glTF has
-    /// no place for two.
+    /// Returns the image that holds both metalness and roughness, if any: glTF cannot store two.
     pub(crate) fn metallic_roughness_image(&self) -> Option<usize> {
         match (self.metallic_image, self.roughness_image) {
             (Some(a), Some(b)) => (a == b).then_some(a),

@@ -36,11 +36,11 @@ pub struct Scene {
     pub source: Option<SourceDocument>,
     /// Comments and types of a PLY file that the scene was read from, for writing it as PLY again.
     pub ply: PlyExtras,
-    /// True if the format that the scene was read from has one set of attributes for each vertex, so
-    /// that vertices are split at seams there. glTF has too.
+    /// True if the source format has one set of attributes per vertex, so that its vertices are
+    /// split at seams; not set for glTF, where that is known.
     pub has_split_seams: bool,
-    /// True if the scene was read from a text STL file of several solids: as STL it is written as text
-    /// again, since binary files have no names.
+    /// True if the scene was read from a text STL file of several solids; it is written to STL as
+    /// text again, since binary files have no names.
     pub has_solids: bool,
     /// Notes on what the reader left out or changed; writers ignore them.
     pub notes: Vec<Note>,
@@ -70,7 +70,7 @@ pub struct Node {
     /// Mesh that the node shows, by index into [`Scene::meshes`]; `None` if it has no mesh.
     pub mesh: Option<usize>,
     /// Transforms of the copies of the mesh that the node shows, column-major 4×4 matrices from the
-    /// mesh's space to this node's; empty if it shows the mesh once, where it is.
+    /// mesh's space to this node's; empty if it shows the mesh once, at its own place.
     pub instances: Vec<[[f64; 4]; 4]>,
     /// Child nodes, by index into [`Scene::nodes`].
     pub children: Vec<usize>,

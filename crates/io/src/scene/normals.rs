@@ -1,4 +1,4 @@
-//! Normals made unit as files are read: errors at normals, and pictures, count on their length.
+//! Normalization of normals on reading: error bounds and rendering rely on unit length.
 
 use glam::DVec3;
 use meshlod_mesh::{Layer, LayerKind, Mesh, WedgeId};
@@ -6,16 +6,16 @@ use meshlod_mesh::{Layer, LayerKind, Mesh, WedgeId};
 use super::Scene;
 use crate::notes::Note;
 
-/// Difference from length 1 that is rounding.
+/// Largest deviation from length 1 that counts as rounding.
 const ROUNDING: f64 = 1e-3;
 
-/// Difference from length 1 that is rounding of normals whose components are bytes.
+/// Largest deviation from length 1 that counts as rounding of byte components.
 const ROUNDING_OF_BYTES: f64 = 2e-2;
 
-/// Scales all normals in use to unit length. Those without a length get the mean normal of the
-/// faces around them. Notes how many there were of each.
+/// Scales all normals in use to unit length. Zero normals become the mean normal of the adjacent
+/// faces. Notes the number of both.
 ///
-/// Cost: linear; one pass over normals that are unit already.
+/// Cost: linear; a single pass if all normals are unit.
 pub(crate) fn make_unit(scene: &mut Scene) {
     let quantized = scene.source.as_ref().is_some_and(|source| source.is_quantized());
     let rounding = if quantized { ROUNDING_OF_BYTES } else { ROUNDING };
@@ -58,8 +58,8 @@ struct Counts {
     computed: usize,
 }
 
-/// Makes the normals of a mesh unit and counts them. Those of faces whose material label is marked
-/// in `bare` are not from the file, and do not count.
+/// Normalizes the normals of a mesh and counts the changes, except for faces whose material label
+/// is marked in `bare`, whose normals are not from the file.
 fn make_mesh_unit(mesh: &mut Mesh, rounding: f64, bare: &[bool]) -> Counts {
     let Some(mut attributes) = mesh.attributes.take() else { return Counts::default() };
     let mut counts = Counts::default();
@@ -91,7 +91,7 @@ fn make_mesh_unit(mesh: &mut Mesh, rounding: f64, bare: &[bool]) -> Counts {
     counts
 }
 
-/// Marks the wedges that faces use whose material label is not marked in `bare`.
+/// Marks the wedges of faces whose material label is not marked in `bare`.
 fn wedges_of_file(
     mesh: &Mesh,
     corners: &[[WedgeId; 3]],
@@ -108,8 +108,7 @@ fn wedges_of_file(
     marks
 }
 
-/// Gives those of these wedges that are in use the normals of the faces around them, and returns
-/// them.
+/// Sets the normals of these wedges from the adjacent faces; returns the wedges that are in use.
 fn put_face_normals(
     mesh: &Mesh,
     corners: &[[WedgeId; 3]],
@@ -123,8 +122,8 @@ fn put_face_normals(
     computed.collect()
 }
 
-/// Returns the mean normal of the faces at each of these wedges that is in use, weighted by area:
-/// if they have none, of all faces at its vertex, else any.
+/// Returns the area-weighted mean normal of the faces at each of these wedges that is in use; if it
+/// is zero, the mean over all faces at its vertex, else +z.
 fn face_normals(mesh: &Mesh, corners: &[[WedgeId; 3]], missing: &[usize]) -> Vec<(WedgeId, DVec3)> {
     let wedges = corners.as_flattened().iter().map(|w| w.index() + 1).max().unwrap_or(0);
     let mut at_vertex = vec![DVec3::ZERO; mesh.positions.len()];

@@ -1,5 +1,5 @@
-//! Simple Model Format (SMF) of QSlim: vertices and faces as in OBJ, properties of either, and
-//! nested scopes with transformations.
+//! Simple Model Format (SMF) of QSlim: vertices and faces as in OBJ, their properties, and nested
+//! scopes with transformations.
 
 mod read;
 mod scope;

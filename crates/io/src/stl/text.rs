@@ -12,8 +12,8 @@ use crate::precision::Precision;
 use crate::scene::Scene;
 use crate::text::line_writer::LineWriter;
 
-/// Reads all solids as one mesh: several become objects, one gives the mesh its name. Those without
-/// facets are noted.
+/// Reads all solids as one mesh: several become objects, a single one names the mesh. Solids
+/// without facets are noted.
 pub(super) fn read(bytes: &[u8]) -> Result<Scene, ParseError> {
     let mut words = Words { rest: bytes, line: 1 };
     let mut welder = Welder::with_facets(0);

@@ -13,7 +13,7 @@ pub(crate) struct TextCursor<'a> {
     bytes: &'a [u8],
     at: usize,
     line: usize,
-    /// Attribute values that are not finite, so far.
+    /// Number of attribute values read that are not finite.
     not_finite: usize,
 }
 
@@ -52,7 +52,7 @@ impl<'a> TextCursor<'a> {
         ParseError::line(self.line, reason)
     }
 
-    /// Creates an error at the current line: the word at the cursor is not `what`.
+    /// Creates an error at the current line: expected `what` at the cursor.
     #[cold]
     pub(crate) fn refuse(&self, what: &str) -> ParseError {
         self.error(format!("{} is not {what}", quoted(self.here())))
@@ -99,7 +99,7 @@ impl<'a> TextCursor<'a> {
         text_of(rest[..end].trim_ascii())
     }
 
-    /// Returns the rest of the line, without its end and without minding backslashes.
+    /// Returns the rest of the line without its end; backslashes have no special meaning.
     pub(crate) fn raw_line(&mut self) -> &'a [u8] {
         let rest = &self.bytes[self.at..];
         let end = rest.iter().position(|&b| is_line_end(b)).unwrap_or(rest.len());
@@ -107,8 +107,7 @@ impl<'a> TextCursor<'a> {
         &rest[..end]
     }
 
-    /// Moves from the end of a line that [`TextCursor::raw_line`] gave to the next one; returns
-    /// false at the end of the text.
+    /// Moves to the next line after [`TextCursor::raw_line`]; returns false at the end of the text.
     pub(crate) fn after_raw_line(&mut self) -> bool {
         if self.at == self.bytes.len() {
             return false;
@@ -180,14 +179,14 @@ impl<'a> TextCursor<'a> {
         Ok(if rounded.is_finite() { rounded } else { self.zero() })
     }
 
-    /// Counts an attribute value that is not finite, and returns what it is taken for.
+    /// Counts an attribute value that is not finite, and returns its replacement.
     #[cold]
     fn zero(&mut self) -> f32 {
         self.not_finite += 1;
         0.0
     }
 
-    /// Returns the number of attribute values so far that are not finite, and were read as 0.
+    /// Returns the number of attribute values read as 0 because they are not finite.
     pub(crate) fn not_finite(&self) -> usize {
         self.not_finite
     }

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 
 use crate::precision::Width;
 
-/// The buffer is passed on to `out` when it exceeds this many bytes.
+/// Size in bytes above which the buffer is written to `out`.
 const PIECE: usize = 1 << 16;
 
 /// Writes lines of words separated by single spaces.

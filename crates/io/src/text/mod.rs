@@ -1,4 +1,4 @@
-//! Reading and writing of text: a cursor over words and numbers, and lines of them.
+//! Text formats: a cursor to read words and numbers, and a writer of lines.
 
 pub(crate) mod cursor;
 pub(crate) mod line_writer;

@@ -1,11 +1,11 @@
-//! Samplers of animations: when their keys are, what is between them, and which property they move.
+//! Samplers of animations: key times, interpolation and the animated property.
 
 use serde_json::Value;
 
 use crate::gltf::document::Document;
 use crate::gltf::document::accessor::Values;
 
-/// How values between two keys are found.
+/// Interpolation between two keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Interpolation {
     Linear,
@@ -25,7 +25,7 @@ pub(crate) enum AnimatedProperty {
 }
 
 impl AnimatedProperty {
-    /// Returns the property of this name; `None` for those of extensions.
+    /// Returns the property of this name; `None` for properties of extensions.
     pub(crate) fn named(path: &str) -> Option<Self> {
         match path {
             "translation" => Some(Self::Translation),
@@ -37,12 +37,12 @@ impl AnimatedProperty {
     }
 }
 
-/// Arrays of a sampler, with a time or more.
+/// Arrays of a sampler with at least one key.
 pub(crate) struct Sampler {
     pub(crate) interpolation: Interpolation,
-    /// Seconds, strictly rising.
+    /// Key times in seconds, strictly increasing.
     pub(crate) times: Vec<f32>,
-    /// Values at these times; not yet known to be as many.
+    /// Values at these times; their number is unchecked.
     pub(crate) output: Values,
 }
 
@@ -50,8 +50,7 @@ impl Sampler {
     /// Reads a sampler of an animation.
     ///
     /// # Errors
-    /// What is wrong with it: an unknown interpolation, accessors that are missing, times that do not
-    /// rise.
+    /// An unknown interpolation, missing accessors, or times that do not increase.
     pub(crate) fn read(document: &Document<'_>, sampler: &Value) -> Result<Self, String> {
         let interpolation = match sampler.get("interpolation").map(Value::as_str) {
             None | Some(Some("LINEAR")) => Interpolation::Linear,

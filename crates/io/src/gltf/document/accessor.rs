@@ -15,7 +15,7 @@ struct PackedElements<'a> {
     bytes: Cow<'a, [u8]>,
 }
 
-/// Elements of an accessor as floats, normalised if the accessor says so.
+/// Elements of an accessor as floats, normalised if the accessor is.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Values {
     /// Components per element.
@@ -44,15 +44,15 @@ impl Document<'_> {
         }
     }
 
-    /// Reads an accessor of any type as floats, which need not be finite.
+    /// Reads an accessor of any type as floats, finite or not.
     pub fn stored_floats(&self, index: usize) -> Result<Values, ParseError> {
         let PackedElements { accessor, width, bytes } = self.packed(index)?;
         let values = numbers(&bytes, accessor.component_type, accessor.normalized);
         Ok(Values { width, values })
     }
 
-    /// Reads an accessor of any type as the numbers that are stored, with the number of
-    /// components of an element.
+    /// Reads the stored numbers of an accessor of any type, and the number of components per
+    /// element.
     pub fn stored_numbers(&self, index: usize) -> Result<(usize, Vec<f32>), ParseError> {
         let PackedElements { accessor, width, bytes } = self.packed(index)?;
         Ok((width, numbers(&bytes, accessor.component_type, false)))
@@ -207,8 +207,8 @@ fn numbers(bytes: &[u8], kind: u32, normalized: bool) -> Vec<f32> {
     }
 }
 
-/// Maps components to floats. `clamped` is for normalised signed integers, whose least value would
-/// come out slightly below -1.
+/// Maps components to floats. `clamped` is for normalised signed integers, whose minimum is
+/// slightly below -1.
 fn map<const N: usize>(bytes: &[u8], number: impl Fn([u8; N]) -> f32, clamped: bool) -> Vec<f32> {
     let (components, _) = bytes.as_chunks::<N>();
     if clamped {

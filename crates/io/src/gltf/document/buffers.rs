@@ -57,12 +57,12 @@ pub(crate) fn load(
     Ok(Buffers::new(bytes))
 }
 
-/// Reports whether a buffer is only a fallback, the target that compressed views decode to.
+/// Reports whether a buffer is only a fallback, into which compressed views are decoded.
 pub(crate) fn is_fallback(buffer: &Value) -> bool {
     MESHOPT.iter().any(|name| buffer["extensions"][*name]["fallback"] == true)
 }
 
-/// Reports whether a compressed view has a buffer as its target.
+/// Reports whether a compressed view is decoded into a buffer.
 pub(crate) fn is_decompression_target(json: &Value, buffer: usize) -> bool {
     let views = json.get("bufferViews").and_then(Value::as_array);
     let mut of_buffer = views.into_iter().flatten().filter(|view| view["buffer"] == buffer);

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-/// Iterates over an array of a document; over nothing if it is absent.
+/// Iterates over an array of a document; empty if absent.
 pub(crate) fn entries<'a>(json: &'a Value, key: &str) -> impl Iterator<Item = &'a Value> {
     json.get(key).and_then(Value::as_array).into_iter().flatten()
 }

@@ -1,4 +1,4 @@
-//! Extensions of glTF: their names, the ones that the reader supports, and the lists of those in use.
+//! Extensions of glTF: their names, the supported ones, and the lists in a document.
 
 use serde_json::{Value, json};
 
@@ -6,13 +6,13 @@ use super::entries::extend;
 use super::schema;
 use crate::error::ParseError;
 
-/// Supported extensions; the second adds a version and a filter to the first.
+/// Extensions for meshopt streams; the second adds a version and a filter to the first.
 pub(crate) const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 
-/// Name of the extension.
+/// Extension for primitives compressed by Draco.
 pub(crate) const DRACO: &str = "KHR_draco_mesh_compression";
 
-/// Extension that shows the mesh of a node several times.
+/// Extension for several instances of a node's mesh.
 pub(crate) const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 
 /// Extension that links a node to its coarser levels.
@@ -81,7 +81,7 @@ pub(crate) fn compressed(part: &str, extension: &str) -> ParseError {
     ParseError::part(part, reason)
 }
 
-/// Removes an extension of an object, and its `extensions` if that was the only one.
+/// Removes an extension from an object, and `extensions` if it becomes empty.
 pub(crate) fn drop_entry(of: &mut Value, name: &str) {
     let Some(of) = of.as_object_mut() else { return };
     if let Some(extensions) = of.get_mut("extensions").and_then(Value::as_object_mut) {
@@ -92,7 +92,7 @@ pub(crate) fn drop_entry(of: &mut Value, name: &str) {
     }
 }
 
-/// Removes extensions from the lists of those in use.
+/// Removes extensions from the lists of used and required ones.
 pub(crate) fn forget_names(json: &mut Value, extensions: &[&str]) {
     for key in ["extensionsUsed", "extensionsRequired"] {
         let Some(names) = json.get_mut(key).and_then(Value::as_array_mut) else { continue };

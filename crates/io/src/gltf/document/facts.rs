@@ -1,19 +1,19 @@
-//! Facts about a glTF file that its scene does not show: extensions, bytes by kind, animations.
+//! Facts about a glTF file beyond its scene: extensions, bytes by use, animations.
 
 use serde::Serialize;
 use serde_json::Value;
 
 use super::entries::entries;
 
-/// Extensions of a glTF file and its bytes by kind, as they are in the file.
+/// Extensions of a glTF file, and its bytes by use before decompression.
 ///
 /// Each buffer view counts once: as an image, else as animation if key frames use it, else as
-/// geometry. Images in files of their own are not counted.
+/// geometry. Images in separate files are not counted.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FileFacts {
-    /// Names of the extensions that the file uses.
+    /// Names of the used extensions.
     pub extensions_used: Vec<String>,
-    /// Names of the extensions without which the file cannot be read.
+    /// Names of the required extensions.
     pub extensions_required: Vec<String>,
     /// Bytes of meshes, skins and instances.
     pub geometry_bytes: u64,
@@ -28,14 +28,14 @@ pub struct FileFacts {
 pub struct AnimationFacts {
     /// Name of the animation; empty if it has none.
     pub name: String,
-    /// Number of channels, each of which moves one property of one node.
+    /// Number of channels; each animates one property of one node.
     pub channels: usize,
-    /// Time of the last key frame in seconds, as the file declares it; 0 if it does not.
+    /// Time of the last key frame in seconds, as declared in the file; 0 if it is not.
     pub seconds: f64,
 }
 
 impl FileFacts {
-    /// Collects the facts of a document as it is in the file. What is damaged counts as absent.
+    /// Collects the facts of a document before decompression. Damaged parts count as absent.
     pub(crate) fn of(json: &Value) -> Self {
         let names = |key: &str| {
             entries(json, key).filter_map(|name| name.as_str().map(str::to_owned)).collect()
@@ -63,7 +63,7 @@ impl FileFacts {
     }
 }
 
-/// Lists the animations of a document with their numbers of channels and their lengths.
+/// Lists the animations of a document with their numbers of channels and durations.
 pub(crate) fn animations(json: &Value) -> Vec<AnimationFacts> {
     let end = |sampler: &Value| {
         let input = sampler["input"].as_u64()? as usize;
@@ -82,13 +82,13 @@ pub(crate) fn joints(json: &Value) -> Vec<usize> {
     entries(json, "skins").map(|skin| entries(skin, "joints").count()).collect()
 }
 
-/// Returns the number of nodes that have a light.
+/// Returns the number of nodes with a light.
 pub(crate) fn lights(json: &Value) -> usize {
     let has_light = |node: &&Value| node.pointer("/extensions/KHR_lights_punctual/light").is_some();
     entries(json, "nodes").filter(has_light).count()
 }
 
-/// Lists the buffer views that key frames use.
+/// Lists the buffer views of key frames.
 fn animated_views(json: &Value) -> Vec<usize> {
     let samplers = entries(json, "animations").flat_map(|all| entries(all, "samplers"));
     let accessors = samplers.flat_map(|sampler| [&sampler["input"], &sampler["output"]]);

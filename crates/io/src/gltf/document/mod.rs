@@ -1,7 +1,8 @@
 //! Checked access to a glTF document: its JSON, buffers and accessors.
 //!
-//! Reading order: `container` splits the file, `extensions` checks what it requires, `buffers` loads
-//! its bytes, `schema` types its JSON. [`Document`] holds these; `accessor` reads arrays from it.
+//! Reading order: `container` splits the file, `extensions` checks what it requires, `buffers`
+//! loads its bytes, `schema` types its JSON. [`Document`] holds these; `accessor` reads arrays from
+//! it.
 
 pub(crate) mod accessor;
 pub(crate) mod buffers;
@@ -77,8 +78,8 @@ impl<'a> Document<'a> {
         Ok((view, &self.buffers[view.buffer][view.byte_offset..][..view.byte_length]))
     }
 
-    /// Counts `values` numbers about to be read towards a limit that grows with the file size, so
-    /// that a small file cannot exhaust memory.
+    /// Counts numbers about to be read against a limit that grows with the file size, so that a
+    /// small file cannot exhaust memory.
     pub fn spend(&self, part: &str, values: usize) -> Result<(), ParseError> {
         let left = self.budget.get().checked_sub(values as u64).ok_or_else(|| {
             let reason = format!("{values} values here are far more than the file has data for");

@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::schema;
 
-/// Reports whether a primitive consists of triangles, which are what is replaced.
+/// Reports whether a primitive consists of triangles.
 pub(crate) fn is_surface(primitive: &Value) -> bool {
     matches!(primitive.get("mode").and_then(Value::as_u64), None | Some(4..=6))
 }
@@ -17,7 +17,7 @@ pub(crate) fn attributes(primitive: &Value) -> BTreeMap<String, usize> {
     typed.ok().and_then(|primitive| primitive.accessors().ok()).into_iter().flatten().collect()
 }
 
-/// Collects the attributes that any of the primitives has.
+/// Collects the attributes of all primitives.
 pub(crate) fn known_attributes(primitives: &[Value]) -> BTreeSet<String> {
     primitives.iter().flat_map(attributes).map(|(name, _)| name).collect()
 }

@@ -1,4 +1,4 @@
-//! glTF document that a scene was read from.
+//! Source document of a scene read from glTF.
 
 use std::sync::Arc;
 
@@ -9,8 +9,8 @@ use super::facts;
 use super::facts::{AnimationFacts, FileFacts};
 use crate::options::Weld;
 
-/// glTF document that a scene was read from; when the scene is written, all but the geometry is
-/// copied from it.
+/// glTF document of a scene; when the scene is written, everything except the geometry is copied
+/// from it.
 ///
 /// Cloning is cheap.
 #[derive(Clone, Debug)]
@@ -22,19 +22,19 @@ impl SourceDocument {
         self.0.json.get(array).and_then(Value::as_array).map_or(0, Vec::len)
     }
 
-    /// Returns the greatest factor by which a material scales texture coordinates, by
-    /// `KHR_texture_transform`; at least 1.
+    /// Returns the largest scale of texture coordinates by `KHR_texture_transform` in any material;
+    /// at least 1.
     pub fn largest_texture_scale(&self) -> f64 {
         self.0.json.get("materials").map_or(1.0, largest_texture_scale)
     }
 
-    /// Reports whether the document may hold normals in bytes.
+    /// Reports whether the document may store normals as bytes.
     pub(crate) fn is_quantized(&self) -> bool {
         let used = self.0.json.get("extensionsUsed").and_then(Value::as_array);
         used.into_iter().flatten().any(|name| name == "KHR_mesh_quantization")
     }
 
-    /// Returns the extensions and the bytes of the file that the document was read from.
+    /// Returns the extensions and the sizes of the file.
     pub fn file_facts(&self) -> &FileFacts {
         &self.0.facts
     }
@@ -49,12 +49,12 @@ impl SourceDocument {
         facts::joints(&self.0.json)
     }
 
-    /// Returns the number of lights that nodes place.
+    /// Returns the number of nodes with a light.
     pub fn lights(&self) -> usize {
         facts::lights(&self.0.json)
     }
 
-    /// Reports for each primitive of a mesh whether it has no normals.
+    /// Returns for each primitive of a mesh whether it lacks normals.
     pub(crate) fn lacks_normals(&self, mesh: usize) -> Vec<bool> {
         let primitives = self.0.json["meshes"][mesh]["primitives"].as_array();
         let lacks = |primitive: &Value| primitive["attributes"].get("NORMAL").is_none();
@@ -62,15 +62,15 @@ impl SourceDocument {
     }
 }
 
-/// JSON and buffers of a document, and how its vertices were welded.
+/// JSON and buffers of a document, and the policy by which its vertices were welded.
 #[derive(Debug)]
 pub(crate) struct Contents {
     pub json: Value,
     pub buffers: Buffers,
     pub weld: Weld,
-    /// Marks the meshes whose geometry is in the scene only; empty if all are here.
+    /// Marks the meshes whose geometry is only in the scene; empty if the document has all.
     pub emptied: Vec<bool>,
-    /// Facts of the file before it was decompressed.
+    /// Facts of the file before decompression.
     pub facts: FileFacts,
 }
 

@@ -1,4 +1,4 @@
-//! Panics of other crates' decoders, which become errors of the file.
+//! Containment of panics in the decoders of other crates.
 
 use std::cell::Cell;
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
@@ -11,10 +11,10 @@ thread_local! {
 
 type PanicHook = Box<dyn Fn(&PanicHookInfo) + Sync + Send>;
 
-/// Runs code that is not ours and may panic on hostile bytes; returns `None` if it did.
+/// Runs foreign code that may panic on hostile bytes; returns `None` if it did.
 ///
-/// Nothing is printed then. The first call puts a hook before the one of the process, which is
-/// asked for all other panics: those of other threads, and of this one outside.
+/// Nothing is printed then. The first call installs a hook that forwards all panics outside of this
+/// function to the previous hook.
 pub(crate) fn contained<T>(work: impl FnOnce() -> T) -> Option<T> {
     static INSTALLED: Once = Once::new();
     INSTALLED.call_once(|| panic::set_hook(silent_inside(panic::take_hook())));
@@ -25,7 +25,7 @@ pub(crate) fn contained<T>(work: impl FnOnce() -> T) -> Option<T> {
     outcome.ok()
 }
 
-/// Returns a hook that asks `other` for panics outside of [`contained`] alone.
+/// Returns a hook that forwards only panics outside of [`contained`] to `other`.
 fn silent_inside(other: PanicHook) -> PanicHook {
     Box::new(move |info| {
         if !IS_CONTAINED.get() {

@@ -1,33 +1,33 @@
-//! Counts at the front of a Draco stream, checked before anything is decoded.
+//! Counts in the header of a Draco stream, checked before decoding.
 //!
-//! The decoder sizes tables by these counts, some of which no byte of the stream stands for: a
-//! stream of 100 bytes can name millions of faces and 255 tables of their corners.
+//! The decoder allocates tables by these counts, and a stream of 100 bytes can declare millions of
+//! faces and 255 corner tables.
 
 /// Reason for refusing a stream beyond its [`Ceiling`].
 pub(crate) const TOO_LARGE: &str =
     "decompresses to far more than the file has data for; export it without Draco";
 
-/// Largest numbers that a stream may decode to.
+/// Limits on the decoded size of a stream.
 pub(crate) struct Ceiling {
     pub faces: usize,
     /// Bytes of all arrays together.
     pub bytes: usize,
 }
 
-/// Oldest version of the bitstream that is decoded: the one that glTF names.
+/// Only supported version of the bitstream, the one that glTF requires.
 const VERSION: [u8; 2] = [2, 2];
 
-/// Bit of the flags that says that metadata follow the header.
+/// Flag for metadata after the header.
 const HAS_METADATA: u16 = 0x8000;
 
-/// Deepest nesting of metadata, which the decoder reads recursively.
+/// Limit on the nesting of metadata, which the decoder reads recursively.
 const MAX_DEPTH: usize = 16;
 
-/// Bytes of a face's corners in one table.
+/// Bytes per face in one corner table.
 const CORNERS: u64 = 12;
 
-/// Checks that the faces which a stream names, and a table of corners for each attribute with
-/// seams of its own, stay within a ceiling.
+/// Checks that the faces declared by a stream, and a corner table for each attribute with its own
+/// seams, stay within a ceiling.
 ///
 /// # Errors
 /// The reason, without the place.
@@ -52,7 +52,7 @@ pub(crate) fn check(stream: &[u8], ceiling: &Ceiling) -> Result<(), String> {
 
 struct StreamCounts {
     faces: u64,
-    /// Attributes with connectivity of their own.
+    /// Number of attributes with their own connectivity.
     tables: u64,
 }
 

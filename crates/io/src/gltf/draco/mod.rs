@@ -1,6 +1,6 @@
 //! Decompression of primitives compressed with `KHR_draco_mesh_compression`.
 //!
-//! It is done on reading: to the rest of the reader, the document was never compressed.
+//! The rest of the reader sees an uncompressed document.
 
 #[cfg(feature = "draco")]
 mod contained;
@@ -28,13 +28,13 @@ use unpack::unpack;
 /// Decompresses every compressed primitive into accessors of a new buffer and removes the extension
 /// from the document.
 ///
-/// A primitive that the file holds uncompressed, too, is read from there, as nothing is rounded in
-/// it. Strips become triangles. Accessors get the bounds of what was decoded. Returns a note on
-/// the primitives that were decoded.
+/// If the file also holds a primitive uncompressed, that copy is read, since it is not rounded.
+/// Strips become triangles, and accessors get the bounds of the decoded values. Returns a note on
+/// the decoded primitives.
 ///
 /// # Errors
-/// The primitive or accessor, and what is wrong with it or its stream. In builds without the
-/// feature `draco`, every primitive that is only there compressed.
+/// The primitive or accessor, and the reason. Without the feature `draco`, every primitive that has
+/// no uncompressed copy.
 /// # References
 /// [ZSG17]
 pub(crate) fn decompress(json: &mut Value, buffers: &mut Buffers) -> Result<Note, ParseError> {
@@ -54,7 +54,7 @@ pub(crate) fn decompress(json: &mut Value, buffers: &mut Buffers) -> Result<Note
     Ok(decoded(compressed.len()))
 }
 
-/// Notes that primitives come out of Draco and do not go back.
+/// Notes that primitives were decoded and will be written uncompressed.
 fn decoded(count: usize) -> Note {
     Note::changed(
         count,
@@ -64,7 +64,7 @@ fn decoded(count: usize) -> Note {
     .remedied("compress makes a small file")
 }
 
-/// Takes the extension out of all primitives that have it.
+/// Removes the extension from all primitives and returns it.
 fn take_extensions(json: &mut Value) -> Result<Vec<Compressed>, ParseError> {
     let mut taken = Vec::new();
     let meshes = json.get_mut("meshes").and_then(Value::as_array_mut);
@@ -86,7 +86,7 @@ fn take_extensions(json: &mut Value) -> Result<Vec<Compressed>, ParseError> {
     Ok(taken)
 }
 
-/// Reports whether all arrays of a primitive are in the file uncompressed, too.
+/// Reports whether the file also holds all arrays of a primitive uncompressed.
 fn has_fallback(primitive: &Value, accessors: &[Accessor]) -> bool {
     let has_view = |accessor: &Value| {
         let index = accessor.as_u64().map(|index| index as usize);
@@ -98,8 +98,7 @@ fn has_fallback(primitive: &Value, accessors: &[Accessor]) -> bool {
         && primitive.get("indices").is_some_and(has_view)
 }
 
-/// Leaves a few bytes of the streams that are not decoded, so that what is written does not carry
-/// them along.
+/// Shortens the streams that are not decoded to a few bytes, so that they are not written again.
 fn shorten_streams(json: &mut Value, plain: &[Compressed], compressed: &[Compressed]) {
     for Compressed { extension: Extension { buffer_view: view, .. }, .. } in plain {
         let is_decoded = compressed.iter().any(|other| other.extension.buffer_view == *view);
@@ -111,7 +110,7 @@ fn shorten_streams(json: &mut Value, plain: &[Compressed], compressed: &[Compres
     }
 }
 
-/// Refuses primitives that are only there compressed.
+/// Refuses primitives without an uncompressed copy.
 #[cfg(not(feature = "draco"))]
 fn unpack(
     _: &mut Value,

@@ -23,7 +23,7 @@ pub(crate) struct Extension {
     pub attributes: BTreeMap<String, u32>,
 }
 
-/// Numbers of a mesh and of a primitive of it.
+/// Indices of a mesh and of one of its primitives.
 #[derive(Clone, Copy)]
 pub(crate) struct Place(pub usize, pub usize);
 

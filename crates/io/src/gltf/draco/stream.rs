@@ -1,4 +1,4 @@
-//! Arrays of a Draco stream, in the types that glTF declares for them.
+//! Arrays of a Draco stream, in the types declared by glTF.
 
 use draco_core::{
     DataType, DecodeLimits, DecoderBuffer, ErrorKind, Mesh, MeshDecoder, PointAttribute, PointIndex,
@@ -10,7 +10,7 @@ use super::header::{Ceiling, TOO_LARGE};
 use crate::gltf::document::component;
 use crate::gltf::document::schema::Accessor;
 
-/// Decoded array, each element of which begins at a multiple of four bytes unless it is an index.
+/// Decoded array. Elements other than indices are aligned to four bytes.
 pub(crate) struct Array {
     /// Component type, by the number of the specification.
     pub component: u32,
@@ -23,7 +23,7 @@ pub(crate) struct Array {
 }
 
 impl Array {
-    /// Returns the least and the greatest value of every component.
+    /// Returns the minimum and maximum of each component.
     pub fn extent(&self) -> [Vec<f64>; 2] {
         let size = component::size(self.component).unwrap_or(4);
         let stride = self.stride.unwrap_or(self.width * size);
@@ -46,7 +46,7 @@ impl Decoded {
     /// Decodes a stream of triangles.
     ///
     /// # Errors
-    /// The reason, without the place: that of the decoder, or that it panicked.
+    /// The reason given by the decoder, or that it panicked, without the location.
     pub fn from_stream(stream: &[u8], ceiling: Ceiling) -> Result<Self, String> {
         header::check(stream, &ceiling)?;
         let limits = DecodeLimits::default()
@@ -87,14 +87,14 @@ impl Decoded {
         self.0.num_faces()
     }
 
-    /// Returns the number of bytes that the arrays of the stream take, of all attributes.
+    /// Returns the size of all arrays of the stream, in bytes.
     pub fn size(&self) -> usize {
         let attributes = (0..self.0.num_attributes()).map(|id| self.0.attribute(id));
         let of_point: usize = attributes.map(element_size).sum();
         12 * self.faces() + of_point * self.points()
     }
 
-    /// Returns the corners of all faces, in two bytes each if those suffice.
+    /// Returns the corners of all faces, in two bytes each if possible.
     pub fn indices(&self) -> Array {
         let corners = self.0.faces().as_flattened().iter().map(|point| point.0);
         // The greatest index of a type restarts primitives.
@@ -109,7 +109,7 @@ impl Decoded {
     /// Returns the values of an attribute at all points, in the type of an accessor.
     ///
     /// # Errors
-    /// Lack of the attribute, as the end of a sentence that begins with its name.
+    /// The problem, as the end of a sentence that begins with the name of the attribute.
     pub fn attribute(&self, id: u32, accessor: &Accessor) -> Result<Array, String> {
         let Some(attribute) = self.0.attribute_by_unique_id(id) else {
             return Err(format!("is not in its Draco stream, which has no attribute {id}"));
@@ -154,7 +154,7 @@ fn value_at(attribute: &PointAttribute, point: u32) -> Option<&[u8]> {
     attribute.buffer().data().get(start..start.checked_add(size)?)
 }
 
-/// Appends the components of a value in another type than the stream has them in.
+/// Appends the components of a value, converted to another type.
 fn convert(
     attribute: &PointAttribute,
     value: &[u8],
@@ -187,7 +187,7 @@ fn convert(
     Ok(())
 }
 
-/// Returns the glTF component type that is the same as a type of Draco.
+/// Returns the glTF component type equal to a type of Draco.
 fn component_of(data: DataType) -> Option<u32> {
     Some(match data {
         DataType::Int8 => component::I8,
@@ -226,7 +226,7 @@ fn first<const N: usize>(bytes: &[u8]) -> [u8; N] {
     std::array::from_fn(|k| bytes[k])
 }
 
-/// Returns the value that a normalised integer type stands for 1 with.
+/// Returns the value that represents 1 in a normalised integer type.
 fn greatest(data: DataType) -> f64 {
     match data {
         DataType::Int8 => 127.0,

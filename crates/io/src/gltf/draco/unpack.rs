@@ -1,4 +1,4 @@
-//! Accessors filled with what Draco streams decode to.
+//! Accessors filled with the decoded arrays of Draco streams.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use serde_json::{Map, Value};
@@ -12,8 +12,8 @@ use crate::gltf::document::extensions::DRACO;
 use crate::gltf::document::schema::{Accessor, BufferView};
 use crate::gltf::document::{missing, schema};
 
-/// Bytes that any file may decompress to. A regular terrain takes a bit a face or less, so the
-/// size of its file says little; at the limit the decoder was seen to hold 720 MiB in all.
+/// Decompressed bytes allowed for any file. A regular terrain takes a bit per face or less, so the
+/// file size is no measure; at this limit the decoder used 720 MiB.
 const LEAST_ROOM: usize = 1 << 28;
 
 /// Largest ratio of decompressed to stored bytes of a file, beyond those.
@@ -22,7 +22,7 @@ const MAX_EXPANSION: usize = 64;
 /// Decodes the streams of primitives into a new buffer and points their accessors there.
 ///
 /// # Errors
-/// The primitive, accessor or buffer view, and what is wrong with it.
+/// The primitive, accessor or buffer view, and the reason.
 pub(crate) fn unpack(
     json: &mut Value,
     buffers: &mut Buffers,
@@ -56,8 +56,8 @@ pub(crate) fn unpack(
     Ok(())
 }
 
-/// Source of the data of an accessor: a stream's buffer view, and the id of an attribute in it or,
-/// for indices, none.
+/// Source of an accessor's data: the buffer view of a stream, and the id of an attribute; `None`
+/// for indices.
 type Source = (usize, Option<u32>);
 
 /// Decompression under way.
@@ -67,11 +67,11 @@ struct Unpacker<'a> {
     views: Vec<BufferView>,
     accessors: Vec<Accessor>,
     filled: FxHashMap<usize, Source>,
-    /// Buffer views of streams that are views of decompressed arrays now.
+    /// Buffer views of streams that now hold decompressed arrays.
     taken: FxHashSet<usize>,
     /// Decompressed arrays.
     bytes: Vec<u8>,
-    /// Number of bytes that may still be decompressed.
+    /// Remaining decompressed bytes allowed.
     room: usize,
 }
 
@@ -118,7 +118,7 @@ impl Unpacker<'_> {
         Ok(())
     }
 
-    /// Fills the accessors of a primitive with what its stream decoded to.
+    /// Fills the accessors of a primitive with its decoded stream.
     fn unpack(
         &mut self,
         json: &mut Value,
@@ -171,8 +171,8 @@ impl Unpacker<'_> {
         self.accessors.get(index).ok_or_else(|| missing("accessor", index, self.accessors.len()))
     }
 
-    /// Gives an accessor, or a copy of it if it has other contents already, the contents `array`
-    /// and returns its index.
+    /// Fills an accessor, or a copy of it if it was filled from another source, and returns its
+    /// index.
     fn fill(
         &mut self,
         json: &mut Value,
@@ -211,7 +211,7 @@ impl Unpacker<'_> {
         Ok(accessor)
     }
 
-    /// Adds a view of an array; the first one takes the place of the view of its stream.
+    /// Adds a view of an array; the first one replaces the view of its stream.
     fn add_view(&mut self, json: &mut Value, stream: usize, array: &Array) -> usize {
         self.bytes.resize(self.bytes.len().next_multiple_of(8), 0);
         let mut view = Map::new();

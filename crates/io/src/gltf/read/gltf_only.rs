@@ -1,4 +1,4 @@
-//! Parts of a glTF document that neither a scene's fields nor other formats have a place for.
+//! Parts of a glTF document that neither a scene's fields nor other formats can hold.
 
 use serde_json::Value;
 
@@ -9,14 +9,14 @@ use crate::gltf::document::source::SourceDocument;
 use crate::notes::Note;
 
 impl SourceDocument {
-    /// Lists what the document holds beside all that a scene's fields and notes account for.
+    /// Notes the parts of the document that are in no field of the scene.
     pub(crate) fn unheld_parts(&self) -> Vec<Note> {
         unheld_parts(&self.0.json)
     }
 }
 
-/// Lists what a document holds beside surfaces, nodes, materials, skins, animations, cameras and
-/// lights: files of other formats lack it.
+/// Notes the parts of a document other than surfaces, nodes, materials, skins, animations, cameras
+/// and lights, which files of other formats lack.
 pub(crate) fn unheld_parts(json: &Value) -> Vec<Note> {
     let curves = points_and_lines(json);
     let scenes = entries(json, "scenes").count().saturating_sub(1);
@@ -47,7 +47,7 @@ fn points_and_lines(json: &Value) -> Vec<String> {
     entries(json, "meshes").enumerate().flat_map(of_mesh).collect()
 }
 
-/// Lists the extensions that the scene, or a note of its own kind, does not account for.
+/// Lists the extensions that are neither in the scene nor noted otherwise.
 fn extensions(json: &Value) -> Vec<String> {
     const ELSEWHERE: [&str; 6] =
         ["KHR_mesh_quantization", "KHR_lights_punctual", INSTANCING, MESHOPT[0], MESHOPT[1], DRACO];
@@ -80,7 +80,7 @@ fn places_of_extras(json: &Value) -> Vec<String> {
 }
 
 /// Reports whether there are extras at any depth, which the JSON parser bounds. Names of morph
-/// targets do not count: they go with the targets, which are noted.
+/// targets do not count, since the targets are noted.
 fn has_extras(value: &Value) -> bool {
     match value {
         Value::Array(values) => values.iter().any(has_extras),

@@ -7,9 +7,9 @@ use crate::options::Resolve;
 use crate::scene::Image;
 use crate::scene::image_file::mime_type;
 
-/// Reads the images, still encoded. An image whose file is missing gets no bytes, which costs the
-/// pictures something but not the geometry. A file that is not an image gets none either: a
-/// document from elsewhere must not make the writer copy arbitrary files from this machine.
+/// Reads the images without decoding them. An image whose file is missing gets no bytes. A file
+/// that is not an image gets none either, so that a document cannot make the writer copy arbitrary
+/// files from this machine.
 pub(crate) fn read_images(
     document: &Document<'_>,
     resolve: Resolve<'_>,
@@ -37,7 +37,7 @@ pub(crate) fn read_images(
     images.into_iter().enumerate().map(&mut read).collect()
 }
 
-/// Makes a file name for an embedded image, as other formats write images to files.
+/// Makes a file name for an embedded image, for formats that write images to files.
 fn file_name(name: Option<String>, index: usize, bytes: &[u8]) -> String {
     let name = name.filter(|name| !name.is_empty()).unwrap_or_else(|| format!("image{index}"));
     // The name is no path, and some systems refuse these characters in one.

@@ -7,11 +7,11 @@ use crate::error::ParseError;
 use crate::gltf::document::Document;
 use crate::gltf::document::extensions::INSTANCING;
 
-/// Reads the transforms by which a node shows its mesh, from the mesh's space to the node's; none
-/// if it does not use the extension or gives it no attributes.
+/// Reads the instance transforms of a node, from the space of the mesh to the node's; empty without
+/// the extension or its attributes.
 ///
-/// Attributes other than `TRANSLATION`, `ROTATION` and `SCALE`, which have a meaning to one program
-/// only, are carried through like the rest of the document.
+/// Attributes other than `TRANSLATION`, `ROTATION` and `SCALE` are specific to a program, and kept
+/// like the rest of the document.
 ///
 /// # Errors
 /// Attributes of the wrong type, of different lengths or without entries; rotations that are not

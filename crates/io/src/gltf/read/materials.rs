@@ -13,13 +13,13 @@ use crate::gltf::document::{missing, schema, uri};
 use crate::scene::material::{Material, Shading};
 
 impl SourceDocument {
-    /// Lists the materials that have properties which [`Material`](crate::Material) lacks, by name or
-    /// as `material 3`.
+    /// Lists the materials with properties that [`Material`](crate::Material) lacks, by name or as
+    /// `material 3`.
     pub(crate) fn richer_materials(&self) -> Vec<String> {
         richer_materials(&self.0.json)
     }
 
-    /// Lists the images that only extensions of textures name, which scenes lack.
+    /// Lists the images that only texture extensions refer to, which scenes lack.
     pub(crate) fn extension_images(&self) -> Vec<String> {
         extension_images(&self.0.json)
     }
@@ -86,8 +86,7 @@ fn shading(
     })
 }
 
-/// Lists the materials of a document that have more than [`materials`] reads, by name or as
-/// `material 3`.
+/// Lists the materials with properties that [`materials`] ignores, by name or as `material 3`.
 pub(crate) fn richer_materials(json: &Value) -> Vec<String> {
     let materials = json.get("materials").and_then(Value::as_array);
     let is_richer = |own: &Value| is_richer(own) || has_other_image(json, own);
@@ -139,8 +138,8 @@ fn is_richer(material: &Value) -> bool {
         || textures.into_iter().flatten().any(is_moved)
 }
 
-/// Returns the set of texture coordinates that the base colour of each material uses; 0 if it has no
-/// texture.
+/// Returns the set of texture coordinates that the base colour of each material uses; 0 if it has
+/// no texture.
 pub(crate) fn texture_sets(json: &Value) -> Vec<u8> {
     let materials = json.get("materials").and_then(Value::as_array).into_iter().flatten();
     materials.map(|material| u8::try_from(texture_set(material)).unwrap_or(0)).collect()
@@ -154,8 +153,8 @@ fn set_of(texture: &Value) -> u64 {
     texture["texCoord"].as_u64().unwrap_or(0)
 }
 
-/// Lists the images of textures that only an extension names, and one that [`materials`] does not
-/// read, by name or as `image 3`.
+/// Lists the images that only extensions unknown to [`materials`] refer to, by name or as `image
+/// 3`.
 pub(crate) fn extension_images(json: &Value) -> Vec<String> {
     let textures = json.get("textures").and_then(Value::as_array).into_iter().flatten();
     let sources = textures.filter(|texture| is_extended(texture)).flat_map(|texture| {
@@ -178,8 +177,8 @@ fn is_extended(texture: &Value) -> bool {
         && extensions.is_some_and(|all| !all.is_empty() && !all.contains_key(WEBP))
 }
 
-/// Reports whether a texture of a material has an image that only an extension names, and one that
-/// [`materials`] does not read.
+/// Reports whether a texture of a material has its image only in an extension unknown to
+/// [`materials`].
 fn has_other_image(json: &Value, material: &Value) -> bool {
     let pbr = &material["pbrMetallicRoughness"];
     let textures = [
@@ -193,8 +192,8 @@ fn has_other_image(json: &Value, material: &Value) -> bool {
 }
 
 impl Texture {
-    /// Returns the image that `EXT_texture_webp` gives the texture; its source, if it has one, is
-    /// the same picture for programs that do not know WebP.
+    /// Returns the image given by `EXT_texture_webp`; the texture's own source, if any, is a
+    /// fallback for programs without WebP.
     fn webp_source(&self) -> Option<usize> {
         let extension = self.extensions.get(WEBP)?;
         extension.get("source")?.as_u64().map(|source| source as usize)

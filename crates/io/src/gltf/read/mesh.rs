@@ -13,8 +13,8 @@ use crate::vertex_attributes::pad;
 /// Reads mesh `index` with all its triangle primitives; the material label of a face is the number
 /// of its primitive. Points and lines get a label but no faces.
 ///
-/// Primitives with the same POSITION accessor share their vertices, and those with all accessors in
-/// common share their wedges. Attributes that are not finite are replaced, and counted.
+/// Primitives with the same POSITION accessor share their vertices; primitives with the same
+/// accessors share their wedges. Attributes that are not finite are replaced, and counted.
 pub(crate) fn read(
     document: &Document<'_>,
     index: usize,
@@ -81,10 +81,10 @@ struct Builder {
     replaced: Replaced,
 }
 
-/// Number of attributes that are not finite in a file, and were replaced.
+/// Number of replaced attributes that were not finite.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Replaced {
-    /// Normals, which become zero, so that they are computed from the faces.
+    /// Normals, which become zero and are later computed from the faces.
     pub normals: usize,
     /// Components of other attributes, which become 0.
     pub values: usize,
@@ -101,7 +101,7 @@ impl Replaced {
     }
 }
 
-/// Replaces what is not finite, and counts it.
+/// Replaces and counts values that are not finite.
 fn make_finite(kind: LayerKind, of: &mut Values) -> Replaced {
     let mut replaced = Replaced::default();
     for element in of.values.chunks_exact_mut(of.width) {
@@ -196,7 +196,7 @@ impl Builder {
         Ok(first)
     }
 
-    /// Appends values to the layer of that name; wedges before `first` that have none get those of
+    /// Appends values to the layer of that name; earlier wedges without values are filled by
     /// [`pad`].
     fn add_values(&mut self, name: &str, mut new: Values, first: usize) -> Result<(), String> {
         let kind = kind(name);

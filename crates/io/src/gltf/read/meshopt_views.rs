@@ -1,7 +1,7 @@
 //! Decompression of buffer views compressed with `EXT_meshopt_compression` or
 //! `KHR_meshopt_compression`.
 //!
-//! It is done on reading: to the rest of the reader, the document was never compressed.
+//! The rest of the reader sees an uncompressed document.
 
 use serde::Deserialize;
 use serde_json::Value;
@@ -37,7 +37,7 @@ struct CompressedView {
 /// extension from the document.
 ///
 /// # Errors
-/// The view, and what is wrong with it or its stream.
+/// The view, and the reason.
 pub(crate) fn decompress(json: &mut Value, buffers: &mut Buffers) -> Result<(), ParseError> {
     let mut decompressed = Vec::new();
     let target = buffers.bytes.len();
@@ -72,7 +72,7 @@ pub(crate) fn decompress(json: &mut Value, buffers: &mut Buffers) -> Result<(), 
     Ok(())
 }
 
-/// Takes the compression extension out of a view, if it has one.
+/// Removes the compression extension from a view and returns it, if any.
 fn take_extension(view: &mut Value) -> Result<Option<CompressedView>, String> {
     let Some(name) = MESHOPT.into_iter().find(|name| view["extensions"].get(name).is_some()) else {
         return Ok(None);
@@ -122,7 +122,7 @@ fn layout(compressed: &CompressedView) -> Result<Layout, String> {
     Ok(layout)
 }
 
-/// Removes the extensions from the buffers and from the lists of extensions in use.
+/// Removes the extensions from the buffers and from the lists of the document.
 fn forget(json: &mut Value) {
     for name in MESHOPT {
         let buffers = json.get_mut("buffers").and_then(Value::as_array_mut);

@@ -28,24 +28,24 @@ use crate::remarks;
 use crate::scene::{Scene, SceneMesh};
 use images::read_images;
 
-/// Parses a glTF or GLB file, told apart by the first bytes; `resolve` loads the buffers and images
-/// that it refers to.
+/// Parses a glTF or GLB file, recognised by its first bytes; `resolve` loads its buffers and
+/// images.
 ///
 /// Every mesh of the document becomes a mesh of the scene. Its material labels are the primitives
 /// in order, and `SceneMesh::materials` holds their materials. Attributes become layers named as in
 /// the document, with texture coordinates flipped to an origin at the lower left. Morph targets
-/// become layers named `target 0 POSITION`. Skins and poses are carried through, not applied.
+/// become layers named `target 0 POSITION`. Skins and poses are kept, not applied.
 ///
 /// Supported: triangles, strips and fans; any index and component type; strides; sparse accessors;
 /// `KHR_mesh_quantization`; `EXT_meshopt_compression` and `KHR_meshopt_compression`, which are
 /// decompressed and removed, as is `KHR_draco_mesh_compression` with the feature `draco`;
-/// `EXT_mesh_gpu_instancing`; `MSFT_lod`, of which the finest level is shown. Carried through but not
+/// `EXT_mesh_gpu_instancing`; `MSFT_lod`, with the finest level shown. Carried through but not
 /// applied to texture coordinates: `KHR_texture_transform`.
 ///
 /// # Errors
-/// The location (`accessor 7`, `bufferView 3`) and the reason. Draco streams without the feature and
-/// unknown required extensions are rejected by name, as are positions that are not finite; other
-/// attributes become 0 there, with a note, and normals are computed.
+/// The location (`accessor 7`, `bufferView 3`) and the reason. Draco streams without the feature,
+/// unknown required extensions and positions that are not finite are rejected. Other attributes
+/// that are not finite become 0 with a note; such normals are computed.
 /// # References
 /// [Kap20]; [KS21] and [KSL25], in [`crate::meshopt`].
 pub fn read(bytes: &[u8], resolve: Resolve<'_>, weld: Weld) -> Result<Scene, ParseError> {
@@ -94,7 +94,7 @@ fn scene_mesh(
     Ok((SceneMesh { name, mesh, materials }, replaced))
 }
 
-/// Removes the URIs of buffers, often most of the document, as their bytes have been loaded.
+/// Removes the URIs of the loaded buffers, often most of the document.
 fn forget_uris(json: &mut Value) {
     let buffers = json.get_mut("buffers").and_then(Value::as_array_mut);
     for buffer in buffers.into_iter().flatten().filter_map(Value::as_object_mut) {

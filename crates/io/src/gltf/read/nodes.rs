@@ -18,7 +18,7 @@ const GREATEST_ENTRY: f64 = 1e200;
 
 /// Reads nodes and roots into a scene that already has its meshes.
 ///
-/// Coarser levels linked by `MSFT_lod` stay in the list, but are no roots and nobody's children.
+/// Coarser levels linked by `MSFT_lod` stay in the list, but are neither roots nor children.
 pub(crate) fn read(document: &Document<'_>, scene: &mut Scene) -> Result<(), ParseError> {
     let json = document.json;
     let nodes: Vec<schema::GltfNode> = schema::array(json, "nodes", "node")?;

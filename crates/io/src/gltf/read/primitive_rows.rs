@@ -1,4 +1,4 @@
-//! Mapping from the vertices of a mesh back to the elements of the glTF accessors they came from.
+//! Mapping from the vertices of a mesh to the elements of their glTF accessors.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use serde_json::Value;
 use crate::gltf::document::primitive_kind::is_surface;
 use crate::gltf::document::source::SourceDocument;
 
-/// Vertices of a glTF primitive, and the POSITION accessor that they were read from.
+/// Vertices of a glTF primitive, and their POSITION accessor.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PrimitiveRows {
     /// Index of the primitive's POSITION accessor in the document.
@@ -20,9 +20,8 @@ impl SourceDocument {
     /// Returns, for each primitive of a glTF mesh, its vertices and their POSITION accessor; `None`
     /// for points and lines.
     ///
-    /// Vertices are numbered as with [`Weld::Off`](crate::Weld::Off): the elements of the POSITION
-    /// accessors one after the other, each accessor once. The list is empty if there is no such
-    /// mesh.
+    /// Vertices are numbered as with [`Weld::Off`](crate::Weld::Off): the elements of all distinct
+    /// POSITION accessors in order. The list is empty if there is no such mesh.
     pub fn primitive_rows(&self, mesh: usize) -> Vec<Option<PrimitiveRows>> {
         let json = &self.0.json;
         let primitives =

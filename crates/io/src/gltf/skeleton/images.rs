@@ -1,4 +1,4 @@
-//! Images of skeletons: taken out of a document, and put back.
+//! Images of skeletons, detached from a document and attached again.
 
 use serde_json::{Value, json};
 
@@ -17,7 +17,7 @@ pub struct SkeletonImage {
     pub is_preview: bool,
 }
 
-/// Gives images in data URIs a view without bytes, as those in buffers have it.
+/// Replaces images in data URIs by empty buffer views, like images in buffers.
 pub(crate) fn detach_images(json: &mut Value) {
     let count = json.get("bufferViews").and_then(Value::as_array).map_or(0, Vec::len);
     let mut added = Vec::new();
@@ -43,8 +43,8 @@ fn embed(image: &mut Value, view: usize) {
     }
 }
 
-/// Puts images into the buffers: those that were embedded, and previews. Returns the other ones,
-/// which are files, with nothing in the place of these.
+/// Adds embedded images and previews to the buffers. Returns the other images, which are files,
+/// with empty ones in place of the embedded.
 pub(crate) fn attach_images(
     json: &mut Value,
     images: Vec<SkeletonImage>,
@@ -93,8 +93,8 @@ pub(crate) fn attach_images(
 const OTHER_FORMATS: [&str; 4] =
     [WEBP, "EXT_texture_avif", "KHR_texture_basisu", "MSFT_texture_dds"];
 
-/// Makes textures refer to the marked images, which have become PNGs, without the extensions for other
-/// formats, and drops extensions of the document that no texture has any more.
+/// Makes textures refer directly to the marked images, which have become PNGs, and drops extensions
+/// for other image formats that are no longer used.
 fn refer_to_png(json: &mut Value, replaced: &[bool]) {
     if !replaced.contains(&true) {
         return;

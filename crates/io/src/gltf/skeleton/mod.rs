@@ -1,4 +1,4 @@
-//! Skeletons of scenes: all of a scene but the geometry of its meshes, as bytes.
+//! Skeletons of scenes: everything except the geometry of meshes, as bytes.
 
 pub(crate) mod images;
 
@@ -26,13 +26,13 @@ use images::{SkeletonImage, attach_images, detach_images, preview_name};
 
 /// Scene without the geometry of some of its meshes and without its images, as bytes.
 ///
-/// Of a scene read from glTF everything else is kept: nodes, cameras, materials, skins, animations,
-/// extras and extensions. Other scenes keep their nodes, names and materials.
+/// The rest of a scene read from glTF is kept: nodes, cameras, materials, skins, animations, extras
+/// and extensions. Other scenes keep their nodes, names and materials.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Skeleton {
     /// JSON text of a glTF document.
     pub document: Vec<u8>,
-    /// Buffer of all that is not in the following one: inverse bind matrices, geometry that stays.
+    /// Buffer of everything except animations: inverse bind matrices, remaining geometry.
     pub buffer: Vec<u8>,
     /// Buffer of the key frames of animations.
     pub animations: Vec<u8>,
@@ -46,11 +46,11 @@ pub struct Skeleton {
 const ANIMATIONS: u64 = 1;
 
 impl Skeleton {
-    /// Takes all but the marked meshes' geometry and the images from a scene. Points, lines and
-    /// the geometry of the other meshes stay.
+    /// Copies a scene without its images and the geometry of the marked meshes. Points, lines and
+    /// the geometry of other meshes are kept.
     ///
     /// # Errors
-    /// If the number of marks or meshes is not that of the scene's source.
+    /// If the number of marks or meshes differs from the source of the scene.
     pub fn of(scene: &Scene, emptied: Vec<bool>) -> Result<Self, Unsupported> {
         let Some(source) = &scene.source else {
             let document = new_document::skeleton(scene).to_string().into_bytes();
@@ -68,15 +68,14 @@ impl Skeleton {
         Ok(Self { document, buffer, animations, is_gltf: true, emptied })
     }
 
-    /// Makes a scene of the skeleton, with the images given by number; the marked meshes are empty,
-    /// with a material label for each primitive.
+    /// Makes a scene of the skeleton with these images; the marked meshes are empty, with a
+    /// material label for each primitive.
     ///
-    /// Images that were embedded are embedded again, and so are previews, which are not the files
-    /// they stand for. `has_animations` is false if the key frames are lost: then there are no
-    /// animations.
+    /// Embedded images are embedded again, and so are previews, since they differ from their files.
+    /// `has_animations` is false if the key frames are lost: then there are no animations.
     ///
     /// # Errors
-    /// The place and the reason, as of [`read`](super::read), if the document is damaged.
+    /// The location and the reason, see [`read`](super::read), if the document is damaged.
     pub fn into_scene(
         self,
         images: Vec<SkeletonImage>,
@@ -134,8 +133,8 @@ impl Skeleton {
     }
 }
 
-/// Divides the bytes of a document into those of animations only and all others, without geometry
-/// and images, and returns the latter first. Views without bytes are left of the rest.
+/// Splits the bytes of a document into other data and animations, and drops geometry and images,
+/// whose views become empty.
 fn split_buffers(document: &Document<'_>, json: &mut Value, emptied: &[bool]) -> [Vec<u8>; 2] {
     let freed = free_accessors(document, emptied);
     let animated = animation_accessors(document, emptied);
@@ -174,7 +173,7 @@ fn split_buffers(document: &Document<'_>, json: &mut Value, emptied: &[bool]) ->
     [buffer, animations]
 }
 
-/// Empties an accessor, whose type stays.
+/// Empties an accessor but keeps its type.
 fn empty(accessor: &mut Value) {
     let kept = ["bufferView", "componentType", "normalized", "type"];
     let entries = accessor.as_object().into_iter().flatten();
@@ -184,7 +183,7 @@ fn empty(accessor: &mut Value) {
     *accessor = new.into();
 }
 
-/// Removes the animations, whose key frames are lost, and empties what they used.
+/// Removes the animations, whose key frames are lost, and empties their accessors and views.
 fn drop_animations(json: &mut Value) {
     if let Some(json) = json.as_object_mut() {
         json.shift_remove("animations");

@@ -1,9 +1,9 @@
-//! Nodes without the meshes that have lost all their faces.
+//! Meshes that have lost all their faces, removed from nodes.
 
 use serde_json::{Map, Value};
 
-/// Takes these meshes from the nodes that show them, with their skins, weights and copies, and drops
-/// the animations of these weights: glTF has neither for a node without a mesh.
+/// Removes these meshes from nodes, with their skins, weights and instances, and drops animations
+/// of the weights: glTF allows neither for a node without a mesh.
 pub(crate) fn detach_meshes(json: &mut Value, gone: &[usize]) {
     if gone.is_empty() {
         return;
@@ -50,7 +50,7 @@ pub(crate) fn detach_meshes(json: &mut Value, gone: &[usize]) {
     }
 }
 
-/// Removes a member of an object's member, and that as well if nothing else is in it.
+/// Removes an entry of a nested object, and the nested object if it becomes empty.
 fn drop_inner(of: &mut Map<String, Value>, outer: &str, inner: &str) {
     let Some(object) = of.get_mut(outer).and_then(Value::as_object_mut) else { return };
     if object.shift_remove(inner).is_some() && object.is_empty() {

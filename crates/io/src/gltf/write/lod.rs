@@ -12,8 +12,7 @@ use crate::gltf::read::nodes;
 use crate::gltf::write::levels::{Level, Levels, LodLayout};
 use crate::gltf::write::node_edits::{give_to_child, moving};
 
-/// Adds the levels of all meshes that have triangles, and the nodes that show them. Others stay as
-/// they are.
+/// Adds the levels of all meshes with triangles, and the nodes that show them.
 ///
 /// `templates` are the meshes of the document before their geometry was replaced, `grids` the
 /// quantization grids of their positions.
@@ -35,8 +34,8 @@ pub(crate) fn add(
     Ok(())
 }
 
-/// Links every node with a mesh to new nodes for the coarser levels of the mesh, of which
-/// `ids_of` gives the indices; `coverage` is the screen coverage at which each is shown, if known.
+/// Links every node with a mesh to new nodes for its coarser levels, whose mesh indices are
+/// `ids_of(mesh)`; `coverage` is the screen coverage of each level, if known.
 pub(crate) fn link_nodes(
     json: &mut Value,
     ids_of: impl Fn(usize) -> Vec<usize>,
@@ -60,8 +59,8 @@ pub(crate) fn link_nodes(
     list_extension(json, "extensionsUsed", MSFT_LOD);
 }
 
-/// Gives every node with a mesh a child for each level of the mesh, of which `ids_of` gives the
-/// indices of the coarser ones.
+/// Adds to every node with a mesh a child for each level; `ids_of(mesh)` are the meshes of the
+/// coarser ones.
 fn show_all(json: &mut Value, ids_of: impl Fn(usize) -> Vec<usize>) {
     let count = json.get("nodes").and_then(Value::as_array).map_or(0, Vec::len);
     let hidden = nodes::levels(json, count);

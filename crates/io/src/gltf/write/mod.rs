@@ -2,7 +2,8 @@
 //!
 //! Reading order: `output`, which makes the document and its files; `replacer`, which puts meshes
 //! into it; `arrays`, which encodes them; `buffer`, which collects the arrays. `new_document` makes
-//! the document of a scene from another format, `quantized` prepares compression, `lod` adds levels.
+//! the document of a scene from another format, `quantized` prepares compression, `lod` adds
+//! levels.
 
 pub(crate) mod arrays;
 pub(crate) mod attribute_names;
@@ -26,17 +27,16 @@ use levels::{Level, Levels, LodLayout};
 use output::{GltfFiles, Output};
 use settings::{Compression, CompressionReport};
 
-/// Encodes a scene as a single GLB file; `levels`, which may be empty, are its coarser levels of
-/// detail.
+/// Encodes a scene as a single GLB file; `levels` are its coarser levels of detail, if any.
 ///
 /// A scene read from glTF is written as that document. Nodes, materials, animations, extras,
 /// extensions and everything else pass through. An unchanged mesh keeps its arrays bit for bit; a
 /// changed one gets new arrays (f32, 16-bit indices where possible, colours in their old type). The
-/// buffer is rebuilt without what is no longer used. Any other scene gets a new document with its
-/// nodes, materials and images, in which each object of a mesh is a node and a mesh; meshes whose
-/// coordinates 32 bits would round are stored relative to a centre, from which their nodes move them
-/// back. A mesh without faces keeps one degenerate triangle, as glTF
-/// does not allow empty meshes, and no node shows it unless there are levels.
+/// buffer is rebuilt without unused data. Any other scene gets a new document with its nodes,
+/// materials and images, in which each object of a mesh is a node and a mesh; meshes whose
+/// coordinates 32 bits would round are stored relative to a centre, from which their nodes move
+/// them back. A mesh without faces keeps one degenerate triangle, as glTF does not allow empty
+/// meshes, and no node shows it unless there are levels.
 ///
 /// With levels, every node with a mesh is named `…_LOD0` and linked by the extension `MSFT_lod` to
 /// nodes `…_LOD1`, `…_LOD2` and so on, and its `extras.MSFT_screencoverage` holds the coverage at
@@ -50,7 +50,7 @@ pub fn write_glb(scene: &Scene, levels: &[Level]) -> Result<Vec<u8>, Unsupported
     Output::of(scene, levels.into(), None)?.into_glb(scene)
 }
 
-/// Encodes a scene and its coarser levels of detail as a single GLB file, laid out as asked.
+/// Encodes a scene and its coarser levels of detail as a single GLB file in the given layout.
 ///
 /// # Errors
 /// Errors of [`write_glb`].
@@ -68,9 +68,9 @@ pub fn write_lods_glb(
 /// Positions are quantized to a uniform grid per mesh, shared by its levels, with equal cells on
 /// all axes. A vertex moves by at most half a cell per axis, and primitives that met still meet.
 /// The nodes that show the mesh, or new children of them, scale and translate it back; of a skinned
-/// mesh, so do the inverse bind matrices. Morph targets move vertices by whole cells. Positions stay
-/// floats, and the report says so, where that cannot be: with points or lines, materials with
-/// thickness, instancing.
+/// mesh, so do the inverse bind matrices. Morph targets move vertices by whole cells. Positions
+/// stay floats, as noted in the report, where this is impossible: with points or lines, materials
+/// with thickness, instancing.
 ///
 /// Normals and tangents become bytes or shorts. Texture coordinates in [0, 1] become normalised
 /// integers; others stay floats. Colours in [0, 1] become bytes, unless the file had shorts, and
@@ -80,9 +80,9 @@ pub fn write_lods_glb(
 /// outside [0, 1] are rounded to the requested bits as well. Images are kept.
 ///
 /// Animations keep their channels, and at any time a pose is within
-/// [`Compression::animation_degrees`] of what it was: keys that interpolation of the others gives go,
-/// rotations become shorts. Cubic splines, weights and malformed samplers stay as they are. The
-/// objects of a mesh stay one mesh, and have no names.
+/// [`Compression::animation_degrees`] of what it was: redundant keys are dropped, rotations become
+/// shorts. Cubic splines, weights and malformed samplers stay as they are. The objects of a mesh
+/// stay one mesh, and have no names.
 ///
 /// # Errors
 /// Errors of [`write_glb`]; also bit counts out of range.
@@ -108,7 +108,7 @@ pub fn write(scene: &Scene, levels: &[Level], stem: &str) -> Result<GltfFiles, U
     Ok(files(scene, levels.into(), None, &|_| buffer_name(stem))?.0)
 }
 
-/// Encodes a scene as a compressed `.gltf` file and the files that belong to it.
+/// Encodes a scene as a compressed `.gltf` file with its buffer and images.
 ///
 /// Files are laid out as by [`write()`] and compressed as by [`write_compressed_glb`].
 ///
@@ -123,7 +123,7 @@ pub fn write_compressed(
     files(scene, levels.into(), Some(compression), &|_| buffer_name(stem))
 }
 
-/// Encodes a scene as [`write()`] or [`write_compressed`] does; `name` names the buffer by its bytes.
+/// Encodes a scene like [`write()`] or [`write_compressed`]; `name` names the buffer by its bytes.
 pub(crate) fn files(
     scene: &Scene,
     levels: Levels<'_>,

@@ -6,8 +6,7 @@ use serde_json::{Map, Value};
 
 use crate::gltf::document::entries::extend;
 
-/// Finds the nodes that animations or skins move: a sibling node of a coarser level would not
-/// follow them.
+/// Finds the nodes moved by animations or skins; a sibling node would not follow them.
 pub(crate) fn moving(json: &Value) -> BTreeSet<usize> {
     let array = |value: &Value, key: &str| {
         value.get(key).and_then(Value::as_array).cloned().unwrap_or_default()

@@ -1,4 +1,4 @@
-//! Document that is being written: its new geometry, then its files.
+//! Document being written: its new geometry, then its files.
 
 use meshlod_mesh::Mesh;
 use serde_json::{Map, Value};
@@ -23,7 +23,7 @@ use crate::gltf::document::{Document, container, uri};
 use crate::gltf::read::mesh;
 use crate::scene::{Image, Scene, image_file};
 
-/// Contents of a `.gltf` file and of the buffer and image files that belong to it.
+/// Contents of a `.gltf` file, its buffer and its images.
 #[derive(Clone, Debug)]
 pub struct GltfFiles {
     /// JSON text of the `.gltf` file.
@@ -201,7 +201,7 @@ impl Output {
     }
 }
 
-/// Chooses the quantization grids of a scene that is written as this JSON, of this document.
+/// Chooses the quantization grids of a scene to be written as this JSON, from this document.
 fn grids(
     of: (&Value, Option<&Document<'_>>),
     scene: &Scene,
@@ -214,7 +214,7 @@ fn grids(
     }
 }
 
-/// Refuses a scene that has not as many meshes as the document that it was read from.
+/// Refuses a scene whose number of meshes differs from its source document.
 pub(crate) fn check_meshes(scene: &Scene, document: &Document<'_>) -> Result<(), Unsupported> {
     let (count, found) = (document.meshes.len(), scene.meshes.len());
     if found == count {
@@ -224,12 +224,12 @@ pub(crate) fn check_meshes(scene: &Scene, document: &Document<'_>) -> Result<(),
     Err(Unsupported::new("source", reason))
 }
 
-/// Returns the error that a document that was read cannot be read again.
+/// Returns the error that the source document cannot be read again.
 pub(crate) fn unreadable(error: ParseError) -> Unsupported {
     Unsupported::new("source", error.to_string())
 }
 
-/// Reports whether two meshes are equal in everything that is written of them.
+/// Reports whether two meshes would be written identically.
 fn same_geometry(a: &Mesh, b: &Mesh) -> bool {
     let label = |mesh: &Mesh, face| mesh.materials.as_ref().map(|labels| labels.of(face));
     a.positions == b.positions

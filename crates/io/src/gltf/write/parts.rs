@@ -6,8 +6,7 @@ use serde_json::{Value, json};
 use crate::error::Unsupported;
 use crate::gltf::document::{component, container};
 
-/// Part of a mesh whose positions are quantized to 8 bits, on a grid of 256 cells per axis of its
-/// own.
+/// Part of a mesh with 8-bit positions on its own grid of 256 cells per axis.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct QuantizedPart {
     /// Rows of the 3×4 matrix that maps grid cells to model space.

@@ -34,13 +34,13 @@ impl<'a> Replacer<'a> {
 
     /// Replaces the triangle primitives in the JSON of a glTF mesh with the faces of `mesh`.
     ///
-    /// Primitives keep everything but their arrays. Each gets the attributes that it had, and those
+    /// Primitives keep everything except their arrays. Each gets its old attributes, and new ones
     /// that no primitive had. A primitive left without faces is dropped; a mesh left without faces
-    /// keeps one degenerate primitive. Positions are quantized to the grid, if there is one. Returns
-    /// true if the mesh has no faces.
+    /// keeps one degenerate primitive. Positions are quantized to the grid, if there is one.
+    /// Returns true if the mesh has no faces.
     ///
     /// # Errors
-    /// If the mesh is invalid or a face's label is not a triangle primitive; also those of
+    /// If the mesh is invalid or a face's label is not a triangle primitive; also errors of
     /// [`arrays::arrays`].
     pub fn replace(
         &mut self,
@@ -74,8 +74,8 @@ impl<'a> Replacer<'a> {
         Ok(is_empty)
     }
 
-    /// Returns the layers that a primitive gets, with the names of their attributes: those that it
-    /// had, and those that no primitive had.
+    /// Returns the layers of a primitive and their attribute names: its old attributes, and new
+    /// ones that no primitive had.
     pub fn layers_of<'l>(
         &self,
         primitive: &Value,
@@ -120,8 +120,8 @@ impl<'a> Replacer<'a> {
         }
     }
 
-    /// Returns copies of the primitive with other arrays, one for each array of indices; `names` are
-    /// those of the layers, in order.
+    /// Returns copies of the primitive with new arrays, one for each array of indices; `names` are
+    /// the names of the layers.
     pub fn with_arrays(
         &mut self,
         primitive: &Value,
@@ -162,7 +162,7 @@ impl<'a> Replacer<'a> {
     }
 }
 
-/// Groups the faces by primitive. Without labels, all belong to the first triangle primitive.
+/// Groups the faces by primitive; without labels, all are in the first triangle primitive.
 fn faces_by_primitive(mesh: &Mesh, primitives: &[Value]) -> Result<Vec<Vec<u32>>, String> {
     let mut faces = vec![Vec::new(); primitives.len()];
     let only = primitives.iter().position(is_surface).unwrap_or(0);

@@ -1,4 +1,4 @@
-//! Options of glTF compression, and the report on its result.
+//! Options and report of glTF compression.
 
 use crate::error::Unsupported;
 
@@ -16,7 +16,8 @@ pub struct Compression {
     pub uv_bits: u32,
     /// Largest error of animated rotations at any time, in degrees, at least 0.01.
     ///
-    /// Translations and scales may err by the arc of this angle at the largest of their track.
+    /// Translations and scales may err by the arc of this angle at the largest value of their
+    /// track.
     pub animation_degrees: f64,
     /// If true, geometry is also compressed with meshopt; if not, a GPU can use it straight from
     /// the file.
@@ -24,8 +25,8 @@ pub struct Compression {
 }
 
 impl Default for Compression {
-    /// Returns settings whose result can rarely be told from the original: 14 bits for positions, 8
-    /// for normals, 12 for texture coordinates and .1 degrees for animations, with meshopt.
+    /// Returns settings with hardly visible loss: 14 bits for positions, 8 for normals, 12 for
+    /// texture coordinates and 0.1 degrees for animations, with meshopt.
     fn default() -> Self {
         Self {
             position_bits: 14,

@@ -2,8 +2,8 @@
 
 use meshlod_mesh::{Mesh, VertexId, WedgeId};
 
-/// Entry of a triangle strip: a vertex and the wedge with its attributes, which counts only in a
-/// mesh with attributes.
+/// Entry of a triangle strip: a vertex and its wedge, which is ignored in a mesh without
+/// attributes.
 pub type StripCorner = (VertexId, WedgeId);
 
 /// Mesh of a scene as triangle strips, at one or more levels that share its vertices.

@@ -21,21 +21,20 @@ use crate::scene::Scene;
 /// Primitive mode of a triangle strip.
 const TRIANGLE_STRIP: u32 = 5;
 
-/// Encodes a scene as a GLB file in which triangle strips take the place of faces.
+/// Encodes a scene as a GLB file with triangle strips in place of faces.
 ///
-/// `strips` are those of the scene's [instances](Scene::instances), in their order and in the space
-/// of their meshes. A mesh that several nodes show is written once for each. A primitive has the
-/// same vertices at all levels. Levels of what draws triangles are linked by `MSFT_lod`; everything
-/// else is written as by [`write_glb`](super::write_glb).
+/// `strips` has an entry for each of the scene's [instances](Scene::instances), in the space of its
+/// mesh. A mesh that several nodes show is written once for each. A primitive has the same vertices
+/// at all levels. Levels are linked by `MSFT_lod`; everything else is written as by
+/// [`write_glb`](super::write_glb).
 ///
 /// # Errors
-/// If the strips do not fit the scene, and those of [`write_glb`](super::write_glb).
+/// If the strips do not fit the scene; also errors of [`write_glb`](super::write_glb).
 pub fn write_strips_glb(scene: &Scene, strips: &[StripMesh]) -> Result<Vec<u8>, Unsupported> {
     Output::of_strips(scene, strips)?.into_glb(scene)
 }
 
-/// Encodes a scene as [`write_strips_glb`] does, but as a file `stem.gltf` and those that belong to
-/// it.
+/// Encodes a scene like [`write_strips_glb`], but as a file `stem.gltf` with its buffer and images.
 ///
 /// # Errors
 /// Errors of [`write_strips_glb`], except for the size.
@@ -47,7 +46,7 @@ pub fn write_strips(
     strip_files(scene, strips, &|_| buffer_name(stem))
 }
 
-/// Encodes a scene as [`write_strips`] does; `name` names the buffer by its bytes.
+/// Encodes a scene like [`write_strips`]; `name` names the buffer by its bytes.
 pub(crate) fn strip_files(
     scene: &Scene,
     strips: &[StripMesh],
@@ -114,7 +113,7 @@ fn finish(
     }
 }
 
-/// Gives every instance of the scene a mesh of its own, and returns their indices in the document.
+/// Gives every instance of the scene its own mesh, and returns their indices in the document.
 fn own_meshes(json: &mut Value, scene: &Scene) -> Vec<usize> {
     let mut is_taken = vec![false; scene.meshes.len()];
     let own = scene.instances().into_iter().map(|instance| {
@@ -137,7 +136,7 @@ impl Replacer<'_> {
     ///
     /// # Errors
     /// If a strip's label is not a triangle primitive or its corners are not of the mesh; also
-    /// those of [`arrays::strip_arrays`].
+    /// errors of [`arrays::strip_arrays`].
     fn strips(&mut self, template: &Value, strips: &StripMesh) -> Result<Vec<Value>, Unsupported> {
         let StripMesh { mesh, levels } = strips;
         let old = template.get("primitives").and_then(Value::as_array).cloned().unwrap_or_default();

@@ -1,8 +1,8 @@
-//! Packing of animations: keys that are not needed go, the others are rounded and stored together.
+//! Packing of animations: redundant keys are dropped, the others are rounded and stored together.
 //!
 //! Rotations become normalized shorts, all in one buffer view, translations and scales another, and
-//! times a third. Whatever is not understood stays as it is: cubic splines, weights of morph
-//! targets, pointers, and samplers that break the rules of the specification.
+//! times a third. Cubic splines, weights of morph targets, pointers and malformed samplers stay
+//! unchanged.
 
 pub(crate) mod key_track;
 mod keys;
@@ -20,10 +20,10 @@ use key_track::KeyTrack;
 use keys::{RoundedTrack, select};
 use rounding::{Rounded, round};
 
-/// Place of a sampler: its animation, and its index there.
+/// Location of a sampler: its animation, and its index there.
 type SamplerPlace = (usize, usize);
 
-/// Sampler with the bytes of each of its keys and the keys that it keeps.
+/// Sampler with the encoded keys and the indices of the kept ones.
 struct PackedTrack {
     place: SamplerPlace,
     property: AnimatedProperty,
@@ -39,10 +39,10 @@ pub(crate) struct PackedAnimations {
     places: BTreeSet<SamplerPlace>,
 }
 
-/// Bytes of a key, and of the JSON of an accessor: what sharing times saves, about.
+/// Approximate bytes of a key, and of the JSON of an accessor, saved by sharing times.
 const KEY_COST: usize = 3;
 const ACCESSOR_COST: usize = 130;
-/// Largest number of times that tracks leave those that share keys.
+/// Limit on the number of times that tracks leave the group of shared keys.
 const MOST_ROUNDS: usize = 4;
 
 impl PackedAnimations {
@@ -115,14 +115,14 @@ fn pack(
         .collect()
 }
 
-/// First and last time of a clip that no track has kept yet.
+/// First and last time of a clip, unless a track has kept them.
 struct Range {
     first: Option<f32>,
     last: Option<f32>,
 }
 
 impl Range {
-    /// Notes that a track keeps these ends.
+    /// Records that a track keeps these ends.
     fn cover(&mut self, times: &[f32]) {
         if times.first() == self.first.as_ref() {
             self.first = None;
@@ -138,11 +138,11 @@ impl Range {
     }
 }
 
-/// Selects the keys of each track; `None` for those that stay as they are.
+/// Selects the keys of each track; `None` for unchanged tracks.
 ///
-/// Tracks with the same times keep the same keys, unless own ones save more than another array of
-/// times costs. A constant track keeps its first key, and its last as well where the clip would
-/// otherwise become shorter.
+/// Tracks with the same times keep the same keys, unless separate keys save more than another array
+/// of times costs. A constant track keeps its first key, and also its last if the clip would become
+/// shorter.
 fn kept_keys(tracks: &[&RoundedTrack], range: &mut Range) -> Vec<Option<Vec<usize>>> {
     let mut kept: Vec<Option<Vec<usize>>> = vec![None; tracks.len()];
     let mut groups: BTreeMap<Vec<u32>, Vec<usize>> = BTreeMap::new();
@@ -172,7 +172,7 @@ fn kept_keys(tracks: &[&RoundedTrack], range: &mut Range) -> Vec<Option<Vec<usiz
     kept
 }
 
-/// Gives tracks with the same times common keys where that takes fewer bytes.
+/// Makes tracks with the same times share keys where that takes fewer bytes.
 fn share_keys(tracks: &[&RoundedTrack], members: &[usize], kept: &mut [Option<Vec<usize>>]) {
     let own = |i: usize| kept[i].as_ref().map_or(0, Vec::len);
     let mut shared = members.to_vec();
@@ -189,7 +189,7 @@ fn share_keys(tracks: &[&RoundedTrack], members: &[usize], kept: &mut [Option<Ve
     }
 }
 
-/// Returns the property that each sampler moves; `None` where its channels do not agree.
+/// Returns the property that each sampler animates; `None` if its channels disagree.
 pub(crate) fn properties(animation: &Value) -> BTreeMap<usize, Option<AnimatedProperty>> {
     let mut properties = BTreeMap::new();
     let channels = animation.get("channels").and_then(Value::as_array);
@@ -208,10 +208,10 @@ pub(crate) fn properties(animation: &Value) -> BTreeMap<usize, Option<AnimatedPr
     properties
 }
 
-/// Returns how far the poses of a track may move as points.
+/// Returns the distance by which the poses of a track may move, as points.
 ///
 /// A rotation by an angle moves its quaternion by the chord of half of it. The same angle moves a
-/// vector by its arc, so that a child comes as far as from the rotation of its parent.
+/// vector by its arc, so that a child moves as far as by the rotation of its parent.
 fn tolerance(track: &KeyTrack, degrees: f64) -> f64 {
     let angle = degrees.to_radians();
     let length = |pose: &[f64; 4]| pose.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -261,7 +261,7 @@ fn arrays_of(track: &PackedTrack, arrays: &mut [KeyArray; 3]) -> (usize, (usize,
 }
 
 impl KeyArray {
-    /// Appends elements, unless they are there, and returns the index of their accessor.
+    /// Appends elements unless they exist, and returns the index of their accessor.
     fn add(&mut self, bytes: Vec<u8>, mut accessor: Value) -> usize {
         if let Some(&known) = self.known.get(&bytes) {
             return known;

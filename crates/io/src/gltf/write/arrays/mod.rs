@@ -39,7 +39,7 @@ pub(crate) struct Numbers<'a> {
     pub grid: Option<&'a QuantizationGrid>,
 }
 
-/// Layer with the component type it had in the file, if it came from one.
+/// Layer with its component type in the source file, if any.
 #[derive(Clone, Copy)]
 pub(crate) struct Typed<'a> {
     pub layer: &'a Layer,
@@ -196,7 +196,7 @@ fn positions(
     Ok((blob, 0.0))
 }
 
-/// Lists the values of a layer at the vertices, as glTF has them.
+/// Lists the values of a layer at the vertices, with the texture origin of glTF.
 fn values_at(layer: &Layer, vertices: &[u64]) -> Vec<f32> {
     let mut values: Vec<f32> =
         vertices.iter().flat_map(|&key| layer.of(wedge_of(key))).copied().collect();
@@ -206,6 +206,10 @@ fn values_at(layer: &Layer, vertices: &[u64]) -> Vec<f32> {
     values
 }
 
+/// Encodes the values of a layer: quantized, as integers, or as floats.
+///
+/// # Errors
+/// If glTF has no type for the width of the layer.
 fn layer_blob(
     typed: Typed<'_>,
     values: Vec<f32>,
@@ -213,18 +217,7 @@ fn layer_blob(
     numbers: Numbers<'_>,
 ) -> Result<Blob, Unsupported> {
     let Typed { layer, component } = typed;
-    let shape = match layer.width {
-        1 => "SCALAR",
-        2 => "VEC2",
-        3 => "VEC3",
-        4 => "VEC4",
-        9 => "MAT3",
-        16 => "MAT4",
-        width => {
-            let reason = format!("has {width} components; glTF allows 1 to 4, 9 and 16");
-            return Err(Unsupported::new(format!("layer {:?}", layer.name), reason));
-        }
-    };
+    let shape = shape_of(layer)?;
     // 16-bit colours keep their precision.
     let small = numbers.compression.filter(|_| component != Some(component::U16));
     let small = small
@@ -232,26 +225,8 @@ fn layer_blob(
     if let Some(blob) = small {
         return Ok(blob);
     }
-    let integers = match (layer.kind, component) {
-        (LayerKind::Joints(_), _) if values.iter().any(|&x| x > 255.0) => {
-            Some((component::U16, 1.0))
-        }
-        (LayerKind::Joints(_), _) => Some((component::U8, 1.0)),
-        (LayerKind::Weights(_), _) if numbers.compression.is_some() => Some((component::U8, 255.0)),
-        (LayerKind::Color(_), Some(component::U16)) => Some((component::U16, 65535.0)),
-        (LayerKind::Color(_), Some(component::U8)) => Some((component::U8, 255.0)),
-        (LayerKind::Color(_), None) if all_are_bytes(&values) => Some((component::U8, 255.0)),
-        _ => None,
-    };
-    let Some((component, scale)) = integers else {
-        let moves = matches!(parse_target_name(&layer.name), Some((_, "POSITION")));
-        if let Some(grid) = numbers.grid.filter(|_| moves && layer.width == 3) {
-            return Ok(quantize::deltas(values.as_chunks().0, grid));
-        }
-        return Ok(Blob {
-            extent: moves.then(|| extent(values.as_chunks().0)),
-            ..floats(shape, count, &values)
-        });
+    let Some((component, scale)) = integers(typed, &values, numbers) else {
+        return Ok(float_blob(layer, shape, &values, numbers.grid));
     };
     let (bytes, stride) = whole_numbers(&values, layer.width, component, scale);
     Ok(Blob {
@@ -263,7 +238,53 @@ fn layer_blob(
     })
 }
 
-/// Reports whether all colours are bytes divided by 255, so that bytes lose nothing.
+/// Returns the accessor type of a layer.
+fn shape_of(layer: &Layer) -> Result<&'static str, Unsupported> {
+    Ok(match layer.width {
+        1 => "SCALAR",
+        2 => "VEC2",
+        3 => "VEC3",
+        4 => "VEC4",
+        9 => "MAT3",
+        16 => "MAT4",
+        width => {
+            let reason = format!("has {width} components; glTF allows 1 to 4, 9 and 16");
+            return Err(Unsupported::new(format!("layer {:?}", layer.name), reason));
+        }
+    })
+}
+
+/// Returns the integer type of a layer and the factor of its values; `None` if it has floats.
+fn integers(typed: Typed<'_>, values: &[f32], numbers: Numbers<'_>) -> Option<(u32, f32)> {
+    match (typed.layer.kind, typed.component) {
+        (LayerKind::Joints(_), _) if values.iter().any(|&x| x > 255.0) => {
+            Some((component::U16, 1.0))
+        }
+        (LayerKind::Joints(_), _) => Some((component::U8, 1.0)),
+        (LayerKind::Weights(_), _) if numbers.compression.is_some() => Some((component::U8, 255.0)),
+        (LayerKind::Color(_), Some(component::U16)) => Some((component::U16, 65535.0)),
+        (LayerKind::Color(_), Some(component::U8)) => Some((component::U8, 255.0)),
+        (LayerKind::Color(_), None) if all_are_bytes(values) => Some((component::U8, 255.0)),
+        _ => None,
+    }
+}
+
+/// Encodes a layer as floats, or as grid cells if it moves positions on a grid.
+fn float_blob(
+    layer: &Layer,
+    shape: &'static str,
+    values: &[f32],
+    grid: Option<&QuantizationGrid>,
+) -> Blob {
+    let moves = matches!(parse_target_name(&layer.name), Some((_, "POSITION")));
+    if let Some(grid) = grid.filter(|_| moves && layer.width == 3) {
+        return quantize::deltas(values.as_chunks().0, grid);
+    }
+    let extent = moves.then(|| extent(values.as_chunks().0));
+    Blob { extent, ..floats(shape, values.len() / layer.width, values) }
+}
+
+/// Reports whether all colours are multiples of 1/255, which bytes store exactly.
 fn all_are_bytes(values: &[f32]) -> bool {
     values.iter().all(|&x| (0.0..=1.0).contains(&x) && (x * 255.0).round() / 255.0 == x)
 }

@@ -56,8 +56,8 @@ pub(crate) fn positions(points: &[[f64; 3]], grid: &QuantizationGrid) -> (Blob, 
     (blob, error)
 }
 
-/// Quantizes the deltas of a morph target to cells of the grid of the positions that they move:
-/// to whole cells, unless one is longer than 16 bits count.
+/// Quantizes the deltas of a morph target to whole cells of the position grid; keeps fractions as
+/// floats if one exceeds 16 bits.
 pub(crate) fn deltas(deltas: &[[f32; 3]], grid: &QuantizationGrid) -> Blob {
     let in_cells = |&x: &f32| f64::from(x) / grid.cell;
     let values: Vec<f64> = deltas.as_flattened().iter().map(in_cells).collect();
@@ -76,7 +76,7 @@ pub(crate) fn deltas(deltas: &[[f32; 3]], grid: &QuantizationGrid) -> Blob {
     }
 }
 
-/// Quantizes a layer to integers or to floats with fewer bits; `None` if it stays as it is.
+/// Quantizes a layer to integers or to floats with fewer bits; `None` if it stays unchanged.
 pub(crate) fn layer(
     kind: LayerKind,
     width: usize,

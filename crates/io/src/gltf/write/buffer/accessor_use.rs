@@ -6,14 +6,14 @@ use crate::gltf::document::Document;
 use crate::gltf::document::extensions::INSTANCING;
 use crate::gltf::document::primitive_kind::{attributes, is_surface};
 
-/// Computes one flag per accessor: true if only triangle primitives of changed meshes use it, or if
-/// it is empty and nothing uses it.
+/// Computes one flag per accessor: true if only triangles of changed meshes use it, or if it is
+/// empty and unused.
 pub(crate) fn free_accessors(document: &Document<'_>, changed: &[bool]) -> Vec<bool> {
     free_accessors_with(document, changed, &[], &|_| false)
 }
 
-/// Computes the flags of [`free_accessors`] where the marked skins get new matrices, and samplers of
-/// animations, by animation and index, new keys.
+/// Computes the flags of [`free_accessors`] if the marked skins get new matrices and some samplers,
+/// given by animation and index, new keys.
 pub(crate) fn free_accessors_with(
     document: &Document<'_>,
     changed: &[bool],
@@ -38,8 +38,8 @@ pub(crate) fn free_accessors_with(
     free.zip(kept).map(|(free, kept)| free && !kept).collect()
 }
 
-/// Computes one flag per accessor: true if animations use it and, but for triangles of the marked
-/// meshes, nothing else.
+/// Computes one flag per accessor: true if animations use it and nothing else does, except
+/// triangles of the marked meshes.
 pub(crate) fn animation_accessors(document: &Document<'_>, emptied: &[bool]) -> Vec<bool> {
     let mut animated = vec![false; document.accessors.len()];
     mark_samplers(document.json, |_| true, &mut animated);
@@ -53,7 +53,7 @@ pub(crate) fn animation_accessors(document: &Document<'_>, emptied: &[bool]) -> 
     animated.iter().zip(others).map(|(&animated, other)| animated && !other).collect()
 }
 
-/// Marks the accessors of those skins for whose number `is_meant` holds.
+/// Marks the accessors of the selected skins.
 fn mark_skins(json: &Value, is_meant: impl Fn(usize) -> bool, marks: &mut [bool]) {
     let skins = json.get("skins").and_then(Value::as_array).into_iter().flatten();
     for (_, skin) in skins.enumerate().filter(|&(skin, _)| is_meant(skin)) {
@@ -69,7 +69,7 @@ fn mark_instances(json: &Value, marks: &mut [bool]) {
     }
 }
 
-/// Marks the accessors of those samplers for whose animation and index `is_meant` holds.
+/// Marks the accessors of the selected samplers, given by animation and index.
 fn mark_samplers(json: &Value, is_meant: impl Fn((usize, usize)) -> bool, marks: &mut [bool]) {
     let animations = json.get("animations").and_then(Value::as_array).into_iter().flatten();
     for (animation, all) in animations.enumerate() {
@@ -80,7 +80,7 @@ fn mark_samplers(json: &Value, is_meant: impl Fn((usize, usize)) -> bool, marks:
     }
 }
 
-/// Marks the accessors of those primitives of a mesh for which `is_meant` holds.
+/// Marks the accessors of the selected primitives of a mesh.
 fn mark_primitives(mesh: &Value, is_meant: impl Fn(&Value) -> bool, marks: &mut [bool]) {
     let primitives = mesh.get("primitives").and_then(Value::as_array);
     for primitive in primitives.into_iter().flatten().filter(|&primitive| is_meant(primitive)) {

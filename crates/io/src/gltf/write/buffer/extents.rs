@@ -1,14 +1,13 @@
-//! Bounds of the accessors that a document keeps.
+//! Bounds of the accessors that are kept.
 
 use serde_json::{Value, json};
 
 use crate::gltf::document::{Document, component};
 
-/// Corrects the `min` and `max` of the accessors that are not flagged as free, where the file has
-/// them wrong: programs cull and place the camera by them, and validators reject the file.
+/// Corrects wrong `min` and `max` of accessors that are not free: programs use them for culling and
+/// cameras, and validators reject wrong ones.
 ///
-/// Bounds that the file leaves out are not added. Indices of 32 bits, which have no use for them,
-/// and accessors that cannot be read stay as they are.
+/// Missing bounds are not added. 32-bit indices and unreadable accessors stay unchanged.
 ///
 /// Cost: linear in the components of the accessors that have bounds.
 pub(crate) fn mend_extents(document: &Document<'_>, free: &[bool], accessors: &mut [Value]) {
@@ -26,7 +25,7 @@ pub(crate) fn mend_extents(document: &Document<'_>, free: &[bool], accessors: &m
     }
 }
 
-/// Returns the least and the greatest of each component, as they are stored.
+/// Returns the minimum and maximum of each stored component.
 fn extent(document: &Document<'_>, index: usize) -> Option<[Vec<f32>; 2]> {
     if document.accessors.get(index)?.component_type == component::U32 {
         return None;
@@ -45,7 +44,7 @@ fn extent(document: &Document<'_>, index: usize) -> Option<[Vec<f32>; 2]> {
     (is_finite(&min) && is_finite(&max)).then_some([min, max])
 }
 
-/// Reports whether a bound of the document, rounded to 32 bits, is the one found.
+/// Reports whether a bound of the document equals the computed one in 32 bits.
 fn says(said: &Value, found: &[f32]) -> bool {
     let Some(said) = said.as_array() else { return false };
     let is_same = |(said, &found): (&Value, &f32)| said.as_f64().is_some_and(|x| x as f32 == found);

@@ -16,8 +16,8 @@ use views::{copy_views, free_views};
 
 /// Accessors, buffer views and buffer of a document being written.
 ///
-/// Entries of a document that was read keep their indices. Indices that became free are reused and
-/// none is renumbered, so every reference stays valid, even from unknown extensions.
+/// Entries of a source document keep their indices, and only free indices are reused, so every
+/// reference stays valid, even in unknown extensions.
 #[derive(Default)]
 pub(crate) struct BufferBuilder {
     accessors: Vec<Value>,

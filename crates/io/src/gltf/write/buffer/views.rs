@@ -1,4 +1,4 @@
-//! Buffer views of a document that was read: which are in use, and their bytes.
+//! Buffer views of a source document: their use, and copies of their bytes.
 
 use std::ops::Range;
 
@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use crate::gltf::document::Document;
 
-/// Appends the bytes of some views to the buffer of this number, overlapping ones once, and points
+/// Appends the bytes of some views to a buffer with this index, overlapping ranges once, and points
 /// the views at the copies.
 pub(crate) fn copy_views(
     document: &Document<'_>,
@@ -44,8 +44,8 @@ pub(crate) fn copy_views(
     }
 }
 
-/// Computes one flag per buffer view: true if free accessors use it and nothing else does, or if
-/// it has no bytes, as no valid view, and nothing uses it.
+/// Computes one flag per buffer view: true if only free accessors use it, or if it is empty and
+/// unused.
 pub(crate) fn free_views(
     document: &Document<'_>,
     accessors: &[Value],

@@ -1,12 +1,12 @@
-//! Copies of a mesh that a node shows, as nodes.
+//! Instances of a node as separate nodes.
 
 use std::borrow::Cow;
 
 use crate::scene::{Node, Scene};
 
-/// Returns the scene with a child node for each copy of a mesh that a node shows.
+/// Returns the scene with a child node for each instance of a node's mesh.
 ///
-/// The nodes there are keep their numbers.
+/// Existing nodes keep their indices.
 pub(crate) fn with_copies_as_nodes(scene: &Scene) -> Cow<'_, Scene> {
     if scene.nodes.iter().all(|node| node.instances.is_empty()) {
         return Cow::Borrowed(scene);

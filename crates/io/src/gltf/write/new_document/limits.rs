@@ -1,15 +1,15 @@
-//! Limits of new glTF documents: the parts of a scene that they lack.
+//! Parts of a scene that a new glTF document lacks.
 
 use std::collections::BTreeSet;
 
 use super::missing_uvs::UnmappedMaterials;
 use crate::notes::Note;
-use crate::obj::mtl::untold;
+use crate::obj::mtl::mtl_losses;
 use crate::scene::Scene;
 use crate::scene::image_file::holds_image;
 use crate::scene::material::{Material, Shading};
 
-/// Lists what a new glTF document lacks.
+/// Lists the parts of a scene that a new glTF document lacks.
 pub(crate) fn new_document_limits(scene: &Scene) -> Vec<Note> {
     let shown = scene.materials.iter().flat_map(|material| {
         let Shading { normal_image, emission_image, .. } = material.shading;
@@ -41,17 +41,17 @@ pub(crate) fn new_document_limits(scene: &Scene) -> Vec<Note> {
     ]
 }
 
-/// Notes the statements of MTL libraries that glTF lacks, and those that become something else.
+/// Notes the MTL statements that glTF lacks, and the ones it converts.
 fn mtl_statements(scene: &Scene) -> [Note; 3] {
-    let untold = scene.materials.iter().map(|material| untold(material, &scene.images));
-    let untold: Vec<_> = untold.collect();
+    let losses = scene.materials.iter().map(|material| mtl_losses(material, &scene.images));
+    let losses: Vec<_> = losses.collect();
     let note = |note: fn(usize, &str, &str) -> Note, words: Vec<&String>, one, many| {
         let names: BTreeSet<&String> = words.iter().copied().collect();
         note(words.len(), one, many).named(names)
     };
-    let apart = untold.iter().map(|untold| untold.apart).sum();
-    let left_out = untold.iter().flat_map(|untold| &untold.left_out).collect();
-    let changed = untold.iter().flat_map(|untold| &untold.changed).collect();
+    let apart = losses.iter().map(|lost| lost.apart).sum();
+    let left_out = losses.iter().flat_map(|lost| &lost.left_out).collect();
+    let changed = losses.iter().flat_map(|lost| &lost.changed).collect();
     [
         note(Note::left_out, left_out, "MTL statement", "MTL statements"),
         note(
@@ -64,8 +64,7 @@ fn mtl_statements(scene: &Scene) -> [Note; 3] {
     ]
 }
 
-/// Notes the maps that glTF would need in one image, of materials that are not from an MTL
-/// library.
+/// Notes the separate maps that glTF would need in one image, for materials without MTL statements.
 fn separate_images(scene: &Scene) -> [Note; 2] {
     let own = scene.materials.iter().filter(|material| material.mtl.is_empty());
     let maps = own.clone().map(|material| {
@@ -89,7 +88,7 @@ fn separate_images(scene: &Scene) -> [Note; 2] {
     ]
 }
 
-/// Notes maps of roughness or metalness that are not in one image, as glTF has them.
+/// Notes roughness and metalness maps in separate images, which glTF combines.
 fn maps_apart(count: usize) -> Note {
     let note = Note::left_out(
         count,

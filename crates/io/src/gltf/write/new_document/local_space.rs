@@ -1,4 +1,4 @@
-//! Coordinates relative to a centre, for meshes far from the origin: glTF has 32 bits for them.
+//! Coordinates relative to a centre, for meshes far from the origin, since glTF stores 32 bits.
 
 use std::borrow::Cow;
 
@@ -9,11 +9,10 @@ use crate::gltf::write::levels::Level;
 use crate::precision::fits_f32;
 use crate::scene::{IDENTITY, Node, Scene};
 
-/// Scene and levels with the meshes that 32 bits do not hold moved to the origin, each shown by
-/// nodes that move it back.
+/// Returns the scene and levels with meshes that do not fit in 32 bits moved to the origin; nodes
+/// move them back.
 ///
-/// The centre of a mesh is exact in 32 bits, so that programs that read it so lose nothing. A
-/// scene read from glTF stays as it is: its coordinates are those of its document.
+/// The centre of a mesh is exact in 32 bits. A scene read from glTF stays unchanged.
 pub(crate) fn localized<'a>(
     scene: &'a Scene,
     levels: &'a [Level],
@@ -37,7 +36,7 @@ pub(crate) fn localized<'a>(
     (Cow::Owned(moved), Cow::Owned(levels))
 }
 
-/// Moves a mesh to the coordinates that it has in a new glTF file; returns the offset back.
+/// Moves a mesh to its coordinates in a new glTF file; returns the offset back.
 pub(crate) fn to_local(mesh: &mut Mesh) -> DVec3 {
     let centre = centre(mesh).unwrap_or_default();
     if centre != DVec3::ZERO {
@@ -46,8 +45,8 @@ pub(crate) fn to_local(mesh: &mut Mesh) -> DVec3 {
     centre
 }
 
-/// Returns the centre of the bounding box of a mesh that 32 bits do not hold, rounded to a whole
-/// number where that is small beside the box; `None` at the origin, or beyond the range of 32 bits.
+/// Returns the centre of the bounding box of a mesh that does not fit in 32 bits, rounded to a
+/// whole number for large boxes; `None` at the origin, or beyond the range of 32 bits.
 fn centre(mesh: &Mesh) -> Option<DVec3> {
     if fits_f32(mesh) {
         return None;
@@ -67,7 +66,7 @@ fn move_by(mesh: &mut Mesh, offset: DVec3) {
     }
 }
 
-/// Lets a node show a mesh at an offset: by its own transform if it has none, else by a new child.
+/// Offsets a mesh shown by a node: by the node's own transform if it is free, else by a new child.
 fn show_at(scene: &mut Scene, node: usize, mesh: usize, offset: DVec3) {
     if scene.nodes[node].mesh != Some(mesh) {
         return;

@@ -47,7 +47,7 @@ pub(crate) fn material(
     json
 }
 
-/// Adds the emitted light, of which what is brighter than 1 needs an extension.
+/// Adds the emitted light; brighter than 1, it needs an extension.
 fn emit(own: &Shading, json: &mut Value) {
     let emission = own.emission.map(|x| if x.is_finite() { x.max(0.0) } else { 0.0 });
     let strength = emission.into_iter().fold(1.0, f32::max);
@@ -63,7 +63,7 @@ fn unit(x: f32) -> f32 {
     if x.is_finite() { x.clamp(0.0, 1.0) } else { 0.0 }
 }
 
-/// Puts what glTF has no place for into the extras of a material.
+/// Stores properties unknown to glTF in the extras of a material.
 pub(crate) fn keep_all(material: &Material, json: &mut Value) {
     if material.shading != Shading::default() {
         json["extras"]["shading"] = json!(material.shading);
@@ -73,10 +73,10 @@ pub(crate) fn keep_all(material: &Material, json: &mut Value) {
     }
 }
 
-/// Takes what [`keep_all`] put into the extras of materials.
+/// Restores the properties stored by [`keep_all`].
 ///
 /// # Errors
-/// Extras of another form, or images at or above `images`.
+/// Malformed extras, or image indices at or above `images`.
 pub(crate) fn take_all(
     json: &Value,
     images: usize,

@@ -1,4 +1,4 @@
-//! Materials of faces without texture coordinates: in glTF, those may not have textures.
+//! Textured materials of faces without texture coordinates, which glTF does not allow.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,9 +8,9 @@ use crate::notes::Note;
 use crate::scene::Scene;
 use crate::scene::image_file::holds_image;
 
-/// Materials with textures, as a new document holds them, of faces without texture coordinates.
+/// Materials with textures that are used by faces without texture coordinates.
 pub(crate) struct UnmappedMaterials {
-    /// For each of them, whether faces with texture coordinates use it, too.
+    /// For each material, whether faces with texture coordinates also use it.
     is_mapped: BTreeMap<usize, bool>,
 }
 
@@ -41,12 +41,12 @@ impl UnmappedMaterials {
         self.is_mapped.get(&material) == Some(&false)
     }
 
-    /// Lists the materials that faces with texture coordinates use, too, in order.
+    /// Lists the materials that faces with texture coordinates also use, in order.
     pub fn elsewhere_mapped(&self) -> impl Iterator<Item = usize> {
         self.is_mapped.iter().filter(|(_, is_mapped)| **is_mapped).map(|(&material, _)| material)
     }
 
-    /// Notes the textures that are left out.
+    /// Notes the textures left out.
     pub fn note(&self, scene: &Scene) -> Note {
         let names = self.is_mapped.keys().map(|&material| &*scene.materials[material].name);
         Note::left_out(
@@ -58,7 +58,7 @@ impl UnmappedMaterials {
     }
 }
 
-/// Reports whether a mesh has the texture coordinates that textures of new documents use.
+/// Reports whether a mesh has texture coordinates for the textures of a new document.
 pub(crate) fn is_mapped(mesh: &Mesh) -> bool {
     mesh.attributes.as_ref().is_some_and(|own| own.layer(LayerKind::Uv(0)).is_some())
 }

@@ -1,4 +1,4 @@
-//! New glTF documents, for scenes that were read from another format.
+//! New glTF documents, for scenes from other formats.
 
 pub(crate) mod copies;
 pub(crate) mod limits;
@@ -46,8 +46,8 @@ pub(crate) fn document(scene: &Scene, all: &[Image], builder: &mut BufferBuilder
     json
 }
 
-/// Builds the JSON of a scene as one that only [`Skeleton`](super::Skeleton) reads: with all images,
-/// by name, and all that materials have.
+/// Builds the JSON of a scene for [`Skeleton`](crate::gltf::Skeleton): with the names of all images
+/// and all properties of materials.
 pub(crate) fn skeleton(scene: &Scene) -> Value {
     let materials = scene.materials.iter().map(|own| {
         let mut json = material::material(own, &mut |image| image);

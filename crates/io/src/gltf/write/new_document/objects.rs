@@ -1,4 +1,4 @@
-//! Objects of meshes as nodes: in glTF, what has a name is a node.
+//! Objects of meshes as nodes, since glTF has no named parts of a mesh.
 
 use std::collections::BTreeMap;
 
@@ -7,15 +7,15 @@ use meshlod_mesh::{Attributes, Buckets, Labels, Layer, Mesh, VertexId, WedgeId};
 use crate::gltf::write::levels::Level;
 use crate::scene::{Node, Scene, SceneMesh};
 
-/// Scene in which each object is a mesh of its own, without the images, and its levels.
+/// Scene in which each object is a separate mesh, without its images, and its levels.
 pub(crate) struct ObjectNodes {
     pub scene: Scene,
     pub levels: Vec<Level>,
 }
 
-/// Splits meshes of two or more objects into one for each, shown by nodes with their names below
-/// those that showed the mesh; vertices between objects are repeated. Nodes without a name take
-/// that of a mesh's only object. Returns `None` if no mesh has objects.
+/// Splits meshes of two or more objects into one mesh per object, shown by named child nodes;
+/// vertices between objects are repeated. An unnamed node takes the name of a mesh's only object.
+/// Returns `None` if no mesh has objects.
 ///
 /// Cost: linear.
 pub(crate) fn split_objects(scene: &Scene, levels: &[Level]) -> Option<ObjectNodes> {
@@ -47,7 +47,7 @@ pub(crate) fn split_objects(scene: &Scene, levels: &[Level]) -> Option<ObjectNod
 }
 
 impl ObjectNodes {
-    /// Adds a mesh and its levels, whole or split, to be shown by these nodes.
+    /// Adds a mesh and its levels, split if possible, to these nodes.
     fn add(&mut self, mesh: &SceneMesh, coarser: &[Option<&Mesh>], shown_by: &[usize]) {
         let first = self.scene.meshes.len();
         let objects = used_objects(&mesh.mesh);
@@ -96,7 +96,7 @@ impl ObjectNodes {
     }
 }
 
-/// Lists the labels and names of the objects that faces are of.
+/// Lists the labels and names of the objects in use.
 fn used_objects(mesh: &Mesh) -> Vec<(u32, &str)> {
     let Some(objects) = &mesh.objects else { return Vec::new() };
     let mut used = vec![false; objects.names.len()];
@@ -168,13 +168,13 @@ fn attributes(all: &Attributes, faces: &[u32], wedges: &mut FirstUses) -> Attrib
     Attributes { corners, wedge_count: used.len(), layers: all.layers.iter().map(layer).collect() }
 }
 
-/// FirstUses for those of many things that are used, by first use.
+/// Numbering of used items by first use.
 struct FirstUses {
     numbers: Vec<u32>,
     used: Vec<u32>,
 }
 
-/// Marks what has no number yet.
+/// Marks items without a number.
 const NONE: u32 = u32::MAX;
 
 impl FirstUses {
@@ -182,7 +182,7 @@ impl FirstUses {
         Self { numbers: vec![NONE; count], used: Vec::new() }
     }
 
-    /// Returns the number of a thing.
+    /// Returns the number of an item.
     fn of(&mut self, old: u32) -> u32 {
         let number = &mut self.numbers[old as usize];
         if *number == NONE {
@@ -192,7 +192,7 @@ impl FirstUses {
         *number
     }
 
-    /// Returns the things that have numbers, in their order, and forgets the numbers.
+    /// Returns the numbered items in order, and resets the numbering.
     fn take(&mut self) -> Vec<u32> {
         let used = std::mem::take(&mut self.used);
         used.iter().for_each(|&old| self.numbers[old as usize] = NONE);

@@ -17,25 +17,24 @@ use crate::gltf::write::quantized::grid::QuantizationGrid;
 use crate::scene::Scene;
 use skins::SkinMatrices;
 
-/// Grids that the meshes of a scene are quantized to, and how they come back to their places.
+/// Quantization grids of the meshes of a scene, and the skins that scale them back.
 pub(crate) struct Grids {
     /// Grid of each mesh, shared with its levels; `None` if its positions stay floats.
     pub of_mesh: Vec<Option<QuantizationGrid>>,
     /// New matrices of skins.
     pub skins: SkinMatrices,
-    /// Meshes that have no grid, with the reasons.
+    /// Meshes without a grid, with the reasons.
     pub kept: Vec<String>,
 }
 
 impl Grids {
-    /// Makes no grids, for a file that is not compressed.
+    /// Returns no grids, for an uncompressed file.
     pub fn none(scene: &Scene) -> Self {
         let of_mesh = vec![None; scene.meshes.len()];
         Self { of_mesh, skins: SkinMatrices::default(), kept: Vec::new() }
     }
 
-    /// Chooses the grids of a scene that is written as this JSON, which was made of the document,
-    /// if there is one.
+    /// Chooses the grids of a scene to be written as this JSON, made from the document, if any.
     pub fn choose(
         (json, document): (&Value, Option<&Document<'_>>),
         scene: &Scene,
@@ -68,7 +67,7 @@ impl Grids {
 /// Largest delta of a morph target, in cells.
 const MOST_CELLS: f64 = 1e9;
 
-/// Builds the grid over the positions of a mesh and its levels, or says why there is none.
+/// Builds the grid over the positions of a mesh and its levels, or returns the reason against it.
 fn grid_over(meshes: &[&Mesh], bits: u32) -> Result<QuantizationGrid, &'static str> {
     let points = meshes.iter().flat_map(|mesh| &mesh.positions);
     let grid = QuantizationGrid::over(points, bits);
@@ -83,7 +82,7 @@ fn grid_over(meshes: &[&Mesh], bits: u32) -> Result<QuantizationGrid, &'static s
     }
 }
 
-/// Returns why no node transform can stand in for the grid of a mesh; `None` if one can.
+/// Returns the reason why no node transform can undo the grid of a mesh; `None` if one can.
 fn why_floats(json: &Value, mesh: usize) -> Option<&'static str> {
     let array = |value: &'_ Value, key: &str| {
         value.get(key).and_then(Value::as_array).cloned().unwrap_or_default()

@@ -1,7 +1,8 @@
 //! Inverse bind matrices that map quantized positions of skinned meshes back to model space.
 //!
-//! glTF ignores the transforms of nodes with skins. What [`dequantize_nodes`](super::dequantize_nodes)
-//! gives those nodes is for programs that show the mesh without its skin, ours included.
+//! glTF ignores the transforms of nodes with skins. The transforms that
+//! [`dequantize_nodes`](super::dequantize_nodes) gives those nodes are for programs that ignore
+//! skins, ours included.
 
 use std::collections::BTreeMap;
 
@@ -47,7 +48,7 @@ impl SkinMatrices {
         Self(matrices)
     }
 
-    /// Computes one flag per skin: true if new matrices take the place of all its old ones.
+    /// Computes one flag per skin: true if new matrices replace all uses of the old ones.
     pub fn replaced(&self, json: &Value) -> Vec<bool> {
         let count = json.get("skins").and_then(Value::as_array).map_or(0, Vec::len);
         let (mut replaced, mut kept) = (vec![false; count], vec![false; count]);
@@ -58,8 +59,8 @@ impl SkinMatrices {
         replaced.iter().zip(kept).map(|(&replaced, kept)| replaced && !kept).collect()
     }
 
-    /// Gives the skins their new matrices: the first mesh of a skin that is replaced gets the skin
-    /// itself, others a copy.
+    /// Writes the new matrices: the first mesh of a replaced skin gets the skin itself, others get
+    /// a copy.
     pub fn enter(&self, json: &mut Value, builder: &mut BufferBuilder) {
         let mut free = self.replaced(json);
         let mut skins = BTreeMap::new();
@@ -84,7 +85,7 @@ impl SkinMatrices {
     }
 }
 
-/// Lists the nodes with a mesh and a skin, each with these two.
+/// Lists the nodes with a mesh and a skin: node, mesh and skin.
 fn skinned(json: &Value) -> Vec<(usize, (usize, usize))> {
     let nodes = json.get("nodes").and_then(Value::as_array).into_iter().flatten();
     let index = |node: &Value, key| node.get(key).and_then(Value::as_u64).map(|i| i as usize);
@@ -92,8 +93,8 @@ fn skinned(json: &Value) -> Vec<(usize, (usize, usize))> {
     nodes.enumerate().filter_map(|(i, node)| Some((i, pair(node)?))).collect()
 }
 
-/// Reads the matrices of a skin, one a joint; identities if it has none. `None` if they are no
-/// matrices, or too few.
+/// Reads the matrices of a skin, one per joint; identities by default. Returns `None` if they are
+/// invalid or too few.
 fn inverse_bind_matrices(document: &Document<'_>, skin: usize) -> Option<Vec<Matrix>> {
     let skin = document.json.get("skins")?.get(skin).filter(|skin| skin.is_object())?;
     let joints = skin.get("joints")?.as_array()?.len();
