@@ -7,7 +7,7 @@ use meshlod_mesh::{Mesh, VertexId, weld};
 use crate::error::ParseError;
 use crate::files::missing_images::note_missing_images;
 use crate::format::Format;
-use crate::format::facts::{Comments, Vertices};
+use crate::format::facts::{Comments, VertexSharing};
 use crate::options::{ReadOptions, Resolve, Weld, WriteOptions};
 use crate::remarks;
 use crate::scene::{Scene, influences, normals};
@@ -48,11 +48,12 @@ pub(crate) fn parse(
 fn weld_meshes(scene: &mut Scene, format: Format, how: Weld) {
     let vertices = format.stores().vertices;
     // glTF was welded as it was read: its document depends on it.
-    let meshes = if vertices == Vertices::PerPrimitive { &mut [][..] } else { &mut scene.meshes };
+    let meshes =
+        if vertices == VertexSharing::PerPrimitive { &mut [][..] } else { &mut scene.meshes };
     for mesh in meshes {
         match how {
             Weld::Within(epsilon) => drop(weld(&mut mesh.mesh, epsilon)),
-            Weld::Off if vertices == Vertices::PerCorner => unweld(&mut mesh.mesh),
+            Weld::Off if vertices == VertexSharing::PerCorner => unweld(&mut mesh.mesh),
             Weld::Exact | Weld::Off => {}
         }
     }

@@ -212,7 +212,7 @@ mod tests {
             let own = |other: &PathBuf| other.starts_with(folder.path());
             let listed = unfinished().iter().filter(|other| own(other)).count();
             assert_eq!((listed, fs::read_dir(folder.path())?.count()), (1, 2));
-            // As `abandon_files`, but for the files of other tests.
+            // Like `abandon_files`, without the files of other tests.
             let half = unfinished().iter().find(|other| own(other)).cloned();
             fs::remove_file(half.unwrap())
         });

@@ -14,7 +14,7 @@ pub(crate) struct FormatFacts {
     pub format: Format,
     /// Suffixes of file names in lower case; the first one names the format.
     pub suffixes: &'static [&'static str],
-    /// Parses a file. Only formats with [`Vertices::PerPrimitive`] weld vertices themselves.
+    /// Parses a file. Only formats with [`VertexSharing::PerPrimitive`] weld vertices themselves.
     pub read: fn(&[u8], Resolve<'_>, Weld) -> Result<Scene, ParseError>,
     /// Writes a scene as one file, without the files beside it.
     pub write: fn(&Scene, Precision, &mut dyn Write) -> io::Result<()>,
@@ -25,7 +25,7 @@ pub(crate) struct FormatFacts {
 #[derive(Clone, Copy)]
 pub(crate) struct Stores {
     pub holds: Holds,
-    pub vertices: Vertices,
+    pub vertices: VertexSharing,
     pub coordinates: Coordinates,
     pub layers: HeldLayers,
     pub seams: SeamSplits,
@@ -51,7 +51,7 @@ pub(crate) enum Holds {
 
 /// Relation of the vertices in a file to those of its mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Vertices {
+pub(crate) enum VertexSharing {
     /// Faces index the vertices, and vertices without faces are kept.
     Indexed,
     /// Each primitive has vertices of its own, split where their attributes differ.

@@ -15,7 +15,7 @@ use meshlod_mesh::UnknownName;
 use crate::error::IoError;
 use crate::precision::Precision;
 pub use facts::StoredDigits;
-use facts::{Coordinates, FormatFacts, Holds, Stores, Vertices};
+use facts::{Coordinates, FormatFacts, Holds, Stores, VertexSharing};
 pub use table::Format;
 use table::TABLE;
 
@@ -69,7 +69,7 @@ impl Format {
     /// Returns true if the reader welds vertices that the format splits, see
     /// [`Weld::Exact`](crate::Weld::Exact).
     pub fn is_welded(self) -> bool {
-        self.stores().vertices != Vertices::Indexed
+        self.stores().vertices != VertexSharing::Indexed
     }
 
     /// Returns the number format of coordinates, for scenes that are not several STL solids;

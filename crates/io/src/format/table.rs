@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use meshlod_mesh::Mesh;
 
 use super::facts::{
-    Comments, Coordinates, FormatFacts, HeldLayers, Holds, SeamSplits, Stores, Vertices,
+    Comments, Coordinates, FormatFacts, HeldLayers, Holds, SeamSplits, Stores, VertexSharing,
 };
 use crate::precision::Precision;
 use crate::scene::Scene;
@@ -65,7 +65,7 @@ pub(crate) const TABLE: &[FormatFacts] = &[
         read: |bytes, _, _| stl::read_scene(bytes),
         write: stl::write_scene,
         stores: Stores {
-            vertices: Vertices::PerCorner,
+            vertices: VertexSharing::PerCorner,
             coordinates: Coordinates::Binary32,
             layers: HeldLayers::None,
             seams: SeamSplits::None,
@@ -108,7 +108,7 @@ pub(crate) const TABLE: &[FormatFacts] = &[
 /// Text with the vertices of one mesh, each with one set of attributes.
 const TEXT_MESH: Stores = Stores {
     holds: Holds::MeshAlone,
-    vertices: Vertices::Indexed,
+    vertices: VertexSharing::Indexed,
     coordinates: Coordinates::Decimal,
     layers: HeldLayers::Basic,
     seams: SeamSplits::All,
@@ -120,7 +120,7 @@ const TEXT_MESH: Stores = Stores {
 /// A glTF document.
 const DOCUMENT: Stores = Stores {
     holds: Holds::Document,
-    vertices: Vertices::PerPrimitive,
+    vertices: VertexSharing::PerPrimitive,
     coordinates: Coordinates::Binary32,
     layers: HeldLayers::All,
     seams: SeamSplits::None,

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use meshlod_mesh::{FaceLayerKind, Mesh};
 
 use crate::format::Format;
-use crate::format::facts::{Comments, Holds, Vertices};
+use crate::format::facts::{Comments, Holds, VertexSharing};
 use crate::gltf::write::new_document::limits::new_document_limits;
 use crate::notes::Note;
 use crate::scene::Scene;
@@ -51,9 +51,9 @@ impl Scene {
     /// Reports whether a file of this format keeps the vertices that no face uses.
     pub fn keeps_unused_vertices(&self, format: Format) -> bool {
         match format.stores().vertices {
-            Vertices::Indexed => true,
-            Vertices::PerPrimitive => self.source.is_some(),
-            Vertices::PerCorner => false,
+            VertexSharing::Indexed => true,
+            VertexSharing::PerPrimitive => self.source.is_some(),
+            VertexSharing::PerCorner => false,
         }
     }
 

@@ -321,7 +321,7 @@ impl<'a> ObjReader<'a> {
         self.skipped.not_finite = self.text.not_finite();
         self.skipped.masks = self.polypaint.masked;
         self.skipped.paint = self.pools.add_paint(self.polypaint.colors, self.positions.len());
-        // Vertices of one place with colours of their own can be told apart in no other way.
+        // Without attributes at corners, colours change only between separate vertices.
         let has_split_seams = self.corners.is_empty();
         let attributes =
             wedges::attributes(self.positions.len(), &self.faces, &self.corners, self.pools);

@@ -5,7 +5,7 @@ use meshlod_mesh::{FaceLayer, FaceLayerKind};
 /// Smoothing groups by runs of consecutive faces.
 #[derive(Default)]
 pub(super) struct SmoothingRuns {
-    /// First face and group of each run. Faces before the first run have group 0, which is none.
+    /// First face and group of each run. Faces before the first run have group 0, for no group.
     runs: Vec<(usize, u32)>,
 }
 
@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_told() {
+    fn an_invalid_group_is_an_error() {
         let mut runs = SmoothingRuns::default();
         assert_eq!(runs.set(0, "1".into()), Ok(()));
         for group in ["on", "-1", "4294967296"] {

@@ -304,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_of_three_parts_are_told_from_those_of_four() {
+    fn colours_have_three_or_four_components() {
         for (color, width) in [("1 0.5 0", 3), ("1 0.5 0 1", 4)] {
             let vertex = |p: &str| format!("{p} {color} # red\n");
             let vertices: String = ["0 0 0", "1 0 0", "0 1 0"].map(vertex).concat();

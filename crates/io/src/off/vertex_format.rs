@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_and_normals_are_told_apart() {
+    fn colours_and_normals_are_distinguished() {
         let color = |values: &[f32]| Ok(Some((LayerKind::Color(0), values.to_vec())));
         assert_eq!(layer([""; 3]), Ok(None));
         assert_eq!(layer(["255 0 51", "0 255 0", "0 0 255"]), color(&[1.0, 0.0, 0.2]));

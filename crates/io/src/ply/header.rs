@@ -344,7 +344,7 @@ mod tests {
     }
 
     #[test]
-    fn textures_comments_and_unknown_lines_are_told_apart() {
+    fn textures_comments_and_unknown_lines_are_separated() {
         let text = "ply\nformat ascii 1.0\ncomment made  by hand\ncomment TextureFile a b.png\n\
                     obj_info num_cols 512\nvendor 7\ncomment TextureFiles are below\n\
                     comment\tTextureFile c.jpg\r\nend_header\n";

@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn images_are_told_from_other_files() {
+    fn images_are_distinguished_from_other_files() {
         for bytes in [&b"\x89PNG\r\n"[..], b"RIFF1234WEBPVP8 ", b"\0\0\0\x18ftypavif", b"BM12"] {
             assert!(is_image("a", bytes), "{bytes:?}");
         }

@@ -117,7 +117,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bytes_are_told_apart_by_use() {
+    fn bytes_are_counted_by_use() {
         let json = json!({
             "extensionsUsed": ["A", "B"],
             "extensionsRequired": ["B"],

@@ -93,32 +93,12 @@ impl Skeleton {
             true => attach_images(&mut json, images, &mut buffers)?,
             false => images,
         };
-        let first = json.pointer("/buffers/0").cloned().filter(Value::is_object);
-        let lengths = buffers.iter().map(|bytes| json!({ "byteLength": bytes.len() }));
-        json["buffers"] = lengths.collect();
-        if let Some(first) = first {
-            // Whatever else the document says of its buffer.
-            json["buffers"][0] = first;
-            json["buffers"][0]["byteLength"] = buffers[0].len().into();
-        }
+        set_buffers(&mut json, &buffers);
         let buffers = Buffers::new(buffers);
         let mut scene = Scene::default();
         let document = Document::new(&json, &buffers)?;
         check_count("meshes", document.meshes.len(), self.emptied.len())?;
-        scene.images = match self.is_gltf {
-            true => read_images(&document, &mut |_| None)?,
-            false => new_document::image_names(&json),
-        };
-        for (image, file) in scene.images.iter_mut().zip(files) {
-            image.bytes.extend(file.bytes);
-            if file.is_preview {
-                image.name = preview_name(&image.name);
-            }
-        }
-        scene.materials = materials::materials(&json, scene.images.len())?;
-        if !self.is_gltf {
-            material::take_all(&json, scene.images.len(), &mut scene.materials)?;
-        }
+        read_materials(self.is_gltf, &document, files, &mut scene)?;
         for (index, &is_empty) in self.emptied.iter().enumerate() {
             scene.meshes.push(scene_mesh(&document, index, is_empty, scene.materials.len())?);
         }
@@ -131,6 +111,42 @@ impl Skeleton {
         }
         Ok(scene)
     }
+}
+
+/// Lists the buffers in the document; the first one keeps its other entries.
+fn set_buffers(json: &mut Value, buffers: &[Vec<u8>]) {
+    let first = json.pointer("/buffers/0").cloned().filter(Value::is_object);
+    let lengths = buffers.iter().map(|bytes| json!({ "byteLength": bytes.len() }));
+    json["buffers"] = lengths.collect();
+    if let Some(first) = first {
+        json["buffers"][0] = first;
+        json["buffers"][0]["byteLength"] = buffers[0].len().into();
+    }
+}
+
+/// Reads the images, with the bytes of their files, and the materials.
+fn read_materials(
+    is_gltf: bool,
+    document: &Document<'_>,
+    files: Vec<SkeletonImage>,
+    scene: &mut Scene,
+) -> Result<(), ParseError> {
+    let json = document.json;
+    scene.images = match is_gltf {
+        true => read_images(document, &mut |_| None)?,
+        false => new_document::image_names(json),
+    };
+    for (image, file) in scene.images.iter_mut().zip(files) {
+        image.bytes.extend(file.bytes);
+        if file.is_preview {
+            image.name = preview_name(&image.name);
+        }
+    }
+    scene.materials = materials::materials(json, scene.images.len())?;
+    if !is_gltf {
+        material::take_all(json, scene.images.len(), &mut scene.materials)?;
+    }
+    Ok(())
 }
 
 /// Splits the bytes of a document into other data and animations, and drops geometry and images,

@@ -57,7 +57,7 @@ impl Library {
                 None => missing.push(name.to_owned()),
             }
         }
-        // A name with blanks of which no part is a file is more likely to be one.
+        // If no part of a name with blanks is a file, it is more likely a single name.
         if missing.len() == parts.len() && !names.contains('"') {
             missing = vec![names.to_owned()];
         }
