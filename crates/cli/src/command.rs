@@ -1,6 +1,7 @@
 //! The command line: global options and one subcommand per verb.
 
 use clap::{Parser, Subcommand};
+use meshlod::Format;
 
 use crate::compare::Compare;
 use crate::demo::Demo;
@@ -14,17 +15,23 @@ use crate::verbs::{
 };
 
 /// Level of detail for triangle meshes.
-///
-/// The suffix selects the format: .ply .obj .stl .off .smf .gltf .glb .vrm. A path of - means
-/// standard input or output, with the format given by --format. Exit codes: 0 done, 1 could not, 2
-/// wrong usage, 3 errors found.
 #[derive(Parser)]
-#[command(name = "meshlod", version, max_term_width = 100)]
+#[command(name = "meshlod", version, max_term_width = 100, long_about = long_about())]
 pub struct Cli {
     #[command(flatten)]
     pub global: GlobalArgs,
     #[command(subcommand)]
     pub work: Work,
+}
+
+/// Returns the description of the command in its long help.
+fn long_about() -> String {
+    format!(
+        "Level of detail for triangle meshes.\n\nThe suffix selects the format: {}. A path of - means \
+         standard input or output, with the format given by --format. Exit codes: 0 done, 1 could \
+         not, 2 wrong usage, 3 errors found.",
+        Format::suffixes()
+    )
 }
 
 /// One verb, or several runs of verbs.

@@ -31,7 +31,7 @@ impl std::fmt::Display for FileLocation {
 pub struct ParseError {
     /// Location of the error in the mesh file.
     pub location: FileLocation,
-    /// Description of the problem and, where that is clear, of what to do about it.
+    /// Description of the problem and, where possible, of the fix.
     pub reason: String,
 }
 
@@ -58,12 +58,12 @@ impl ParseError {
 pub struct Unsupported {
     /// Name of the part of the scene that cannot be stored, such as `mesh 3` or `v12`.
     pub part: String,
-    /// Reason why the part cannot be stored and, where that is clear, what to do about it.
+    /// Reason why the part cannot be stored and, where possible, the fix.
     pub reason: String,
 }
 
 impl Unsupported {
-    /// Creates the error for a part of a scene, given by name, that cannot be stored for a reason.
+    /// Creates an error from the name of the part and the reason.
     pub fn new(part: impl Into<String>, reason: impl Into<String>) -> Self {
         Self { part: part.into(), reason: reason.into() }
     }
@@ -117,7 +117,7 @@ impl IoError {
         }
     }
 
-    /// Returns the line, byte or part of the file that the error is about, if it is about one.
+    /// Returns the line, byte or part of the file with the error, if it is known.
     pub fn place(&self) -> Option<String> {
         match self {
             Self::Parse { source, .. } => Some(source.location.to_string()),

@@ -1,6 +1,6 @@
 //! Reads and writes mesh files: PLY, OBJ, STL, OFF, SMF and glTF.
 //!
-//! Every format has a module of its own that turns bytes into a mesh or scene, or a typed error.
+//! Each format has its own module, which turns bytes into a mesh or scene, or a typed error.
 //!
 //! [`read()`] and [`write()`] choose the format by the file's suffix. The contents of a file are a
 //! [`Scene`], and [`Scene::flatten`] merges it into one mesh. A scene read from glTF keeps its
@@ -16,47 +16,38 @@
 //! ```
 #![forbid(unsafe_code)]
 
-#[cfg(feature = "draco")]
-mod contained;
 mod error;
 mod files;
-mod flatten;
 mod format;
 pub mod gltf;
-mod image_file;
-mod influences;
 mod limits;
-mod line_writer;
-mod material;
+mod memory;
 pub mod meshopt;
-mod normals;
 mod notes;
 pub mod obj;
 pub mod off;
+mod options;
 pub mod ply;
 mod polygon;
 mod precision;
 mod remarks;
-mod replace;
 mod scene;
 pub mod smf;
-mod staged;
 pub mod stl;
-mod text_cursor;
+mod text;
 mod vertex_attributes;
 
 pub use error::{FileLocation, IoError, ParseError, Unsupported};
-pub use files::{
-    ReadOptions, Resolve, Weld, WriteOptions, read, read_bytes, write, write_compressed,
-    write_lods, write_strips,
-};
-pub use flatten::{MeshInstance, transform};
-pub use format::Format;
-pub use image_file::ImageHeader;
+pub use files::replace::{abandon_files, check_place, remove_abandoned, write_file};
+pub use files::{read, write, write_compressed, write_lods, write_strips};
+pub use format::{Format, StoredDigits};
 pub use limits::merged_instances;
-pub use material::{Material, MtlMap, MtlStatement, Shading};
+pub use memory::{read_bytes, write_to};
 pub use meshlod_mesh::{merge_equal_wedges, weld};
-pub use notes::{Note, NoteKind};
+pub use notes::{Note, NoteKind, grouped};
+pub use options::{ReadOptions, Resolve, Weld, WriteOptions};
 pub use precision::Precision;
-pub use replace::{abandon_files, check_place, remove_abandoned, write_file};
+pub use scene::flatten::{MeshInstance, transform};
+pub use scene::image_file::ImageHeader;
+pub use scene::material::{Material, MtlMap, MtlStatement, Shading};
 pub use scene::{Image, Node, Scene, SceneMesh};

@@ -1,18 +1,19 @@
-//! Notes on what a file and a scene do not share: what a reader left out, what a format cannot hold.
+//! Notes on losses: parts of a file that a reader left out, parts of a scene that a format cannot
+//! hold.
 
 use std::fmt;
 
-/// How something differs between a file and the scene read from it or written to it.
+/// Kind of difference between a file and its scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoteKind {
-    /// It did not arrive.
+    /// Missing on the other side.
     LeftOut,
-    /// It arrived in another form.
+    /// Present in another form.
     Changed,
 }
 
 impl NoteKind {
-    /// Returns the word for it in messages: `left out` or `changed`.
+    /// Returns the word for messages: `left out` or `changed`.
     pub fn word(self) -> &'static str {
         match self {
             Self::LeftOut => "left out",
@@ -21,22 +22,22 @@ impl NoteKind {
     }
 }
 
-/// Note that things of one kind were left out or changed on the way from or to a file.
+/// Note that items of one kind were left out or changed when a file was read or written.
 ///
 /// It is displayed as in `2 images that were not found (a.png, b.png)`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
     /// Difference between the file and the scene.
     pub kind: NoteKind,
-    /// Number of the things.
+    /// Number of items.
     pub count: usize,
-    /// Name of the things, in the singular if there is one: `images that were not found`.
+    /// Noun for the items, in the singular if there is one: `images that were not found`.
     pub what: String,
-    /// Names of the first few of the things, if they have names that help to find them.
+    /// Names of the first few items, if names help to find them.
     pub names: Vec<String>,
-    /// Advice on what to do about it, if there is any: `.glb keeps everything`.
+    /// Advice on how to avoid the loss, if any: `.glb keeps everything`.
     pub remedy: Option<String>,
-    /// Name of the things in the plural, by which notes of one sort are known.
+    /// Noun in the plural, which identifies notes of one sort.
     many: String,
 }
 
@@ -44,17 +45,17 @@ pub struct Note {
 const MOST_NAMES: usize = 8;
 
 impl Note {
-    /// Creates a note that `count` things did not arrive, called `one` or, if several, `many`.
+    /// Creates a note that `count` items were left out, called `one` or, if several, `many`.
     pub fn left_out(count: usize, one: &str, many: &str) -> Self {
         Self::new(NoteKind::LeftOut, count, one, many)
     }
 
-    /// Creates a note that `count` things arrived in another form: `normal scaled to unit length`.
+    /// Creates a note that `count` items were changed: `normal scaled to unit length`.
     pub fn changed(count: usize, one: &str, many: &str) -> Self {
         Self::new(NoteKind::Changed, count, one, many)
     }
 
-    /// Creates the note that values of attributes which are not finite were read as 0.
+    /// Creates a note on attribute values that are not finite and were read as 0.
     pub(crate) fn not_finite(count: usize) -> Self {
         Self::changed(
             count,
@@ -63,7 +64,7 @@ impl Note {
         )
     }
 
-    /// Creates the note that faces without a triangle were left out.
+    /// Creates a note on faces without a triangle, which were left out.
     pub(crate) fn thin_faces(count: usize) -> Self {
         Self::left_out(
             count,
@@ -78,26 +79,26 @@ impl Note {
         Self { kind, count, what: what.to_owned(), names, remedy, many: many.to_owned() }
     }
 
-    /// Adds to the name of the things how much they changed, or why.
+    /// Appends a detail to the noun: how much the items changed, or why.
     pub fn detailed(mut self, detail: &str) -> Self {
         self.what += detail;
         self
     }
 
-    /// Adds the names of the things, of which the first few are kept.
+    /// Sets the names of the items; only the first few are kept.
     pub fn named<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
         self.names = names.into_iter().take(MOST_NAMES).map(Into::into).collect();
         self
     }
 
-    /// Adds what to do about it.
+    /// Sets the advice on how to avoid the loss.
     pub fn remedied(mut self, remedy: impl Into<String>) -> Self {
         self.remedy = Some(remedy.into());
         self
     }
 
-    /// Adds notes on a further part to those of the whole: of two that say the same of different
-    /// numbers of things, the one on more of them stays.
+    /// Merges notes of two parts of a whole; of two notes on the same kind of items, the one with
+    /// the larger count stays.
     pub fn merge(notes: &mut Vec<Self>, further: Vec<Self>) {
         for note in further {
             let is_like = |known: &&mut Self| (known.kind, &known.many) == (note.kind, &note.many);
@@ -109,8 +110,8 @@ impl Note {
         }
     }
 
-    /// Describes the notes of one difference as a list, then what to do about them, each remedy
-    /// once: `2 lines, 1 point; .glb keeps everything`. `None` if there are none.
+    /// Formats the notes of one kind as a list, followed by each remedy once: `2 lines, 1 point;
+    /// .glb keeps everything`. Returns `None` if there are none.
     pub fn list(notes: &[Self], kind: NoteKind) -> Option<String> {
         let of_it = || notes.iter().filter(|note| note.kind == kind);
         let texts: Vec<String> = of_it().map(Self::to_string).collect();
@@ -135,8 +136,8 @@ impl fmt::Display for Note {
     }
 }
 
-/// Formats a number with commas between groups of three digits.
-fn grouped(number: usize) -> String {
+/// Formats a count with commas as thousands separators: 871,414.
+pub fn grouped(number: usize) -> String {
     let digits = number.to_string();
     let mut text = String::new();
     for (i, digit) in digits.chars().enumerate() {

@@ -1,11 +1,9 @@
-//! Precision of written coordinates: how many bits a mesh needs, and what fewer of them change.
+//! Precision of written coordinates, and the bits that a mesh needs.
 
 use glam::DVec3;
 use meshlod_mesh::Mesh;
 use rustc_hash::FxHashMap;
 use serde::{Deserialize, Serialize};
-
-use crate::{Format, Note, Scene, gltf};
 
 /// Precision of the floating-point coordinates in a written file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -13,8 +11,8 @@ use crate::{Format, Note, Scene, gltf};
 pub enum Precision {
     /// 32-bit floats where they keep the shape, else 64-bit floats.
     ///
-    /// They keep it if no two vertices at different places become one, and no coordinate moves by
-    /// more than a thousandth of the mean length of an edge.
+    /// The shape is kept if no two vertices at different positions coincide, and no coordinate
+    /// moves by more than a thousandth of the mean edge length.
     #[default]
     Auto,
     /// 32-bit floats, which most programs read.
@@ -39,19 +37,19 @@ impl Precision {
 
 meshlod_mesh::by_name!(Precision, "precisions");
 
-/// Bits of a coordinate in a file.
+/// Width of a coordinate in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Width {
     F32,
     F64,
 }
 
-/// Part of the mean length of an edge by which a coordinate may move.
+/// Largest move of a coordinate, as a fraction of the mean edge length.
 const UNSEEN: f64 = 1e-3;
 
 impl Precision {
-    /// Returns [`Precision::F32`] or [`Precision::F64`]: for [`Precision::Auto`], the one that these
-    /// meshes need in formats that have both.
+    /// Returns [`Precision::F32`] or [`Precision::F64`]: for [`Precision::Auto`], the precision
+    /// that these meshes need.
     pub fn of<'a>(self, meshes: impl IntoIterator<Item = &'a Mesh>) -> Self {
         match self {
             Self::Auto if meshes.into_iter().all(fits_f32) => Self::F32,
@@ -60,7 +58,7 @@ impl Precision {
         }
     }
 
-    /// Returns the bits of the coordinates of a mesh.
+    /// Returns the width of the coordinates of a mesh.
     pub(crate) fn width(self, mesh: &Mesh) -> Width {
         match self.of([mesh]) {
             Self::F64 => Width::F64,
@@ -69,97 +67,14 @@ impl Precision {
     }
 }
 
-impl Scene {
-    /// Returns the largest change of a coordinate when the scene is written in a format and read
-    /// back, in the units of its meshes; infinite for a coordinate that cannot be written.
-    pub fn rounding(&self, format: Format, precision: Precision) -> f64 {
-        let precision = precision.of(self.meshes.iter().map(|mesh| &mesh.mesh));
-        let of_mesh = |mesh: &Mesh| self.mesh_rounding(mesh, format, precision);
-        self.meshes.iter().map(|mesh| of_mesh(&mesh.mesh)).fold(0.0, f64::max)
-    }
-
-    /// Returns the largest change of a coordinate of one mesh of the scene in a format that has the
-    /// bits of `precision`, as [`Scene::rounding`] does for all.
-    pub fn mesh_rounding(&self, mesh: &Mesh, format: Format, precision: Precision) -> f64 {
-        match (format, precision) {
-            (Format::Gltf | Format::Glb, _) => self.gltf_rounding(mesh),
-            (Format::Stl, _) if !self.has_solids => rounding(mesh),
-            (Format::Ply, Precision::F32) => rounding(mesh),
-            (_, Precision::F64) => 0.0,
-            // The shortest decimal of an `f32` usually parses to a different `f64`.
-            (_, Precision::F32 | Precision::Auto) => {
-                let read = |x: f64| (x as f32).to_string().parse().unwrap_or(f64::INFINITY);
-                let coordinates = mesh.positions.as_flattened().iter();
-                coordinates.map(|&x: &f64| (read(x) - x).abs()).fold(0.0, f64::max)
-            }
-        }
-    }
-
-    fn gltf_rounding(&self, mesh: &Mesh) -> f64 {
-        if self.source.is_some() || fits_f32(mesh) {
-            return rounding(mesh);
-        }
-        let mut local = Mesh::new(mesh.positions.clone(), mesh.faces.clone());
-        gltf::to_local(&mut local);
-        rounding(&local)
-    }
-
-    /// Notes the vertices that a precision that was asked for moves in a format that could keep them,
-    /// if that changes the shape.
-    pub fn precision_limits(&self, format: Format, precision: Precision) -> Option<Note> {
-        let has_both = match format {
-            Format::Ply | Format::Obj | Format::Off | Format::Smf => true,
-            Format::Stl => self.has_solids,
-            Format::Gltf | Format::Glb => false,
-        };
-        if precision != Precision::F32 || !has_both {
-            return None;
-        }
-        let (most, count) = changes(&self.shown_mesh())?;
-        let why = format!(" by up to {most:.1e}");
-        let note = Note::changed(count, "vertex rounded", "vertices rounded").detailed(&why);
-        Some(note.remedied("--precision auto or f64 keeps them"))
-    }
-
-    /// Returns the largest change of a coordinate in a format that has 32 bits alone, if those
-    /// change the shape, and the number of vertices it moves.
-    pub(crate) fn unavoidable_rounding(&self, format: Format) -> Option<(f64, usize)> {
-        let all: Vec<(f64, usize)> = match format {
-            Format::Stl if self.has_solids => Vec::new(),
-            Format::Stl => changes(&self.shown_mesh()).into_iter().collect(),
-            Format::Gltf | Format::Glb => {
-                let of_mesh = |mesh: &Mesh| {
-                    if self.source.is_some() || fits_f32(mesh) {
-                        return changes(mesh);
-                    }
-                    let mut local = Mesh::new(mesh.positions.clone(), mesh.faces.clone());
-                    gltf::to_local(&mut local);
-                    changes(&local)
-                };
-                self.meshes.iter().filter_map(|mesh| of_mesh(&mesh.mesh)).collect()
-            }
-            Format::Ply | Format::Obj | Format::Off | Format::Smf => Vec::new(),
-        };
-        all.into_iter().reduce(|(a, n), (b, m)| (a.max(b), n + m))
-    }
-}
-
-/// Returns the largest change of a coordinate of a mesh in 32 bits, if those change its shape, and
-/// the number of vertices that they move.
-fn changes(mesh: &Mesh) -> Option<(f64, usize)> {
-    let is_inexact = |p: &&[f64; 3]| p.iter().any(|&x| f64::from(x as f32) != x);
-    let count = mesh.positions.iter().filter(is_inexact).count();
-    (!fits_f32(mesh)).then(|| (rounding(mesh), count))
-}
-
-/// Returns the largest change of a coordinate of a mesh in 32 bits, in model units; infinite for a
-/// coordinate beyond their range.
-fn rounding(mesh: &Mesh) -> f64 {
+/// Returns the largest change of a coordinate by rounding to 32 bits, in model units; infinite if a
+/// coordinate exceeds their range.
+pub(crate) fn rounding(mesh: &Mesh) -> f64 {
     let moves = mesh.positions.as_flattened().iter().map(|&x| (f64::from(x as f32) - x).abs());
     moves.fold(0.0, f64::max)
 }
 
-/// Reports whether 32 bits keep the shape of a mesh, as [`Precision::Auto`] says.
+/// Reports whether 32 bits keep the shape of a mesh, as defined by [`Precision::Auto`].
 ///
 /// Cost: one pass over the coordinates if all are exact in 32 bits, else linear in the mesh.
 pub(crate) fn fits_f32(mesh: &Mesh) -> bool {
@@ -167,7 +82,7 @@ pub(crate) fn fits_f32(mesh: &Mesh) -> bool {
     moves == 0.0 || (moves.is_finite() && moves <= UNSEEN * mean_edge(mesh) && !merges(mesh))
 }
 
-/// Returns the mean length of the edges of all faces; infinite without faces.
+/// Returns the mean edge length over all faces; infinite without faces.
 fn mean_edge(mesh: &Mesh) -> f64 {
     if mesh.faces.is_empty() {
         return f64::INFINITY;
@@ -177,7 +92,7 @@ fn mean_edge(mesh: &Mesh) -> f64 {
     mesh.faces.iter().map(|&face| length(mesh.triangle(face))).sum()
 }
 
-/// Reports whether two vertices at different places have one place in 32 bits.
+/// Reports whether rounding to 32 bits makes two distinct positions equal.
 fn merges(mesh: &Mesh) -> bool {
     let mut first: FxHashMap<[u32; 3], usize> = FxHashMap::default();
     first.reserve(mesh.positions.len());
@@ -215,19 +130,6 @@ mod tests {
         // Exact in 32 bits.
         assert_eq!(Precision::Auto.of([&at(grid(3), 0.5, utm)]), Precision::F32);
         assert_eq!(Precision::F32.of([&at(grid(3), 0.01, utm)]), Precision::F32);
-    }
-
-    #[test]
-    fn rounding_that_was_asked_for_is_noted_where_it_changes_the_shape() {
-        let note = |scale, format, precision| {
-            let scene = Scene::from_mesh("", at(grid(3), scale, [500_000.0, 5_400_000.0, 100.0]));
-            scene.precision_limits(format, precision).map(|note| note.to_string())
-        };
-        let text = note(0.013, Format::Ply, Precision::F32).unwrap();
-        assert!(text.contains("vertices rounded by up to 3.9e-2"), "{text}");
-        assert_eq!(note(0.013, Format::Ply, Precision::Auto), None);
-        assert_eq!(note(0.013, Format::Glb, Precision::F32), None);
-        assert_eq!(note(0.5, Format::Ply, Precision::F32), None);
     }
 
     #[test]

@@ -1,12 +1,12 @@
-//! Comments of PLY files in other formats: lines `# comment …` and `# obj_info …` of text formats,
-//! and an array in the extras of glTF's asset.
+//! PLY comments in other formats: `# comment …` and `# obj_info …` lines in text formats, an array
+//! in the extras of the asset in glTF.
 
 use std::io;
 
 use serde_json::{Value, json};
 
-use crate::line_writer::LineWriter;
-use crate::text_cursor::text_of;
+use crate::text::cursor::text_of;
+use crate::text::line_writer::LineWriter;
 
 /// Writes comments as lines of a text format.
 pub(crate) fn write(remarks: &[String], lines: &mut LineWriter) -> io::Result<()> {
@@ -19,7 +19,7 @@ pub(crate) fn write(remarks: &[String], lines: &mut LineWriter) -> io::Result<()
     Ok(())
 }
 
-/// Finds the comments that [`write`] wrote, above the first line of data.
+/// Finds the comments written by [`write`], above the first line of data.
 pub(crate) fn of_text(bytes: &[u8]) -> Vec<String> {
     let mut remarks = Vec::new();
     for line in bytes.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii) {
@@ -39,13 +39,13 @@ pub(crate) fn put(remarks: &[String], document: &mut Value) {
     }
 }
 
-/// Finds the comments that [`put`] put into a glTF document.
+/// Finds the comments stored by [`put`] in a glTF document.
 pub(crate) fn of_document(document: &Value) -> Vec<String> {
     let comments = document["asset"]["extras"]["comments"].as_array();
     comments.into_iter().flatten().filter_map(|text| remark(text.as_str()?)).collect()
 }
 
-/// Returns a line that may stand in the header of a PLY file.
+/// Returns the text if it is a valid comment line of a PLY header.
 fn remark(text: &str) -> Option<String> {
     let is_remark = matches!(text.split_ascii_whitespace().next(), Some("comment" | "obj_info"));
     let is_line = !text.contains(['\n', '\r']) && text.trim() == text;
@@ -55,7 +55,9 @@ fn remark(text: &str) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use crate::{Format, Precision, ReadOptions, Scene, gltf, obj, off, ply, read_bytes, smf};
+    use crate::{
+        Format, Precision, ReadOptions, Scene, WriteOptions, obj, ply, read_bytes, write_to,
+    };
 
     const PLY: &str = "ply\nformat ascii 1.0\ncomment by  hand\nobj_info scan 7\n\
         element vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
@@ -72,17 +74,12 @@ mod tests {
         let expected = ["comment by  hand", "obj_info scan 7"];
         for format in [Format::Obj, Format::Off, Format::Smf, Format::Glb] {
             assert!(scene.limits_of(format).is_empty(), "{format:?}");
-            let (mut file, precision) = (Vec::new(), Precision::Auto);
-            match format {
-                Format::Obj => obj::write(&scene, precision, &mut file, &[]).unwrap(),
-                Format::Off => off::write_scene(&scene, precision, &mut file).unwrap(),
-                Format::Smf => smf::write_scene(&scene, precision, &mut file).unwrap(),
-                _ => file = gltf::write_glb(&scene, &[]).unwrap(),
-            }
+            let mut file = Vec::new();
+            write_to(&mut file, &scene, format, &WriteOptions::default()).unwrap();
             let back = read(&file, format);
             assert_eq!(back.ply.remarks, expected, "{format:?}");
             let mut again = Vec::new();
-            ply::write_scene(&back, precision, &mut again).unwrap();
+            ply::write_scene(&back, Precision::Auto, &mut again).unwrap();
             let text = String::from_utf8_lossy(&again).into_owned();
             assert!(text.contains("comment by  hand\nobj_info scan 7\n"), "{format:?}: {text}");
         }

@@ -1,4 +1,4 @@
-//! Attributes for formats that store one set of them per vertex.
+//! Attributes of formats that store one set per vertex.
 
 use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId};
 
@@ -24,8 +24,8 @@ pub(crate) fn named_layer(kind: LayerKind, width: usize, values: Vec<f32>) -> La
     Layer { kind, name: name.to_owned(), width, values }
 }
 
-/// Extends a layer to this many wedges, with the values of a mesh that has no such layer: white and
-/// opaque for colours, a unit vector for tangents, else 0.
+/// Pads a layer to this many wedges with default values: opaque white for colours, a unit vector
+/// for tangents, else 0.
 pub(crate) fn pad(layer: &mut Layer, wedges: usize) {
     let value: Vec<f32> = match layer.kind {
         LayerKind::Color(_) => vec![1.0; layer.width],
@@ -37,7 +37,7 @@ pub(crate) fn pad(layer: &mut Layer, wedges: usize) {
     }
 }
 
-/// Scales colours to [0, 1]: if any component exceeds 1, all are taken to be out of 255.
+/// Scales colours to [0, 1]: if any component exceeds 1, all are divided by 255.
 pub(crate) fn normalize_colors(colors: &mut [f32]) {
     if colors.iter().any(|&c| c > 1.0) {
         colors.iter_mut().for_each(|c| *c /= 255.0);
@@ -64,7 +64,7 @@ pub(crate) fn split_at_seams(mesh: &Mesh) -> SplitMesh {
     split(mesh, |wedge| wedge)
 }
 
-/// Splits the vertices of a mesh as [`split_at_seams`] does, but only where these layers differ.
+/// Splits the vertices of a mesh like [`split_at_seams`], but only where these layers differ.
 pub(crate) fn split_at_seams_of(mesh: &Mesh, layers: &[&Layer]) -> SplitMesh {
     match &mesh.attributes {
         Some(attributes) => {
@@ -126,7 +126,7 @@ pub(crate) fn distinct_wedges(mesh: &Mesh, attributes: &Attributes, layers: &[&L
     first
 }
 
-/// Reports whether a layer has two values at a vertex, compared bit for bit.
+/// Reports whether a layer has different values at one vertex, compared bit for bit.
 pub(crate) fn has_seams(mesh: &Mesh, attributes: &Attributes, layer: &Layer) -> bool {
     let mut first = vec![None; mesh.positions.len()];
     let bits = |wedge: WedgeId| layer.of(wedge).iter().map(|x| x.to_bits());

@@ -1,7 +1,7 @@
 //! Exact conservation of volume for all meshes of a scene.
 
 use glam::DMat4;
-use meshlod_io::{Format, MeshInstance, Precision, Scene};
+use meshlod_io::{Format, MeshInstance, Precision, Scene, StoredDigits};
 use meshlod_measure::volume;
 use meshlod_mesh::{Mesh, closed_faces};
 use meshlod_simplify::{Digits, ExactVolumeError, VolumeResidual, conserve_volume};
@@ -12,11 +12,10 @@ use crate::conditioned::ConditionedMesh;
 /// Returns the number format in which a mesh file stores positions, given its format and precision;
 /// [`Precision::Auto`] counts as 32 bits.
 pub fn digits_of(format: Format, precision: Precision) -> Digits {
-    match (format, precision) {
-        (Format::Stl | Format::Gltf | Format::Glb, _) => Digits::F32,
-        (_, Precision::F64) => Digits::F64,
-        (Format::Ply, _) => Digits::F32,
-        (Format::Obj | Format::Off | Format::Smf, _) => Digits::Decimal,
+    match format.stored_digits(precision) {
+        StoredDigits::F32 => Digits::F32,
+        StoredDigits::F64 => Digits::F64,
+        StoredDigits::Decimal => Digits::Decimal,
     }
 }
 

@@ -44,7 +44,7 @@ impl FileRows {
                     "--locks refers to the vertices of the input file and does not go with --weld",
                 ));
             }
-            (Weld::Exact, Format::Glb | Format::Gltf | Format::Stl) => {
+            (Weld::Exact, format) if format.is_welded() => {
                 Some(meshlod::read(path, &ReadOptions { weld: Weld::Off })?)
             }
             (Weld::Exact | Weld::Off, _) => None,

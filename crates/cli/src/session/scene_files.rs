@@ -6,8 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use meshlod::io::gltf::{Level, LodLayout, StripMesh};
-use meshlod::io::{Note, gltf, obj, off, ply, read_bytes, smf, stl};
-use meshlod::io::{write_file, write_lods, write_strips};
+use meshlod::io::{Note, read_bytes, write_file, write_lods, write_strips, write_to};
 use meshlod::{Format, Mesh, ReadOptions, Scene, WriteOptions};
 
 use crate::options::args::WriteArgs;
@@ -181,17 +180,6 @@ fn write_pipe(
     options: WriteOptions,
     out: &mut impl Write,
 ) -> Result<(), Failure> {
-    let precision = options.precision;
-    let written = match format {
-        Format::Ply => ply::write_scene(scene, precision, out),
-        Format::Stl => stl::write_scene(scene, precision, out),
-        Format::Off => off::write_scene(scene, precision, out),
-        Format::Smf => smf::write_scene(scene, precision, out),
-        Format::Obj => obj::write(scene, precision, out, &[]),
-        Format::Glb | Format::Gltf => {
-            let bytes = gltf::write_glb(scene, &[]);
-            out.write_all(&bytes.map_err(|error| Failure::at(Path::new("-"), error))?)
-        }
-    };
+    let written = write_to(out, scene, format, &options);
     written.map_err(|error| Failure::at(Path::new("-"), error))
 }

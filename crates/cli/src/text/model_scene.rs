@@ -139,7 +139,7 @@ pub fn query<'f>(
 }
 
 pub fn is_gltf(format: Format) -> bool {
-    matches!(format, Format::Gltf | Format::Glb)
+    format.is_gltf()
 }
 
 /// Returns the number of faces that a scene shows, over all instances.

@@ -1,17 +1,6 @@
 //! Formatting of numbers for people.
 
-/// Formats a count with commas as thousands separators: 871,414.
-pub fn count(number: usize) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
-}
+pub use meshlod::io::grouped as count;
 
 /// Formats a number of faces with its noun: 1 face, 2 faces.
 pub fn faces(number: usize) -> String {

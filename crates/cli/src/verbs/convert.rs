@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use meshlod::{Format, Mesh, Scene};
+use meshlod::{Mesh, Scene};
 use serde_json::{Value, json};
 
 use crate::options::args::{ReadArgs, WriteArgs};
@@ -35,11 +35,8 @@ impl Convert {
         files::check_output(&self.output, session)?;
         let scene = files::read(&self.input, &self.reading, session)?;
         scene_files::write(&self.output, &scene, &self.writing, session)?;
-        let keeps_unused = match files::check_output(&self.output, session)? {
-            Format::Stl => false,
-            Format::Gltf | Format::Glb => scene.source.is_some(),
-            _ => true,
-        };
+        let format = files::check_output(&self.output, session)?;
+        let keeps_unused = scene.keeps_unused_vertices(format);
         let vertices = vertices(&scene, keeps_unused);
         let (json, text) = (self.json(&scene, vertices), self.text(&scene, vertices));
         Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })

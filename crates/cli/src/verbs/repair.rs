@@ -148,8 +148,7 @@ impl Repair {
             session.warn(Failure::at(&self.input, reason));
         }
         if done.left.total() > 0 {
-            let joins = matches!(format, Format::Glb | Format::Gltf | Format::Stl)
-                && done.report.count(RepairStep::SplitVertices) > 0;
+            let joins = format.is_welded() && done.report.count(RepairStep::SplitVertices) > 0;
             let how = match joins {
                 true => "reading this format without --no-weld joins what was split".into(),
                 false => format!("check {} lists them", files::name(&self.output)),

@@ -1,31 +1,33 @@
-//! Files beside a mesh file, which it refers to by name.
+//! Companion files of a mesh file, looked up by name in its folder.
 
 use std::collections::{BTreeMap, HashMap};
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-use crate::{Format, Note};
+use crate::files::names::bare_name;
+use crate::format::Format;
+use crate::notes::Note;
 
-/// Largest image or material library that is read, in bytes.
+/// Size limit of an image or material library, in bytes.
 const MOST_OF_ONE: u64 = 1 << 30;
 
-/// Most bytes of images and material libraries that are read for a scene.
+/// Limit on the total size of the images and material libraries of a scene, in bytes.
 const MOST_OF_ALL: u64 = 1 << 32;
 
-/// Suffixes of images, which are bounded in size where buffers are not.
+/// Suffixes of images: unlike buffers, they have a size limit.
 const IMAGES: [&str; 6] = ["png", "jpg", "jpeg", "webp", "ktx2", "dds"];
 
-/// Reader of the files beside a mesh file.
+/// Reader of the companion files of a mesh file.
 pub(super) struct Beside {
     folder: PathBuf,
-    /// True if the mesh file refers to nothing but images and libraries.
+    /// True if the mesh file refers only to images and libraries.
     has_no_buffers: bool,
-    /// Bytes that may still be read.
+    /// Remaining bytes of the total limit.
     left: u64,
-    /// Entries of folders by their names in lower case.
+    /// Entries of each folder by lower-case name.
     listed: HashMap<PathBuf, HashMap<String, OsString>>,
-    /// Absolute names for which a file beside was read, with the name of that.
+    /// Absolute names, each with the name of the companion file read instead.
     replaced: BTreeMap<String, String>,
 }
 
@@ -33,15 +35,15 @@ impl Beside {
     pub fn of(path: &Path, format: Format) -> Self {
         Self {
             folder: path.parent().unwrap_or(Path::new("")).to_owned(),
-            has_no_buffers: !matches!(format, Format::Gltf | Format::Glb),
+            has_no_buffers: !format.is_gltf(),
             left: MOST_OF_ALL,
             listed: HashMap::new(),
             replaced: BTreeMap::new(),
         }
     }
 
-    /// Reads the file of that name relative to the folder; `None` if there is none, or an image or
-    /// library exceeds what is read of these.
+    /// Reads a file by its name relative to the folder; returns `None` if it does not exist or
+    /// exceeds a size limit.
     pub fn read(&mut self, name: &str) -> Option<Vec<u8>> {
         let file = self.find(name)?;
         if self.has_no_buffers || is_image_name(&file) {
@@ -59,7 +61,7 @@ impl Beside {
         Some(bytes)
     }
 
-    /// Notes the files that were taken in place of those with absolute names.
+    /// Notes the companion files read in place of absolute names.
     pub fn note(self) -> Note {
         let (one, many) = (
             "file with an absolute path, taken from beside the model",
@@ -70,11 +72,10 @@ impl Beside {
         note.remedied("write the names of files without their folders")
     }
 
-    /// Finds the file of that name relative to the folder, whatever its case if there is none of
-    /// the same.
+    /// Finds a file by its name relative to the folder, ignoring case if there is no exact match.
     ///
-    /// Of an absolute name only the last part counts, as the rest says nothing on a machine that
-    /// the file was copied to; and only of images and libraries.
+    /// Only the last part of an absolute name counts, since its folders may not exist on this
+    /// machine. Buffers with absolute names are not found.
     pub fn find(&mut self, name: &str) -> Option<PathBuf> {
         self.find_relative(name).or_else(|| {
             let bare = bare_name(name)?;
@@ -116,25 +117,7 @@ fn is_image_name(path: &Path) -> bool {
     IMAGES.iter().any(|&image| suffix == image)
 }
 
-/// Returns the last part of an absolute name of any system, as of `/a/b.png` and `C:\a\b.png`;
-/// `None` of a relative name, or of several names in a row.
-pub(super) fn bare_name(name: &str) -> Option<&str> {
-    let mut words = name.split_ascii_whitespace();
-    let is_one = words.next().is_some_and(is_absolute) && !words.any(is_absolute);
-    let bare = name.rsplit(['/', '\\']).next()?;
-    (is_one && !matches!(bare, "" | "." | "..")).then_some(bare)
-}
-
-fn is_absolute(name: &str) -> bool {
-    let is_separator = |byte: &u8| matches!(byte, b'/' | b'\\');
-    match name.as_bytes() {
-        [drive, b':', separator, ..] if drive.is_ascii_alphabetic() => is_separator(separator),
-        [first, ..] => is_separator(first),
-        [] => false,
-    }
-}
-
-/// Lists a folder by names in lower case; of several that become one, the first in order.
+/// Lists a folder by lower-case name; of names that differ only in case, the first in order wins.
 fn list(folder: &Path) -> HashMap<String, OsString> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();

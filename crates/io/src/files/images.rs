@@ -1,13 +1,15 @@
-//! Image files beside the file that is written.
+//! Image files written beside a mesh file.
 
 use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::beside::{Beside, bare_name};
-use super::inner_path;
-use crate::staged::StagedFiles;
-use crate::{Format, Image, IoError, Unsupported};
+use super::beside::Beside;
+use super::names::{bare_name, inner_path};
+use super::staged::StagedFiles;
+use crate::error::{IoError, Unsupported};
+use crate::format::Format;
+use crate::scene::Image;
 
 /// Stages an image under its name in the folder of `path`, unless it is already there. An existing
 /// file with different contents is not overwritten.
@@ -37,9 +39,9 @@ pub(super) fn stage_image(
     staged.add(&target, |out| out.write_all(&image.bytes))
 }
 
-/// Gives images whose names point outside the folder of `path`, and do not lead to them from there,
-/// bare file names, and numbers those whose names another image has, of the scene or in the folder:
-/// a file that is there may belong to another model.
+/// Renames images so that they can be written to the folder of `path`: names that point outside it
+/// become bare file names, and names that another image of the scene or a file in the folder has
+/// get a number, since that file may belong to another model.
 pub(super) fn use_own_names(path: &Path, images: &mut [Image]) {
     let mut taken: HashMap<PathBuf, usize> = HashMap::new();
     for i in 0..images.len() {
@@ -72,11 +74,11 @@ pub(super) fn use_own_names(path: &Path, images: &mut [Image]) {
     }
 }
 
-/// Longest name of a file, in bytes, which leaves room for a number and for what is added while it is
-/// written: most file systems allow 255.
+/// Maximum length of a file name, in bytes; most file systems allow 255, and a number and a
+/// temporary suffix are added.
 const MOST_NAME: usize = 180;
 
-/// Cuts off the end of a stem that makes a file name too long.
+/// Shortens the stem of a file name that is too long.
 fn shortened(file: PathBuf) -> PathBuf {
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     if name.len() <= MOST_NAME {
@@ -96,7 +98,7 @@ fn with_number(file: &Path, number: u32) -> PathBuf {
     file.with_file_name(format!("{stem}-{number}{}", suffix.unwrap_or_default()))
 }
 
-/// Reports whether the image's name, relative to the folder of `path`, leads to a file of equal
+/// Reports whether the file named by an image, relative to the folder of `path`, has the same
 /// bytes.
 fn is_beside(path: &Path, image: &Image) -> bool {
     let found = Beside::of(path, Format::Obj).find(&image.name);

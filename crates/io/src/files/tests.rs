@@ -2,7 +2,7 @@ use meshlod_fixtures::{cube, seam_strip, shared_broken, shared_mesh};
 use tempfile::tempdir;
 
 use super::*;
-use crate::{Image, Material, Weld};
+use crate::{Image, Material, Precision, Weld};
 
 fn read_default(path: &Path) -> Result<Scene, IoError> {
     read(path, &ReadOptions::default())
@@ -132,7 +132,7 @@ fn what_is_not_there_is_named() {
 }
 
 #[test]
-fn every_broken_file_is_read_or_told_in_one_line() {
+fn every_broken_file_is_read_or_refused_in_one_line() {
     for path in shared_broken() {
         match read_default(&path) {
             Ok(scene) => {

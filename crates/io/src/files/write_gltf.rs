@@ -1,4 +1,4 @@
-//! Writing a glTF document with the buffer and the images that it refers to.
+//! Writing a glTF document with its buffer and images.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -7,12 +7,15 @@ use std::path::Path;
 use serde::Deserialize;
 
 use super::images::stage_image;
-use super::stem;
-use crate::gltf::{CompressionReport, GltfFiles, Uri, parse_uri};
-use crate::staged::{StagedFiles, is_mentioned, is_part_name, obsolete_parts, part_name};
-use crate::{IoError, Unsupported};
+use super::names::stem;
+use super::staged::{StagedFiles, is_mentioned, is_part_name, obsolete_parts, part_name};
+use crate::error::{IoError, Unsupported};
+use crate::gltf::document::uri;
+use crate::gltf::document::uri::Uri;
+use crate::gltf::write::output::GltfFiles;
+use crate::gltf::write::settings::CompressionReport;
 
-/// Writes the files that `encode` makes, given how to name the buffer by its bytes.
+/// Writes the files made by `encode`, which takes a function that names the buffer by its bytes.
 pub(super) fn write_gltf(
     path: &Path,
     encode: impl FnOnce(&dyn Fn(&[u8]) -> String) -> Result<(GltfFiles, CompressionReport), Unsupported>,
@@ -51,8 +54,8 @@ pub(super) fn write_gltf(
     Ok(report)
 }
 
-/// Returns the file names of the buffers of a document in the same folder; none if there is no
-/// document, or none that can be read.
+/// Returns the file names of the buffers of a document in the same folder; empty if there is no
+/// readable document.
 fn buffers_of(path: &Path) -> BTreeSet<String> {
     #[derive(Default, Deserialize)]
     #[serde(default)]
@@ -68,7 +71,7 @@ fn buffers_of(path: &Path) -> BTreeSet<String> {
     let bytes = if is_file { fs::read(path).unwrap_or_default() } else { Vec::new() };
     let document: OldDocument = serde_json::from_slice(&bytes).unwrap_or_default();
     let uris = document.buffers.into_iter().filter_map(|buffer| buffer.uri);
-    let name = |uri: String| match parse_uri(&uri) {
+    let name = |uri: String| match uri::parse(&uri) {
         Ok(Uri::File(name)) => Some(name.trim_start_matches("./").to_owned()),
         _ => None,
     };

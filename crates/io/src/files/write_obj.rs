@@ -7,13 +7,17 @@ use std::path::Path;
 
 use super::beside::Beside;
 use super::images::{stage_image, use_own_names};
-use super::stem;
-use crate::obj::{self, mtl};
-use crate::staged::{StagedFiles, is_mentioned, is_part_name, obsolete_parts, part_name};
-use crate::text_cursor::text_of;
-use crate::{Format, IoError, Precision, Scene};
+use super::names::stem;
+use super::staged::{StagedFiles, is_mentioned, is_part_name, obsolete_parts, part_name};
+use crate::error::IoError;
+use crate::format::Format;
+use crate::obj;
+use crate::obj::mtl;
+use crate::precision::Precision;
+use crate::scene::Scene;
+use crate::text::cursor::text_of;
 
-/// Writes a scene; a library of the file that was at `path` stays if it says the same.
+/// Writes a scene; the material library of the old file stays if it is equivalent.
 pub(super) fn write_obj(path: &Path, scene: &Scene, precision: Precision) -> Result<(), IoError> {
     let mut staged = StagedFiles::default();
     let mut images = scene.images.clone();
@@ -38,9 +42,9 @@ pub(super) fn write_obj(path: &Path, scene: &Scene, precision: Precision) -> Res
     staged.finish(path, |out| obj::write(scene, precision, out, &libraries), &obsolete)
 }
 
-/// Libraries of the file that is to be replaced.
+/// Material libraries of the file to be replaced.
 struct OldLibraries {
-    /// Files that each `mtllib` line names.
+    /// File names on each `mtllib` line.
     lines: Vec<String>,
     known: mtl::Library,
 }
@@ -54,7 +58,7 @@ impl OldLibraries {
         Self { lines, known }
     }
 
-    /// Reports whether the libraries say what the materials of a scene are.
+    /// Reports whether the libraries define the materials of a scene.
     fn say(&self, scene: &Scene) -> bool {
         // Without their libraries, the materials are but names.
         !self.lines.is_empty()
@@ -62,14 +66,14 @@ impl OldLibraries {
     }
 }
 
-/// Lists all names that the lines `mtllib` of a file may mean.
+/// Lists all file names that `mtllib` lines may refer to.
 fn names_in(lines: &[String]) -> BTreeSet<String> {
     let parts = lines.iter().flat_map(|line| mtl::library_names(line)).map(str::to_owned);
     parts.chain(lines.iter().cloned()).collect()
 }
 
-/// Stages the library of a scene, unless it is already there, and returns its name; behind it those
-/// of libraries that were not found, if they may define what the scene has but names of.
+/// Stages the library of a scene, unless it exists already. Returns its name, followed by libraries
+/// that were not found, if they may define materials of which the scene only has names.
 fn stage_library(
     path: &Path,
     scene: &Scene,
@@ -96,7 +100,7 @@ fn stage_library(
     Ok(std::iter::once(name).chain(unread.into_iter().map(str::to_owned)).collect())
 }
 
-/// Returns what the `mtllib` lines of a file name, each once; nothing if there is no such file.
+/// Returns the distinct names on the `mtllib` lines of a file; empty if the file does not exist.
 fn libraries_of(path: &Path) -> Vec<String> {
     let mut libraries = Vec::new();
     if !fs::metadata(path).is_ok_and(|found| found.is_file()) {
@@ -124,7 +128,7 @@ fn libraries_of(path: &Path) -> Vec<String> {
     libraries
 }
 
-/// Length in bytes from which on a line is not looked at.
+/// Length in bytes from which lines are ignored.
 const LONGEST_LINE: usize = 1 << 16;
 
 fn add_library(line: &[u8], libraries: &mut Vec<String>) {

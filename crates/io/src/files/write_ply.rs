@@ -1,13 +1,16 @@
-//! Writing a PLY file with the images that its materials use.
+//! Writing a PLY file with its images.
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::images::{stage_image, use_own_names};
-use crate::staged::StagedFiles;
-use crate::{IoError, Precision, Scene, ply};
+use super::staged::StagedFiles;
+use crate::error::IoError;
+use crate::ply;
+use crate::precision::Precision;
+use crate::scene::Scene;
 
-/// Writes the images that materials use beside a PLY file, and then the file.
+/// Writes a PLY file and, beside it, the images its materials use.
 pub(super) fn write_ply(path: &Path, scene: &Scene, precision: Precision) -> Result<(), IoError> {
     let used = scene.materials.iter().filter_map(|material| material.base_color_image);
     let used: BTreeSet<usize> = used.collect();

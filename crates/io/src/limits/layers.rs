@@ -1,34 +1,39 @@
-//! Limits of formats for attributes: layers that they lack, and seams that split vertices.
+//! Attributes that a format cannot hold, and seams that split vertices.
 
 use std::collections::BTreeSet;
 
 use meshlod_mesh::{Layer, LayerKind, Mesh};
 
+use crate::format::facts::{HeldLayers, SeamSplits, Stores};
+use crate::notes::Note;
 use crate::obj::color_splits;
-use crate::{Format, MeshInstance, Note, Scene, SceneMesh};
+use crate::scene::flatten::MeshInstance;
+use crate::scene::{Scene, SceneMesh};
 
 impl Scene {
-    pub(super) fn layer_limits(&self, format: Format) -> Vec<Note> {
+    pub(super) fn layer_limits(&self, stores: &Stores) -> Vec<Note> {
         let shown = || self.instances().into_iter().map(|MeshInstance { mesh, .. }| mesh);
         let shown: BTreeSet<usize> = shown().collect();
         let meshes: Vec<&Mesh> = shown.iter().map(|&mesh| &self.meshes[mesh].mesh).collect();
         let layers =
             meshes.iter().filter_map(|mesh| mesh.attributes.as_ref()).flat_map(|a| &a.layers);
-        let sets = match format {
-            Format::Obj => self.shown_texture_sets(),
+        let sets = match stores.layers {
+            HeldLayers::BasicByMaterial => self.shown_texture_sets(),
             _ => BTreeSet::new(),
         };
         let lost: BTreeSet<String> =
-            layers.filter(|layer| !holds(format, layer, &sets)).map(title).collect();
+            layers.filter(|layer| !holds(stores.layers, layer, &sets)).map(title).collect();
         let split = |splits: fn(&Mesh) -> usize| {
             let is_new = !self.had_split_seams();
             if is_new { meshes.iter().map(|mesh| splits(mesh)).sum() } else { 0 }
         };
-        let all = if splits_seams(format) { split(seams) } else { 0 };
-        let of_colors = if format == Format::Obj { split(color_splits) } else { 0 };
-        let lacks_opacity = matches!(format, Format::Obj | Format::Smf);
+        let (all, of_colors) = match stores.seams {
+            SeamSplits::None => (0, 0),
+            SeamSplits::Colors => (0, split(color_splits)),
+            SeamSplits::All => (split(seams), 0),
+        };
         let translucent = meshes.iter().map(|mesh| translucent_vertices(mesh));
-        let translucent = if lacks_opacity { translucent.sum() } else { 0 };
+        let translucent = if stores.has_opacity { 0 } else { translucent.sum() };
         vec![
             Note::left_out(lost.len(), "vertex attribute", "vertex attributes").named(lost),
             Note::left_out(translucent, "opacity of a vertex", "opacities of vertices"),
@@ -50,8 +55,8 @@ impl Scene {
         self.source.as_ref().map_or_else(Vec::new, |source| source.texture_sets())
     }
 
-    /// Returns the sets of texture coordinates that an OBJ file has: those of the materials of the
-    /// meshes, and the first for faces without.
+    /// Returns the sets of texture coordinates in an OBJ file: the sets that shown materials use,
+    /// and the first one for other faces.
     fn shown_texture_sets(&self) -> BTreeSet<u8> {
         let sets = self.texture_sets();
         let shown: BTreeSet<usize> = self.instances().iter().map(|i| i.mesh).collect();
@@ -71,29 +76,25 @@ impl Scene {
         }
     }
 
-    /// Reports whether vertices were split at seams in the file that the scene was read from, so
-    /// that to split them again changes nothing.
+    /// Reports whether the source file had its vertices split at seams, so that splitting them
+    /// again changes nothing.
     pub(crate) fn had_split_seams(&self) -> bool {
         self.source.is_some() || self.has_split_seams
     }
 }
 
-/// Reports whether a format has a place for a layer; `sets` are the sets of texture coordinates that
-/// an OBJ file has.
-fn holds(format: Format, layer: &Layer, sets: &BTreeSet<u8>) -> bool {
-    match (format, layer.kind) {
-        (Format::Gltf | Format::Glb | Format::Ply, _) => true,
-        (Format::Stl, _) => false,
-        (Format::Obj, LayerKind::Uv(set)) => sets.contains(&set),
+/// Reports whether a format stores a layer; `sets` are the sets of texture coordinates in an OBJ
+/// file.
+fn holds(held: HeldLayers, layer: &Layer, sets: &BTreeSet<u8>) -> bool {
+    match (held, layer.kind) {
+        (HeldLayers::All, _) => true,
+        (HeldLayers::None, _) => false,
+        (HeldLayers::BasicByMaterial, LayerKind::Uv(set)) => sets.contains(&set),
         (_, kind) => matches!(kind, LayerKind::Normal | LayerKind::Uv(0) | LayerKind::Color(0)),
     }
 }
 
-fn splits_seams(format: Format) -> bool {
-    matches!(format, Format::Off | Format::Smf)
-}
-
-/// Returns the name of a layer for people.
+/// Returns the name of a layer for messages.
 fn title(layer: &Layer) -> String {
     match layer.kind {
         LayerKind::Normal => "normals".to_owned(),

@@ -61,7 +61,7 @@ fn indices_follow_either_of_two() {
 }
 
 #[test]
-fn streams_are_told_from_those_of_other_modes_and_lengths() {
+fn streams_of_other_modes_and_lengths_are_refused() {
     let triangles = encode_triangles(&[[0, 1, 2], [2, 1, 3]]);
     let attributes = encode_attributes(&[7; 80], 4);
     for (stream, mode, count) in

@@ -1,10 +1,10 @@
-//! Vertices of an OBJ file with colours, of which each vertex has one.
+//! Vertices of an OBJ file with one colour each.
 
 use meshlod_mesh::{Layer, LayerKind, Mesh};
 
 use crate::vertex_attributes::{SplitMesh, named_layer, split_at_seams_of};
 
-/// Vertices of a file with colours, of which OBJ has one for each vertex.
+/// Vertices of a coloured mesh, split so that each has one colour.
 pub(super) struct ColoredVertices {
     pub colors: Layer,
     pub split: SplitMesh,
@@ -19,7 +19,7 @@ impl ColoredVertices {
     }
 }
 
-/// Counts the vertices that an OBJ file has beyond those of a mesh, to tell their colours apart.
+/// Counts the vertices that an OBJ file adds because faces disagree on the colour of a vertex.
 pub(crate) fn color_splits(mesh: &Mesh) -> usize {
     let vertices = ColoredVertices::of(mesh).map(|colored| colored.split.vertices.len());
     vertices.map_or(0, |vertices| vertices - mesh.positions.len())

@@ -1,16 +1,16 @@
 //! Polypaint of ZBrush: colours of vertices in comments, as in `#MRGB ffff0000ff00ff00`.
 
-/// Colours and masks of vertices that comments give, in the order of the vertices.
+/// Colours and masks from comments, in the order of the vertices.
 #[derive(Default)]
 pub(super) struct Polypaint {
     pub colors: Vec<[f32; 3]>,
-    /// Vertices that are masked in part or wholly.
+    /// Number of vertices that are partly or fully masked.
     pub masked: usize,
 }
 
 impl Polypaint {
-    /// Adds the vertices of a line behind `#MRGB`: for each, two digits of the mask and two for
-    /// each of red, green and blue. What follows the first that is no such number is a comment.
+    /// Adds the vertices on a line after `#MRGB`, with two hexadecimal digits each for mask, red,
+    /// green and blue. The rest of the line after an invalid number is a comment.
     pub fn add(&mut self, line: &[u8]) {
         for digits in line.trim_ascii().chunks_exact(8) {
             let text = std::str::from_utf8(digits).ok();

@@ -9,21 +9,23 @@ use super::mtl::{Library, resolve_materials};
 use super::polypaint::Polypaint;
 use super::skipped::Skipped;
 use super::smoothing::SmoothingRuns;
-use super::wedges::{self, CornerIds, Pools};
+use super::wedges;
+use super::wedges::{CornerIds, Pools};
+use crate::error::ParseError;
 use crate::polygon::triangulate;
-use crate::text_cursor::{TextCursor, quoted, text_of};
-use crate::{Node, ParseError, Scene, SceneMesh};
+use crate::scene::{Node, Scene, SceneMesh};
+use crate::text::cursor::{TextCursor, quoted, text_of};
 
 /// Parses an OBJ file as one mesh under one node; `resolve` loads the material library and the
-/// textures, or returns `None` if there is no such file.
+/// textures, or returns `None` if a file does not exist.
 ///
 /// Polygons are triangulated. A `v` gives three coordinates and, if present, a colour; a `vt` gives
 /// two coordinates. Values of `vt`, `vn` and colours that are not finite become 0, and are counted.
-/// Corners that lack what others have get 0, too. Colours above 1 are taken to be out of 255; those
-/// in comments `#MRGB`, the polypaint of ZBrush, hold where no vertex has another. `o` wins over
-/// `g`. A material whose library or image is missing keeps its name. Materials that no face uses come
-/// last. Lines, points, curves, faces with fewer than three corners and everything else that is not a
-/// face are counted in [`Scene::notes`].
+/// Corners without a value that others have get 0, too. Colours above 1 are divided by 255. Colours
+/// in comments `#MRGB`, the polypaint of ZBrush, are used if no vertex has another. `o` wins over
+/// `g`. A material whose library or image is missing keeps its name. Materials that no face uses
+/// come last. Lines, points, curves, faces with fewer than three corners and other statements are
+/// counted in [`Scene::notes`].
 ///
 /// Cost: O(n), n = bytes, plus that of triangulating concave polygons.
 /// # Errors
@@ -50,8 +52,8 @@ struct Corner {
     ids: CornerIds,
 }
 
-/// Polygon that refers to elements later in the file. Meanwhile, `n - 2` placeholder faces stand
-/// for it.
+/// Polygon that refers to elements later in the file, for which `n - 2` placeholder faces are
+/// added.
 struct Forward {
     line: usize,
     first_face: usize,
@@ -73,7 +75,7 @@ struct ObjReader<'a> {
     libraries: Vec<String>,
     skipped: Skipped,
     polypaint: Polypaint,
-    /// Error of the first face with too few corners, for a file without others.
+    /// Error about the first face with too few corners, in case the file has no others.
     first_thin: Option<ParseError>,
     /// Current polygon, its vertices and its triangles.
     polygon: Vec<Corner>,
@@ -168,8 +170,8 @@ impl<'a> ObjReader<'a> {
         if self.text.more() { self.vertex_extras() } else { Ok(()) }
     }
 
-    /// Reads the numbers after a position: `w`, `r g b`, `r g b a` or `w r g b`, told apart by
-    /// their count. Of four, the first is taken as red.
+    /// Reads the numbers after a position: `w`, `r g b`, `r g b a` or `w r g b`, distinguished by
+    /// their count. The first of four is taken as red.
     fn vertex_extras(&mut self) -> Result<(), ParseError> {
         let mut extras = [0.0; 4];
         let mut count = 0;
@@ -291,8 +293,8 @@ impl<'a> ObjReader<'a> {
         self.index(what, count).map(Some)
     }
 
-    /// Reads an index counted from 1 or, if negative, back from the last of `count` elements so
-    /// far.
+    /// Reads an index counted from 1 or, if negative, back from the last of the `count` preceding
+    /// elements.
     #[inline]
     fn index(&mut self, what: &str, count: usize) -> Result<NonZeroU32, ParseError> {
         let written = self.text.integer("an index is missing")?;
@@ -319,7 +321,7 @@ impl<'a> ObjReader<'a> {
         self.skipped.not_finite = self.text.not_finite();
         self.skipped.masks = self.polypaint.masked;
         self.skipped.paint = self.pools.add_paint(self.polypaint.colors, self.positions.len());
-        // Vertices of one place with colours of their own can be told apart in no other way.
+        // Without attributes at corners, colours change only between separate vertices.
         let has_split_seams = self.corners.is_empty();
         let attributes =
             wedges::attributes(self.positions.len(), &self.faces, &self.corners, self.pools);

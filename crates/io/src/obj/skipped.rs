@@ -1,16 +1,16 @@
-//! Statements of an OBJ file that give no faces, counted.
+//! Counts of the statements in an OBJ file that are not faces.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::Note;
-use crate::text_cursor::text_of;
+use crate::notes::Note;
+use crate::text::cursor::text_of;
 
-/// Parts of an OBJ file that a reader left out.
+/// Parts of an OBJ file that are left out.
 #[derive(Default)]
 pub(super) struct Skipped {
-    /// Lines, by the words of the statements.
+    /// Number of lines by statement.
     statements: BTreeMap<Vec<u8>, usize>,
-    /// Smoothing groups that are no numbers.
+    /// Smoothing groups that are not numbers.
     pub smoothing: BTreeSet<String>,
     /// Names of groups in a file that has objects.
     pub groups: BTreeSet<String>,
@@ -26,7 +26,7 @@ pub(super) struct Skipped {
     pub not_finite: usize,
     /// Masks of vertices in polypaint.
     pub masks: usize,
-    /// Colours of polypaint without a vertex, or where vertices have others.
+    /// Colours of polypaint that are unused, for lack of a vertex or since vertices have colours.
     pub paint: usize,
 }
 

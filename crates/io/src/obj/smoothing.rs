@@ -5,15 +5,15 @@ use meshlod_mesh::{FaceLayer, FaceLayerKind};
 /// Smoothing groups by runs of consecutive faces.
 #[derive(Default)]
 pub(super) struct SmoothingRuns {
-    /// First face and group of each run. Faces before the first run have none, which is 0.
+    /// First face and group of each run. Faces before the first run have group 0, for no group.
     runs: Vec<(usize, u32)>,
 }
 
 impl SmoothingRuns {
-    /// Sets the group of all faces from `face` on; `off`, 0 and nothing stand for none.
+    /// Sets the group of all faces from `face` on; `off`, 0 and an empty name mean none.
     ///
     /// # Errors
-    /// A group that is no number of 32 bits. Faces then have none.
+    /// A group that is not a 32-bit number. Faces then have no group.
     pub(super) fn set(&mut self, face: usize, group: String) -> Result<(), String> {
         let number = match &*group {
             "" => Some(0),
@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_told() {
+    fn an_invalid_group_is_an_error() {
         let mut runs = SmoothingRuns::default();
         assert_eq!(runs.set(0, "1".into()), Ok(()));
         for group in ["on", "-1", "4294967296"] {

@@ -1,4 +1,4 @@
-//! Texture coordinates and normals of an OBJ file, each distinct value with a number.
+//! Numbering of the distinct texture coordinates and normals of an OBJ file.
 
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, HashMap};
@@ -6,9 +6,9 @@ use std::io;
 
 use meshlod_mesh::{LayerKind, Mesh};
 
-use crate::line_writer::LineWriter;
+use crate::text::line_writer::LineWriter;
 
-/// Numbers of the distinct values of a layer, for each wedge.
+/// Number of each wedge's value in a layer.
 pub(super) struct ValueNumbers {
     pub of_wedge: Option<Vec<u32>>,
     /// Number of the last value.
@@ -16,8 +16,7 @@ pub(super) struct ValueNumbers {
 }
 
 impl ValueNumbers {
-    /// Writes the distinct values of a layer, if the mesh has it, and numbers them from
-    /// `before` + 1.
+    /// Writes the distinct values of a layer, if it exists, and numbers them from `before` + 1.
     pub fn write(
         mesh: &Mesh,
         kind: LayerKind,
@@ -47,7 +46,7 @@ impl ValueNumbers {
     }
 }
 
-/// Numbers of the texture coordinates, of which each material uses one set.
+/// Numbers of the texture coordinates; each material uses one set.
 pub(super) struct UvNumbers {
     sets: BTreeMap<u8, ValueNumbers>,
     /// Set of each material label.
@@ -55,8 +54,8 @@ pub(super) struct UvNumbers {
 }
 
 impl UvNumbers {
-    /// Writes the texture coordinates that faces use; `of_label` has the set of each material. The
-    /// first set is that of all other faces, and stands in for a set that the mesh lacks.
+    /// Writes the texture coordinates that faces use; `of_label` gives the set of each material.
+    /// Other faces use the first set, and so do materials whose set the mesh lacks.
     pub fn write(mesh: &Mesh, of_label: &[u8], lines: &mut LineWriter) -> io::Result<Self> {
         let has = |set: u8| {
             let attributes = mesh.attributes.as_ref();

@@ -13,12 +13,12 @@ pub(super) struct CornerIds {
     pub(super) normal: Option<NonZeroU32>,
 }
 
-/// Values that corners refer to by id, and colours of vertices.
+/// Values that corners refer to by id, and vertex colours.
 #[derive(Default)]
 pub(super) struct Pools {
     pub(super) uvs: Vec<[f32; 2]>,
     pub(super) normals: Vec<[f32; 3]>,
-    /// Colours of the vertices up to the last one that has any; empty if none has.
+    /// Colours of the vertices up to the last coloured one; may be empty.
     colors: Vec<[f32; 3]>,
 }
 
@@ -29,8 +29,8 @@ impl Pools {
         self.colors.push(color);
     }
 
-    /// Gives vertices the colours of comments, unless some have others; further ones are white.
-    /// Returns the number of colours that are not used.
+    /// Gives vertices the colours from comments, unless the file has vertex colours; vertices
+    /// without one are white. Returns the number of unused colours.
     pub(super) fn add_paint(&mut self, mut paint: Vec<[f32; 3]>, vertices: usize) -> usize {
         if !self.colors.is_empty() {
             return paint.len();
@@ -61,7 +61,7 @@ const WHITE: [f32; 3] = [1.0; 3];
 /// Builds the attributes of a mesh: one wedge per vertex and distinct uv and normal, compared by
 /// *value*, so that exporters which repeat the values at each corner cause no seams.
 ///
-/// `corners` is empty or has an entry per face, whose ids must exist in the pools. Wedges are
+/// `corners` is empty or has an entry per face; its ids must exist in the pools. Wedges are
 /// numbered by vertex. Returns `None` if no corner and no vertex has attributes.
 pub(super) fn attributes(
     vertices: usize,

@@ -7,17 +7,19 @@ use meshlod_mesh::{Labels, LayerKind, Mesh};
 use super::colored_vertices::ColoredVertices;
 use super::mtl::{names, one_line};
 use super::value_numbers::{UvNumbers, ValueNumbers};
-use crate::line_writer::LineWriter;
-use crate::{Precision, Scene, remarks};
+use crate::precision::Precision;
+use crate::remarks;
+use crate::scene::Scene;
+use crate::text::line_writer::LineWriter;
 
 /// Writes all meshes that a scene shows, in world space, as one OBJ file; `libraries` are the file
-/// names of the material libraries, such as the one that [`write_mtl`](super::write_mtl) writes.
+/// names of the material libraries, see [`write_mtl`](super::write_mtl).
 ///
-/// Equal uvs and equal normals are written once; the uvs of a face are those of the set that the
-/// texture of its base colour uses. Colours follow the positions, without opacity; a vertex whose
-/// faces see it in several colours is written once for each. Objects become `o`, materials `usemtl`,
-/// with names made unique, and smoothing groups `s`. Comments of a PLY file come first.
-/// Positions (at `F64`), uvs and normals read back bit for bit. Other layers are not written.
+/// Equal uvs and equal normals are written once; a face uses the uv set of its base colour texture.
+/// Colours follow the positions, without opacity; a vertex with several colours is written once for
+/// each. Objects become `o`, materials `usemtl`, with names made unique, and smoothing groups `s`.
+/// Comments of a PLY file come first. Positions (at `F64`), uvs and normals read back bit for bit.
+/// Other layers are not written.
 ///
 /// # Errors
 /// Errors of `out`, and a position that `precision` cannot hold.
@@ -70,7 +72,7 @@ fn write_positions(
     Ok(())
 }
 
-/// Writer of a statement whenever the label changes.
+/// Writer of a statement for each change of the label.
 struct Changes<'a> {
     word: &'static str,
     labels: Option<&'a Labels>,
@@ -105,7 +107,7 @@ impl<'a> Changes<'a> {
     }
 }
 
-/// Writer of the statements that hold for the faces that follow.
+/// Writer of the statements that apply to the following faces.
 struct FaceChanges<'a> {
     labels: [Changes<'a>; 2],
     /// Smoothing group in effect.
@@ -131,7 +133,7 @@ impl FaceChanges<'_> {
     }
 }
 
-/// Writes the faces, over `vertices` in place of the mesh's own if these are split.
+/// Writes the faces; `vertices` replaces the mesh's vertices if they are split.
 fn write_faces(
     mesh: &Mesh,
     vertices: Option<&[[u32; 3]]>,

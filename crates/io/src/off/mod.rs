@@ -6,4 +6,5 @@ mod vertex_format;
 mod write;
 
 pub use read::{read, read_scene};
-pub use write::{write, write_scene};
+pub use write::write;
+pub(crate) use write::write_commented;

@@ -3,10 +3,12 @@
 use meshlod_mesh::{Attributes, LayerKind, Mesh, VertexId};
 
 use super::vertex_format::VertexFormat;
+use crate::error::ParseError;
+use crate::notes::Note;
 use crate::polygon::triangulate;
-use crate::text_cursor::TextCursor;
+use crate::scene::Scene;
+use crate::text::cursor::TextCursor;
 use crate::vertex_attributes::{named_layer, normalize_colors, per_vertex};
-use crate::{Note, ParseError, Scene};
 
 /// Parses an OFF file in text form, without its notes: see [`read_scene`].
 ///
@@ -20,10 +22,10 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
 ///
 /// The header may be missing or run into the counts without a blank; comments may appear anywhere.
 /// Polygons are triangulated; faces of one or two corners and face colours are left out with a
-/// note. If the header names no attributes, but all vertices have three or four numbers more, those
-/// are colours, or unit normals. Vertex colours have three or four components; if any exceeds 1, all
-/// are taken to be out of 255. Normals, colours and texture coordinates that are not finite become
-/// 0, and are counted.
+/// note. If the header names no attributes, but all vertices have three or four more numbers, those
+/// are colours or unit normals. Vertex colours have three or four components; if any exceeds 1, all
+/// are divided by 255. Normals, colours and texture coordinates that are not finite become 0, and
+/// are counted.
 ///
 /// Cost: O(n), n = bytes, plus that of triangulating concave polygons.
 /// # Errors
@@ -38,7 +40,7 @@ pub fn read_scene(bytes: &[u8]) -> Result<Scene, ParseError> {
     Ok(Scene { has_split_seams: true, notes, ..Scene::from_mesh("", mesh) })
 }
 
-/// Parses a file, and notes the faces that are left out, and those whose colours are.
+/// Parses a file and notes the faces and face colours that are left out.
 fn read_noted(bytes: &[u8]) -> Result<(Mesh, Vec<Note>), ParseError> {
     let mut text = TextCursor::new(bytes)?;
     if !text.more_anywhere() {
@@ -188,7 +190,7 @@ impl Columns {
 struct Scratch {
     polygon: Vec<u32>,
     triangles: Vec<[u32; 3]>,
-    /// Number of faces with more on their line than corners.
+    /// Number of faces with numbers after their corners.
     colored: usize,
     /// Number of faces with one or two corners.
     thin: usize,
@@ -302,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_of_three_parts_are_told_from_those_of_four() {
+    fn colours_have_three_or_four_components() {
         for (color, width) in [("1 0.5 0", 3), ("1 0.5 0 1", 4)] {
             let vertex = |p: &str| format!("{p} {color} # red\n");
             let vertices: String = ["0 0 0", "1 0 0", "0 1 0"].map(vertex).concat();

@@ -1,9 +1,10 @@
-//! Attributes of OFF vertices: as the header names them, or as the lines of a plain file have them.
+//! Attributes of OFF vertices, from the header or, in plain files, from the number of values per
+//! line.
 
-use crate::ParseError;
-use crate::text_cursor::TextCursor;
+use crate::error::ParseError;
+use crate::text::cursor::TextCursor;
 
-/// Difference from length 1 that is rounding of a normal.
+/// Largest deviation of a unit normal from length 1.
 const ROUNDING: f64 = 1e-2;
 
 /// Attributes that follow each vertex position, in this order.
@@ -41,13 +42,13 @@ impl VertexFormat {
         }
     }
 
-    /// Finds what follows the coordinates of the vertices, at which the text is: colours where every
-    /// vertex has three or four numbers more on its line and none of them is negative; normals where
-    /// they are three, some are negative and all have length 1.
+    /// Detects which attributes follow the positions, from the numbers on each line: three or four
+    /// non-negative numbers are colours; three numbers of unit length with negative ones among them
+    /// are normals. `text` is at the first vertex.
     ///
-    /// Only if as many lines follow as there are vertices and faces, since vertices may share lines.
+    /// Detects nothing unless each vertex and face has its own line.
     /// # Errors
-    /// Numbers that are neither.
+    /// Numbers that are neither colours nor normals.
     pub fn of_lines(text: &TextCursor, vertices: usize, faces: usize) -> Result<Self, ParseError> {
         let none = Self::default();
         let mut first = text.clone();
@@ -83,7 +84,8 @@ impl VertexFormat {
     }
 }
 
-/// Reports whether each vertex has a line of so many words, and each face a line behind them.
+/// Reports whether each vertex has its own line of this many words, followed by a line for each
+/// face.
 fn has_lines(text: &TextCursor, words: usize, vertices: usize, faces: usize) -> bool {
     let mut lines = text.clone();
     (0..vertices).all(|_| lines.more_anywhere() && lines.words_left() == words)
@@ -106,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_and_normals_are_told_apart() {
+    fn colours_and_normals_are_distinguished() {
         let color = |values: &[f32]| Ok(Some((LayerKind::Color(0), values.to_vec())));
         assert_eq!(layer([""; 3]), Ok(None));
         assert_eq!(layer(["255 0 51", "0 255 0", "0 0 255"]), color(&[1.0, 0.0, 0.2]));

@@ -4,9 +4,10 @@ use std::io::{self, Write};
 
 use meshlod_mesh::{Attributes, LayerKind, Mesh};
 
-use crate::line_writer::LineWriter;
+use crate::precision::Precision;
+use crate::remarks;
+use crate::text::line_writer::LineWriter;
 use crate::vertex_attributes::split_at_seams;
-use crate::{Precision, Scene, remarks};
 
 /// Writes a mesh as a text OFF file, with the normals, the first colours and the texture
 /// coordinates of its vertices, if it has them.
@@ -21,16 +22,11 @@ pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> io::Resu
     write_commented(mesh, &[], precision, out)
 }
 
-/// Writes what a scene shows as [`write()`] does, with the comments of a PLY file that it was read
-/// from.
+/// Writes a mesh as [`write()`] does, with comments: the `remarks` of a PLY file.
 ///
 /// # Errors
 /// Errors of [`write()`].
-pub fn write_scene(scene: &Scene, precision: Precision, out: &mut dyn Write) -> io::Result<()> {
-    write_commented(&scene.shown_mesh(), &scene.ply.remarks, precision, out)
-}
-
-fn write_commented(
+pub(crate) fn write_commented(
     mesh: &Mesh,
     remarks: &[String],
     precision: Precision,

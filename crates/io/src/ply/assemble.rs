@@ -11,9 +11,12 @@ use super::face_values::FaceValues;
 use super::header::{Element, Header};
 use super::scalar::Scalar;
 use super::vertices::Vertices;
-use crate::image_file::is_image;
+use crate::notes::Note;
+use crate::options::Resolve;
+use crate::scene::image_file::is_image;
+use crate::scene::material::Material;
+use crate::scene::{Image, Node, Scene, SceneMesh};
 use crate::vertex_attributes::{named_layer, per_vertex};
-use crate::{Image, Material, Node, Note, Resolve, Scene, SceneMesh};
 
 /// Contents of the body of a file.
 pub(super) struct Body {
@@ -22,12 +25,12 @@ pub(super) struct Body {
     pub values: FaceValues,
     /// Faces of fewer than three corners, which were dropped.
     pub thin_faces: usize,
-    /// Bytes behind the last row of the last element.
+    /// Bytes after the last row of the last element.
     pub bytes_left: usize,
 }
 
-/// Most distinct colours of faces that keep their borders. Each border is a seam, so that colours
-/// that all differ, as those of a scan, would leave nothing to simplify.
+/// Largest number of distinct face colours that are kept as seams. If all faces differ, as in a
+/// scan, seams would leave nothing to simplify.
 const MOST_FACE_COLORS: usize = 256;
 
 /// Builds the scene: one mesh under one node, and a material for each texture.
@@ -60,7 +63,7 @@ pub(super) fn scene(header: Header, body: Body, resolve: Resolve<'_>) -> Scene {
     }
 }
 
-/// Notes what the file holds and the scene does not.
+/// Notes the parts of the file that the scene lacks.
 fn notes(header: &Header, body: &Body) -> Vec<Note> {
     let Body { vertices, values, .. } = body;
     let skipped = |e: &&Element| e.name != "vertex" && !e.holds_faces() && e.count > 0;
@@ -106,7 +109,7 @@ fn notes(header: &Header, body: &Body) -> Vec<Note> {
     notes
 }
 
-/// Makes the scalars of faces layers of the triangles.
+/// Converts the scalars of faces to layers of the triangles.
 fn face_layers(
     values: &mut FaceValues,
     triangles: usize,
@@ -130,7 +133,7 @@ fn face_layers(
     layers
 }
 
-/// Makes the labels of faces objects, named as in `label 3`.
+/// Converts the labels of faces to objects, named as in `label 3`.
 fn objects(values: &mut FaceValues, types: &mut BTreeMap<String, Scalar>) -> Option<Labels> {
     let (name, kind) = values.label_property.take()?;
     if values.labels.is_empty() {
@@ -144,7 +147,7 @@ fn objects(values: &mut FaceValues, types: &mut BTreeMap<String, Scalar>) -> Opt
     Some(Labels { names, of_face })
 }
 
-/// Makes the texture numbers of faces material labels, and returns the material of each label.
+/// Converts the texture numbers of faces to material labels; returns the material of each label.
 fn textures(
     values: &FaceValues,
     materials: &[Material],
@@ -197,7 +200,7 @@ fn materials(textures: &[String], resolve: Resolve<'_>) -> (Vec<Material>, Vec<I
     (materials, images)
 }
 
-/// Builds the attributes: a wedge per vertex, or per vertex and distinct values of the faces there.
+/// Builds the attributes: a wedge per vertex, or per vertex and distinct face values.
 fn attributes(
     vertices: usize,
     faces: &[[VertexId; 3]],
@@ -262,7 +265,7 @@ fn has_few(colors: &[[f32; 4]]) -> bool {
     })
 }
 
-/// Averages the colours of the faces around each vertex; white where there are none.
+/// Averages the colours of the faces around each vertex; white without faces.
 fn averaged(vertices: usize, faces: &[[VertexId; 3]], colors: &[[f32; 4]], width: usize) -> Layer {
     let mut sums = vec![([0.0f64; 4], 0u32); vertices];
     for (face, color) in faces.iter().zip(colors) {
@@ -280,7 +283,7 @@ fn averaged(vertices: usize, faces: &[[VertexId; 3]], colors: &[[f32; 4]], width
     named_layer(LayerKind::Color(0), width, values)
 }
 
-/// Makes texture coordinates of vertices the next free set: those of faces are the first.
+/// Renumbers the texture coordinates of vertices, since those of faces are the first set.
 fn make_room_for_uvs(layers: &mut [Layer]) {
     let sets: BTreeSet<u8> = layers
         .iter()
@@ -295,8 +298,8 @@ fn make_room_for_uvs(layers: &mut [Layer]) {
     }
 }
 
-/// Gives the corners of a vertex with equal keys a wedge. Returns the wedge of each corner, and the
-/// vertex and one corner of each wedge.
+/// Assigns one wedge to the corners of a vertex with equal keys. Returns the wedge of each corner,
+/// and the vertex and one corner of each wedge.
 fn wedges<K: Ord>(
     vertices: usize,
     faces: &[[VertexId; 3]],

@@ -6,7 +6,7 @@ use super::body::{BodyReader, Row};
 use super::bulk;
 use super::header::{Element, Header};
 use super::scalar::Scalar;
-use crate::ParseError;
+use crate::error::ParseError;
 
 /// Reader of a binary body; big-endian if `BIG`.
 #[derive(Clone)]

@@ -6,7 +6,7 @@ use meshlod_mesh::VertexId;
 
 use super::header::{Element, Shape, shown};
 use super::scalar::Scalar;
-use crate::ParseError;
+use crate::error::ParseError;
 
 /// Row being read; displayed in errors as `vertex 12 of 2903`, counted from 0.
 #[derive(Clone, Copy)]
@@ -41,7 +41,7 @@ pub(super) trait BodyReader: Clone {
     /// Returns an upper bound for the number of rows of an element in the rest of the file.
     fn most_rows(&self, element: &Element) -> usize;
 
-    /// Returns the number of bytes behind the last row that are not white space.
+    /// Returns the number of bytes after the last row that are not white space.
     fn bytes_left(&self) -> usize;
 
     /// Creates an error located at the current row.

@@ -1,6 +1,6 @@
 //! Fast path for the most common PLY files: binary, with floating-point x, y, z and triangles only.
 //!
-//! Both functions stop before the first row that is anything else, truncated, not finite or out of
+//! Both functions stop before the first row of another shape, truncated, not finite or out of
 //! range. The general path continues from there and reports errors.
 
 use meshlod_mesh::VertexId;

@@ -1,4 +1,4 @@
-//! Encoding of what PLY faces have beyond their vertices.
+//! Encoding of the properties of PLY faces after their vertices.
 
 use std::collections::HashSet;
 
@@ -10,7 +10,7 @@ use super::plan::Plan;
 use super::scalar::Scalar;
 use super::write::LayerEncoder;
 
-/// Encoder for what follows the vertices of a face.
+/// Encoder for the properties after the vertices of a face.
 pub(super) struct FaceEncoder<'a> {
     plan: &'a Plan<'a>,
     corners: &'a [[WedgeId; 3]],
@@ -78,8 +78,8 @@ struct ScalarColumn<'a> {
 }
 
 impl<'a> ScalarColumn<'a> {
-    /// Chooses names that no other property of faces has, and types that hold all values: that of
-    /// the file, or else the usual one.
+    /// Chooses unique names, and types that hold all values: the type in the file if possible, else
+    /// the default one.
     fn of(plan: &'a Plan<'a>, extras: &PlyExtras) -> Vec<Self> {
         let known = ["vertex_indices", "vertex_index", "texcoord", "texnumber"];
         let colors =

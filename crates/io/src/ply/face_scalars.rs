@@ -1,4 +1,4 @@
-//! Scalars of PLY faces that have no other use, and the layers of faces that they become.
+//! Scalars of PLY faces without another use, and their conversion to face layers.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use meshlod_mesh::{FaceLayer, FaceLayerKind};
 
 use super::scalar::Scalar;
 
-/// Scalars of all rows so far. The triangles of a polygon share a row until all is read.
+/// Scalars of the rows read so far. The triangles of a polygon share a row until the end.
 #[derive(Debug, Default)]
 pub(super) struct FaceScalars {
     columns: Vec<FaceColumn>,
@@ -25,12 +25,12 @@ struct FaceColumn {
     values: Vec<f64>,
 }
 
-/// Most values for each value in the file: polygons repeat theirs for every triangle. On a sphere
-/// where three or more faces meet at each vertex they have less than six corners in the mean, which
-/// are four triangles; twice as many leave room for handles and borders.
+/// Limit on values per value in the file: polygons repeat theirs for every triangle. On a sphere
+/// with three or more faces at each vertex, polygons have less than six corners on average, or four
+/// triangles; the factor of two leaves room for handles and borders.
 const MOST_REPEATS: usize = 8;
 
-/// Number of values that is allowed whatever the file holds, 8 MB.
+/// Number of values that is always allowed, 8 MB.
 const MOST_IN_SMALL_FILES: usize = 1 << 20;
 
 impl FaceScalars {
@@ -45,22 +45,21 @@ impl FaceScalars {
         self.columns[column].values.push(value);
     }
 
-    /// Ends a row of an element with columns, whose triangles are those from `first` to `end`.
+    /// Ends the row of the triangles from `first` to `end`, in an element with columns.
     pub fn end_row(&mut self, first: usize, end: usize) {
         // Meshes whose triangles have no such number are refused once all are counted.
         self.rows.push([first as u32, end as u32]);
     }
 
-    /// Returns the type of each property; of two elements, the first has it.
+    /// Returns the type of each property; the first element with that property wins.
     pub fn types(&self) -> BTreeMap<&str, Scalar> {
         // An element of no rows declares properties, but has nothing to keep.
         let used = self.columns.iter().filter(|column| !column.values.is_empty());
         used.rev().map(|column| (&*column.name, column.kind)).collect()
     }
 
-    /// Returns a layer for each name, with zeros for triangles of an element that lacks it, or
-    /// `None` if polygons of many corners would make the values more than a small multiple of the
-    /// file.
+    /// Returns a layer for each name, with zeros for triangles of elements without it, or `None` if
+    /// polygons of many corners would expand the values beyond a small multiple of the file.
     pub fn into_layers(self, triangles: usize) -> Option<Vec<FaceLayer>> {
         let mut layers: Vec<FaceLayer> = Vec::new();
         let mut layer_of: BTreeMap<String, usize> = BTreeMap::new();

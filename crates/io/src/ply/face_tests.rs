@@ -2,7 +2,8 @@ use meshlod_fixtures::{grid, tetrahedron};
 use meshlod_mesh::{Attributes, Labels, Layer, LayerKind, Mesh, WedgeId};
 use proptest::prelude::*;
 
-use super::{read_scene, write_scene};
+use super::read_scene;
+use super::write::write_scene;
 use crate::{Format, Image, Material, Note, Precision, Scene};
 
 /// A square of two triangles with what follows their vertices.

@@ -6,9 +6,9 @@ use super::face_scalars::FaceScalars;
 use super::header::{Element, Property, Shape};
 use super::layers::{OTHER_COLORS, greatest};
 use super::scalar::Scalar;
-use crate::ParseError;
+use crate::error::ParseError;
 
-/// Names of the integer properties that say to which part of the model a face belongs.
+/// Names of integer properties that assign a face to a part of the model.
 const LABELS: [&str; 14] = [
     "label",
     "labels",
@@ -26,7 +26,7 @@ const LABELS: [&str; 14] = [
     "instance",
 ];
 
-/// Reports whether faces are told apart by a property of this name, so that it is kept.
+/// Reports whether a property of this name labels faces.
 pub(super) fn is_label(name: &str) -> bool {
     LABELS.contains(&name)
 }
@@ -54,12 +54,11 @@ pub(super) struct FaceRow {
     label: f64,
 }
 
-/// Values of all triangles so far. Each array is empty or, once finished, has an entry per triangle.
+/// Values of all triangles. Each array is empty or, once finished, has an entry per triangle.
 #[derive(Debug, Default)]
 pub(super) struct FaceValues {
     roles: Vec<Role>,
-    /// Distinct uses of which [`FaceRow`] has the values; however many the properties are, these
-    /// are few.
+    /// Distinct uses of the values in [`FaceRow`]; few, even with many properties.
     of_row: Vec<Role>,
     pub scalars: FaceScalars,
     has_scalars: bool,
@@ -130,7 +129,7 @@ impl FaceValues {
         self.begin_scalars(properties, list);
     }
 
-    /// Makes all scalars without a use columns; lists without one are not kept.
+    /// Makes columns of all scalars without a use; lists without a use are dropped.
     fn begin_scalars(&mut self, properties: &[Property], list: usize) {
         self.has_scalars = false;
         for (i, Property { name, shape }) in properties.iter().enumerate() {
@@ -227,14 +226,14 @@ impl FaceValues {
         }
     }
 
-    /// Ends a face, whose triangles are those from `first` to `end`.
+    /// Ends the face of the triangles from `first` to `end`.
     pub fn end_row(&mut self, first: usize, end: usize) {
         if self.has_scalars {
             self.scalars.end_row(first, end);
         }
     }
 
-    /// Gives the last triangles, of an element without these values, the values of none.
+    /// Fills in default values for the last triangles, whose element lacks these values.
     pub fn finish(&mut self, triangles: usize) {
         fn fill<T: Clone>(values: &mut Vec<T>, count: usize, value: T) {
             if !values.is_empty() {

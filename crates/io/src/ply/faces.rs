@@ -5,10 +5,10 @@ use meshlod_mesh::VertexId;
 use super::body::{BodyReader, Row};
 use super::face_values::{FaceRow, FaceValues};
 use super::header::{Element, Shape};
-use crate::ParseError;
+use crate::error::ParseError;
 use crate::polygon::triangulate;
 
-/// Index that ends a strip within a list; no vertex has it.
+/// Index that ends a strip within a list; it is not a vertex.
 const RESTART: u32 = u32::MAX;
 
 /// Triangles read so far, and buffers reused for every row.
@@ -16,7 +16,7 @@ const RESTART: u32 = u32::MAX;
 pub(super) struct Faces {
     pub triangles: Vec<[VertexId; 3]>,
     pub values: FaceValues,
-    /// Faces of fewer than three corners, which give no triangle.
+    /// Number of faces with fewer than three corners, which have no triangle.
     pub thin: usize,
     row: FaceRow,
     list: Vec<u32>,
@@ -97,7 +97,7 @@ impl Faces {
         self.triangles.push(corners.map(|corner| VertexId(self.list[corner as usize])));
     }
 
-    /// Expands strips, without the triangles that repeat a vertex, which only join their parts.
+    /// Expands strips; triangles that repeat a vertex only join parts and are dropped.
     fn add_strips(&mut self) {
         let mut start = 0;
         for i in 0..self.list.len() {

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use super::scalar::Scalar;
-use crate::ParseError;
+use crate::error::ParseError;
 
 /// Encoding of the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -130,7 +130,7 @@ struct Draft {
     remarks: Vec<String>,
     textures: Vec<String>,
     unknown: Vec<String>,
-    /// Names of the elements so far.
+    /// Names of the preceding elements.
     element_names: HashSet<String>,
     /// Names of the properties of the last element.
     property_names: HashSet<String>,
@@ -154,7 +154,7 @@ impl Draft {
         }
     }
 
-    /// Keeps a comment, or the name of the texture that it announces.
+    /// Keeps a comment, or the texture name in it.
     fn add_remark(&mut self, line: &str) {
         let line = line.trim();
         let name = line.strip_prefix("comment").map(str::trim_start);
@@ -344,7 +344,7 @@ mod tests {
     }
 
     #[test]
-    fn textures_comments_and_unknown_lines_are_told_apart() {
+    fn textures_comments_and_unknown_lines_are_separated() {
         let text = "ply\nformat ascii 1.0\ncomment made  by hand\ncomment TextureFile a b.png\n\
                     obj_info num_cols 512\nvendor 7\ncomment TextureFiles are below\n\
                     comment\tTextureFile c.jpg\r\nend_header\n";

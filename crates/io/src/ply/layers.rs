@@ -8,15 +8,15 @@ use super::face_values::is_label;
 use super::header::{Property, Shape};
 use super::scalar::Scalar;
 
-/// Names that programs give the set which is written as "s t".
+/// Other names of the set that is written as "s t".
 const OTHER_UVS: [&[&str]; 4] =
     [&["u", "v"], &["texture_u", "texture_v"], &["texture_s", "texture_t"], &["tex_u", "tex_v"]];
 
-/// Names that programs give "red green blue alpha".
+/// Other names of "red green blue alpha".
 pub(super) const OTHER_COLORS: [&[&str]; 2] =
     [&["diffuse_red", "diffuse_green", "diffuse_blue", "diffuse_alpha"], &["r", "g", "b", "a"]];
 
-/// Attribute layer with the properties that it is read from.
+/// Attribute layer and the properties it is read from.
 #[derive(Debug, PartialEq)]
 pub(super) struct LayerColumns {
     pub kind: LayerKind,
@@ -38,9 +38,8 @@ pub(super) struct Column {
 
 /// Finds the attribute layers among the properties of a vertex, in the order of the file.
 ///
-/// Incomplete sets and unknown names become [`LayerKind::Other`], or [`LayerKind::Label`] if they are
-/// integers that name something; lists and the coordinates are
-/// skipped.
+/// Incomplete sets and unknown names become [`LayerKind::Other`], or [`LayerKind::Label`] for
+/// integer labels; lists and the coordinates are skipped.
 pub(super) fn columns(properties: &[Property]) -> Vec<LayerColumns> {
     let mut free = free_numbers(properties);
     let mut layers: Vec<LayerColumns> = Vec::new();
@@ -154,7 +153,7 @@ fn numbered(stem: &str, set: u8) -> String {
     }
 }
 
-/// Returns the free names `name_0 name_1` … if `first` begins such a run, else `first` alone.
+/// Returns the free names `name_0 name_1` … if `first` begins such a run, else only `first`.
 fn run_from(first: &str, free: &HashMap<&str, Column>) -> Vec<String> {
     let Some(base) = first.strip_suffix("_0") else { return vec![first.to_owned()] };
     let run = (0..).map(|i| format!("{base}_{i}"));
@@ -162,7 +161,7 @@ fn run_from(first: &str, free: &HashMap<&str, Column>) -> Vec<String> {
     if run.is_empty() { vec![first.to_owned()] } else { run }
 }
 
-/// Reports whether a property has integers that are names, of which a mean has no meaning.
+/// Reports whether a property holds integer labels, which cannot be averaged.
 fn names_something(property: &Property) -> bool {
     let Shape::One(kind) = property.shape else { return false };
     let name = property.name.strip_prefix("scalar_").unwrap_or(&property.name);
@@ -178,8 +177,8 @@ pub(super) fn greatest(property: &Property) -> f64 {
     kind.whole_range().map_or(1.0, |(_, most)| most as f64)
 }
 
-/// Chooses the property names to write each layer under, one per component. All names are distinct,
-/// and none is a coordinate's.
+/// Chooses the property names to write each layer under, one per component. All names are distinct
+/// from each other and from the coordinates.
 pub(super) fn names<'a>(layers: impl IntoIterator<Item = &'a Layer>) -> Vec<Vec<String>> {
     let mut used: HashSet<String> = ["x", "y", "z"].map(str::to_owned).into();
     layers
@@ -205,7 +204,7 @@ fn layer_names(layer: &Layer, used: &HashSet<String>) -> Vec<String> {
     free_name(&layer.name, layer.width, used)
 }
 
-/// Chooses names for `width` components that are not yet used, as near to `name` as they can be.
+/// Chooses unused names for `width` components, as close to `name` as possible.
 pub(super) fn free_name(name: &str, width: usize, used: &HashSet<String>) -> Vec<String> {
     let mut base = one_word(name);
     loop {
@@ -220,7 +219,7 @@ pub(super) fn free_name(name: &str, width: usize, used: &HashSet<String>) -> Vec
     }
 }
 
-/// Turns a name into one word that the header can hold.
+/// Converts a name to a single word for the header.
 fn one_word(name: &str) -> String {
     let odd = |c: char| c.is_whitespace() || c.is_control();
     match name.trim() {

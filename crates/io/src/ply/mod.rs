@@ -30,6 +30,10 @@
 //! Comments, lines `obj_info` and the types of properties are kept for [`write_scene`]. Written
 //! files read back by the same tables.
 //!
+//! Reading order: `header`; `body` with `text_body`, `binary_body` and the fast path `bulk`;
+//! `vertices` with `layers`; `faces` with `face_values` and `face_scalars`; `assemble`, which makes
+//! the scene. Writing: `plan`, then `write` with `face_encoder`.
+//!
 //! The parser is our own: the crate `ply-rs-bw` 4.0 reads the 871,414 faces of the Stanford dragon
 //! in 32 ms with an allocation for each, `serde-ply` 0.2 in 64 ms, and neither reports the byte or
 //! line of an error. This one takes 4 ms (one core of a virtual machine, best of 25).
@@ -57,7 +61,9 @@ mod write;
 
 use meshlod_mesh::Mesh;
 
-use crate::{ParseError, Resolve, Scene};
+use crate::error::ParseError;
+use crate::options::Resolve;
+use crate::scene::Scene;
 use assemble::Body;
 use binary_body::BinaryBody;
 use body::BodyReader;

@@ -1,4 +1,4 @@
-//! Layout of a PLY file to be written: what goes to vertices and what to faces.
+//! Layout of a PLY file to be written: values at vertices and values at faces.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -8,19 +8,21 @@ use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh};
 use super::extras::PlyExtras;
 use super::face_values::is_label;
 use super::scalar::Scalar;
+use crate::notes::Note;
+use crate::scene::material::{Material, Shading};
+use crate::scene::{Image, Scene};
 use crate::vertex_attributes::{distinct_wedges, has_seams};
-use crate::{Image, Material, Note, Scene, Shading};
 
-/// Layout of a file. Faces hold what would split vertices, where PLY has a place for that.
+/// Layout of a file. Faces hold values that would split vertices, where PLY allows it.
 pub(super) struct Plan<'a> {
     pub mesh: Cow<'a, Mesh>,
     /// Names of the texture files, by texture number.
     pub textures: Vec<String>,
     /// Texture number of each face, -1 for none, unless all faces have texture 0 or none.
     pub texture_of_face: Option<Vec<i32>>,
-    /// Index of the layer whose values are lists at faces, for its seams.
+    /// Index of the layer that is written as lists at faces, because of its seams.
     pub uvs: Option<usize>,
-    /// Index of the layer of colours that is written at faces, each of one colour.
+    /// Index of the colour layer that is written at faces, since each face has one colour.
     pub colors: Option<usize>,
     pub labels: Option<FaceLabels>,
 }
@@ -39,7 +41,7 @@ impl<'a> Plan<'a> {
         Self::new(Cow::Borrowed(mesh), Vec::new(), None, &PlyExtras::default())
     }
 
-    /// Lays out what a scene shows; `images` are its images under the names to write.
+    /// Lays out the shown meshes of a scene; `images` are its images under the names to write.
     pub fn of_scene(scene: &'a Scene, images: &[Image]) -> Self {
         let mut textures = Vec::new();
         let mut names = Vec::new();
@@ -95,7 +97,7 @@ impl<'a> Plan<'a> {
         layers.enumerate().filter(at_vertices).map(|(_, layer)| layer).collect()
     }
 
-    /// Counts the vertices that seams of the layers at vertices add.
+    /// Counts the vertices added by seams of vertex layers.
     fn split(&self) -> usize {
         let layers = self.vertex_layers();
         let (Some(attributes), false) = (&self.mesh.attributes, layers.is_empty()) else {
@@ -111,8 +113,8 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// Returns what a scene shows, with the texture coordinates that its textures use in the first set;
-/// those that were there change places with them.
+/// Returns the shown mesh of a scene; the set of texture coordinates that its textures use is
+/// swapped with the first one.
 fn textured_mesh(scene: &Scene) -> Cow<'_, Mesh> {
     let mut mesh = scene.shown_mesh();
     let set = main_texture_set(scene);
@@ -136,7 +138,7 @@ fn textured_mesh(scene: &Scene) -> Cow<'_, Mesh> {
     mesh
 }
 
-/// Returns the set of texture coordinates that the first texture uses, as PLY has one for all.
+/// Returns the set of texture coordinates of the first texture, since PLY has a single set.
 fn main_texture_set(scene: &Scene) -> u8 {
     textured_sets(scene).first().map_or(0, |&(_, set)| set)
 }
@@ -155,7 +157,7 @@ fn textured_sets(scene: &Scene) -> Vec<(&Material, u8)> {
 }
 
 impl FaceLabels {
-    /// Returns the labels if all objects are called as the reader calls them: `label 3`.
+    /// Returns the labels if all objects are named as by the reader: `label 3`.
     fn of(mesh: &Mesh, extras: &PlyExtras) -> Option<Self> {
         let objects = mesh.objects.as_ref()?;
         let (property, _) = objects.names.first()?.split_once(' ')?;
@@ -188,7 +190,7 @@ fn is_flat(attributes: &Attributes, layer: &Layer) -> bool {
         .all(|&[a, b, c]| layer.of(a) == layer.of(b) && layer.of(b) == layer.of(c))
 }
 
-/// Lists what a PLY file lacks of the parts and layers of a scene.
+/// Lists the parts and layers of a scene that a PLY file lacks.
 pub(crate) fn limits(scene: &Scene) -> Vec<Note> {
     let plan = Plan::of_scene(scene, &scene.images);
     let shown = scene.shown_materials().map(|labels| labels.of_face).unwrap_or_default();

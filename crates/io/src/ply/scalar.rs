@@ -60,8 +60,8 @@ impl Scalar {
         }
     }
 
-    /// Reports whether a number of this type that was read as `value` may have been another: 64-bit
-    /// integers from 2^53 are rounded.
+    /// Reports whether a number read as `value` may have been rounded: 64-bit integers from 2^53
+    /// are.
     pub fn may_round(self, value: f64) -> bool {
         matches!(self, Self::I64 | Self::U64) && value.abs() >= 9_007_199_254_740_992.0
     }

@@ -2,7 +2,8 @@ use meshlod_fixtures::{shared_mesh, tetrahedron};
 use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId};
 use proptest::prelude::*;
 
-use super::{read, read_scene, write, write_scene};
+use super::write::write_scene;
+use super::{read, read_scene, write};
 use crate::Precision;
 
 const HEAD: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n\

@@ -3,7 +3,7 @@
 use super::body::{BodyReader, Row};
 use super::header::{Element, Header, shown};
 use super::scalar::Scalar;
-use crate::ParseError;
+use crate::error::ParseError;
 
 /// Reader of a text body: numbers separated by white space, one row per line. A row may continue on
 /// further lines, but two rows never share one, so that a missing or surplus number is found where

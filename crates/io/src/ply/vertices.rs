@@ -4,9 +4,10 @@ use meshlod_mesh::{Layer, LayerKind};
 
 use super::body::{BodyReader, Row};
 use super::header::{Element, Property, Shape};
-use super::layers::{self, LayerColumns};
+use super::layers;
+use super::layers::LayerColumns;
 use super::scalar::Scalar;
-use crate::ParseError;
+use crate::error::ParseError;
 
 /// Vertices of a file.
 #[derive(Default)]
@@ -14,7 +15,7 @@ pub(super) struct Vertices {
     pub positions: Vec<[f64; 3]>,
     /// Attribute layers, one wedge per vertex.
     pub layers: Vec<Layer>,
-    /// Types of the properties of layers that are not written as the usual ones, by name.
+    /// Types of layer properties that differ from the default types, by name.
     pub types: Vec<(String, Scalar)>,
     /// Names of the lists, which are skipped.
     pub lists: Vec<String>,
@@ -61,7 +62,7 @@ pub(super) fn read<B: BodyReader>(body: &mut B, element: &Element) -> Result<Ver
     Ok(vertices)
 }
 
-/// Lists the types of colours and other layers, except the usual ones.
+/// Lists the types of colours and other layers, except the default ones.
 fn types(element: &Element, columns: &[LayerColumns]) -> Vec<(String, Scalar)> {
     let mut types = Vec::new();
     for layer in columns {
@@ -146,8 +147,8 @@ impl Vertices {
     }
 }
 
-/// Replaces what is not finite of the last `width` values of a layer by 0, and counts it. A normal
-/// becomes zero as a whole, so that it is computed, and counted, as those without a length are.
+/// Replaces values that are not finite among the last `width` of a layer by 0, and counts them. A
+/// normal becomes zero as a whole, and is later computed and counted like other zero normals.
 fn make_finite(layer: &mut Layer, width: usize) -> usize {
     let from = layer.values.len() - width;
     let last = &mut layer.values[from..];

@@ -9,20 +9,20 @@ use super::face_encoder::FaceEncoder;
 use super::layers;
 use super::plan::{Plan, is_color};
 use super::scalar::Scalar;
-use crate::obj::one_line;
-use crate::precision::Width;
+use crate::obj::mtl::one_line;
+use crate::precision::{Precision, Width};
+use crate::scene::{Image, Scene};
 use crate::vertex_attributes::{SplitMesh, SplitVertex, split_at_seams_of};
-use crate::{Image, Precision, Scene};
 
 /// Bytes buffered before they are written.
 const BLOCK: usize = 1 << 16;
 
 /// Writes a mesh as a binary little-endian PLY file, without its materials.
 ///
-/// Coordinates are `float` or `double` as `precision` says, colours `uchar`, other layers `float`,
-/// under the names in the [module's tables](super). Texture coordinates with seams are written as
-/// lists at faces, and so are colours that have seams and are even over each face. Seams of other
-/// layers split vertices: each vertex comes first with its first wedge, the others follow.
+/// Coordinates are `float` or `double` by `precision`, colours `uchar`, other layers `float`, under
+/// the names in the [module's tables](super). Texture coordinates with seams are written as lists
+/// at faces, and colours with seams as properties of faces if each face has one colour. Seams of
+/// other layers split vertices: each vertex comes first with its first wedge, the others follow.
 /// # Errors
 /// Errors of `out`. Before anything is written: a mesh that breaks [`Mesh::validate`], and a
 /// coordinate that is not finite as a `float`.
@@ -31,8 +31,8 @@ pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> Result<(
     write_plan(&Plan::of_mesh(mesh), &PlyExtras::default(), precision, out)
 }
 
-/// Writes what a scene shows, in world space, as [`write()`] does a mesh, with the names of its
-/// textures, the texture of each face, its labels, and what was kept of a PLY file.
+/// Writes the shown meshes of a scene in world space like [`write()`], with texture names, the
+/// texture and labels of each face, and the extras of a PLY file.
 ///
 /// # Errors
 /// Errors of [`write()`].
@@ -40,7 +40,7 @@ pub fn write_scene(scene: &Scene, precision: Precision, out: &mut dyn Write) -> 
     write_named(scene, &scene.images, precision, out)
 }
 
-/// Writes a scene as [`write_scene`] does, with the names of these images in place of its own.
+/// Writes a scene like [`write_scene`], with other names for its images.
 pub(crate) fn write_named(
     scene: &Scene,
     images: &[Image],
@@ -179,7 +179,7 @@ pub(super) struct LayerEncoder<'a> {
 }
 
 impl<'a> LayerEncoder<'a> {
-    /// Chooses the types, by the names that properties had in the file, with `prefix` before them.
+    /// Chooses the types of the properties, which are looked up with `prefix` before their names.
     pub fn new(layer: &'a Layer, names: Vec<String>, extras: &PlyExtras, prefix: &str) -> Self {
         let component = |name: String| {
             let known = |usual| extras.kind(&format!("{prefix}{name}"), usual);

@@ -3,10 +3,12 @@
 use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId, merge_equal_wedges};
 
 use super::scope::Scopes;
+use crate::error::ParseError;
+use crate::notes::Note;
 use crate::polygon::triangulate;
-use crate::text_cursor::{TextCursor, quoted};
+use crate::scene::Scene;
+use crate::text::cursor::{TextCursor, quoted};
 use crate::vertex_attributes::{named_layer, normalize_colors, per_vertex};
-use crate::{Note, ParseError, Scene};
 
 /// Parses an SMF file, without its notes: see [`read_scene`].
 ///
@@ -18,12 +20,12 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
 
 /// Parses an SMF file, as one mesh under one node.
 ///
-/// Understood are `v`, `f` and `t`, the properties `c`, `n` and `r` as bound by `bind`, and scopes
+/// Supported are `v`, `f` and `t`, the properties `c`, `n` and `r` as bound by `bind`, and scopes
 /// with `trans`, `scale`, `rot`, `t_trans`, `t_scale` and `set vertex_correction`.
 ///
 /// Polygons are triangulated. Normals are normalised and transformed with their vertices.
-/// Properties that are not finite become 0, and are counted; if a colour exceeds 1, all are taken to
-/// be out of 255. `#` and `$` begin comments. The image that `tex` names is left out with a note.
+/// Properties that are not finite become 0, and are counted; if a colour exceeds 1, all are divided
+/// by 255. `#` and `$` begin comments. The image that `tex` names is left out with a note.
 ///
 /// Cost: O(n log n), n = bytes, plus that of triangulating concave polygons.
 /// # Errors
@@ -73,10 +75,10 @@ struct SmfReader {
     scopes: Scopes,
     positions: Vec<[f64; 3]>,
     faces: Vec<[VertexId; 3]>,
-    /// Face of the file that each triangle in `faces` is part of.
+    /// Face of the file for each triangle in `faces`.
     origins: Vec<u32>,
     faces_in_file: u32,
-    /// Statements that name an image.
+    /// Number of statements that name an image.
     images: usize,
     properties: [BoundLayer; 3],
     polygon: Vec<u32>,

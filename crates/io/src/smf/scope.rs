@@ -1,10 +1,10 @@
-//! SMF scopes between `begin` and `end`: their transformations, and the first vertex that they
-//! count from.
+//! SMF scopes between `begin` and `end`: their transformations, and the first vertex of their
+//! numbering.
 
 use glam::{DMat3, DMat4, DVec2, DVec3};
 
-use crate::ParseError;
-use crate::text_cursor::{TextCursor, quoted};
+use crate::error::ParseError;
+use crate::text::cursor::{TextCursor, quoted};
 
 /// Limit on nesting: more than any real file needs, and little memory.
 const MOST_SCOPES: usize = 1000;
@@ -34,7 +34,8 @@ impl Scopes {
         }])
     }
 
-    /// Runs a command if it concerns scopes, else returns false. `vertices` counts those so far.
+    /// Runs a scope command; returns false for other commands. `vertices` is the number of
+    /// preceding vertices.
     pub(super) fn run(
         &mut self,
         command: &[u8],
@@ -109,8 +110,8 @@ impl Scopes {
         Ok(())
     }
 
-    /// Resolves a vertex index among `vertices` so far: relative to the first of the scope if
-    /// positive, back from the last if negative.
+    /// Resolves a vertex index: relative to the first vertex of the scope if positive, back from
+    /// the last of `vertices` if negative.
     pub(super) fn vertex(&self, index: i64, vertices: usize) -> Option<u32> {
         let scope = self.0.last()?;
         let v = if index < 0 {

@@ -7,7 +7,8 @@ use meshlod_mesh::Mesh;
 
 use super::weld::Welder;
 use super::{invalid, normal};
-use crate::{Note, ParseError};
+use crate::error::ParseError;
+use crate::notes::Note;
 
 const HEADER: usize = 80;
 const PREAMBLE: usize = HEADER + 4;
@@ -27,7 +28,7 @@ fn claimed(bytes: &[u8]) -> Option<usize> {
     Some(u32::from_le_bytes(*count) as usize)
 }
 
-/// Reads as many facets as the header declares, and notes what they have beside corners and normals.
+/// Reads the facets declared in the header, and notes data beyond corners and normals.
 pub(super) fn read(bytes: &[u8]) -> Result<(Mesh, Vec<Note>), ParseError> {
     let Some(claimed) = claimed(bytes) else {
         let reason = "not an STL file: it neither begins with \"solid\" as text does, nor is it \

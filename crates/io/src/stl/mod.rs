@@ -16,7 +16,9 @@ use std::io::{Error, ErrorKind, Result as IoResult, Write};
 use glam::DVec3;
 use meshlod_mesh::Mesh;
 
-use crate::{ParseError, Precision, Scene};
+use crate::error::ParseError;
+use crate::precision::Precision;
+use crate::scene::Scene;
 
 pub use binary::write;
 pub use text::write as write_ascii;
@@ -36,8 +38,8 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
 /// Parses an STL file, binary or text, as one mesh under one node.
 ///
 /// Vertices are numbered in order of appearance. A facet whose corners coincide is kept, as a face
-/// that repeats a vertex. Solids without facets, the two further bytes of binary facets, with which
-/// some programs colour them, and bytes behind the last facet are noted. Cost: O(n) expected, n =
+/// that repeats a vertex. Solids without facets, the attribute bytes of binary facets, which some
+/// programs use for colours, and bytes after the last facet are noted. Cost: O(n) expected, n =
 /// facets. Memory: at most a small multiple of `bytes`, whatever the header claims.
 /// # Errors
 /// Anything that is not a mesh of at least one face, with the line of text or byte of binary data.
@@ -52,8 +54,8 @@ pub fn read_scene(bytes: &[u8]) -> Result<Scene, ParseError> {
     Ok(Scene { notes, ..Scene::from_mesh("", mesh) })
 }
 
-/// Writes the meshes that a scene shows as one: as text if the scene was read from several solids, else
-/// in binary form, which takes no notice of `precision`.
+/// Writes the meshes that a scene shows as one: as text if the scene was read from several solids,
+/// else in binary form, which ignores `precision`.
 ///
 /// # Errors
 /// Those of [`write()`] and [`write_ascii`].
@@ -62,8 +64,8 @@ pub fn write_scene(scene: &Scene, precision: Precision, out: &mut dyn Write) -> 
     if scene.has_solids { write_ascii(&mesh, precision, out) } else { write(&mesh, out) }
 }
 
-/// Tells text from binary. Some binary files begin with "solid" too: they are recognised by a
-/// length that matches their count, or by zero bytes near the beginning.
+/// Reports whether a file is text. Binary files that begin with "solid" are recognised by a length
+/// that matches their count, or by zero bytes near the beginning.
 fn is_text(bytes: &[u8]) -> bool {
     let begins =
         bytes.trim_ascii_start().get(..5).is_some_and(|w| w.eq_ignore_ascii_case(b"solid"));

@@ -6,11 +6,14 @@ use meshlod_mesh::{Labels, Mesh};
 
 use super::weld::Welder;
 use super::{invalid, normal};
-use crate::line_writer::LineWriter;
-use crate::{Note, ParseError, Precision, Scene};
+use crate::error::ParseError;
+use crate::notes::Note;
+use crate::precision::Precision;
+use crate::scene::Scene;
+use crate::text::line_writer::LineWriter;
 
-/// Reads all solids as one mesh: several become objects, one gives the mesh its name. Those without
-/// facets are noted.
+/// Reads all solids as one mesh: several become objects, a single one names the mesh. Solids
+/// without facets are noted.
 pub(super) fn read(bytes: &[u8]) -> Result<Scene, ParseError> {
     let mut words = Words { rest: bytes, line: 1 };
     let mut welder = Welder::with_facets(0);

@@ -5,7 +5,7 @@ use std::hash::BuildHasher;
 
 use meshlod_mesh::VertexId;
 
-/// Vertices so far, with a hash table to find them by position.
+/// Welded vertices, with a hash table to find them by position.
 ///
 /// A table of bare ids takes a fifth of the memory of a hash map that stores the positions again,
 /// and looks up the dragon's 2.6 M corners in about four fifths of its time.

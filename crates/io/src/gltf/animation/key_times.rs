@@ -1,13 +1,12 @@
-//! Choice of times at which animations are looked at.
+//! Choice of sample times of animations.
 
-/// Chooses at most `most` times, spread evenly over clips that have these key times.
+/// Chooses at most `most` times, spread evenly over clips with these key times.
 ///
-/// Each clip gets an equal share, and what one does not need goes to the others. A clip whose share
-/// is large enough gets all its key times, and the middles between them if there is room for these
-/// too; another gets some of its key times, evenly spread, with the first and the last. Where there
-/// are more clips than times, evenly spread ones get one each. Returns pairs of clip and time, in
-/// order.
-pub(super) fn choose(clips: &[Vec<f64>], most: usize) -> Vec<(usize, f64)> {
+/// Each clip gets an equal share, and unused shares go to the others. A clip with a large enough
+/// share gets all its key times, then the midpoints between them; other clips get evenly spread key
+/// times, including the first and last. If there are more clips than times, evenly spread clips get
+/// one each. Returns pairs of clip and time, in order.
+pub(crate) fn choose(clips: &[Vec<f64>], most: usize) -> Vec<(usize, f64)> {
     let chosen = spread(clips.len(), most);
     let mut shares = vec![0; clips.len()];
     let keys = |clip: usize| clips[clip].len();
@@ -27,7 +26,7 @@ pub(super) fn choose(clips: &[Vec<f64>], most: usize) -> Vec<(usize, f64)> {
     chosen.into_iter().flat_map(of_clip).collect()
 }
 
-/// Chooses at most `most` of the key times of a clip, or more times where it has fewer.
+/// Chooses at most `most` times of a clip: key times, and further times if it has fewer keys.
 fn times(keys: &[f64], most: usize) -> Vec<f64> {
     if 2 * keys.len() <= most + 1 {
         let middles = keys.windows(2).flat_map(|pair| [0.5 * (pair[0] + pair[1]), pair[1]]);
@@ -36,7 +35,8 @@ fn times(keys: &[f64], most: usize) -> Vec<f64> {
     spread(keys.len(), most).into_iter().map(|key| keys[key]).collect()
 }
 
-/// Chooses `most` of `count` indices, evenly spread, with the first and the last; one is in the middle.
+/// Chooses `most` of `count` indices, evenly spread from the first to the last; a single one is in
+/// the middle.
 fn spread(count: usize, most: usize) -> Vec<usize> {
     match most {
         _ if count <= most => (0..count).collect(),

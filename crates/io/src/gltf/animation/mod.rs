@@ -1,7 +1,7 @@
-//! Animations of a glTF document, and the poses that they give its nodes.
+//! Animations of a glTF document, and the poses of its nodes.
 
 mod key_times;
-pub(super) mod packing;
+pub(crate) mod packing;
 mod sampler;
 mod skin;
 mod slerp;
@@ -10,37 +10,37 @@ mod track;
 use glam::{DMat4, DQuat, DVec3};
 use serde_json::Value;
 
-use super::document::Document;
-use super::schema::parse_target_name;
-use crate::Scene;
+use crate::gltf::document::Document;
+use crate::gltf::document::schema::parse_target_name;
+use crate::scene::Scene;
 use sampler::AnimatedProperty;
 pub use skin::Skin;
 use track::{Quantity, Track};
 
-/// Animations and skins of a scene, by which its nodes are posed.
+/// Animations and skins of a scene, which pose its nodes.
 ///
-/// What cannot be evaluated is left out, with a note that says why.
+/// Parts that cannot be evaluated are left out, with a note on the reason.
 #[derive(Clone, Debug, Default)]
 pub struct Animator {
     nodes: Vec<RestNode>,
-    /// Nodes such that each comes after its parent.
+    /// Nodes in an order where each comes after its parent.
     order: Vec<usize>,
     clips: Vec<Clip>,
     skins: Vec<Option<Skin>>,
-    /// Reasons why something was left out, one line each.
+    /// Reasons for omissions, one line each.
     pub notes: Vec<String>,
 }
 
 /// A moment of an animation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
-    /// Number of the animation in the document.
+    /// Index of the animation in the document.
     pub animation: usize,
     /// Time in seconds.
     pub seconds: f64,
 }
 
-/// Where the nodes of a scene are at a moment, and how far their meshes are morphed.
+/// Transforms and morph weights of the nodes of a scene at a moment.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pose {
     /// Column-major matrix of each node, from its own space to that of the scene.
@@ -49,7 +49,7 @@ pub struct Pose {
     pub weights: Vec<Vec<f64>>,
 }
 
-/// Node in the pose of the file.
+/// Node in its rest pose.
 #[derive(Clone, Debug, Default)]
 struct RestNode {
     parent: Option<usize>,
@@ -84,8 +84,8 @@ impl Animator {
     /// Reads the animations and skins of a scene; `None` if it has no glTF document.
     ///
     /// Supported: translations, rotations, scales and weights of morph targets, by steps, linear or
-    /// by splines. Other channels, as of `KHR_animation_pointer`, are left out with a note, and an
-    /// animation with a channel that is damaged altogether.
+    /// by splines. Other channels, such as `KHR_animation_pointer`, and animations with a damaged
+    /// channel are left out with a note.
     ///
     /// Cost: linear in the document.
     /// # References
@@ -111,13 +111,13 @@ impl Animator {
         Some(this)
     }
 
-    /// Returns the number of animations, without those that are left out.
+    /// Returns the number of animations that can be evaluated.
     pub fn animation_count(&self) -> usize {
         self.clips.len()
     }
 
-    /// Chooses at most `most` moments, spread evenly over the animations: key times, and the middles
-    /// between them where there is room. The choice depends on the animations alone.
+    /// Chooses at most `most` moments, spread evenly over the animations: key times, then the
+    /// midpoints between them. The choice depends only on the animations.
     pub fn moments(&self, most: usize) -> Vec<Moment> {
         let times: Vec<Vec<f64>> = self.clips.iter().map(Clip::key_times).collect();
         let moment = |(clip, seconds): (usize, f64)| {
@@ -127,8 +127,8 @@ impl Animator {
         key_times::choose(&times, most).into_iter().map(moment).collect()
     }
 
-    /// Returns the pose at a moment, or without one that of the file. A moment of an animation that
-    /// is not there gives the pose of the file too.
+    /// Returns the pose at a moment, or the rest pose without one. An unknown animation also gives
+    /// the rest pose.
     pub fn pose(&self, moment: Option<Moment>) -> Pose {
         let mut nodes: Vec<(Local, Vec<f64>)> =
             self.nodes.iter().map(|node| (node.local, node.weights.clone())).collect();
@@ -152,7 +152,7 @@ impl Animator {
         }
     }
 
-    /// Returns the skin that bends the mesh of a node, if it has one that is not left out.
+    /// Returns the skin of a node, unless it was left out.
     pub fn skin(&self, node: usize) -> Option<&Skin> {
         self.skins.get(self.nodes.get(node)?.skin?)?.as_ref()
     }
@@ -234,7 +234,7 @@ impl Animator {
 }
 
 impl Clip {
-    /// Lists the key times of all channels, in order, each once.
+    /// Lists the distinct key times of all channels in order.
     fn key_times(&self) -> Vec<f64> {
         let tracks = self.channels.iter().map(|channel| channel.track.times());
         let mut times: Vec<f64> = tracks.flatten().copied().collect();
@@ -245,7 +245,7 @@ impl Clip {
 }
 
 impl Local {
-    /// Takes the transform of a node apart as its JSON does; `matrix` is the one already read.
+    /// Reads the transform of a node in the form of its JSON; `matrix` is the combined transform.
     fn of(json: &Value, matrix: &[[f64; 4]; 4]) -> Self {
         if json.get("matrix").is_some() {
             return Self::Matrix(DMat4::from_cols_array_2d(matrix));
@@ -288,7 +288,7 @@ impl Default for Local {
     }
 }
 
-/// Returns the weight of each morph target of a node's mesh, without animation.
+/// Returns the rest weight of each morph target of a node's mesh.
 fn rest_weights(
     document: &Document<'_>,
     node: &Value,

@@ -1,13 +1,13 @@
-//! Samplers of animations: when their keys are, what is between them, and which property they move.
+//! Samplers of animations: key times, interpolation and the animated property.
 
 use serde_json::Value;
 
-use crate::gltf::accessor::Values;
 use crate::gltf::document::Document;
+use crate::gltf::document::accessor::Values;
 
-/// How values between two keys are found.
+/// Interpolation between two keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Interpolation {
+pub(crate) enum Interpolation {
     Linear,
     Step,
     /// Hermite splines; each key has a tangent before its value and one after it.
@@ -16,7 +16,7 @@ pub(super) enum Interpolation {
 
 /// Property of a node that animations move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::gltf) enum AnimatedProperty {
+pub(crate) enum AnimatedProperty {
     Translation,
     Rotation,
     Scale,
@@ -25,8 +25,8 @@ pub(in crate::gltf) enum AnimatedProperty {
 }
 
 impl AnimatedProperty {
-    /// Returns the property of this name; `None` for those of extensions.
-    pub(super) fn named(path: &str) -> Option<Self> {
+    /// Returns the property of this name; `None` for properties of extensions.
+    pub(crate) fn named(path: &str) -> Option<Self> {
         match path {
             "translation" => Some(Self::Translation),
             "rotation" => Some(Self::Rotation),
@@ -37,22 +37,21 @@ impl AnimatedProperty {
     }
 }
 
-/// Arrays of a sampler, with a time or more.
-pub(super) struct Sampler {
-    pub(super) interpolation: Interpolation,
-    /// Seconds, strictly rising.
-    pub(super) times: Vec<f32>,
-    /// Values at these times; not yet known to be as many.
-    pub(super) output: Values,
+/// Arrays of a sampler with at least one key.
+pub(crate) struct Sampler {
+    pub(crate) interpolation: Interpolation,
+    /// Key times in seconds, strictly increasing.
+    pub(crate) times: Vec<f32>,
+    /// Values at these times; their number is unchecked.
+    pub(crate) output: Values,
 }
 
 impl Sampler {
     /// Reads a sampler of an animation.
     ///
     /// # Errors
-    /// What is wrong with it: an unknown interpolation, accessors that are missing, times that do not
-    /// rise.
-    pub(super) fn read(document: &Document<'_>, sampler: &Value) -> Result<Self, String> {
+    /// An unknown interpolation, missing accessors, or times that do not increase.
+    pub(crate) fn read(document: &Document<'_>, sampler: &Value) -> Result<Self, String> {
         let interpolation = match sampler.get("interpolation").map(Value::as_str) {
             None | Some(Some("LINEAR")) => Interpolation::Linear,
             Some(Some("STEP")) => Interpolation::Step,

@@ -1,25 +1,25 @@
-//! Skins: the joints that bend a mesh, and where it is bound to them.
+//! Skins: the joints of a mesh, and their inverse bind matrices.
 
 use serde_json::Value;
 
 use crate::gltf::document::Document;
 use crate::scene::IDENTITY;
 
-/// Joints of a skin with the matrices that take a mesh to each of them.
+/// Joints of a skin with the matrices from the mesh to each of them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Skin {
-    /// Nodes by the numbers that vertices give them.
+    /// Nodes of the joints, by the indices stored at vertices.
     pub joints: Vec<usize>,
     /// Column-major matrix of each joint, from the mesh's space to the joint's.
     pub inverse_bind: Vec<[[f64; 4]; 4]>,
 }
 
 impl Skin {
-    /// Reads a skin by its number.
+    /// Reads a skin by index.
     ///
     /// # Errors
-    /// What is wrong with it.
-    pub(super) fn read(document: &Document<'_>, skin: usize) -> Result<Self, String> {
+    /// The reason why the skin is invalid.
+    pub(crate) fn read(document: &Document<'_>, skin: usize) -> Result<Self, String> {
         let json = &document.json["skins"][skin];
         let node_count = document.json["nodes"].as_array().map_or(0, Vec::len);
         let joints = json["joints"].as_array().ok_or("it has no joints")?;

@@ -1,18 +1,18 @@
-//! Interpolation of rotations, for poses and for the packer of animations.
+//! Interpolation of rotations, for poses and the packing of animations.
 
 use glam::DQuat;
 
-/// Cosine of an arc along which the chord is as good: they are at most 3e-14 apart.
+/// Cosine of an arc that its chord approximates to within 3e-14.
 const STRAIGHT: f64 = 1.0 - 1e-8;
-/// Halvings after which every arc of up to half a circle is that short.
+/// Halvings after which every arc of up to half a circle is this short.
 const MOST_HALVINGS: usize = 16;
 
-/// Interpolates between two unit quaternions along the arc between them, at constant speed and by
-/// their own signs: the shorter way is that to the sign of `to` that is nearer.
+/// Interpolates between two unit quaternions along their arc at constant speed, without choosing
+/// signs: for the shorter rotation, pass the nearer sign of `to`.
 ///
-/// The arc is halved until it is straight, by sums and roots alone, so that the result is the same on
-/// every machine. Opposite quaternions have no arc between them, and give no direction.
-pub(super) fn slerp(mut from: DQuat, mut to: DQuat, mut part: f64) -> DQuat {
+/// The arc is halved until it is straight, using only sums and roots, so that the result is the
+/// same on every machine. Opposite quaternions have no defined arc.
+pub(crate) fn slerp(mut from: DQuat, mut to: DQuat, mut part: f64) -> DQuat {
     for _ in 0..MOST_HALVINGS {
         if from.dot(to) >= STRAIGHT {
             break;

@@ -7,26 +7,26 @@ use super::sampler::{Interpolation, Sampler};
 use super::slerp::slerp;
 use crate::gltf::document::Document;
 
-/// Meaning of a track's numbers.
+/// Type of a track's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Quantity {
-    /// Vectors or lists of weights, this long.
+pub(crate) enum Quantity {
+    /// Vectors or lists of weights of this length.
     Numbers(usize),
     /// Unit quaternions.
     Rotation,
 }
 
-/// Values of one property at rising times.
+/// Values of one property at increasing times.
 #[derive(Clone, Debug)]
-pub(super) struct Track {
+pub(crate) struct Track {
     times: Vec<f64>,
     interpolation: Interpolation,
     quantity: Quantity,
-    /// Values of all keys; for splines tangent, value and tangent of each.
+    /// Values of all keys; for splines, tangent, value and tangent of each.
     values: Vec<f64>,
 }
 
-/// Shortest and longest quaternion that counts as of unit length, as for nodes.
+/// Shortest and longest length of a quaternion accepted as unit, as for nodes.
 const UNIT: std::ops::Range<f64> = 0.5..2.0;
 
 impl Quantity {
@@ -42,9 +42,8 @@ impl Track {
     /// Reads a sampler of an animation.
     ///
     /// # Errors
-    /// What is wrong with it: those of [`Sampler::read`], values of another number, rotations without
-    /// a direction.
-    pub(super) fn read(
+    /// Errors of [`Sampler::read`], a wrong number of values, rotations of invalid length.
+    pub(crate) fn read(
         document: &Document<'_>,
         sampler: &Value,
         quantity: Quantity,
@@ -67,13 +66,12 @@ impl Track {
         }
     }
 
-    pub(super) fn times(&self) -> &[f64] {
+    pub(crate) fn times(&self) -> &[f64] {
         &self.times
     }
 
-    /// Returns the value at a time; before the first key that of the first, after the last that of
-    /// the last.
-    pub(super) fn at(&self, time: f64) -> Vec<f64> {
+    /// Returns the value at a time, clamped to the first and last key.
+    pub(crate) fn at(&self, time: f64) -> Vec<f64> {
         let after = self.times.partition_point(|&key| key <= time);
         let Some(before) = after.checked_sub(1) else { return self.unit(self.key(0).to_vec()) };
         if after == self.times.len() || self.interpolation == Interpolation::Step {
@@ -102,13 +100,13 @@ impl Track {
         }
     }
 
-    /// Returns a value or tangent by its place among all.
+    /// Returns a value or tangent by its index among all.
     fn group(&self, at: usize) -> &[f64] {
         let width = self.quantity.width();
         &self.values[at * width..][..width]
     }
 
-    /// Hermite spline from a key to the next one, in `span` seconds.
+    /// Evaluates the Hermite spline from a key to the next one, `span` seconds apart.
     fn spline(&self, key: usize, span: f64, t: f64) -> Vec<f64> {
         let (t2, t3) = (t * t, t * t * t);
         let leaving = self.group(3 * key + 2);
@@ -122,7 +120,7 @@ impl Track {
         (0..self.quantity.width()).map(value).collect()
     }
 
-    /// Makes a quaternion one of unit length; no rotation if it has none.
+    /// Normalizes a quaternion; returns the identity for zero.
     fn unit(&self, value: Vec<f64>) -> Vec<f64> {
         match self.quantity {
             Quantity::Numbers(_) => value,
@@ -138,7 +136,7 @@ fn quaternion(values: &[f64]) -> DQuat {
     DQuat::from_slice(values)
 }
 
-/// Returns the rotation between two that is this part of the way, by the shorter way.
+/// Interpolates between two rotations along the shorter arc.
 fn turned(from: DQuat, to: DQuat, part: f64) -> DQuat {
     slerp(from, if from.dot(to) < 0.0 { -to } else { to }, part)
 }

@@ -2,10 +2,11 @@
 
 use serde_json::{Value, json};
 
-use super::super::animation::packing::key_track::{KeyTrack, arc, distance, nearer};
-use super::super::animation::packing::properties;
-use super::super::document::Document;
-use super::super::{Compression, write_compressed_glb};
+use crate::gltf::animation::packing::key_track::{KeyTrack, arc, distance, nearer};
+use crate::gltf::animation::packing::properties;
+use crate::gltf::document::Document;
+use crate::gltf::write::settings::Compression;
+use crate::gltf::write::write_compressed_glb;
 use crate::{Format, ReadOptions, Scene, read_bytes};
 
 const DEGREES: f64 = 0.1;

@@ -5,7 +5,7 @@ use meshlod_fixtures::{folding_strip, ridged_strip, shared_mesh};
 use serde_json::{Value, json};
 
 use super::{read_alone, read_parts};
-use crate::gltf::container;
+use crate::gltf::document::container;
 use crate::gltf::{Animator, Moment};
 use crate::{ReadOptions, Scene};
 

@@ -10,7 +10,7 @@ use crate::{Format, Image, Material, Note, Scene};
 
 /// A square with morph target, bytes as colours, points beside it, an animation, and things that
 /// nobody here knows.
-pub(super) fn rich() -> Scene {
+pub(crate) fn rich() -> Scene {
     let (mut json, mut buffer) = square();
     let floats = |buffer: &mut Vec<u8>, values: &[f32]| {
         buffer.extend(values.iter().flat_map(|x| x.to_le_bytes()));
@@ -260,7 +260,7 @@ fn normals_that_a_primitive_never_had_are_no_change() {
     json["meshes"][0]["primitives"] = json!([with, bare]);
     let notes = |buffer: &[u8]| -> Vec<String> {
         let mut scene = read_parts(&json, buffer).unwrap();
-        crate::normals::make_unit(&mut scene);
+        crate::scene::normals::make_unit(&mut scene);
         scene.notes.iter().map(Note::to_string).collect()
     };
     assert_eq!(notes(&buffer), [""; 0]);

@@ -8,7 +8,8 @@ use meshlod_mesh::{LayerKind, Mesh};
 use serde_json::{Value, json};
 
 use super::{assert_valid, json_of, read_alone, read_parts};
-use crate::gltf::{container, read, write_glb};
+use crate::gltf::document::container;
+use crate::gltf::{read, write_glb};
 use crate::{NoteKind, Scene, Weld};
 
 const DRACO: &str = "KHR_draco_mesh_compression";

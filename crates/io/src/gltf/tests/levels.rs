@@ -11,7 +11,7 @@ use crate::gltf::{
 use crate::{Node, Scene};
 
 /// Levels that each keep the first faces of the one before.
-pub(super) fn levels(scene: &Scene) -> Vec<Level> {
+pub(crate) fn levels(scene: &Scene) -> Vec<Level> {
     let level = |faces: usize, screen_coverage| Level {
         meshes: scene
             .meshes

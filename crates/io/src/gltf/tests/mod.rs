@@ -18,7 +18,9 @@ mod small;
 
 use serde_json::{Value, json};
 
-use super::{container, read, write_glb};
+use crate::gltf::document::container;
+use crate::gltf::read;
+use crate::gltf::write::write_glb;
 use crate::{ParseError, Scene, Weld};
 
 /// Reads bytes that refer to no other file.

@@ -4,7 +4,8 @@ use proptest::prelude::*;
 use serde_json::{Value, json};
 
 use super::carried::rich;
-use super::{container, json_of, levels, read_alone};
+use super::{json_of, levels, read_alone};
+use crate::gltf::document::container;
 use crate::gltf::{Compression, write_compressed_glb, write_glb};
 
 /// Reads a document; if that succeeds, the scene must be valid and writable, also with levels.

@@ -62,7 +62,7 @@ fn a_placeholder_need_not_be_called_one_but_nothing_else_may_lie_in_it() {
 }
 
 #[test]
-fn each_fault_of_compression_is_told_with_its_place() {
+fn each_fault_of_compression_is_located() {
     type Change = fn(&mut Value);
     let faults: [(&str, &str, Change); 11] = [
         ("bufferView 0", "mode \"DRACO\"", |e| e["mode"] = "DRACO".into()),

@@ -46,7 +46,7 @@ fn posed(scene: &Scene, node: usize) -> Vec<[DVec3; 3]> {
     let inverse = skin.get("inverseBindMatrices").map(|at| document.floats(index(at)).unwrap());
     let matrices: Vec<DMat4> = (joints.iter().enumerate())
         .map(|(i, joint)| {
-            let own = |read: &crate::gltf::accessor::Values| {
+            let own = |read: &crate::gltf::document::accessor::Values| {
                 let values: [f32; 16] = read.values[16 * i..][..16].try_into().unwrap();
                 DMat4::from_cols_array(&values.map(f64::from))
             };

@@ -5,8 +5,8 @@ use meshlod_mesh::Mesh;
 use serde_json::{Value, json};
 
 use super::carried::rich;
-use super::{assert_valid, container, json_of, read_alone, read_parts, square};
-use crate::gltf::document::Document;
+use super::{assert_valid, json_of, read_alone, read_parts, square};
+use crate::gltf::document::{Document, container};
 use crate::gltf::{Skeleton, SkeletonImage, write_glb};
 use crate::{Material, Node, ReadOptions, Scene, SceneMesh};
 

@@ -1,12 +1,13 @@
-//! MtlImages that the statements of MTL libraries name.
+//! Images referenced by MTL statements.
 
 use std::collections::HashMap;
 
 use super::statement::{image_names, names_image, options, word_of};
-use crate::image_file::is_image;
-use crate::{Image, MtlMap, MtlStatement};
+use crate::scene::Image;
+use crate::scene::image_file::is_image;
+use crate::scene::material::{MtlMap, MtlStatement};
 
-/// MtlImages loaded so far, each once.
+/// Images loaded so far, without duplicates.
 #[derive(Default)]
 pub(super) struct MtlImages {
     pub list: Vec<Image>,
@@ -15,7 +16,7 @@ pub(super) struct MtlImages {
 }
 
 impl MtlImages {
-    /// Splits a line around the name of an image, which is loaded, if it names any.
+    /// Splits a line around the name of an image, if it has one, and loads the image.
     pub fn statement(
         &mut self,
         line: &str,
@@ -45,7 +46,7 @@ impl MtlImages {
         MtlStatement { text: line[..start].to_owned(), map: Some(map) }
     }
 
-    /// Loads an image by the name that a library has for it; returns false if there is no such file.
+    /// Loads an image by its name in the library; returns false if the file does not exist.
     fn load(&mut self, name: &str, resolve: &mut dyn FnMut(&str) -> Option<Vec<u8>>) -> bool {
         let Some(bytes) = resolve(name) else { return false };
         // As with glTF, a file from elsewhere must not make the writer copy arbitrary files.

@@ -1,18 +1,18 @@
 //! Lines of an MTL library.
 
-use crate::ParseError;
-use crate::text_cursor::{TextCursor, text_of};
+use crate::error::ParseError;
+use crate::text::cursor::{TextCursor, text_of};
 
-/// Line of a library, which a backslash at its end continues.
+/// Line of a library, joined with the lines that continue it after a backslash.
 #[derive(Debug, PartialEq)]
 pub(super) struct Line {
     /// Number of its first line, counted from 1.
     pub number: usize,
-    /// Text without line ends; what continues it follows a space.
+    /// Text without line ends; continuations follow a space.
     pub text: String,
 }
 
-/// Splits a library into lines. Bytes that are not UTF-8 are taken to be Latin-1.
+/// Splits a library into lines. Bytes that are not UTF-8 are read as Latin-1.
 ///
 /// # Errors
 /// Bytes that are not text.

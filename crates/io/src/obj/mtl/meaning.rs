@@ -1,13 +1,16 @@
-//! Meaning of the statements of an MTL library, in the terms that scenes have.
+//! Properties of a material, read from its MTL statements.
 
 use std::borrow::Cow;
 
-use super::statement::{self, MapOption};
-use crate::image_file::has_colors;
-use crate::text_cursor::TextCursor;
-use crate::{Image, Material, MtlStatement, ParseError, Shading};
+use super::statement;
+use super::statement::MapOption;
+use crate::error::ParseError;
+use crate::scene::Image;
+use crate::scene::image_file::has_colors;
+use crate::scene::material::{Material, MtlStatement, Shading};
+use crate::text::cursor::TextCursor;
 
-/// Properties that the statements of a material say.
+/// Properties that MTL statements set.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Meaning {
     pub base_color: [f32; 4],
@@ -15,12 +18,12 @@ pub(super) struct Meaning {
     pub shading: Shading,
 }
 
-/// Values that statements have given so far.
+/// Values set by the statements so far.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Said {
+pub(super) struct StatedValues {
     color: Option<[f32; 3]>,
     opacity: Option<f32>,
-    /// Used only if there is no opacity: exporters that write both disagree about this one.
+    /// Used only without an opacity: exporters that write both disagree about it.
     transparency: f32,
     specular: [f32; 3],
     exponent: f32,
@@ -37,10 +40,10 @@ pub(super) struct Said {
     relief: Option<(usize, f32)>,
 }
 
-/// Returns what the statements of a material say. Statements that say nothing are passed over, and
-/// so are those that [`Said::add`] refuses.
+/// Returns the properties set by the statements of a material. Unknown and malformed statements are
+/// skipped.
 pub(super) fn meaning(statements: &[MtlStatement], images: &[Image]) -> Meaning {
-    let mut said = Said::default();
+    let mut said = StatedValues::default();
     for line in statements {
         // The library has noted what is refused.
         let _ = said.add(&without_name(line), line.map.as_ref().map(|map| map.image));
@@ -48,7 +51,7 @@ pub(super) fn meaning(statements: &[MtlStatement], images: &[Image]) -> Meaning 
     said.meaning(images)
 }
 
-/// Returns a statement without the name of its image, as options may stand behind that.
+/// Returns a statement without the name of its image, since options may follow the name.
 fn without_name(line: &MtlStatement) -> Cow<'_, str> {
     match &line.map {
         Some(map) if !map.rest.is_empty() => Cow::Owned(format!("{}{}", line.text, map.rest)),
@@ -56,11 +59,11 @@ fn without_name(line: &MtlStatement) -> Cow<'_, str> {
     }
 }
 
-impl Said {
+impl StatedValues {
     /// Adds a statement, and the image that it names.
     ///
     /// # Errors
-    /// A colour or a number that cannot be read; the statement then says nothing.
+    /// A colour or a number that cannot be read; the statement is then ignored.
     pub fn add(&mut self, line: &str, image: Option<usize>) -> Result<(), ParseError> {
         let word = statement::word_of(line);
         match (&*word, image) {
@@ -118,9 +121,9 @@ impl Said {
         }
     }
 
-    /// Guesses the roughness from the highlight: 1 without one, and otherwise that whose
-    /// microfacets are spread as widely as a Phong lobe with the exponent `Ns`, with a width α of
-    /// √(2 / (`Ns` + 2)), which is the square of glTF's roughness.
+    /// Estimates the roughness from the highlight: 1 without one, else the roughness whose
+    /// microfacets are as spread out as a Phong lobe with the exponent `Ns`, with a width α of √(2
+    /// / (`Ns` + 2)), the square of glTF's roughness.
     ///
     /// # References
     /// [WMLT07] section 5.2, solved for the width; [Khr21] appendix B for the square.
@@ -150,7 +153,7 @@ fn number(line: &str, need: &str) -> Result<f32, ParseError> {
     finite(&text, number)
 }
 
-/// Returns what was read from a line, unless the line has a number that is not finite.
+/// Returns the value of a line, unless the line has a number that is not finite.
 fn finite<T>(text: &TextCursor, value: T) -> Result<T, ParseError> {
     match text.not_finite() {
         0 => Ok(value),
@@ -158,20 +161,20 @@ fn finite<T>(text: &TextCursor, value: T) -> Result<T, ParseError> {
     }
 }
 
-/// Returns a cursor behind the first word of a line.
+/// Returns a cursor after the first word of a line.
 fn values(line: &str) -> Result<TextCursor<'_>, ParseError> {
     let mut text = TextCursor::new(line.as_bytes())?;
     text.word();
     Ok(text)
 }
 
-/// Returns the channel of an image that a statement selects.
+/// Returns the image channel selected by a statement.
 fn channel(line: &str) -> Option<&str> {
     let (options, _) = statement::options(line);
     options.into_iter().find(|option| option.name == "-imfchan").map(|option| option.values)
 }
 
-/// Returns the factor of a relief, 1 unless a statement says otherwise.
+/// Returns the bump multiplier of a statement; 1 by default.
 fn multiplier(line: &str) -> f32 {
     let (options, _) = statement::options(line);
     let given = options.into_iter().find(|option| option.name == "-bm");
@@ -181,23 +184,22 @@ fn multiplier(line: &str) -> f32 {
         .unwrap_or(1.0)
 }
 
-/// Statements of a material that a glTF document has no place for, by their words, and those that it
-/// holds as something else.
+/// Statements of a material that a glTF document cannot hold, and statements that it converts.
 #[derive(Debug, Default, PartialEq)]
-pub(crate) struct Untold {
+pub(crate) struct MtlLosses {
     pub left_out: Vec<String>,
     pub changed: Vec<String>,
-    /// Number of maps of roughness and metalness that glTF would need in one image.
+    /// Number of separate roughness and metalness maps, which glTF stores in one image.
     pub apart: usize,
 }
 
-/// Lists the statements of a material that a new glTF document does not hold.
-pub(crate) fn untold(material: &Material, images: &[Image]) -> Untold {
+/// Lists the statements of a material that a new glTF document loses or converts.
+pub(crate) fn mtl_losses(material: &Material, images: &[Image]) -> MtlLosses {
     let meaning = meaning(&material.mtl, images);
     let surface = &meaning.shading;
     let combined = surface.metallic_roughness_image();
     let says_roughness = material.mtl.iter().any(|line| statement::word_of(&line.text) == "pr");
-    let mut untold = Untold::default();
+    let mut losses = MtlLosses::default();
     for line in &material.mtl {
         let word = statement::word_of(&line.text);
         let image = line.map.as_ref().map(|map| map.image);
@@ -222,21 +224,21 @@ pub(crate) fn untold(material: &Material, images: &[Image]) -> Untold {
         let written = statement::split_word(line.text.trim_start()).0.to_owned();
         match arrives {
             false if ["map_pr", "map_pm"].contains(&&*word) && combined.is_none() => {
-                untold.apart += 1;
+                losses.apart += 1;
             }
-            _ if is_guess || arrives && word.ends_with("bump") => untold.changed.push(written),
-            false => untold.left_out.push(written),
+            _ if is_guess || arrives && word.ends_with("bump") => losses.changed.push(written),
+            false => losses.left_out.push(written),
             true => {
                 let text = without_name(line);
                 let lost = lost_options(&text, &word).into_iter();
-                untold.left_out.extend(lost.map(|option| format!("{written} {}", option.name)));
+                losses.left_out.extend(lost.map(|option| format!("{written} {}", option.name)));
             }
         }
     }
-    untold
+    losses
 }
 
-/// Lists the options of a statement with an image that glTF lacks.
+/// Lists the options of an image statement that glTF lacks.
 fn lost_options<'a>(line: &'a str, word: &str) -> Vec<MapOption<'a>> {
     if !statement::names_image(word) {
         return Vec::new();

@@ -1,7 +1,7 @@
-//! MTL material libraries, of which every statement is kept.
+//! MTL material libraries; every statement is kept.
 //!
-//! A line that is not known is kept as it is. What the known ones mean, [Ram95] says, and for `Pr`,
-//! `Pm`, `Ke` and `norm`, the exporters that brought them in.
+//! Unknown lines are kept as they are. Statements are interpreted as in [Ram95]; `Pr`, `Pm`, `Ke`
+//! and `norm` as by the exporters that introduced them.
 
 mod images;
 mod lines;
@@ -11,7 +11,7 @@ mod read;
 mod statement;
 mod write;
 
-pub(crate) use meaning::untold;
+pub(crate) use meaning::mtl_losses;
 pub(super) use read::resolve_materials;
 pub(crate) use read::{Library, library_names};
 pub(super) use write::names;

@@ -1,12 +1,14 @@
-//! Reading MTL libraries, and the images that they name.
+//! Reading MTL libraries and their images.
 
 use std::collections::{HashMap, HashSet};
 
 use super::images::MtlImages;
 use super::lines::lines;
-use super::meaning::{Said, meaning};
+use super::meaning::{StatedValues, meaning};
 use super::statement::{split_word, word_of};
-use crate::{Image, Material, MtlStatement, Note};
+use crate::notes::Note;
+use crate::scene::Image;
+use crate::scene::material::{Material, MtlStatement};
 
 /// Materials of all libraries of a file.
 #[derive(Default)]
@@ -15,18 +17,18 @@ pub(crate) struct Library {
     definitions: Vec<(String, Vec<String>)>,
     /// Material by name.
     numbers: HashMap<String, usize>,
-    /// Libraries that were asked for.
+    /// Names of the requested libraries.
     asked: HashSet<String>,
     missing: Vec<String>,
-    /// Libraries that are no text, with the reasons.
+    /// Libraries that are not text, with the reasons.
     unreadable: Vec<(String, String)>,
-    /// Statements that are kept but say nothing, with their places and the reasons.
+    /// Malformed statements, which are kept but ignored, with locations and reasons.
     malformed: Vec<String>,
-    /// Materials defined again.
+    /// Materials with more than one definition.
     repeated: Vec<String>,
 }
 
-/// Materials and images of a scene, the material of each label, and what did not arrive.
+/// Materials and images of a scene, the material of each label, and notes on losses.
 pub(crate) struct Resolved {
     pub materials: Vec<Material>,
     pub images: Vec<Image>,
@@ -35,8 +37,8 @@ pub(crate) struct Resolved {
 }
 
 impl Library {
-    /// Loads the libraries of an `mtllib` line, which is one name with blanks or several names, in
-    /// quotes or not. Missing files are noted; the first definition of a name wins.
+    /// Loads the libraries of an `mtllib` line, which holds one name with blanks or several names,
+    /// quoted or not. Missing files are noted; the first definition of a name wins.
     pub fn add(&mut self, names: &str, resolve: &mut dyn FnMut(&str) -> Option<Vec<u8>>) {
         if names.is_empty() || !self.asked.insert(names.to_owned()) {
             return;
@@ -55,21 +57,21 @@ impl Library {
                 None => missing.push(name.to_owned()),
             }
         }
-        // A name with blanks of which no part is a file is more likely to be one.
+        // If no part of a name with blanks is a file, it is more likely a single name.
         if missing.len() == parts.len() && !names.contains('"') {
             missing = vec![names.to_owned()];
         }
         self.missing.extend(missing);
     }
 
-    /// Parses the library `name`. A statement that is malformed is kept, and noted.
+    /// Parses the library `name`. Malformed statements are kept and noted.
     pub fn parse(&mut self, name: &str, bytes: &[u8]) {
         let found = match lines(bytes) {
             Ok(found) => found,
             Err(error) => return self.unreadable.push((name.to_owned(), error.reason)),
         };
         let mut current: Option<(String, Vec<String>)> = None;
-        let mut said = Said::default();
+        let mut said = StatedValues::default();
         for line in found {
             if word_of(&line.text) == "newmtl" {
                 self.define(current.take());
@@ -86,7 +88,7 @@ impl Library {
         self.define(current);
     }
 
-    /// Reports whether all libraries that were asked for have been read.
+    /// Reports whether all requested libraries have been read.
     pub fn is_complete(&self) -> bool {
         self.unread().next().is_none()
     }
@@ -109,7 +111,7 @@ impl Library {
         }
     }
 
-    /// Returns the lines that define a material, if any library has it.
+    /// Returns the lines that define a material, if it is defined.
     pub fn lines_of(&self, name: &str) -> Option<&[String]> {
         self.numbers.get(name).map(|&number| &self.definitions[number].1[..])
     }
@@ -167,7 +169,7 @@ impl Library {
     }
 }
 
-/// Lists the names that an `mtllib` line has if it has several, in quotes where they have blanks.
+/// Splits an `mtllib` line into several names; names with blanks are in quotes.
 pub(crate) fn library_names(line: &str) -> Vec<&str> {
     let mut names = Vec::new();
     let mut rest = line.trim_ascii();
@@ -180,11 +182,11 @@ pub(crate) fn library_names(line: &str) -> Vec<&str> {
     names
 }
 
-/// Looks up the materials with these names, except "", then adds those that no face uses; loads all
-/// images that they name.
+/// Looks up the materials with these names, except "", then adds unused ones; loads all their
+/// images.
 ///
-/// A name without a definition gives a grey material. An image that is missing, or is no image,
-/// keeps its name and has no bytes.
+/// A name without a definition gives a grey material. A missing or invalid image keeps its name and
+/// has no bytes.
 pub(crate) fn resolve_materials(
     names: &[String],
     library: &Library,

@@ -1,13 +1,13 @@
-//! Statements of an MTL library: their words, and the images that they name.
+//! Syntax of MTL statements: keywords, options and image names.
 
-/// Returns the first word of a statement in lower case, as exporters do not agree on its case;
-/// empty for a comment or a blank line.
+/// Returns the keyword of a statement in lower case, since exporters disagree on its case; empty
+/// for comments and blank lines.
 pub(super) fn word_of(line: &str) -> String {
     let word = split_word(line.trim_start()).0;
     if word.starts_with('#') { String::new() } else { word.to_ascii_lowercase() }
 }
 
-/// Splits off the first word of a text and the blanks behind it.
+/// Splits off the first word of a text and the following blanks.
 pub(super) fn split_word(text: &str) -> (&str, &str) {
     let (word, rest) = text.split_once(|c: char| c.is_ascii_whitespace()).unwrap_or((text, ""));
     (word, rest.trim_start())
@@ -29,7 +29,7 @@ pub(super) struct MapOption<'a> {
     pub values: &'a str,
 }
 
-/// Splits a statement that names an image into its options and the rest, in which the name is.
+/// Splits an image statement into its options and the rest, which contains the name.
 pub(super) fn options(line: &str) -> (Vec<MapOption<'_>>, &str) {
     let mut rest = split_word(line.trim_start()).1;
     let mut options = Vec::new();
@@ -62,8 +62,8 @@ fn option_values(name: &str) -> Option<[usize; 2]> {
     }
 }
 
-/// Lists the names that the end of a statement may mean, likeliest first: all of it, what is before
-/// a comment, what is in quotes, what is before options that stand behind the name.
+/// Lists the possible image names at the end of a statement, likeliest first: all of it, the text
+/// before a comment, the text in quotes, the text before options.
 pub(super) fn image_names(rest: &str) -> Vec<&str> {
     let whole = rest.trim_end();
     let commented = whole.split_once(" #").map(|(name, _)| name.trim_end());

@@ -8,14 +8,15 @@ use super::meaning::meaning;
 use super::properties::{PROPERTIES, color};
 use super::read::Library;
 use super::statement::word_of;
-use crate::{Image, Material, MtlStatement, Scene};
+use crate::scene::material::{Material, MtlStatement};
+use crate::scene::{Image, Scene};
 
 /// Writes the materials of a scene as an MTL file, under the names that the OBJ writer
 /// [`write`](super::super::write()) uses.
 ///
-/// Statements that came from a library are written as they were, in their order, unless the fields
-/// of the material say something else; what they lack follows. Names of images are those of
-/// [`Scene::images`] where these differ from the library's.
+/// Statements from a library are written unchanged, in their order, unless the fields of the
+/// material differ; missing ones follow. Images have their names in [`Scene::images`] where these
+/// differ from the library's.
 ///
 /// # Errors
 /// Errors of `out`.
@@ -47,29 +48,29 @@ fn definitions(scene: &Scene) -> impl Iterator<Item = Definition> {
     names(&scene.materials).into_iter().zip(materials)
 }
 
-/// Lists the materials of which the library of a scene would hold more than the name.
+/// Lists the materials that have more than a name in the library of a scene.
 pub(crate) fn defined(scene: &Scene) -> Vec<String> {
     let defined = definitions(scene).filter(|(_, lines)| !lines.is_empty());
     defined.map(|(name, _)| name).collect()
 }
 
-/// Reports whether libraries say the same of the same materials as this scene, but for comments and
-/// blank lines, and for materials that a library which was not found may define.
+/// Reports whether libraries define the same materials as this scene, ignoring comments, blank
+/// lines and materials that a missing library may define.
 pub(crate) fn same_library(library: &Library, scene: &Scene) -> bool {
     let own = own_definitions(library, scene);
     library.definitions().count() == own.len() && holds(library, own.into_iter())
 }
 
-/// Returns the materials of a scene with the lines that define them, but for those of which it has
-/// the name alone and that a library which was not found may define.
+/// Returns the materials of a scene with the lines that define them, without materials that are
+/// only names and may be defined by a missing library.
 pub(crate) fn own_definitions(library: &Library, scene: &Scene) -> Vec<Definition> {
     let is_elsewhere = |name: &str| !library.is_complete() && library.lines_of(name).is_none();
     let own = |(name, lines): &Definition| !lines.is_empty() || !is_elsewhere(name);
     definitions(scene).filter(own).collect()
 }
 
-/// Reports whether a library says the same of all materials of an older one, so that it may take its
-/// place while files still use that.
+/// Reports whether a library defines all materials of an older one identically, so that it can
+/// replace it even if other files use it.
 pub(crate) fn is_superset(newer: &[u8], older: &[u8]) -> bool {
     let (Some(newer), Some(older)) = (parsed(newer), parsed(older)) else { return false };
     holds(&newer, older.definitions().map(|(name, lines)| (name.to_owned(), lines.to_vec())))
@@ -92,18 +93,19 @@ fn holds(library: &Library, materials: impl Iterator<Item = Definition>) -> bool
     })
 }
 
-/// Returns the statements that define a material: its own, less those that are no longer true, and
-/// those that are needed besides.
+/// Returns the statements that define a material: its own, without outdated ones, and the missing
+/// ones.
 ///
-/// The colour of a material that is not from a library is always said: not all readers take grey
-/// for one that is missing.
+/// The colour of a material that is not from a library is always written, since readers differ in
+/// the default.
 fn statements(material: &Material, images: &[Image], is_foreign: bool) -> Vec<MtlStatement> {
     let mut lines = material.mtl.clone();
     lines.extend(is_foreign.then(|| color(material)));
     // Twice, as what one statement says may depend on another: a map without a factor has 1.
     for _ in 0..2 {
         let said = meaning(&lines, images);
-        for property in PROPERTIES.iter().filter(|property| !(property.is_said)(&said, material)) {
+        for property in PROPERTIES.iter().filter(|property| !(property.is_stated)(&said, material))
+        {
             lines.retain(|line| !property.words.contains(&&*word_of(&line.text)));
             lines.extend((property.write)(material));
         }
@@ -111,7 +113,7 @@ fn statements(material: &Material, images: &[Image], is_foreign: bool) -> Vec<Mt
     lines
 }
 
-/// Returns the line of a statement, with the name that its image has in the scene.
+/// Returns the line of a statement, with the name of its image in the scene.
 fn text_of(line: &MtlStatement, images: &[Image]) -> String {
     let Some(map) = &line.map else { return one_statement(&line.text) };
     let file = images.get(map.image).map_or(&*map.name, |image| &*image.name);
@@ -119,8 +121,8 @@ fn text_of(line: &MtlStatement, images: &[Image]) -> String {
     one_statement(&format!("{}{name}{}", line.text, map.rest))
 }
 
-/// Replaces what would end the line of a statement or is no text. All else stays: a form feed parts
-/// words. A blank keeps a backslash at the end from continuing the line.
+/// Replaces line ends and control characters except form feeds, which separate words. A blank keeps
+/// a final backslash from continuing the line.
 fn one_statement(text: &str) -> String {
     let blank = if text.ends_with('\\') { " " } else { "" };
     text.replace(['\n', '\r', '\0'], "_") + blank
@@ -146,7 +148,7 @@ pub(crate) fn names(materials: &[Material]) -> Vec<String> {
     materials.iter().enumerate().map(unique).collect()
 }
 
-/// Trims a text and replaces its control characters, but for tabs.
+/// Trims a text and replaces its control characters except tabs.
 pub(crate) fn one_line(text: &str, trim: fn(&str) -> &str) -> String {
     trim(text).chars().map(|c| if c.is_control() && c != '\t' { '_' } else { c }).collect()
 }
@@ -192,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_said_is_understood() {
+    fn written_properties_are_read_back() {
         let scene = read(LIBRARY);
         let a = &scene.materials[0];
         assert_eq!((a.base_color, a.base_color_image), ([1.0, 0.0, 0.0, 0.75], Some(0)));

@@ -1,4 +1,4 @@
-//! Tracks of animations as they are packed: their keys, and the pose between two keys.
+//! Tracks of animations for packing: their keys, and the poses between them.
 
 use glam::DQuat;
 use serde_json::Value;
@@ -8,11 +8,11 @@ use crate::gltf::animation::slerp;
 use crate::gltf::document::Document;
 
 /// Value of a sampler: a unit quaternion, or a vector with a fourth component of zero.
-pub(in crate::gltf) type KeyValue = [f64; 4];
+pub(crate) type KeyValue = [f64; 4];
 
-/// Keys of a sampler, at least one, in the order of their times.
+/// Keys of a sampler, at least one, in order of time.
 #[derive(Clone, Debug)]
-pub(in crate::gltf) struct KeyTrack {
+pub(crate) struct KeyTrack {
     pub property: AnimatedProperty,
     /// If true, each key holds until the next; if not, poses in between are interpolated.
     pub is_step: bool,
@@ -60,7 +60,7 @@ impl KeyTrack {
         }
     }
 
-    /// Returns the pose at a time in seconds; before the first key and after the last, theirs.
+    /// Returns the pose at a time in seconds, clamped to the first and last key.
     #[cfg(test)]
     pub fn at(&self, time: f64) -> KeyValue {
         let after = self.times.partition_point(|&key| f64::from(key) <= time);
@@ -73,35 +73,35 @@ impl KeyTrack {
     }
 }
 
-/// Scales a quaternion to length 1; `None` if it is off by more than rounding.
+/// Normalizes a quaternion; `None` if its length differs from 1 by more than rounding.
 fn unit(q: KeyValue) -> Option<KeyValue> {
     let length = dot(q, q).sqrt();
     ((length - 1.0).abs() <= 1e-3).then(|| q.map(|x| x / length))
 }
 
-pub(in crate::gltf) fn dot(a: KeyValue, b: KeyValue) -> f64 {
+pub(crate) fn dot(a: KeyValue, b: KeyValue) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Returns the distance of two poses as points.
-pub(in crate::gltf) fn distance(a: KeyValue, b: KeyValue) -> f64 {
+pub(crate) fn distance(a: KeyValue, b: KeyValue) -> f64 {
     let off = mixed(a, b, [1.0, -1.0]);
     dot(off, off).sqrt()
 }
 
-/// Returns the sign of a quaternion that is nearer to another; both signs are one rotation.
-pub(in crate::gltf) fn nearer(to: KeyValue, q: KeyValue) -> KeyValue {
+/// Returns the sign of a quaternion that is nearer to another; both signs are the same rotation.
+pub(crate) fn nearer(to: KeyValue, q: KeyValue) -> KeyValue {
     if dot(to, q) < 0.0 { q.map(|x| -x) } else { q }
 }
 
-/// Returns the angle between two unit quaternions as points of the sphere, half that of the
-/// rotation between them.
-pub(in crate::gltf) fn arc(a: KeyValue, b: KeyValue) -> f64 {
+/// Returns the angle between two unit quaternions on the sphere, half the angle of rotation between
+/// them.
+pub(crate) fn arc(a: KeyValue, b: KeyValue) -> f64 {
     2.0 * (0.5 * distance(a, b)).min(1.0).asin()
 }
 
-/// Interpolates along the arc between two unit quaternions, by their own signs.
-pub(super) fn slerp(a: KeyValue, b: KeyValue, part: f64) -> KeyValue {
+/// Interpolates along the arc between two unit quaternions, without choosing signs.
+pub(crate) fn slerp(a: KeyValue, b: KeyValue, part: f64) -> KeyValue {
     let [from, to] = [a, b].map(DQuat::from_array);
     slerp::slerp(from, to, part).to_array()
 }

@@ -1,29 +1,28 @@
-//! Keys that an animation needs: those that interpolating the others does not give within an error.
+//! Selection of the keys that interpolation of the others cannot reproduce within the tolerance.
 
 use super::key_track::{KeyTrack, KeyValue, arc, distance, nearer, slerp};
 
-/// Largest number of keys that one interval takes the place of; bounds the time of [`select`].
+/// Limit on the number of keys replaced by one interval; bounds the time of [`select`].
 const MOST_KEYS: usize = 256;
 
-/// Track with the poses that its keys are rounded to.
-pub(super) struct RoundedTrack {
+/// Track with the rounded poses of its keys.
+pub(crate) struct RoundedTrack {
     pub track: KeyTrack,
     /// Rounded pose of every key.
     pub rounded: Vec<KeyValue>,
-    /// Largest distance of poses as points of space.
+    /// Largest allowed distance between poses, as points in space.
     pub tolerance: f64,
 }
 
 impl RoundedTrack {
-    /// Reports whether the first key alone is close enough to all.
+    /// Reports whether the first key is close enough to all others.
     pub fn is_constant(&self) -> bool {
         let Self { track, rounded, .. } = self;
         (1..track.poses.len()).all(|key| self.joins(key, rounded[0], rounded[0]))
             && self.is_near(track.poses[0], rounded[0])
     }
 
-    /// Reports whether the poses from key `from` to key `to` are close to the interpolation of those
-    /// two.
+    /// Reports whether the poses between two keys are close to their interpolation.
     fn spans(&self, from: usize, to: usize) -> bool {
         let Self { track, rounded, .. } = self;
         if track.is_step {
@@ -39,9 +38,9 @@ impl RoundedTrack {
         })
     }
 
-    /// Reports whether the way from key `key - 1` to `key` is close to the way from `a` to `b`.
+    /// Reports whether the path from key `key - 1` to `key` is close to the path from `a` to `b`.
     ///
-    /// Vectors part most at one of the ends. Rotations go along arcs of constant speed, so the
+    /// Vectors differ most at one of the ends. Rotations go along arcs of constant speed, so the
     /// second derivative of their difference is at most the sum of the squares of the arcs, and
     /// between samples the difference exceeds theirs by an eighth of that at most.
     fn joins(&self, key: usize, a: KeyValue, b: KeyValue) -> bool {
@@ -66,12 +65,12 @@ impl RoundedTrack {
     }
 }
 
-/// Selects the keys that tracks with the same times keep, the first and the last among them.
+/// Selects the keys to keep in tracks with the same times, including the first and last.
 ///
-/// Intervals are as long as the tolerance of every track allows, as far as doubling finds. `None` if
-/// a track is not close to its rounded poses even with all its keys. Cost: O(n log m) for n keys of
-/// all tracks, m = [`MOST_KEYS`].
-pub(super) fn select(tracks: &[&RoundedTrack]) -> Option<Vec<usize>> {
+/// Intervals are as long as the tolerance of every track allows, as far as doubling finds. `None`
+/// if a track is not close to its rounded poses even with all its keys. Cost: O(n log m) for n keys
+/// of all tracks, m = [`MOST_KEYS`].
+pub(crate) fn select(tracks: &[&RoundedTrack]) -> Option<Vec<usize>> {
     let count = tracks.first()?.track.times.len();
     let mut keys = vec![0];
     let mut from = 0;
@@ -83,8 +82,8 @@ pub(super) fn select(tracks: &[&RoundedTrack]) -> Option<Vec<usize>> {
     Some(keys)
 }
 
-/// Searches the largest number up to `most` for which `holds`: by doubling, then by halving what is
-/// left. `None` if it does not hold for 1.
+/// Finds the largest number up to `most` for which `holds`, by doubling and bisection; `None` if it
+/// does not hold for 1.
 fn longest(most: usize, holds: impl Fn(usize) -> bool) -> Option<usize> {
     let mut good = holds(1).then_some(1)?;
     let mut bad = most + 1;

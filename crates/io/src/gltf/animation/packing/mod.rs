@@ -1,10 +1,10 @@
-//! Packing of animations: keys that are not needed go, the others are rounded and stored together.
+//! Packing of animations: redundant keys are dropped, the others are rounded and stored together.
 //!
 //! Rotations become normalized shorts, all in one buffer view, translations and scales another, and
-//! times a third. Whatever is not understood stays as it is: cubic splines, weights of morph
-//! targets, pointers, and samplers that break the rules of the specification.
+//! times a third. Cubic splines, weights of morph targets, pointers and malformed samplers stay
+//! unchanged.
 
-pub(in crate::gltf) mod key_track;
+pub(crate) mod key_track;
 mod keys;
 mod rounding;
 
@@ -12,19 +12,18 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Value, json};
 
-use self::key_track::KeyTrack;
-use self::keys::{RoundedTrack, select};
-use self::rounding::{Rounded, round};
-use super::sampler::AnimatedProperty;
-use crate::gltf::accessor::component;
-use crate::gltf::buffer_builder::BufferBuilder;
-use crate::gltf::compress::Compression;
-use crate::gltf::document::Document;
+use crate::gltf::animation::sampler::AnimatedProperty;
+use crate::gltf::document::{Document, component};
+use crate::gltf::write::buffer::BufferBuilder;
+use crate::gltf::write::settings::Compression;
+use key_track::KeyTrack;
+use keys::{RoundedTrack, select};
+use rounding::{Rounded, round};
 
-/// Place of a sampler: its animation, and its index there.
+/// Location of a sampler: its animation, and its index there.
 type SamplerPlace = (usize, usize);
 
-/// Sampler with the bytes of each of its keys and the keys that it keeps.
+/// Sampler with the encoded keys and the indices of the kept ones.
 struct PackedTrack {
     place: SamplerPlace,
     property: AnimatedProperty,
@@ -35,15 +34,15 @@ struct PackedTrack {
 
 /// Samplers that get new keys.
 #[derive(Default)]
-pub(in crate::gltf) struct PackedAnimations {
+pub(crate) struct PackedAnimations {
     tracks: Vec<PackedTrack>,
     places: BTreeSet<SamplerPlace>,
 }
 
-/// Bytes of a key, and of the JSON of an accessor: what sharing times saves, about.
+/// Approximate bytes of a key, and of the JSON of an accessor, saved by sharing times.
 const KEY_COST: usize = 3;
 const ACCESSOR_COST: usize = 130;
-/// Largest number of times that tracks leave those that share keys.
+/// Limit on the number of times that tracks leave the group of shared keys.
 const MOST_ROUNDS: usize = 4;
 
 impl PackedAnimations {
@@ -116,14 +115,14 @@ fn pack(
         .collect()
 }
 
-/// First and last time of a clip that no track has kept yet.
+/// First and last time of a clip, unless a track has kept them.
 struct Range {
     first: Option<f32>,
     last: Option<f32>,
 }
 
 impl Range {
-    /// Notes that a track keeps these ends.
+    /// Records that a track keeps these ends.
     fn cover(&mut self, times: &[f32]) {
         if times.first() == self.first.as_ref() {
             self.first = None;
@@ -139,11 +138,11 @@ impl Range {
     }
 }
 
-/// Selects the keys of each track; `None` for those that stay as they are.
+/// Selects the keys of each track; `None` for unchanged tracks.
 ///
-/// Tracks with the same times keep the same keys, unless own ones save more than another array of
-/// times costs. A constant track keeps its first key, and its last as well where the clip would
-/// otherwise become shorter.
+/// Tracks with the same times keep the same keys, unless separate keys save more than another array
+/// of times costs. A constant track keeps its first key, and also its last if the clip would become
+/// shorter.
 fn kept_keys(tracks: &[&RoundedTrack], range: &mut Range) -> Vec<Option<Vec<usize>>> {
     let mut kept: Vec<Option<Vec<usize>>> = vec![None; tracks.len()];
     let mut groups: BTreeMap<Vec<u32>, Vec<usize>> = BTreeMap::new();
@@ -173,7 +172,7 @@ fn kept_keys(tracks: &[&RoundedTrack], range: &mut Range) -> Vec<Option<Vec<usiz
     kept
 }
 
-/// Gives tracks with the same times common keys where that takes fewer bytes.
+/// Makes tracks with the same times share keys where that takes fewer bytes.
 fn share_keys(tracks: &[&RoundedTrack], members: &[usize], kept: &mut [Option<Vec<usize>>]) {
     let own = |i: usize| kept[i].as_ref().map_or(0, Vec::len);
     let mut shared = members.to_vec();
@@ -190,8 +189,8 @@ fn share_keys(tracks: &[&RoundedTrack], members: &[usize], kept: &mut [Option<Ve
     }
 }
 
-/// Returns the property that each sampler moves; `None` where its channels do not agree.
-pub(in crate::gltf) fn properties(animation: &Value) -> BTreeMap<usize, Option<AnimatedProperty>> {
+/// Returns the property that each sampler animates; `None` if its channels disagree.
+pub(crate) fn properties(animation: &Value) -> BTreeMap<usize, Option<AnimatedProperty>> {
     let mut properties = BTreeMap::new();
     let channels = animation.get("channels").and_then(Value::as_array);
     for channel in channels.into_iter().flatten() {
@@ -209,10 +208,10 @@ pub(in crate::gltf) fn properties(animation: &Value) -> BTreeMap<usize, Option<A
     properties
 }
 
-/// Returns how far the poses of a track may move as points.
+/// Returns the distance by which the poses of a track may move, as points.
 ///
 /// A rotation by an angle moves its quaternion by the chord of half of it. The same angle moves a
-/// vector by its arc, so that a child comes as far as from the rotation of its parent.
+/// vector by its arc, so that a child moves as far as by the rotation of its parent.
 fn tolerance(track: &KeyTrack, degrees: f64) -> f64 {
     let angle = degrees.to_radians();
     let length = |pose: &[f64; 4]| pose.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -262,7 +261,7 @@ fn arrays_of(track: &PackedTrack, arrays: &mut [KeyArray; 3]) -> (usize, (usize,
 }
 
 impl KeyArray {
-    /// Appends elements, unless they are there, and returns the index of their accessor.
+    /// Appends elements unless they exist, and returns the index of their accessor.
     fn add(&mut self, bytes: Vec<u8>, mut accessor: Value) -> usize {
         if let Some(&known) = self.known.get(&bytes) {
             return known;

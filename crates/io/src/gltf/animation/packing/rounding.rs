@@ -1,10 +1,10 @@
-//! Rounding of the poses of an animation to what is stored of them.
+//! Rounding of the poses of an animation to their stored form.
 
 use super::key_track::{KeyTrack, KeyValue, distance, nearer};
 use crate::meshopt::{Filter, apply_filter, encode_exponential, encode_quaternion};
 
-/// Poses of all keys of a track as they are stored, and as they are decoded.
-pub(super) struct Rounded {
+/// Poses of all keys of a track, encoded and decoded again.
+pub(crate) struct Rounded {
     /// Elements, encoded for the filter.
     pub bytes: Vec<u8>,
     /// Bytes of an element.
@@ -16,12 +16,12 @@ pub(super) struct Rounded {
 /// Fewest and most bits of a component of a rotation.
 const LEAST_BITS: u32 = 8;
 const MOST_BITS: u32 = 16;
-/// Part of the tolerance that rounding may take; the rest is for keys that go.
+/// Fraction of the tolerance for rounding; the rest is for dropped keys.
 const ROUNDING: f64 = 0.6;
 
 /// Rounds the poses of a track to as few bits as the tolerance allows: with `filters` for a meshopt
 /// stream, without to shorts and floats. `None` if there is no such form.
-pub(super) fn round(track: &KeyTrack, tolerance: f64, filters: bool) -> Option<Rounded> {
+pub(crate) fn round(track: &KeyTrack, tolerance: f64, filters: bool) -> Option<Rounded> {
     match track.is_rotation() {
         true => rotations(track, tolerance, filters),
         false => vectors(track, tolerance, filters),
@@ -50,7 +50,7 @@ fn rotations(track: &KeyTrack, tolerance: f64, filters: bool) -> Option<Rounded>
     (LEAST_BITS..=MOST_BITS).map(with_bits).find(is_close)
 }
 
-/// Decodes normalized shorts, and makes them unit quaternions again.
+/// Decodes normalized shorts to unit quaternions.
 fn decoded_rotations(bytes: &[u8]) -> Vec<KeyValue> {
     let pose = |element: &[u8; 8]| {
         let shorts = element.as_chunks::<2>().0;

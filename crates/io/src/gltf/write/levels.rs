@@ -1,0 +1,39 @@
+//! Levels of detail of a scene, and their layout in a document.
+
+use meshlod_mesh::Mesh;
+
+/// Coarser level of detail of a whole scene, to be written to a glTF file.
+#[derive(Clone, Debug)]
+pub struct Level {
+    /// Simplified version of each mesh of the scene, in the same order and with the same material
+    /// labels.
+    pub meshes: Vec<Mesh>,
+    /// Fraction of the screen that the object covers, 0 to 1, below which this level is shown
+    /// instead of the finer one.
+    pub screen_coverage: f64,
+}
+
+/// Layout of the levels of a scene in a glTF document.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LodLayout {
+    /// Coarser levels are linked to the finest by `MSFT_lod`; programs that do not know the extension
+    /// show the finest alone.
+    #[default]
+    Linked,
+    /// All levels are shown nodes, `NAME_LOD0`, `NAME_LOD1` and so on, children of the node that had
+    /// the mesh: the names from which engines build groups of levels.
+    Siblings,
+}
+
+/// Levels of a scene and their layout; [`Levels::default`] has no levels.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Levels<'a> {
+    pub levels: &'a [Level],
+    pub layout: LodLayout,
+}
+
+impl<'a> From<&'a [Level]> for Levels<'a> {
+    fn from(levels: &'a [Level]) -> Self {
+        Self { levels, layout: LodLayout::default() }
+    }
+}
