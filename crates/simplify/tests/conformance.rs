@@ -82,7 +82,7 @@ impl Runner {
     fn all() -> impl Iterator<Item = Self> {
         let as_done =
             Method::ALL.into_iter().map(|method| Self { method, on_policy_engine: false });
-        let of_kernel = [Method::LindstromTurk, Method::Qem];
+        let of_kernel = Method::ALL.into_iter().filter(|method| method.runs_in_kernel());
         as_done.chain(of_kernel.map(|method| Self { method, on_policy_engine: true }))
     }
 
@@ -106,7 +106,7 @@ impl Runner {
 
     /// Returns true if the kernel runs it, in single precision.
     fn is_kernel(self) -> bool {
-        matches!(self.method, Method::LindstromTurk | Method::Qem) && !self.on_policy_engine
+        self.method.runs_in_kernel() && !self.on_policy_engine
     }
 }
 

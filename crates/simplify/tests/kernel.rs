@@ -1,5 +1,7 @@
 //! The kernel against the policy engine, its oracle, and on meshes made to break it.
 
+mod common;
+
 use std::collections::HashSet;
 
 use meshlod_fixtures as fixtures;
@@ -11,8 +13,7 @@ use meshlod_simplify::{
 };
 use meshlod_spatial::Bvh;
 
-/// Methods that the kernel runs.
-const KERNEL_METHODS: [Method; 2] = [Method::LindstromTurk, Method::Qem];
+use crate::common::kernel_methods;
 
 fn options(method: Method) -> Options {
     Options { method, ..Options::default() }
@@ -95,7 +96,7 @@ fn check_level(what: &str, level: &Mesh, report: &Report) {
 
 #[test]
 fn a_level_is_valid_and_as_closed_manifold_and_oriented_as_its_mesh() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for (name, mesh) in meshes() {
             for ratio in [0.5, 0.1, 0.0] {
                 let what = format!("{name} to {ratio}");
@@ -110,7 +111,7 @@ fn a_level_is_valid_and_as_closed_manifold_and_oriented_as_its_mesh() {
 
 #[test]
 fn targets_of_a_few_faces_are_met_or_refused_in_words() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for (name, mesh) in meshes() {
             for faces in [0, 1, 4] {
                 let (level, report) = run(method, &mesh, Target::Faces(faces));
@@ -127,7 +128,7 @@ fn targets_of_a_few_faces_are_met_or_refused_in_words() {
 
 #[test]
 fn smooth_samples_reach_their_target() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for mesh in [samples::sphere(2000), samples::torus(2000), samples::knot(3000)] {
             let (level, report) = run(method, &mesh, Target::Ratio(0.05));
             let target = mesh.faces.len() / 20;
@@ -138,7 +139,7 @@ fn smooth_samples_reach_their_target() {
 
 #[test]
 fn a_flat_stays_one_and_grows_no_hubs() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mesh = fixtures::grid(200);
         let (level, report) = run(method, &mesh, Target::Ratio(0.02));
         assert!(report.reached, "{report:?}");
@@ -152,7 +153,7 @@ fn a_flat_stays_one_and_grows_no_hubs() {
 
 #[test]
 fn a_hub_shrinks_with_its_rim() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let (level, report) = run(method, &fixtures::cone(100_000), Target::Faces(100));
         assert!(report.reached, "{report:?}");
         check_level("cone", &level, &report);
@@ -162,7 +163,7 @@ fn a_hub_shrinks_with_its_rim() {
 
 #[test]
 fn faces_given_twice_are_left_out() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mut mesh = fixtures::cone(2_000);
         mesh.faces.extend_from_within(..);
         let (level, report) = run(method, &mesh, Target::Faces(100));
@@ -173,7 +174,7 @@ fn faces_given_twice_are_left_out() {
 
 #[test]
 fn scale_and_place_change_nothing_to_speak_of() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mesh = samples::torus(2_000);
         let (at_home, _) = run(method, &mesh, Target::Ratio(0.1));
         for (scale, shift) in [(2f64.powi(-90), 0.0), (2f64.powi(90), 0.0), (1.0, 1e6)] {
@@ -198,7 +199,7 @@ fn scale_and_place_change_nothing_to_speak_of() {
 
 #[test]
 fn faces_without_area_and_points_in_one_place_end() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let positions = (0..200).map(|i| [f64::from(i) * f64::from(i), 0.0, 0.0]).collect();
         let strip = |i: u32| [VertexId(i), VertexId(i + 1), VertexId(i + 2)];
         let mut line = Mesh::new(positions, (0..198).map(strip).collect());
@@ -216,7 +217,7 @@ fn faces_without_area_and_points_in_one_place_end() {
 
 #[test]
 fn tiny_and_huge_faces_go_together() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         // Spheres a millionth and a hundred-millionth of the size of the first.
         let mut mesh = samples::sphere(2000);
         let (vertices, faces) = (mesh.positions.clone(), mesh.faces.clone());
@@ -234,7 +235,7 @@ fn tiny_and_huge_faces_go_together() {
 
 #[test]
 fn a_thousand_components_keep_apart() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let one = fixtures::tetrahedron();
         let mut mesh = Mesh::default();
         for i in 0..1000u32 {
@@ -250,7 +251,7 @@ fn a_thousand_components_keep_apart() {
 
 #[test]
 fn locked_vertices_stay() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mesh = samples::terrain(2000);
         let every_fifth = |v: usize| if v.is_multiple_of(5) { Lock::Locked } else { Lock::Free };
         let locks = Locks {
@@ -283,7 +284,7 @@ fn farthest_point(from: &Mesh, to: &Mesh) -> f64 {
 
 #[test]
 fn a_bound_of_the_error_is_kept_both_ways() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for (mesh, parts) in [
             (samples::torus(3000), [3, 10]),
             (samples::fish(4000), [3, 20]),
@@ -305,7 +306,7 @@ fn a_bound_of_the_error_is_kept_both_ways() {
 
 #[test]
 fn a_bound_holds_after_another_target_and_after_another_bound() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mesh = samples::fish(4000);
         let bare = Mesh { attributes: None, ..mesh.clone() };
         let diagonal = mesh.bounds().diagonal();
@@ -341,7 +342,7 @@ fn volume_stays_and_runs_are_alike() {
 
 #[test]
 fn both_engines_report_the_same_input() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mut dirty = samples::terrain(500);
         dirty.attributes = None;
         let first = dirty.faces[0];
@@ -386,7 +387,7 @@ fn of_level(level: &Mesh) -> Vec<[[u64; 3]; 3]> {
 
 #[test]
 fn observers_see_exactly_the_level() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for (name, mesh) in meshes() {
             let mesh = Mesh { attributes: None, ..mesh };
             let mut simplifier = Simplifier::new(&mesh, &options(method)).unwrap();
@@ -433,7 +434,7 @@ impl Observe for Count {
 
 #[test]
 fn every_face_that_goes_is_counted() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mesh = samples::torus(30_000);
         let mut simplifier = Simplifier::new(&mesh, &options(method)).unwrap();
         let (mut alone, mut beside) = (Count::default(), Count::default());
@@ -446,7 +447,7 @@ fn every_face_that_goes_is_counted() {
 
 #[test]
 fn runs_and_steps_go_the_same_way() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mesh = samples::knot(3000);
         let mut by_steps = Simplifier::new(&mesh, &options(method)).unwrap();
         let mut by_runs = Simplifier::new(&mesh, &options(method)).unwrap();
@@ -467,7 +468,7 @@ fn runs_and_steps_go_the_same_way() {
 
 #[test]
 fn damaged_files_end() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for path in fixtures::shared_broken() {
             let Ok(text) = std::fs::read(&path) else { continue };
             // Arbitrary bytes make a soup: four of them are an index.
@@ -502,7 +503,7 @@ fn farthest(mesh: &Mesh, level: &Mesh) -> f64 {
 
 #[test]
 fn tips_stay_while_others_go() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mesh = hedgehog();
         let (level, report) = run(method, &mesh, Target::Ratio(0.15));
         assert!(report.reached);
@@ -514,7 +515,7 @@ fn tips_stay_while_others_go() {
 
 #[test]
 fn tips_that_are_cut_off_are_in_the_estimate() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for mesh in [hedgehog(), Mesh { attributes: None, ..samples::fish(5000) }] {
             for faces in [1000, 100] {
                 let (level, report) = run(method, &mesh, Target::Faces(faces));
@@ -527,7 +528,7 @@ fn tips_that_are_cut_off_are_in_the_estimate() {
 
 #[test]
 fn a_bound_of_the_error_keeps_tips() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mesh = hedgehog();
         let most = 0.02 * mesh.bounds().diagonal();
         let (level, report) = run(method, &mesh, Target::Error(most));

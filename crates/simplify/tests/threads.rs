@@ -1,5 +1,7 @@
 //! The kernel on meshes of several parts: any number of threads, any order of the file.
 
+mod common;
+
 use std::collections::HashSet;
 
 use meshlod_fixtures as fixtures;
@@ -9,8 +11,7 @@ use meshlod_simplify::{
     History, Method, Options, Report, Simplifier, Target, VolumeLoss, simplify,
 };
 
-/// Methods that the kernel runs.
-const KERNEL_METHODS: [Method; 2] = [Method::LindstromTurk, Method::Qem];
+use crate::common::kernel_methods;
 
 fn options(method: Method) -> Options {
     Options { method, ..Options::default() }
@@ -101,7 +102,7 @@ fn euler(mesh: &Mesh) -> (i64, usize, usize) {
 
 #[test]
 fn any_number_of_threads_gives_the_same_bytes() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for (name, mesh) in large() {
             let bound = Target::Error(0.005 * mesh.bounds().diagonal());
             for target in [Target::Ratio(0.5), Target::Ratio(0.03), bound] {
@@ -115,7 +116,7 @@ fn any_number_of_threads_gives_the_same_bytes() {
 
 #[test]
 fn targets_are_met_to_the_face_and_topology_is_kept() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for (name, mesh) in large() {
             let before = euler(&mesh);
             for faces in [mesh.faces.len() - 1, mesh.faces.len() / 2, mesh.faces.len() / 3 + 1] {
@@ -133,7 +134,7 @@ fn targets_are_met_to_the_face_and_topology_is_kept() {
 
 #[test]
 fn observers_see_the_same_level() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for (name, mesh) in large() {
             let (level, _) = run(method, &mesh, Target::Ratio(0.05));
             let mut simplifier = Simplifier::new(&mesh, &options(method)).unwrap();
@@ -152,7 +153,7 @@ fn observers_see_the_same_level() {
 
 #[test]
 fn targets_of_a_few_faces_end() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for (name, mesh) in large() {
             for faces in [0, 1, 4] {
                 let (level, report) = run(method, &mesh, Target::Faces(faces));
@@ -166,7 +167,7 @@ fn targets_of_a_few_faces_end() {
 
 #[test]
 fn a_file_in_no_order_is_simplified_as_well() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for mesh in [samples::knot(80_000), samples::torus(80_000)] {
             let other = scrambled(&mesh);
             let [(level, first), (_, second)] =
@@ -189,7 +190,7 @@ fn a_file_in_no_order_is_simplified_as_well() {
 
 #[test]
 fn locks_hold_across_parts() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mesh = samples::torus(100_000);
         let every_fifth = |v: usize| if v.is_multiple_of(5) { Lock::Locked } else { Lock::Free };
         let of_vertex = (0..mesh.positions.len()).map(every_fifth).collect();
@@ -204,7 +205,7 @@ fn locks_hold_across_parts() {
 
 #[test]
 fn a_bound_of_the_error_holds_across_parts() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mesh = samples::torus(100_000);
         let (level, report) = run(method, &mesh, Target::Error(1e-3));
         assert!(report.error_estimate <= 1e-3 && level.faces.len() < mesh.faces.len() / 4);
@@ -213,7 +214,7 @@ fn a_bound_of_the_error_holds_across_parts() {
 
 #[test]
 fn a_stray_vertex_far_off_and_one_place_for_all_end() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mut mesh = samples::torus(60_000);
         mesh.positions.push([1e300, -1e300, 1e300]);
         let (level, report) = run(method, &mesh, Target::Ratio(0.1));

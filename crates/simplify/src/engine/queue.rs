@@ -6,7 +6,7 @@
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
-use crate::engine::candidates::CandidateId;
+use crate::surface::candidate_states::CandidateId;
 
 /// Sort key of a cost: the leading 32 bits of a non-negative `f64`, which preserve its order and 20
 /// bits of its mantissa at any scale.

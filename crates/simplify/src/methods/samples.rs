@@ -8,7 +8,7 @@ use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
 
 use crate::engine::policy::Memory;
 use crate::methods::fan::{Fan, Rim};
-use crate::methods::feature_edges::is_feature;
+use crate::surface::feature_edges::is_feature;
 use crate::surface::neighbourhood::{Neighbourhood, Spoke};
 use crate::surface::{Placed, Surface};
 

@@ -22,7 +22,7 @@ use crate::kernel::mesh::vertex::{FullQuadric, Vertex, VertexQuadric};
 use crate::kernel::metric::edge_quadric::{EdgeQuadrics, SymmetricMatrix, VertexQuadrics, lane_of};
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
 use crate::kernel::simd::{LANES, Row};
-use crate::options::Method;
+use crate::method::Method;
 
 /// Factor on distances that decides how long seams hold.
 ///

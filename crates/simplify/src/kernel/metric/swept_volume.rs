@@ -21,7 +21,7 @@ use crate::kernel::metric::edge_quadric::{
 use crate::kernel::metric::edge_quadric_f64::{EdgeQuadricF64, matrix};
 use crate::kernel::metric::{Metric, VANISHING, VOLUME_SHARE};
 use crate::kernel::simd::{TINY, select_max};
-use crate::options::Method;
+use crate::method::Method;
 
 /// Squared swept volumes, without memory.
 #[derive(Clone, Copy, Debug)]
