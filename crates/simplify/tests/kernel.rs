@@ -5,7 +5,8 @@ mod common;
 use std::collections::HashSet;
 
 use meshlod_fixtures as fixtures;
-use meshlod_mesh::{Connectivity, FaceId, Lock, Locks, Mesh, VertexId, face_components};
+use meshlod_fixtures::shape::{bare, topology, volume};
+use meshlod_mesh::{Connectivity, FaceId, Lock, Locks, Mesh, VertexId};
 use meshlod_samples as samples;
 use meshlod_simplify::{
     History, Method, Observe, Options, Report, Simplifier, SimplifyError, Target, Topology,
@@ -20,30 +21,15 @@ fn options(method: Method) -> Options {
 }
 
 fn run(method: Method, mesh: &Mesh, target: Target) -> (Mesh, Report) {
-    let mut mesh = mesh.clone();
-    mesh.attributes = None;
-    simplify(&mesh, target, &options(method)).unwrap()
+    simplify(&bare(mesh.clone()), target, &options(method)).unwrap()
 }
 
+/// Fixtures, samples, and terrains that meet at non-manifold edges.
 fn meshes() -> Vec<(&'static str, Mesh)> {
-    vec![
-        ("tetrahedron", fixtures::tetrahedron()),
-        ("cube", fixtures::cube()),
-        ("grid", fixtures::grid(12)),
-        ("fan", fixtures::fan()),
-        ("hourglass", fixtures::hourglass()),
-        ("moebius", fixtures::moebius(40)),
-        ("seam strip", fixtures::seam_strip()),
-        ("two objects", fixtures::two_objects()),
-        ("sphere", samples::sphere(2000)),
-        ("torus", samples::torus(2000)),
-        ("knot", samples::knot(3000)),
-        ("gyroid", samples::gyroid(3000)),
-        ("terrain", samples::terrain(2000)),
-        ("fish", samples::fish(2000)),
-        ("three pages", pages(3)),
-        ("five pages", pages(5)),
-    ]
+    let mut all = common::meshes();
+    all.push(("three pages", pages(3)));
+    all.push(("five pages", pages(5)));
+    all
 }
 
 /// Terrains that all share one edge line, with `n` faces on each of its edges.
@@ -69,15 +55,6 @@ fn pages(n: usize) -> Mesh {
         mesh.faces.extend(page.faces.iter().map(|face| face.map(|v| ids[v.index()])));
     }
     mesh
-}
-
-/// Components, Euler number, closedness, non-manifold and inconsistent edges.
-fn topology(mesh: &Mesh) -> (usize, i64, bool, usize, usize) {
-    let c = Connectivity::new(&mesh.faces, mesh.positions.len());
-    let used = mesh.used_vertices().iter().filter(|&&used| used).count();
-    let euler = used as i64 - c.edge_count() as i64 + mesh.faces.len() as i64;
-    let components = face_components(&mesh.faces, mesh.positions.len()).1;
-    (components, euler, c.is_closed(), c.non_manifold_edges(), c.inconsistent_edges())
 }
 
 fn check_level(what: &str, level: &Mesh, report: &Report) {
@@ -229,7 +206,7 @@ fn tiny_and_huge_faces_go_together() {
         let keep = Options { topology: Topology::Keep, ..options(method) };
         let (level, report) = simplify(&mesh, Target::Ratio(0.0), &keep).unwrap();
         check_level("spheres", &level, &report);
-        assert_eq!(topology(&level).0, 3);
+        assert_eq!(topology(&level).components, 3);
     }
 }
 
@@ -258,7 +235,7 @@ fn locked_vertices_stay() {
             of_vertex: (0..mesh.positions.len()).map(every_fifth).collect(),
             ties: Vec::new(),
         };
-        let bare = Mesh { attributes: None, ..mesh.clone() };
+        let bare = bare(mesh.clone());
         let locked = Options { locks, ..options(method) };
         let (level, report) = simplify(&bare, Target::Ratio(0.0), &locked).unwrap();
         check_level("locked", &level, &report);
@@ -308,7 +285,7 @@ fn a_bound_of_the_error_is_kept_both_ways() {
 fn a_bound_holds_after_another_target_and_after_another_bound() {
     for method in kernel_methods() {
         let mesh = samples::fish(4000);
-        let bare = Mesh { attributes: None, ..mesh.clone() };
+        let bare = bare(mesh.clone());
         let diagonal = mesh.bounds().diagonal();
         let mut simplifier = Simplifier::new(&bare, &options(method)).unwrap();
         simplifier.run(Target::Ratio(0.7), &mut ()).unwrap();
@@ -328,13 +305,6 @@ fn a_bound_holds_after_another_target_and_after_another_bound() {
 fn volume_stays_and_runs_are_alike() {
     for mesh in [samples::torus(20_000), samples::knot(20_000)] {
         let (level, _) = run(Method::LindstromTurk, &mesh, Target::Ratio(0.2));
-        let volume = |mesh: &Mesh| -> f64 {
-            let sixfold = |&face| {
-                let [a, b, c] = mesh.triangle(face);
-                a.cross(b).dot(c)
-            };
-            mesh.faces.iter().map(sixfold).sum::<f64>() / 6.0
-        };
         assert!((volume(&level) / volume(&mesh) - 1.0).abs() < 1e-6);
         assert_eq!(run(Method::LindstromTurk, &mesh, Target::Ratio(0.2)).0, level);
     }
@@ -347,7 +317,6 @@ fn both_engines_report_the_same_input() {
         dirty.attributes = None;
         let first = dirty.faces[0];
         dirty.faces.extend([first, [first[0], first[0], first[2]], [first[1], first[2], first[0]]]);
-        let bare = |mesh: Mesh| Mesh { attributes: None, ..mesh };
         for mesh in
             [dirty, fixtures::cone(300), pages(3), fixtures::hourglass(), bare(samples::fish(500))]
         {
@@ -389,7 +358,7 @@ fn of_level(level: &Mesh) -> Vec<[[u64; 3]; 3]> {
 fn observers_see_exactly_the_level() {
     for method in kernel_methods() {
         for (name, mesh) in meshes() {
-            let mesh = Mesh { attributes: None, ..mesh };
+            let mesh = bare(mesh);
             let mut simplifier = Simplifier::new(&mesh, &options(method)).unwrap();
             // Observed, unobserved, observed again; with the surface requested before the start and
             // after.
@@ -516,7 +485,7 @@ fn tips_stay_while_others_go() {
 #[test]
 fn tips_that_are_cut_off_are_in_the_estimate() {
     for method in kernel_methods() {
-        for mesh in [hedgehog(), Mesh { attributes: None, ..samples::fish(5000) }] {
+        for mesh in [hedgehog(), bare(samples::fish(5000))] {
             for faces in [1000, 100] {
                 let (level, report) = run(method, &mesh, Target::Faces(faces));
                 let lost = farthest(&mesh, &level);

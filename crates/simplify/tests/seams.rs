@@ -4,6 +4,7 @@ mod common;
 
 use std::collections::{BTreeMap, HashMap};
 
+use meshlod_fixtures::shape::volume;
 use meshlod_fixtures::{charted, in_materials};
 use meshlod_mesh::{Attributes, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId};
 use meshlod_samples as samples;
@@ -261,14 +262,6 @@ fn runs_and_steps_release_seams_at_the_same_time() {
             }
         }
     }
-}
-
-fn volume(mesh: &Mesh) -> f64 {
-    let sixfold = |&face: &[VertexId; 3]| {
-        let [a, b, c] = mesh.triangle(face);
-        a.cross(b).dot(c)
-    };
-    mesh.faces.iter().map(sixfold).sum::<f64>() / 6.0
 }
 
 #[test]

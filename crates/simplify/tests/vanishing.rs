@@ -5,6 +5,7 @@ mod common;
 use std::collections::HashSet;
 
 use meshlod_fixtures as fixtures;
+use meshlod_fixtures::shape::volume;
 use meshlod_mesh::{Lock, Locks, Mesh, VertexId, face_components};
 use meshlod_samples as samples;
 use meshlod_simplify::{
@@ -197,13 +198,6 @@ fn what_vanished_comes_back_to_the_bit() {
 #[test]
 fn the_report_counts_the_volume_that_vanished() {
     let mesh = balls(&[0.3]);
-    let volume = |mesh: &Mesh| -> f64 {
-        let sixfold = |&face: &[VertexId; 3]| {
-            let [a, b, c] = mesh.triangle(face);
-            a.cross(b).dot(c)
-        };
-        mesh.faces.iter().map(sixfold).sum::<f64>() / 6.0
-    };
     for method in Method::ALL {
         let options = Options { method, vanish_below: Some(2.0), ..Options::default() };
         let (level, report) = run(&mesh, &options, Target::Faces(4));
