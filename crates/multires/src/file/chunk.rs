@@ -43,8 +43,8 @@ pub(super) enum ChunkError {
 const OPEN: u8 = 1;
 const FUSED: u8 = 2;
 const NON_FAN: u8 = 4;
-/// Set if the first or the second child has an exact position: it is a vertex of the finest mesh, or
-/// where one is. Only in lossless files.
+/// Set if the first or the second child has an exact position: that of a vertex of the finest mesh.
+/// Only in lossless files.
 const EXACT: [u8; 2] = [8, 16];
 /// Set if the update records the wedges of its faces. Only in files with wedges.
 const RECORDED: u8 = 32;
@@ -157,7 +157,7 @@ fn write_non_fan(non_fan: &NonFanSplit, packer: &mut Packer) -> io::Result<()> {
     packer.numbers(non_fan.created_faces.as_flattened())
 }
 
-/// Decodes a chunk of `count` updates, the first of which has the number `first` in the file.
+/// Decodes a chunk of `count` updates, numbered from `first` in the file.
 ///
 /// Updates that split a node of a chunk not loaded are kept with [`NONE`] for their parent.
 pub(super) fn read(

@@ -6,7 +6,7 @@ use meshlod_mesh::Frame;
 use super::lattice::Lattice;
 use super::resources::{self, OLD_RESOURCES_LEN, ResourceEntry};
 use super::{FileError, MAGIC, VERSION};
-use crate::bounds::ErrorKind;
+use crate::error_kind::ErrorKind;
 use crate::implicit::ModelInfo;
 use crate::query::Area;
 
@@ -136,8 +136,8 @@ impl Header {
             let words = [stored.bytes, stored.checksum, *updates, *faces];
             out.extend(words.iter().flat_map(|word| word.to_le_bytes()));
             // Infinite bounds become finite ones beyond everything.
-            let [min, max] =
-                [area.min, area.max].map(|x| x.clamp(DVec3::splat(-FAR), DVec3::splat(FAR)));
+            let [min, max] = [area.min, area.max]
+                .map(|x| x.clamp(DVec3::splat(-MAX_BOUND), DVec3::splat(MAX_BOUND)));
             let numbers = [-round_up(-min), round_up(max)].map(|corner| corner.to_array());
             out.extend(numbers.as_flattened().iter().flat_map(|x| x.to_le_bytes()));
             out.extend(round_up(DVec3::splat(area.error)).x.to_le_bytes());
@@ -229,8 +229,8 @@ impl Header {
     }
 }
 
-/// Limit of the bounds written to the index, in stored units.
-const FAR: f64 = 1e30;
+/// Limit on the bounds written to the index, in stored units.
+const MAX_BOUND: f64 = 1e30;
 /// Flag of a file with exact positions.
 const LOSSLESS: u8 = 1;
 /// Flag of a file with attributes, materials or objects.

@@ -10,7 +10,7 @@ use glam::DVec3;
 use meshlod_mesh::{Bounds, FaceId, Frame, VertexId};
 use meshlod_simplify::{Neighbourhood, Observe, Placed, Simplifier, Spoke, Surface};
 
-use crate::bounds::ErrorKind;
+use crate::error_kind::ErrorKind;
 use crate::forest::{BuildError, Forest, MAX_LEVELS, NONE, NonFanSplit, Stage, Update};
 use crate::length16::Length16;
 use crate::pack::ExactPositions;

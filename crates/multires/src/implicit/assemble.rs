@@ -9,7 +9,7 @@ use meshlod_mesh::Frame;
 use super::positions::StoredPositions;
 use super::splits::{Local, Split, Splits};
 use super::{FLAG, Implicit, LAST_WING, NO_WING, OPEN, Order};
-use crate::bounds::ErrorKind;
+use crate::error_kind::ErrorKind;
 use crate::forest::MAX_RANKED;
 use crate::forest::{MAX_LEVELS, NONE, NonFanSplit, Stage};
 use crate::length16::Length16;

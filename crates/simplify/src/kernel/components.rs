@@ -20,8 +20,8 @@ use crate::kernel::setup::vertex_order::is_face;
 /// Largest number of faces of a component that are sampled.
 const SAMPLED_FACES: usize = 24;
 
-/// Part of the faces, one in this many, that components must have to take part from the start.
-const MANY: usize = 32;
+/// Components that may vanish take part from the start if they have more than one face in this many.
+const EARLY_SHARE: usize = 32;
 
 /// Weights of a face's centre and of each of its corners in the mean square distance. For a
 /// quadratic function they give the exact mean.
@@ -44,7 +44,7 @@ pub(crate) struct Component {
     samples: Range<usize>,
 }
 
-/// Part of the surface of a component: a point of it, and the weight that this point has.
+/// Sample point on the surface of a component, and its weight.
 #[derive(Clone, Copy, Debug)]
 struct WeightedPoint {
     place: Vec3,
@@ -231,8 +231,8 @@ impl Components {
         bucket(cost).min(last_bucket())
     }
 
-    /// Returns the square of the distance that counts where a component vanishes: what is farther
-    /// from the rest than it is large is lost for its size.
+    /// Returns the squared distance that counts when a component vanishes: its distance from the
+    /// rest, but at most its size.
     pub(crate) fn loss(&self, component: u32, apart: &Apart) -> f32 {
         apart.greatest.min(self.all[component as usize].size.powi(2))
     }
@@ -241,7 +241,7 @@ impl Components {
     /// must take part from the start.
     pub(crate) fn are_many(&self, faces: usize) -> bool {
         let faces_of = |entry: &Reverse<(u16, u32)>| self.all[entry.0.1 as usize].faces.len();
-        self.waiting.iter().map(faces_of).sum::<usize>() > faces / MANY
+        self.waiting.iter().map(faces_of).sum::<usize>() > faces / EARLY_SHARE
     }
 
     /// Returns the vertices of a component.

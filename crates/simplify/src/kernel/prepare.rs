@@ -32,8 +32,8 @@ const MAX_CHANNELS: usize = 8;
 /// Largest weight of a boundary: beyond it floats would overflow, and nothing changes any more.
 const MAX_BOUNDARY_WEIGHT: f64 = 1e9;
 
-/// Part of the diagonal by which a vertex may leave the bounding box of the input: to preserve the
-/// volume of something round, vertices must lie outside.
+/// Fraction of the diagonal by which a vertex may leave the bounding box of the input: vertices of
+/// a round surface must lie outside to preserve its volume.
 const BEYOND: f32 = 0.004;
 
 /// A mesh ready to be simplified.

@@ -81,7 +81,7 @@ impl Recipe {
     };
 
     /// Quadrics as first published [GH97]: planes of equal weight, a large penalty on boundaries,
-    /// and nothing is forgotten. Seams, of which the paper has none, are treated like boundaries.
+    /// and nothing is forgotten. Seams, which the paper does not have, are treated like boundaries.
     pub(crate) const PLAIN: Self =
         Self { by_area: false, boundary_weight: PENALTY, feature_weight: PENALTY, memory: 1.0 };
 

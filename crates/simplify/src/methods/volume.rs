@@ -81,7 +81,7 @@ impl VolumePlane {
 }
 
 /// Returns the position on the surface's normal at the contracted vertex `kept` that conserves the
-/// volume. Refuses what is out of reach.
+/// volume. Refuses a position that is out of reach.
 pub(crate) fn along_normal(
     surface: &Surface,
     neighbourhood: &Neighbourhood,

@@ -247,8 +247,8 @@ fn on_plane_of_equal_volume(quadric: &EdgeQuadricF64) -> DVec3 {
         + e2 * ((m11 * r2 - m12 * r1) / determinant)
 }
 
-/// Goes from `best` towards a place on the plane of equal volume, until the quadric has grown by
-/// what is allowed.
+/// Goes from `best` towards a place on the plane of equal volume, until the quadric has grown as
+/// far as allowed.
 ///
 /// At a corner of a box, or at the end of a bar, the plane is farther away than half the edge: there
 /// the volume is not preserved. On a scan this is very rare.
