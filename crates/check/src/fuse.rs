@@ -44,8 +44,8 @@ impl Fused {
 
 /// Merges closed components that pass through each other into a single surface.
 ///
-/// Components are cut along their intersections as in [`imprint`](crate::imprint()), what is inside
-/// is removed, and the rest is joined.
+/// Components are cut along their intersections as in [`imprint`](crate::imprint()), the inner
+/// pieces are removed, and the rest is joined.
 ///
 /// A patch between intersections is removed if it lies inside a closed shell of another component
 /// or on its surface. Of two coincident patches of equal orientation the first stays, of two of

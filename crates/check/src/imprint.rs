@@ -75,7 +75,7 @@ pub(crate) fn at_safe_scale<T>(mesh: &Mesh, act: impl FnOnce(&Mesh) -> (Mesh, T)
 pub(crate) struct Imprinted {
     pub(crate) mesh: Mesh,
     pub(crate) imprint: Imprint,
-    /// Original face of which each face is a part.
+    /// Original face that each face came from.
     pub(crate) parents: Vec<FaceId>,
     /// Edges along which components intersect, as vertex pairs with the lower id first.
     pub(crate) contact_edges: FxHashSet<[VertexId; 2]>,

@@ -1,4 +1,4 @@
-//! Where a finding is.
+//! Position of a finding.
 
 use meshlod_mesh::{FaceId, Mesh, VertexId};
 

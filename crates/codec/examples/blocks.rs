@@ -3,30 +3,16 @@
 use std::time::Instant;
 
 use meshlod_codec::{Accuracy, VertexBlocks};
-use meshlod_fixtures::shared_mesh;
+use meshlod_fixtures::compression_meshes;
 use meshlod_measure::{DistanceOptions, distance};
 use meshlod_mesh::{Bounds, Mesh};
-
-const MESHES: [&str; 10] = [
-    "squirrel-20k.obj",
-    "fandisk-32k.ply",
-    "bunny.ply",
-    "horse.ply",
-    "feline.ply",
-    "nefertiti.ply",
-    "dragon-100k.ply",
-    "horse-97k.ply",
-    "armadillo-173k.ply",
-    "igea.ply",
-];
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!(
         "| | bytes per vertex | reduction, % | mean : 11 bits | max : 11 bits | flipped | in 11 bits | normals : 11 bits | refined blocks, % | seconds |"
     );
     println!("|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|");
-    for name in MESHES {
-        let Some(path) = shared_mesh(name) else { continue };
+    for (name, path) in compression_meshes() {
         let mesh = meshlod_io::read(&path, &Default::default())?.flatten();
         let start = Instant::now();
         let (blocks, report) = VertexBlocks::new(&mesh, Accuracy::Bits(11))?;

@@ -109,7 +109,7 @@ impl<'a> Cursor<'a> {
     }
 }
 
-/// Reader of consecutive numbers from bytes, of which it takes no more than it needs.
+/// Reader of consecutive numbers, which takes only as many bytes as it needs.
 #[derive(Debug)]
 pub(crate) struct BitReader<'r, 'a> {
     reader: &'r mut Reader<'a>,

@@ -2,7 +2,7 @@
 
 use crate::bytes::{Malformed, Reader};
 
-/// Appends a list of names, or that there is none.
+/// Appends an optional list of names.
 pub(crate) fn store_names(names: Option<&[String]>, out: &mut Vec<u8>) {
     let count = names.map_or(0, |names| names.len() as u32 + 1);
     out.extend(count.to_le_bytes());

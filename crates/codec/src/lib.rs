@@ -45,6 +45,8 @@ mod lattice;
 mod parts;
 mod patch;
 mod resident;
+#[cfg(test)]
+mod test_meshes;
 mod transport;
 
 pub use attributes::LayerReport;

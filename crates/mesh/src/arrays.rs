@@ -93,7 +93,7 @@ pub enum ArraysError {
 impl MeshArrays {
     /// Creates arrays from positions of any [`Point`] type and faces, without attributes.
     ///
-    /// For a flat list of indices, pass `indices.as_chunks().0`, which drops what is not a face.
+    /// For a flat list of indices, pass `indices.as_chunks().0`, which drops an incomplete face.
     pub fn new<P: Point>(positions: &[P], faces: &[[u32; 3]]) -> Self {
         let positions = positions.iter().map(|&position| position.to_f64()).collect();
         Self { positions, faces: faces.to_vec(), layers: Vec::new() }

@@ -72,7 +72,7 @@ impl LayerKind {
         }
     }
 
-    /// Returns the type that two bytes of a file stand for; `None` if there is none.
+    /// Returns the type that two bytes of a file encode; `None` for unknown bytes.
     pub fn from_tag(code: u8, set: u8) -> Option<Self> {
         let kinds = [
             Self::Normal,

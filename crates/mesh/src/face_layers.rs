@@ -8,7 +8,7 @@ pub enum FaceLayerKind {
     /// Smoothing groups as OBJ has them: whole numbers of 32 bits, 0 for none. They change no
     /// shading here.
     Smoothing,
-    /// Numbers of any other meaning, told apart by the name of the layer.
+    /// Numbers of any other meaning, identified by the name of the layer.
     Other,
 }
 

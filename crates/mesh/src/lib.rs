@@ -10,6 +10,17 @@
 //! let connectivity = Connectivity::new(&tetrahedron, 4);
 //! assert!(connectivity.is_closed());
 //! ```
+//!
+//! | files, in reading order | hold |
+//! |---|---|
+//! | `ids`, `mesh` | vertices, faces, wedges; [`Mesh`] and its validity |
+//! | `attributes`, `octahedral` | values on wedges; directions as integers |
+//! | `labels`, `face_layers`, `locks` | what faces and vertices carry besides |
+//! | `connectivity`, `components`, `closed`, `duplicates` | topology, from indices alone |
+//! | `weld`, `condition` | vertices merged, borders sewn, non-manifold vertices split |
+//! | `arrays`, `point`, `bevy` | meshes of other crates |
+//! | `strip_triangles` | triangles of a strip |
+//! | `bounds`, `frame`, `buckets`, `union_find`, `names` | small tools |
 #![forbid(unsafe_code)]
 
 mod arrays;

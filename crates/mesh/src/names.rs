@@ -2,12 +2,12 @@
 
 use std::fmt;
 
-/// Error for a name that no variant of an enum has; prints as the names that there are.
+/// Error for a name that no variant of an enum has; prints as the list of known names.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownName {
     /// Name that was given.
     pub name: String,
-    /// Noun for what is named, in the plural, such as `methods`.
+    /// Plural noun for the variants, such as `methods`.
     pub nouns: &'static str,
     /// All names, in the order of the variants.
     pub known: Vec<&'static str>,

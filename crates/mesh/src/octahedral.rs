@@ -2,6 +2,53 @@
 
 use glam::DVec3;
 
+/// Coding of the directions of a layer with a number of bits: two integers, and for a tangent one
+/// more for its sign.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DirectionCode {
+    bits: u32,
+}
+
+impl DirectionCode {
+    /// Returns the coarsest code that keeps directions within an error in radians, or the finest if
+    /// none does.
+    pub fn within(bound_rad: f64) -> Self {
+        let [least, most] = BITS;
+        let bits = (least..most).find(|&bits| max_error_rad(bits) <= bound_rad).unwrap_or(most);
+        Self { bits }
+    }
+
+    /// Returns the code with a number of bits for each of the two integers, from 3 to 16; `None`
+    /// for any other number.
+    pub fn of_bits(bits: u32) -> Option<Self> {
+        (BITS[0]..=BITS[1]).contains(&bits).then_some(Self { bits })
+    }
+
+    /// Returns the number of bits of each of the two integers.
+    pub fn bits(self) -> u32 {
+        self.bits
+    }
+
+    /// Encodes the direction in the first three values, and the sign of the fourth, if there is one:
+    /// 1 if it is negative, else 0.
+    #[inline]
+    pub fn encode(self, values: &[f32]) -> ([u32; 2], Option<u32>) {
+        let direction = DVec3::from_array([0, 1, 2].map(|k| values[k].into()));
+        let sign = values.get(3).map(|&sign| u32::from(sign < 0.0));
+        (fold(direction, self.bits), sign)
+    }
+
+    /// Decodes a unit direction and, if there is one, its sign. Integers that are out of range, as
+    /// only damaged data has them, count as the largest.
+    #[inline]
+    pub fn decode(self, at: [u32; 2], sign: Option<u32>) -> impl Iterator<Item = f32> {
+        let last = (1 << self.bits) - 1;
+        let direction = unfold(at.map(|x| x.min(last)), self.bits).to_array();
+        let sign = sign.map(|sign| if sign == 1 { -1.0 } else { 1.0 });
+        direction.map(|x| x as f32).into_iter().chain(sign)
+    }
+}
+
 /// Encodes a direction of any length in twice `bits` bits, as the best of the four nearest codes.
 ///
 /// A direction of zero length becomes the first axis.
@@ -39,15 +86,8 @@ pub fn max_error_rad(bits: u32) -> f64 {
     2.0 * 2f64.sqrt() / last(bits)
 }
 
-/// Least and greatest number of bits of each integer.
-pub const BITS: [u32; 2] = [3, 16];
-
-/// Returns the least number of bits that keep directions within an error in radians, or the
-/// greatest if none does.
-pub fn bits_within(bound_rad: f64) -> u32 {
-    let [least, most] = BITS;
-    (least..most).find(|&bits| max_error_rad(bits) <= bound_rad).unwrap_or(most)
-}
+/// Minimum and maximum number of bits of each integer.
+const BITS: [u32; 2] = [3, 16];
 
 fn last(bits: u32) -> f64 {
     f64::from((1u32 << bits) - 1)
@@ -82,6 +122,19 @@ mod tests {
             let bound = max_error_rad(bits);
             assert!((0.8 * bound..bound).contains(&worst(bits)), "{bits}: {}", worst(bits));
         }
+    }
+
+    #[test]
+    fn codes_keep_directions_and_signs() {
+        let code = DirectionCode::within(1e-3);
+        let tangent = [0.0, -0.6, 0.8, -1.0];
+        let (at, sign) = code.encode(&tangent);
+        let back: Vec<f32> = code.decode(at, sign).collect();
+        assert!(back.iter().zip(tangent).all(|(is, was)| (is - was).abs() < 1e-3), "{back:?}");
+        assert_eq!(code.decode(code.encode(&tangent[..3]).0, None).count(), 3);
+        assert!(code.decode([u32::MAX; 2], Some(7)).all(f32::is_finite));
+        assert_eq!(DirectionCode::of_bits(code.bits()), Some(code));
+        assert_eq!([2, 17].map(DirectionCode::of_bits), [None; 2]);
     }
 
     #[test]

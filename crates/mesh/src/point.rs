@@ -43,7 +43,7 @@ impl_point!(
 mod tests {
     use super::*;
 
-    /// Coordinates of which the last has more digits than single precision.
+    /// Coordinates, the last with more digits than single precision has.
     const POINT: [f64; 3] = [1.0, -2.5, 0.1];
 
     fn back<P: Point>() -> [f64; 3] {

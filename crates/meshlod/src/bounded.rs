@@ -93,7 +93,7 @@ pub(crate) fn run_within<'m>(
 }
 
 fn can_take_back(report: &Report) -> bool {
-    matches!(report.method, Method::LindstromTurk | Method::Qem)
+    report.method.runs_in_kernel()
 }
 
 /// Returns true if many faces of a level are too far from the input.

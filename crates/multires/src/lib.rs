@@ -70,6 +70,7 @@
 
 mod bounds;
 mod cut;
+mod error_kind;
 mod explicit;
 mod file;
 mod forest;
@@ -87,11 +88,11 @@ mod wedges;
 #[cfg(test)]
 mod tests;
 
-pub use bounds::ErrorKind;
 pub use cut::{
     Certificate, CertifyError, Cut, CutChange, Flaw, Geomorph, Located, Motion, Patch,
     UpdateLimits, VertexValues,
 };
+pub use error_kind::ErrorKind;
 pub use explicit::{Explicit, ExplicitCut};
 pub use file::{
     Archive, Extract, FieldParts, FileError, ModelFile, Resource, Source, Storage, StoredErrors,

@@ -106,8 +106,8 @@ impl Camera {
         Self::cyclic_views(mesh, [1.0, GOLDEN])
     }
 
-    /// Returns twelve more cameras around `mesh`, besides those of [`Camera::icosahedron_views`],
-    /// at the corners of the icosahedron turned by a right angle.
+    /// Returns twelve more cameras around `mesh`, in addition to [`Camera::icosahedron_views`], at
+    /// the corners of the icosahedron turned by a right angle.
     pub fn other_icosahedron_views(mesh: &Mesh) -> [Self; 12] {
         Self::cyclic_views(mesh, [GOLDEN, 1.0])
     }
@@ -284,7 +284,7 @@ fn near(distance: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Least and greatest x and y of the box's corners in a frame of 1000 by 1000 / aspect.
+    /// Minimum and maximum x and y of the box's corners in a frame of 1000 by 1000 / aspect.
     fn extent(bounds: &Bounds, camera: &Camera, aspect: f64) -> [f64; 4] {
         let lens = camera.lens(1000, (1000.0 / aspect) as u32);
         let mut extent = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];

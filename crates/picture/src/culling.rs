@@ -10,7 +10,7 @@ use crate::{BackFaces, Style};
 #[derive(Clone, Copy)]
 pub(crate) struct Culling<'a> {
     labels: Option<&'a Labels>,
-    /// Whether each material label is single-sided.
+    /// True for each single-sided material label.
     single_sided: &'a [bool],
 }
 

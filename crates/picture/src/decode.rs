@@ -18,7 +18,7 @@ const MAX_DEFLATE_RATIO: usize = 1032;
 /// Maximum number of pixels per byte of a JPEG: every block of 8 by 8 takes at least a bit.
 const MAX_JPEG_RATIO: usize = 8 * 64;
 
-/// Maximum number of bytes that decoding may take, beside the file and the texture.
+/// Maximum number of bytes that decoding may allocate, not counting the file and the texture.
 const MAX_MEMORY: usize = 1 << 30;
 
 /// Bytes for each pixel of an image that is decoded whole. A progressive JPEG takes more by its

@@ -85,8 +85,8 @@ impl<'a> ReferenceImages<'a> {
     }
 
     /// Draws the pictures of an original mesh from twelve sides, in a style of their own; it must
-    /// suit the levels too. Figures are comparable only if the style is [`Style::comparison`], but
-    /// for its paint and its [single-sided](Style::single_sided) materials.
+    /// suit the levels too. Figures are comparable only if the style is [`Style::comparison`],
+    /// except for its paint and its [single-sided](Style::single_sided) materials.
     ///
     /// # Errors
     /// Errors of [`render`].
@@ -161,7 +161,7 @@ struct Crop {
 }
 
 impl Crop {
-    /// Returns the rectangle around the marked pixels, or `None` if there are none. A margin of
+    /// Returns the rectangle around the marked pixels, or `None` if no pixel is marked. A margin of
     /// background makes filters, which repeat the outermost pixels, give the values of the whole
     /// picture.
     fn around(marks: &[bool], width: u32) -> Option<Self> {

@@ -11,8 +11,10 @@
 //!
 //! let mesh = samples::torus(2_000);
 //! let camera = Camera::fit_mesh(&mesh, &View::default());
-//! let style = Style { wireframe: Some(Wireframe::default()), size: [256, 256], ..Style::default()
-//! }; let picture = render(&mesh, &camera, &style)?; assert_eq!(&picture.png()[1..4], b"PNG");
+//! let wireframe = Some(Wireframe::default());
+//! let style = Style { wireframe, size: [256, 256], ..Style::default() };
+//! let picture = render(&mesh, &camera, &style)?;
+//! assert_eq!(&picture.png()[1..4], b"PNG");
 //! # Ok::<(), meshlod_picture::PictureError>(())
 //! ```
 //!
@@ -34,6 +36,18 @@
 //! equally near faces the one with the lowest id wins, so the result depends neither on order nor
 //! on threads. Only + - * / and square roots are used, which give the same results on all machines;
 //! comparing pictures also uses roots and powers of the standard library.
+//!
+//! | files, in reading order | hold |
+//! |---|---|
+//! | `camera`, `style`, `color_map` | what is drawn, and how |
+//! | `render` | the drawing of a picture: start here |
+//! | `project`, `clip`, `culling`, `bins`, `raster`, `visibility` | from vertices to the nearest face of each sample |
+//! | `facet`, `normals`, `albedo`, `light`, `texture`, `decode`, `shrink` | from the face to a colour |
+//! | `picture`, `srgb`, `error` | pixels, and PNG |
+//! | `cards` | flat pieces of an atlas for what is far away |
+//! | `image_error`, `flip`, `ssim`, `lab`, `plane` | how different two pictures look |
+//! | `see_through` | pixels that show what the original hides |
+//! | `trigonometry` | functions that are the same on every machine |
 #![forbid(unsafe_code)]
 
 mod albedo;

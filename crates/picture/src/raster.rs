@@ -165,7 +165,7 @@ mod tests {
         Point { x, y, nearness: 0.5 }
     }
 
-    /// How often each sample of a square is covered by triangles over `points`.
+    /// Number of triangles over `points` that cover each sample of a square.
     fn counts(points: &[Point], faces: &[[usize; 3]], side: i32) -> Vec<u32> {
         let window = SampleRect { start: [0, 0], end: [side, side] };
         let mut counts = vec![0; (side * side) as usize];

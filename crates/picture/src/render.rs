@@ -76,7 +76,7 @@ struct TileSamples<'a> {
     across: usize,
 }
 
-/// Part of a face that is visible in a pixel.
+/// Visible part of a face in a pixel.
 #[derive(Clone, Copy, Default)]
 struct VisiblePart {
     face: u32,

@@ -23,8 +23,8 @@ impl Averaging {
 
 /// Texture in the making, from rows that come from the top.
 ///
-/// Squares of 1, 2 by 2 or 4 by 4 pixels become texels. What is left over at the right and at the
-/// bottom is ignored, as by mipmaps.
+/// Squares of 1, 2 by 2 or 4 by 4 pixels become texels. Pixels left over at the right and at the
+/// bottom are ignored, as by mipmaps.
 pub(crate) struct Shrinker {
     image_size: [u32; 2],
     factor: usize,

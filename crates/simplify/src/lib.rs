@@ -1,4 +1,4 @@
-//! Simplifies triangle meshes by contraction, with nine published algorithms.
+//! Simplifies triangle meshes by contraction, with the published algorithms of [`Method`].
 //!
 //! ```
 //! use meshlod_samples as samples;
@@ -11,8 +11,7 @@
 //! ```
 //!
 //! Two engines run the methods: the kernel runs [`Method::LindstromTurk`] and [`Method::Qem`], and the
-//! policy engine runs the other papers' methods, each as a set of policies. The method alone
-//! decides.
+//! policy engine runs the others, each as a set of policies. The method alone decides.
 //!
 //! The output depends on the input and the options alone, byte for byte, for any number of threads.
 //! After every contraction the surface is as manifold, as closed and as oriented as before.
@@ -21,26 +20,29 @@
 mod clean;
 mod engine;
 mod excess;
+mod held;
 mod history;
 mod kernel;
+mod method;
 mod methods;
 mod options;
 mod refusal;
+mod run;
 mod simplifier;
 mod surface;
 
 use meshlod_mesh::Mesh;
 
-pub use engine::locks::Held;
 pub use engine::policy::Observe;
 pub use excess::{Excess, ExcessFace};
+pub use held::Held;
 pub use history::exact_volume::{Digits, ExactVolumeError, VolumeResidual, conserve_volume};
 pub use history::progressive::{Progressive, ProgressiveError};
 pub use history::volume::{Unconserved, VolumeLoss};
 pub use history::{Contraction, History};
+pub use method::Method;
 pub use options::{
-    AttributeWeights, Contractions, ErrorProof, Method, Options, Report, SimplifyError, Target,
-    Topology,
+    AttributeWeights, Contractions, ErrorProof, Options, Report, SimplifyError, Target, Topology,
 };
 pub use refusal::{Refusal, Refusals};
 pub use simplifier::Simplifier;

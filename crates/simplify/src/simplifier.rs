@@ -3,15 +3,17 @@
 use meshlod_mesh::{Bounds, Mesh, VertexId};
 
 use crate::clean;
-use crate::engine::locks::{self, Held};
+use crate::engine::locks;
 use crate::engine::policy::{Observe, Stop};
+use crate::engine::prepared_surface::PreparedSurface;
 use crate::engine::vanishing::Vanishing;
-use crate::engine::{PreparedSurface, Run, Tally};
 use crate::excess::Excess;
 use crate::history::volume::VolumeLoss;
 use crate::kernel::{self, PlaneDistance, SweptVolume};
+use crate::method::Method;
 use crate::methods;
-use crate::options::{Method, Options, Report, SimplifyError, Target, Topology};
+use crate::options::{Options, Report, SimplifyError, Target, Topology};
+use crate::run::{InputSummary, Run, Started, Tally};
 use crate::surface::Surface;
 use crate::surface::rims::Rims;
 
@@ -27,18 +29,6 @@ pub struct Simplifier<'m> {
     options: Options,
     input: InputSummary,
 }
-
-/// Numbers of input faces left out and of input vertices held in place.
-#[derive(Clone, Copy)]
-pub(crate) struct InputSummary {
-    pub(crate) degenerate_faces: usize,
-    pub(crate) duplicate_faces: usize,
-    pub(crate) non_manifold_vertices: usize,
-    pub(crate) held: Held,
-}
-
-/// A running engine, and the summary of the mesh it works on.
-pub(crate) type Started<'m> = (Box<dyn Run + 'm>, InputSummary);
 
 impl<'m> Simplifier<'m> {
     /// Builds the connectivity of the mesh and the costs of its contractions, without contracting

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use meshlod_fixtures as fixtures;
+use meshlod_fixtures::shape::{bare, volume};
 use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId};
 use meshlod_samples as samples;
 use meshlod_simplify::{
@@ -189,13 +190,6 @@ fn a_texture_meets_itself_along_its_seam() {
 fn attributes_cost_lindstrom_turk_no_volume() {
     let uv = |[x, y, z]: [f64; 3]| vec![(x * y) as f32, (z + x * x) as f32];
     let mesh = with_layers(samples::torus(5000), &[(LayerKind::Uv(0), uv)]);
-    let volume = |mesh: &Mesh| -> f64 {
-        let sixfold = |&face| {
-            let [a, b, c] = mesh.triangle(face);
-            a.cross(b).dot(c)
-        };
-        mesh.faces.iter().map(sixfold).sum::<f64>()
-    };
     let level = to(&mesh, Method::LindstromTurk, 0.1);
     assert!(level.faces.len() <= mesh.faces.len() / 10);
     let drift = volume(&level) / volume(&mesh) - 1.0;
@@ -258,7 +252,7 @@ fn weights_are_numbers_of_at_least_0() {
 #[test]
 fn attributes_that_count_for_nothing_change_no_position() {
     let mesh = samples::fish(1000);
-    let bare = Mesh { attributes: None, ..mesh.clone() };
+    let bare = bare(mesh.clone());
     let (weights, method) = (AttributeWeights::NONE, Method::Qem);
     let options = Options { weights, method, ..Options::default() };
     // Seams still count, so the comparison uses a mesh without any.

@@ -1,13 +1,15 @@
 //! Invariants that every method must keep on every mesh.
 
+mod common;
+
 use std::collections::{HashMap, HashSet};
 use std::sync::LazyLock;
 
 use glam::DVec3;
 use meshlod_fixtures as fixtures;
+use meshlod_fixtures::shape::{bare, defects, topology, volume};
 use meshlod_mesh::{
     Attributes, Connectivity, FaceId, Layer, LayerKind, Lock, Locks, Mesh, VertexId, WedgeId,
-    face_components,
 };
 use meshlod_samples as samples;
 use meshlod_simplify::{
@@ -16,52 +18,13 @@ use meshlod_simplify::{
 };
 use proptest::prelude::*;
 
+/// Fixtures, samples, and versions of some without attributes.
 fn meshes() -> Vec<(&'static str, Mesh)> {
-    vec![
-        ("tetrahedron", fixtures::tetrahedron()),
-        ("cube", fixtures::cube()),
-        ("grid", fixtures::grid(12)),
-        ("fan", fixtures::fan()),
-        ("hourglass", fixtures::hourglass()),
-        ("moebius", fixtures::moebius(40)),
-        ("seam strip", fixtures::seam_strip()),
-        ("two objects", fixtures::two_objects()),
-        ("sphere", samples::sphere(2000)),
-        ("torus", samples::torus(2000)),
-        ("faceted torus", samples::faceted_torus(2000)),
-        ("knot", samples::knot(3000)),
-        ("gyroid", samples::gyroid(3000)),
-        ("terrain", samples::terrain(2000)),
-        ("fish", samples::fish(2000)),
-        ("bare seam strip", bare(fixtures::seam_strip())),
-        ("bare fish", bare(samples::fish(600))),
-    ]
-}
-
-fn bare(mesh: Mesh) -> Mesh {
-    Mesh { attributes: None, ..mesh }
-}
-
-/// Properties that a contraction must not change, or must not make worse.
-#[derive(Debug, PartialEq)]
-struct Shape {
-    components: usize,
-    euler: i64,
-    boundary_loops_closed: bool,
-    non_manifold_edges: usize,
-    inconsistent_edges: usize,
-}
-
-fn topology(mesh: &Mesh) -> Shape {
-    let c = Connectivity::new(&mesh.faces, mesh.positions.len());
-    let used = mesh.used_vertices().iter().filter(|&&used| used).count();
-    Shape {
-        components: face_components(&mesh.faces, mesh.positions.len()).1,
-        euler: used as i64 - c.edge_count() as i64 + mesh.faces.len() as i64,
-        boundary_loops_closed: c.is_closed(),
-        non_manifold_edges: c.non_manifold_edges(),
-        inconsistent_edges: c.inconsistent_edges(),
-    }
+    let mut all = common::meshes();
+    all.push(("faceted torus", samples::faceted_torus(2000)));
+    all.push(("bare seam strip", bare(fixtures::seam_strip())));
+    all.push(("bare fish", bare(samples::fish(600))));
+    all
 }
 
 /// Locks every nth vertex.
@@ -83,7 +46,7 @@ impl Runner {
     fn all() -> impl Iterator<Item = Self> {
         let as_done =
             Method::ALL.into_iter().map(|method| Self { method, on_policy_engine: false });
-        let of_kernel = [Method::LindstromTurk, Method::Qem];
+        let of_kernel = Method::ALL.into_iter().filter(|method| method.runs_in_kernel());
         as_done.chain(of_kernel.map(|method| Self { method, on_policy_engine: true }))
     }
 
@@ -107,7 +70,7 @@ impl Runner {
 
     /// Returns true if the kernel runs it, in single precision.
     fn is_kernel(self) -> bool {
-        matches!(self.method, Method::LindstromTurk | Method::Qem) && !self.on_policy_engine
+        self.method.runs_in_kernel() && !self.on_policy_engine
     }
 }
 
@@ -145,7 +108,7 @@ fn a_level_is_as_closed_manifold_and_oriented_as_its_mesh() {
         let (before, after) = (topology(mesh), topology(level));
         assert_eq!(before.components, after.components, "{what}");
         assert_eq!(before.euler, after.euler, "{what}");
-        assert_eq!(before.boundary_loops_closed, after.boundary_loops_closed, "{what}");
+        assert_eq!(before.is_closed, after.is_closed, "{what}");
         assert!(after.non_manifold_edges <= before.non_manifold_edges, "{what}");
         // A non-orientable strip may shift where its two orientations meet, and must keep one such
         // place.
@@ -202,7 +165,7 @@ fn every_single_step_keeps_a_closed_surface_closed() {
         let mut simplifier = runner.start(&mesh, &Options::default()).unwrap();
         while simplifier.step(f64::INFINITY, &mut ()) {
             let level = simplifier.level();
-            assert_eq!(topology(&level), Shape { ..topology(&mesh) });
+            assert_eq!(topology(&level), topology(&mesh));
         }
         assert!(simplifier.live_faces() < 40);
     }
@@ -249,14 +212,6 @@ fn no_step_flips_a_face() {
             }
         }
     }
-}
-
-fn volume(mesh: &Mesh) -> f64 {
-    let sixfold = |&face: &[VertexId; 3]| {
-        let [a, b, c] = mesh.triangle(face);
-        a.cross(b).dot(c)
-    };
-    mesh.faces.iter().map(sixfold).sum::<f64>() / 6.0
 }
 
 #[test]
@@ -463,13 +418,6 @@ fn invalid_meshes_are_refused() {
     for bad in [Target::Ratio(f64::NAN), Target::Ratio(1.5), Target::Error(-1.0)] {
         assert!(simplify(&fixtures::cube(), bad, &Options::default()).is_err());
     }
-}
-
-/// Number of open and non-manifold edges, and of components.
-fn defects(mesh: &Mesh) -> [usize; 3] {
-    let c = Connectivity::new(&mesh.faces, mesh.positions.len());
-    let components = face_components(&mesh.faces, mesh.positions.len()).1;
-    [c.boundary_edges(), c.non_manifold_edges(), components]
 }
 
 proptest! {

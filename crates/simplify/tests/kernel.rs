@@ -1,9 +1,12 @@
 //! The kernel against the policy engine, its oracle, and on meshes made to break it.
 
+mod common;
+
 use std::collections::HashSet;
 
 use meshlod_fixtures as fixtures;
-use meshlod_mesh::{Connectivity, FaceId, Lock, Locks, Mesh, VertexId, face_components};
+use meshlod_fixtures::shape::{bare, topology, volume};
+use meshlod_mesh::{Connectivity, FaceId, Lock, Locks, Mesh, VertexId};
 use meshlod_samples as samples;
 use meshlod_simplify::{
     History, Method, Observe, Options, Report, Simplifier, SimplifyError, Target, Topology,
@@ -11,38 +14,22 @@ use meshlod_simplify::{
 };
 use meshlod_spatial::Bvh;
 
-/// Methods that the kernel runs.
-const KERNEL_METHODS: [Method; 2] = [Method::LindstromTurk, Method::Qem];
+use crate::common::kernel_methods;
 
 fn options(method: Method) -> Options {
     Options { method, ..Options::default() }
 }
 
 fn run(method: Method, mesh: &Mesh, target: Target) -> (Mesh, Report) {
-    let mut mesh = mesh.clone();
-    mesh.attributes = None;
-    simplify(&mesh, target, &options(method)).unwrap()
+    simplify(&bare(mesh.clone()), target, &options(method)).unwrap()
 }
 
+/// Fixtures, samples, and terrains that meet at non-manifold edges.
 fn meshes() -> Vec<(&'static str, Mesh)> {
-    vec![
-        ("tetrahedron", fixtures::tetrahedron()),
-        ("cube", fixtures::cube()),
-        ("grid", fixtures::grid(12)),
-        ("fan", fixtures::fan()),
-        ("hourglass", fixtures::hourglass()),
-        ("moebius", fixtures::moebius(40)),
-        ("seam strip", fixtures::seam_strip()),
-        ("two objects", fixtures::two_objects()),
-        ("sphere", samples::sphere(2000)),
-        ("torus", samples::torus(2000)),
-        ("knot", samples::knot(3000)),
-        ("gyroid", samples::gyroid(3000)),
-        ("terrain", samples::terrain(2000)),
-        ("fish", samples::fish(2000)),
-        ("three pages", pages(3)),
-        ("five pages", pages(5)),
-    ]
+    let mut all = common::meshes();
+    all.push(("three pages", pages(3)));
+    all.push(("five pages", pages(5)));
+    all
 }
 
 /// Terrains that all share one edge line, with `n` faces on each of its edges.
@@ -70,15 +57,6 @@ fn pages(n: usize) -> Mesh {
     mesh
 }
 
-/// Components, Euler number, closedness, non-manifold and inconsistent edges.
-fn topology(mesh: &Mesh) -> (usize, i64, bool, usize, usize) {
-    let c = Connectivity::new(&mesh.faces, mesh.positions.len());
-    let used = mesh.used_vertices().iter().filter(|&&used| used).count();
-    let euler = used as i64 - c.edge_count() as i64 + mesh.faces.len() as i64;
-    let components = face_components(&mesh.faces, mesh.positions.len()).1;
-    (components, euler, c.is_closed(), c.non_manifold_edges(), c.inconsistent_edges())
-}
-
 fn check_level(what: &str, level: &Mesh, report: &Report) {
     level.validate().unwrap_or_else(|error| panic!("{what}: {error}"));
     assert_eq!(level.faces.len(), report.output_faces, "{what}");
@@ -95,7 +73,7 @@ fn check_level(what: &str, level: &Mesh, report: &Report) {
 
 #[test]
 fn a_level_is_valid_and_as_closed_manifold_and_oriented_as_its_mesh() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for (name, mesh) in meshes() {
             for ratio in [0.5, 0.1, 0.0] {
                 let what = format!("{name} to {ratio}");
@@ -110,7 +88,7 @@ fn a_level_is_valid_and_as_closed_manifold_and_oriented_as_its_mesh() {
 
 #[test]
 fn targets_of_a_few_faces_are_met_or_refused_in_words() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for (name, mesh) in meshes() {
             for faces in [0, 1, 4] {
                 let (level, report) = run(method, &mesh, Target::Faces(faces));
@@ -127,7 +105,7 @@ fn targets_of_a_few_faces_are_met_or_refused_in_words() {
 
 #[test]
 fn smooth_samples_reach_their_target() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for mesh in [samples::sphere(2000), samples::torus(2000), samples::knot(3000)] {
             let (level, report) = run(method, &mesh, Target::Ratio(0.05));
             let target = mesh.faces.len() / 20;
@@ -138,7 +116,7 @@ fn smooth_samples_reach_their_target() {
 
 #[test]
 fn a_flat_stays_one_and_grows_no_hubs() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mesh = fixtures::grid(200);
         let (level, report) = run(method, &mesh, Target::Ratio(0.02));
         assert!(report.reached, "{report:?}");
@@ -152,7 +130,7 @@ fn a_flat_stays_one_and_grows_no_hubs() {
 
 #[test]
 fn a_hub_shrinks_with_its_rim() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let (level, report) = run(method, &fixtures::cone(100_000), Target::Faces(100));
         assert!(report.reached, "{report:?}");
         check_level("cone", &level, &report);
@@ -162,7 +140,7 @@ fn a_hub_shrinks_with_its_rim() {
 
 #[test]
 fn faces_given_twice_are_left_out() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mut mesh = fixtures::cone(2_000);
         mesh.faces.extend_from_within(..);
         let (level, report) = run(method, &mesh, Target::Faces(100));
@@ -173,7 +151,7 @@ fn faces_given_twice_are_left_out() {
 
 #[test]
 fn scale_and_place_change_nothing_to_speak_of() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mesh = samples::torus(2_000);
         let (at_home, _) = run(method, &mesh, Target::Ratio(0.1));
         for (scale, shift) in [(2f64.powi(-90), 0.0), (2f64.powi(90), 0.0), (1.0, 1e6)] {
@@ -198,7 +176,7 @@ fn scale_and_place_change_nothing_to_speak_of() {
 
 #[test]
 fn faces_without_area_and_points_in_one_place_end() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let positions = (0..200).map(|i| [f64::from(i) * f64::from(i), 0.0, 0.0]).collect();
         let strip = |i: u32| [VertexId(i), VertexId(i + 1), VertexId(i + 2)];
         let mut line = Mesh::new(positions, (0..198).map(strip).collect());
@@ -216,7 +194,7 @@ fn faces_without_area_and_points_in_one_place_end() {
 
 #[test]
 fn tiny_and_huge_faces_go_together() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         // Spheres a millionth and a hundred-millionth of the size of the first.
         let mut mesh = samples::sphere(2000);
         let (vertices, faces) = (mesh.positions.clone(), mesh.faces.clone());
@@ -228,13 +206,13 @@ fn tiny_and_huge_faces_go_together() {
         let keep = Options { topology: Topology::Keep, ..options(method) };
         let (level, report) = simplify(&mesh, Target::Ratio(0.0), &keep).unwrap();
         check_level("spheres", &level, &report);
-        assert_eq!(topology(&level).0, 3);
+        assert_eq!(topology(&level).components, 3);
     }
 }
 
 #[test]
 fn a_thousand_components_keep_apart() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let one = fixtures::tetrahedron();
         let mut mesh = Mesh::default();
         for i in 0..1000u32 {
@@ -250,14 +228,14 @@ fn a_thousand_components_keep_apart() {
 
 #[test]
 fn locked_vertices_stay() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mesh = samples::terrain(2000);
         let every_fifth = |v: usize| if v.is_multiple_of(5) { Lock::Locked } else { Lock::Free };
         let locks = Locks {
             of_vertex: (0..mesh.positions.len()).map(every_fifth).collect(),
             ties: Vec::new(),
         };
-        let bare = Mesh { attributes: None, ..mesh.clone() };
+        let bare = bare(mesh.clone());
         let locked = Options { locks, ..options(method) };
         let (level, report) = simplify(&bare, Target::Ratio(0.0), &locked).unwrap();
         check_level("locked", &level, &report);
@@ -283,7 +261,7 @@ fn farthest_point(from: &Mesh, to: &Mesh) -> f64 {
 
 #[test]
 fn a_bound_of_the_error_is_kept_both_ways() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for (mesh, parts) in [
             (samples::torus(3000), [3, 10]),
             (samples::fish(4000), [3, 20]),
@@ -305,9 +283,9 @@ fn a_bound_of_the_error_is_kept_both_ways() {
 
 #[test]
 fn a_bound_holds_after_another_target_and_after_another_bound() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mesh = samples::fish(4000);
-        let bare = Mesh { attributes: None, ..mesh.clone() };
+        let bare = bare(mesh.clone());
         let diagonal = mesh.bounds().diagonal();
         let mut simplifier = Simplifier::new(&bare, &options(method)).unwrap();
         simplifier.run(Target::Ratio(0.7), &mut ()).unwrap();
@@ -327,13 +305,6 @@ fn a_bound_holds_after_another_target_and_after_another_bound() {
 fn volume_stays_and_runs_are_alike() {
     for mesh in [samples::torus(20_000), samples::knot(20_000)] {
         let (level, _) = run(Method::LindstromTurk, &mesh, Target::Ratio(0.2));
-        let volume = |mesh: &Mesh| -> f64 {
-            let sixfold = |&face| {
-                let [a, b, c] = mesh.triangle(face);
-                a.cross(b).dot(c)
-            };
-            mesh.faces.iter().map(sixfold).sum::<f64>() / 6.0
-        };
         assert!((volume(&level) / volume(&mesh) - 1.0).abs() < 1e-6);
         assert_eq!(run(Method::LindstromTurk, &mesh, Target::Ratio(0.2)).0, level);
     }
@@ -341,12 +312,11 @@ fn volume_stays_and_runs_are_alike() {
 
 #[test]
 fn both_engines_report_the_same_input() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mut dirty = samples::terrain(500);
         dirty.attributes = None;
         let first = dirty.faces[0];
         dirty.faces.extend([first, [first[0], first[0], first[2]], [first[1], first[2], first[0]]]);
-        let bare = |mesh: Mesh| Mesh { attributes: None, ..mesh };
         for mesh in
             [dirty, fixtures::cone(300), pages(3), fixtures::hourglass(), bare(samples::fish(500))]
         {
@@ -386,9 +356,9 @@ fn of_level(level: &Mesh) -> Vec<[[u64; 3]; 3]> {
 
 #[test]
 fn observers_see_exactly_the_level() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for (name, mesh) in meshes() {
-            let mesh = Mesh { attributes: None, ..mesh };
+            let mesh = bare(mesh);
             let mut simplifier = Simplifier::new(&mesh, &options(method)).unwrap();
             // Observed, unobserved, observed again; with the surface requested before the start and
             // after.
@@ -433,7 +403,7 @@ impl Observe for Count {
 
 #[test]
 fn every_face_that_goes_is_counted() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mesh = samples::torus(30_000);
         let mut simplifier = Simplifier::new(&mesh, &options(method)).unwrap();
         let (mut alone, mut beside) = (Count::default(), Count::default());
@@ -446,7 +416,7 @@ fn every_face_that_goes_is_counted() {
 
 #[test]
 fn runs_and_steps_go_the_same_way() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mesh = samples::knot(3000);
         let mut by_steps = Simplifier::new(&mesh, &options(method)).unwrap();
         let mut by_runs = Simplifier::new(&mesh, &options(method)).unwrap();
@@ -467,7 +437,7 @@ fn runs_and_steps_go_the_same_way() {
 
 #[test]
 fn damaged_files_end() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for path in fixtures::shared_broken() {
             let Ok(text) = std::fs::read(&path) else { continue };
             // Arbitrary bytes make a soup: four of them are an index.
@@ -502,7 +472,7 @@ fn farthest(mesh: &Mesh, level: &Mesh) -> f64 {
 
 #[test]
 fn tips_stay_while_others_go() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mesh = hedgehog();
         let (level, report) = run(method, &mesh, Target::Ratio(0.15));
         assert!(report.reached);
@@ -514,8 +484,8 @@ fn tips_stay_while_others_go() {
 
 #[test]
 fn tips_that_are_cut_off_are_in_the_estimate() {
-    for method in KERNEL_METHODS {
-        for mesh in [hedgehog(), Mesh { attributes: None, ..samples::fish(5000) }] {
+    for method in kernel_methods() {
+        for mesh in [hedgehog(), bare(samples::fish(5000))] {
             for faces in [1000, 100] {
                 let (level, report) = run(method, &mesh, Target::Faces(faces));
                 let lost = farthest(&mesh, &level);
@@ -527,7 +497,7 @@ fn tips_that_are_cut_off_are_in_the_estimate() {
 
 #[test]
 fn a_bound_of_the_error_keeps_tips() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mesh = hedgehog();
         let most = 0.02 * mesh.bounds().diagonal();
         let (level, report) = run(method, &mesh, Target::Error(most));

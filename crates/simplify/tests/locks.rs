@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId, face_components};
+use meshlod_fixtures::shape::defects;
+use meshlod_mesh::{Lock, Locks, Mesh, VertexId, face_components};
 use meshlod_samples as samples;
 use meshlod_simplify::{
     History, Method, Neighbourhood, Observe, Options, Placed, Progressive, Simplifier,
@@ -117,12 +118,6 @@ impl Observe for Trace {
         self.into.extend(gone.map(|&v| (v, kept)));
         self.at[kept.index()] = placed.position.into();
     }
-}
-
-fn defects(mesh: &Mesh) -> [usize; 3] {
-    let c = Connectivity::new(&mesh.faces, mesh.positions.len());
-    let components = face_components(&mesh.faces, mesh.positions.len()).1;
-    [c.boundary_edges(), c.non_manifold_edges(), components]
 }
 
 /// Runs with all ties, checks that they hold, and returns the level.

@@ -1,7 +1,10 @@
 //! Seams, borders of materials and corners of charts that give way where they would stop a run.
 
+mod common;
+
 use std::collections::{BTreeMap, HashMap};
 
+use meshlod_fixtures::shape::volume;
 use meshlod_fixtures::{charted, in_materials};
 use meshlod_mesh::{Attributes, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId};
 use meshlod_samples as samples;
@@ -9,8 +12,7 @@ use meshlod_simplify::{
     History, Method, Options, Progressive, Simplifier, Target, Topology, simplify,
 };
 
-/// The methods that the kernel runs.
-const KERNEL_METHODS: [Method; 2] = [Method::LindstromTurk, Method::Qem];
+use crate::common::kernel_methods;
 
 /// A mesh of quads in a lattice, each vertex once, each chart with wedges of its own.
 #[derive(Default)]
@@ -158,7 +160,7 @@ fn a_box_with_a_texture_a_side_goes_down_to_its_twelve_faces_where_topology_is_k
 
 #[test]
 fn seams_hold_as_long_as_anything_else_can_go() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for mesh in [boxes(5, 1).finish(false, false), boxes(5, 3).finish(true, false)] {
             let target = Target::Faces(mesh.faces.len() / 25);
             let level = |topology| simplify(&mesh, target, &options(method, topology)).unwrap().0;
@@ -169,7 +171,7 @@ fn seams_hold_as_long_as_anything_else_can_go() {
 
 #[test]
 fn charts_give_way_where_nothing_else_can_go() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for (name, mesh) in all_meshes() {
             let components = if name == "boxes" { 60 } else { 1 };
             let few = 4 * components;
@@ -193,7 +195,7 @@ fn charts_give_way_where_nothing_else_can_go() {
 
 #[test]
 fn every_face_keeps_its_material_and_its_own_texture() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mesh = boxes(6, 1).finish(true, true);
         let (level, _) =
             simplify(&mesh, Target::Faces(8), &options(method, Topology::Free)).unwrap();
@@ -221,7 +223,7 @@ fn every_face_keeps_its_material_and_its_own_texture() {
 
 #[test]
 fn observers_see_the_same_wedges() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for (name, mesh) in all_meshes() {
             let options = options(method, Topology::Free);
             let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
@@ -245,7 +247,7 @@ fn observers_see_the_same_wedges() {
 
 #[test]
 fn runs_and_steps_release_seams_at_the_same_time() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for (name, mesh) in all_meshes() {
             let options = options(method, Topology::Free);
             let mut by_steps = Simplifier::new(&mesh, &options).unwrap();
@@ -262,20 +264,12 @@ fn runs_and_steps_release_seams_at_the_same_time() {
     }
 }
 
-fn volume(mesh: &Mesh) -> f64 {
-    let sixfold = |&face: &[VertexId; 3]| {
-        let [a, b, c] = mesh.triangle(face);
-        a.cross(b).dot(c)
-    };
-    mesh.faces.iter().map(sixfold).sum::<f64>() / 6.0
-}
-
 #[test]
 fn volume_is_conserved_across_seams() {
     let bare = [samples::knot(4000), samples::torus(4000), samples::gyroid(4000)];
     for mesh in bare.iter().flat_map(|mesh| [charted(mesh), in_materials(mesh)]) {
         for method in Method::ALL.into_iter().filter(|method| method.conserves_volume()) {
-            let rounding = if KERNEL_METHODS.contains(&method) { 1e-6 } else { 1e-12 };
+            let rounding = if method.runs_in_kernel() { 1e-6 } else { 1e-12 };
             for ratio in [0.5, 0.1, 0.02] {
                 let options = options(method, Topology::Keep);
                 let (level, report) = simplify(&mesh, Target::Ratio(ratio), &options).unwrap();

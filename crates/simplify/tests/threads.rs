@@ -1,17 +1,19 @@
 //! The kernel on meshes of several parts: any number of threads, any order of the file.
 
+mod common;
+
 use std::collections::HashSet;
 use std::sync::LazyLock;
 
 use meshlod_fixtures as fixtures;
-use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId};
+use meshlod_fixtures::shape::{bare, topology};
+use meshlod_mesh::{Lock, Locks, Mesh, VertexId};
 use meshlod_samples as samples;
 use meshlod_simplify::{
     History, Method, Options, Report, Simplifier, Target, VolumeLoss, simplify,
 };
 
-/// Methods that the kernel runs.
-const KERNEL_METHODS: [Method; 2] = [Method::LindstromTurk, Method::Qem];
+use crate::common::kernel_methods;
 
 fn options(method: Method) -> Options {
     Options { method, ..Options::default() }
@@ -28,7 +30,7 @@ fn run(method: Method, mesh: &Mesh, target: Target) -> (Mesh, Report) {
 
 /// Meshes of several partitions, with boundaries, with flats, in pieces, and non-manifold.
 static LARGE: LazyLock<[(&str, Mesh); 5]> = LazyLock::new(|| {
-    let terrain = Mesh { attributes: None, ..samples::terrain(120_000) };
+    let terrain = bare(samples::terrain(120_000));
     [
         ("torus", samples::torus(120_000)),
         ("terrain", terrain),
@@ -93,16 +95,9 @@ fn shuffled(count: usize) -> Vec<u32> {
     all
 }
 
-fn euler(mesh: &Mesh) -> (i64, usize, usize) {
-    let c = Connectivity::new(&mesh.faces, mesh.positions.len());
-    let used = mesh.used_vertices().iter().filter(|&&used| used).count();
-    let euler = used as i64 - c.edge_count() as i64 + mesh.faces.len() as i64;
-    (euler, c.non_manifold_edges(), c.inconsistent_edges())
-}
-
 #[test]
 fn any_number_of_threads_gives_the_same_bytes() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for (name, mesh) in &*LARGE {
             let bound = Target::Error(0.005 * mesh.bounds().diagonal());
             for target in [Target::Ratio(0.03), bound] {
@@ -116,17 +111,19 @@ fn any_number_of_threads_gives_the_same_bytes() {
 
 #[test]
 fn targets_are_met_to_the_face_and_topology_is_kept() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for (name, mesh) in &*LARGE {
-            let before = euler(mesh);
+            let before = topology(mesh);
             for faces in [mesh.faces.len() - 1, mesh.faces.len() / 3 + 1] {
                 let (level, report) = run(method, mesh, Target::Faces(faces));
                 assert!(report.reached, "{name} {faces}");
                 assert!((faces - 1..=faces).contains(&level.faces.len()), "{name} {faces}");
                 assert_eq!(level.faces.len(), report.output_faces);
-                let after = euler(&level);
-                assert_eq!((after.0, after.2), (before.0, before.2), "{name} {faces}");
-                assert!(after.1 <= before.1, "{name} {faces}");
+                let after = topology(&level);
+                assert_eq!(after.euler, before.euler, "{name} {faces}");
+                assert_eq!(after.inconsistent_edges, before.inconsistent_edges, "{name} {faces}");
+                let non_manifold = [&before, &after].map(|counts| counts.non_manifold_edges);
+                assert!(non_manifold[1] <= non_manifold[0], "{name} {faces}");
             }
         }
     }
@@ -134,7 +131,7 @@ fn targets_are_met_to_the_face_and_topology_is_kept() {
 
 #[test]
 fn observers_see_the_same_level() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for (name, mesh) in &*LARGE {
             let (level, _) = run(method, mesh, Target::Ratio(0.05));
             let mut simplifier = Simplifier::new(mesh, &options(method)).unwrap();
@@ -153,7 +150,7 @@ fn observers_see_the_same_level() {
 
 #[test]
 fn targets_of_a_few_faces_end() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for (name, mesh) in &*LARGE {
             for faces in [0, 4] {
                 let (level, report) = run(method, mesh, Target::Faces(faces));
@@ -167,7 +164,7 @@ fn targets_of_a_few_faces_end() {
 
 #[test]
 fn a_file_in_no_order_is_simplified_as_well() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         for mesh in [samples::knot(80_000), samples::torus(80_000)] {
             let other = scrambled(&mesh);
             let [(level, first), (_, second)] =
@@ -190,7 +187,7 @@ fn a_file_in_no_order_is_simplified_as_well() {
 
 #[test]
 fn locks_hold_across_parts() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mesh = samples::torus(100_000);
         let every_fifth = |v: usize| if v.is_multiple_of(5) { Lock::Locked } else { Lock::Free };
         let of_vertex = (0..mesh.positions.len()).map(every_fifth).collect();
@@ -205,7 +202,7 @@ fn locks_hold_across_parts() {
 
 #[test]
 fn a_bound_of_the_error_holds_across_parts() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mesh = samples::torus(100_000);
         let (level, report) = run(method, &mesh, Target::Error(1e-3));
         assert!(report.error_estimate <= 1e-3 && level.faces.len() < mesh.faces.len() / 4);
@@ -214,7 +211,7 @@ fn a_bound_of_the_error_holds_across_parts() {
 
 #[test]
 fn a_stray_vertex_far_off_and_one_place_for_all_end() {
-    for method in KERNEL_METHODS {
+    for method in kernel_methods() {
         let mut mesh = samples::torus(60_000);
         mesh.positions.push([1e300, -1e300, 1e300]);
         let (level, report) = run(method, &mesh, Target::Ratio(0.1));

@@ -1,14 +1,19 @@
 //! Small components may vanish, and only they.
 
+mod common;
+
 use std::collections::HashSet;
 
 use meshlod_fixtures as fixtures;
+use meshlod_fixtures::shape::volume;
 use meshlod_mesh::{Lock, Locks, Mesh, VertexId, face_components};
 use meshlod_samples as samples;
 use meshlod_simplify::{
     History, Method, Options, Progressive, Report, Simplifier, SimplifyError, Target, Topology,
     simplify,
 };
+
+use crate::common::kernel_methods;
 
 /// The diagonal of a ball of diameter 2.
 const DIAGONAL: f64 = 3.47;
@@ -30,9 +35,6 @@ fn balls(sizes: &[f64]) -> Mesh {
 fn run(mesh: &Mesh, options: &Options, target: Target) -> (Mesh, Report) {
     simplify(mesh, target, options).unwrap()
 }
-
-/// The methods of the kernel.
-const KERNEL: [Method; 2] = [Method::LindstromTurk, Method::Qem];
 
 /// Returns the number of faces left of each component of the input.
 fn left(mesh: &Mesh, options: &Options, faces: usize) -> Vec<usize> {
@@ -63,7 +65,7 @@ fn what_is_small_vanishes_and_what_is_large_stays() {
         }
         let none = left(&mesh, &below(None), 0);
         let vanished = none[1..].iter().filter(|&&faces| faces == 0).count();
-        assert_eq!(vanished, if KERNEL.contains(&method) { 3 } else { 0 }, "{}", method.name());
+        assert_eq!(vanished, if method.runs_in_kernel() { 3 } else { 0 }, "{}", method.name());
     }
 }
 
@@ -75,7 +77,7 @@ fn what_is_near_the_rest_vanishes_before_what_is_alone() {
     for p in &mut mesh.positions[2 * of_ball..3 * of_ball] {
         p[0] -= 4.9;
     }
-    for method in KERNEL {
+    for method in kernel_methods() {
         let mut simplifier =
             Simplifier::new(&mesh, &Options { method, ..Options::default() }).unwrap();
         let mut faces = mesh.faces.len();
@@ -131,7 +133,7 @@ fn what_a_lock_holds_stays() {
 fn the_distance_from_the_rest_is_the_error() {
     // The small ball reaches from 1.9 to 2.1 beyond the surface of the large one.
     let mesh = balls(&[0.1]);
-    for method in KERNEL {
+    for method in kernel_methods() {
         let options = Options { method, ..Options::default() };
         let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
         let narrow = simplifier.run(Target::Error(2.0), &mut ()).unwrap();
@@ -145,7 +147,7 @@ fn the_distance_from_the_rest_is_the_error() {
 fn a_size_is_the_error_of_the_other_methods() {
     let mesh = balls(&[0.1]);
     let size = 0.1 * DIAGONAL;
-    for method in Method::ALL.into_iter().filter(|method| !KERNEL.contains(method)) {
+    for method in Method::ALL.into_iter().filter(|method| !method.runs_in_kernel()) {
         let options = Options { method, vanish_below: Some(1.0), ..Options::default() };
         let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
         let narrow = simplifier.run(Target::Error(0.9 * size), &mut ()).unwrap();
@@ -196,23 +198,13 @@ fn what_vanished_comes_back_to_the_bit() {
 #[test]
 fn the_report_counts_the_volume_that_vanished() {
     let mesh = balls(&[0.3]);
-    let volume = |mesh: &Mesh| -> f64 {
-        let sixfold = |&face: &[VertexId; 3]| {
-            let [a, b, c] = mesh.triangle(face);
-            a.cross(b).dot(c)
-        };
-        mesh.faces.iter().map(sixfold).sum::<f64>() / 6.0
-    };
     for method in Method::ALL {
         let options = Options { method, vanish_below: Some(2.0), ..Options::default() };
         let (level, report) = run(&mesh, &options, Target::Faces(4));
         assert_eq!(report.vanished, 1);
         let lost = volume(&mesh) - volume(&level);
         // The kernel counts from positions in floats.
-        let off = match method {
-            Method::LindstromTurk | Method::Qem => 1e-6,
-            _ => 1e-12,
-        };
+        let off = if method.runs_in_kernel() { 1e-6 } else { 1e-12 };
         assert!((report.volume.running_sum - lost).abs() < off, "{}", method.name());
     }
 }

@@ -8,9 +8,9 @@ use crate::box3::Box3;
 use crate::bvh::{INNER, Node};
 use crate::triangle::Triangle;
 
-/// Most triangles of a leaf. On the dragon (871,000 faces), compared with 2: a limit of 1 makes
-/// queries 7 % faster and building 15 % slower, a limit of 4 queries 15 % slower and building 20 %
-/// faster.
+/// Maximum number of triangles in a leaf. On the dragon (871,000 faces), compared with 2: a limit
+/// of 1 makes queries 7 % faster and building 15 % slower, a limit of 4 queries 15 % slower and
+/// building 20 % faster.
 const LEAF: usize = 2;
 /// Bins along the longest axis. With 16, queries are as fast and building is 5 % slower.
 const BINS: usize = 8;

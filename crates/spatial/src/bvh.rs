@@ -42,7 +42,7 @@ pub enum BvhError {
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(crate) struct Node {
-    /// Least corners, rounded down: x of all four children, then y, then z.
+    /// Minimum corners, rounded down: x of all four children, then y, then z.
     pub(crate) lo: [Vec4; 3],
     /// Greatest corners, rounded up.
     pub(crate) hi: [Vec4; 3],

@@ -1,4 +1,4 @@
-//! Distances from the faces of a mesh that are left, without those of one label.
+//! Distance to the remaining faces of a mesh, excluding one label.
 
 use meshlod_mesh::{FaceId, Mesh};
 
@@ -10,7 +10,7 @@ use crate::closest::Selection;
 const MIXED: u32 = u32::MAX;
 
 /// Bounding volume hierarchy over faces with labels, such as their connected components. Faces can
-/// be removed, and distances are those from what is left without one label.
+/// be removed, and distances exclude one label.
 ///
 /// What has that label, or nothing left, is passed over as a whole, however many faces it has.
 #[derive(Clone, Debug)]
@@ -85,8 +85,8 @@ impl LabelledBvh {
         }
     }
 
-    /// Returns the squared distance, in square model units, of a finite point from the faces that
-    /// are left and have another label than `label`; infinite if there are none.
+    /// Returns the squared distance, in square model units, of a finite point from the remaining
+    /// faces with a label other than `label`; infinite without such faces.
     ///
     /// Cost: O(log n) for points near these faces, n = faces.
     pub fn squared_distance(&self, point: [f64; 3], label: u32) -> f64 {

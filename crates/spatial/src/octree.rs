@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::triangle::Triangle;
 
 /// A cell with no more triangles is not split.
-const FEW: usize = 16;
+const LEAF_TRIANGLES: usize = 16;
 /// Deepest level.
 const MAX_LEVEL: u8 = 16;
 /// Splitting ends when the cells together hold this many entries per triangle, as long triangles
@@ -88,7 +88,7 @@ fn split_all(
     while !open.is_empty() {
         let mut finer = Vec::new();
         for cell in open {
-            let full = cell.triangles.len() > FEW && cell.level < MAX_LEVEL;
+            let full = cell.triangles.len() > LEAF_TRIANGLES && cell.level < MAX_LEVEL;
             if !full || entries > most_entries {
                 leaves.push(cell);
                 continue;

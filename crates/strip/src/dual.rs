@@ -33,7 +33,7 @@ const MAX_LOOKS: usize = 64;
 /// Pairs sides in two passes: sides that rise to a higher vertex are listed at the lower one, and
 /// falling sides look themselves up there. Gives up after [`MAX_LOOKS`] per face.
 ///
-/// Whether a side rises is as good as random, so nothing branches on it.
+/// A side rises or falls at random, so nothing branches on it.
 fn pair_by_lists(faces: &[[VertexId; 3]], vertex_count: usize) -> Option<Vec<DualNode>> {
     let Sides { starts, mut rising, falling } = Sides::new(faces, vertex_count);
     let mut nodes = vec![DualNode::ISOLATED; faces.len()];

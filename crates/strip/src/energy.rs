@@ -50,8 +50,8 @@ pub(crate) struct Energy {
     max_regain: i32,
 }
 
-/// How a path goes on beyond a node, by the node's links and the side of entry: 0 for an end, 1 by
-/// the next side, 2 by the previous side.
+/// Continuation of a path beyond a node, by the node's links and the side of entry: 0 for an end, 1
+/// by the next side, 2 by the previous side.
 const ONWARD: [[u8; 4]; 8] = [
     [0, 0, 0, 0],
     [0, 0, 0, 0],
@@ -89,7 +89,7 @@ impl Energy {
         self.links[onward(p, of_p) * 4 + onward(q, of_q)]
     }
 
-    /// Most that a tunnel is expected to regain by going on: a strip, if it meets an end, and a
+    /// Maximum that a tunnel is expected to regain by going on: a strip, if it meets an end, and a
     /// swap. The bunny, 60 moves per face: two swaps less give 1.107 vertices per face in .8 s,
     /// half a swap less or more 1.104 in .9 s, no limit 1.106 in 1.9 s.
     #[inline]

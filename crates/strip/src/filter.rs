@@ -78,7 +78,7 @@ struct Window {
     corners: [VertexId; 3],
 }
 
-/// How a strip gets from one triangle to the next [KY05, 3.1].
+/// Step of a strip from one triangle to the next [KY05, 3.1].
 enum Step {
     /// *abc*, *bcd*: by one vertex.
     Regular,

@@ -26,6 +26,18 @@
 //! [repaired](SkipStrip::repaired). [`LevelStrips`] and [`CutStrips`] follow levels and cuts at a
 //! cost proportional to the change, and [`StripIndices`] are index buffers that follow those. See
 //! docs/notes/strips.md.
+//!
+//! | files, in reading order | hold |
+//! |---|---|
+//! | `strips`, `sequence`, `verify` | strips as a GPU draws them, and what they must draw |
+//! | `stripify` | the public function: start here |
+//! | `dual_node`, `dual`, `order` | faces as nodes of the dual graph, neighbours close in memory |
+//! | `path_cover`, `greedy` | strips as paths: the first cover |
+//! | `energy`, `region`, `tunnel`, `anneal`, `touched`, `random` | the cover improved move by move |
+//! | `cache_runs`, `emit`, `parity` | paths cut for a vertex cache and made sequences |
+//! | `skip`, `filter` | one set of strips for all levels |
+//! | `repair`, `selective` | strips that follow levels and cuts |
+//! | `measure`, `overdraw` | what strips cost |
 
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! Part of a path cover whose links are changed step by step, with the cost of each step.
+//! Region of a path cover whose links are changed step by step, with the cost of each step.
 
 use crate::dual_node::{DualEdge, DualNode, Links};
 use crate::energy::{Energy, swaps};

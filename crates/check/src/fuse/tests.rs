@@ -1,6 +1,7 @@
 use std::collections::BTreeSet;
 
 use glam::{DQuat, DVec3};
+use meshlod_fixtures::shape::volume;
 use meshlod_mesh::{Connectivity, FaceLayer, FaceLayerKind, VertexId};
 
 use super::*;
@@ -25,14 +26,6 @@ fn together(meshes: impl IntoIterator<Item = Mesh>) -> Mesh {
             .extend(mesh.faces.iter().map(|face| face.map(|v| VertexId::new(base + v.index()))));
     }
     all
-}
-
-fn volume(mesh: &Mesh) -> f64 {
-    let six = |&face: &[VertexId; 3]| {
-        let [a, b, c] = mesh.triangle(face);
-        a.dot(b.cross(c))
-    };
-    mesh.faces.iter().map(six).sum::<f64>() / 6.0
 }
 
 fn area(mesh: &Mesh) -> f64 {

@@ -9,8 +9,8 @@ use meshlod_mesh::{FaceId, VertexId};
 use super::{Flow, Search};
 use crate::box_blocks::BoxBlocks;
 
-/// Number of faces from which pairs come from a broad phase over directions.
-const MANY: usize = 64;
+/// Number of faces from which on pairs come from a broad phase over directions.
+const BROAD_PHASE_FROM: usize = 64;
 
 impl Search<'_> {
     /// Tests the pairs of faces around a vertex, except those that share another vertex which is
@@ -19,7 +19,7 @@ impl Search<'_> {
     /// Two faces that share a vertex have more in common only if their sets of directions from it
     /// overlap: then both contain a segment of a ray from the vertex.
     pub(super) fn test_ring(&mut self, star: &[FaceId], center: VertexId) -> Flow {
-        if star.len() < MANY {
+        if star.len() < BROAD_PHASE_FROM {
             for (i, &f) in star.iter().enumerate() {
                 for &g in &star[i + 1..] {
                     self.test_at(center, f, g)?;

@@ -177,7 +177,7 @@ fn at_point(a: PlaneCrossing, b: PlaneCrossing) -> Intersection {
     Intersection { kind: IntersectionKind::Point, point: point.into(), depth: 0.0 }
 }
 
-/// Intersects two chords that overlap, or of which one is a point inside the other.
+/// Intersects two chords that overlap, or one of which is a point inside the other.
 fn overlap(a: &Chord, b: &Chord, depth: impl FnOnce() -> f64) -> Intersection {
     let start = if order(a.start, b.start).is_lt() { b.start } else { a.start };
     let end = if order(a.end, b.end).is_gt() { b.end } else { a.end };

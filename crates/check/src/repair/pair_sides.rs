@@ -1,12 +1,14 @@
 //! Pairs the faces at a non-manifold edge.
+//!
+//! docs/notes/splitting.md says how this differs from the other splitters and sewers.
 
 use std::cmp::Ordering;
 
 use glam::DVec3;
 use meshlod_mesh::{Mesh, Side};
 
-/// Maximum number of faces at an edge of which all pairs are compared.
-const MOST: usize = 16;
+/// Maximum number of faces at an edge up to which all pairs are compared.
+const MAX_COMPARED: usize = 16;
 
 /// A face at a non-manifold edge, seen along the edge.
 #[derive(Clone, Copy)]
@@ -39,7 +41,7 @@ pub fn pair_sides(mesh: &Mesh, edge: &[Side]) -> Vec<[Side; 2]> {
         edge_faces.rotate_left(first);
         return edge_faces.chunks_exact(2).map(|pair| [pair[0].side, pair[1].side]).collect();
     }
-    if edge_faces.len() > MOST { Vec::new() } else { flattest(&edge_faces) }
+    if edge_faces.len() > MAX_COMPARED { Vec::new() } else { flattest(&edge_faces) }
 }
 
 fn edge_faces(mesh: &Mesh, edge: &[Side]) -> Vec<EdgeFace> {

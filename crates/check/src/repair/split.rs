@@ -1,4 +1,6 @@
 //! Splits non-manifold edges and non-manifold vertices.
+//!
+//! docs/notes/splitting.md says how this differs from the other splitters and sewers.
 
 use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, UnionFind, VertexId};
 

@@ -1,4 +1,6 @@
 //! Stitches boundary edges that coincide.
+//!
+//! docs/notes/splitting.md says how this differs from the other splitters and sewers.
 
 use meshlod_mesh::{
     Connectivity, FaceId, Mesh, Side, Twin, UnionFind, VertexId, first_near, merge_equal_wedges,

@@ -1,7 +1,7 @@
 //! Rounding of a layer's values to integers, and back.
 
 use glam::DVec3;
-use meshlod_mesh::octahedral::{self, fold, unfold};
+use meshlod_mesh::octahedral::DirectionCode;
 use meshlod_mesh::{AttributeBounds, Layer, LayerKind, WedgeId};
 
 use super::quantizer::UniformQuantizer;
@@ -22,21 +22,18 @@ pub(crate) struct LayerCoding {
 /// Meaning of the integers.
 #[derive(Clone, Debug, PartialEq)]
 enum Numbers {
-    /// Octahedral directions with this number of bits twice; tangents also have a sign.
-    Directions { bits: u32 },
+    /// Octahedral directions; tangents also have a sign.
+    Directions(DirectionCode),
     /// Uniformly quantized values.
     Values(UniformQuantizer),
 }
-
-/// Least and greatest number of bits, twice, of a direction.
-const DIRECTION_BITS: [u32; 2] = octahedral::BITS;
 
 impl LayerCoding {
     /// Chooses the coarsest integers that keep the values of these wedges within bounds.
     pub(crate) fn new(layer: &Layer, wedges: &[WedgeId], bounds: &AttributeBounds) -> Self {
         let bound = bounds.of(layer, wedges.iter().copied());
         let numbers = if layer.kind.is_direction() {
-            Numbers::Directions { bits: octahedral::bits_within(bound) }
+            Numbers::Directions(DirectionCode::within(bound))
         } else {
             let values = wedges.iter().map(|&wedge| layer.of(wedge));
             Numbers::Values(UniformQuantizer::new(values, layer.width, bound))
@@ -55,7 +52,7 @@ impl LayerCoding {
     pub(crate) fn components(&self) -> usize {
         match self.numbers {
             // Tangents also have a sign.
-            Numbers::Directions { .. } => self.width.min(4) - 1,
+            Numbers::Directions(_) => self.width.min(4) - 1,
             Numbers::Values(_) => self.width,
         }
     }
@@ -63,7 +60,7 @@ impl LayerCoding {
     /// Returns the bits of each of the two integers of a direction; `None` for other values.
     pub(crate) fn direction_bits(&self) -> Option<u32> {
         match self.numbers {
-            Numbers::Directions { bits } => Some(bits),
+            Numbers::Directions(code) => Some(code.bits()),
             Numbers::Values(_) => None,
         }
     }
@@ -71,9 +68,9 @@ impl LayerCoding {
     /// Rounds the values of a wedge to integers.
     pub(crate) fn numbers(&self, values: &[f32]) -> Vec<u32> {
         match &self.numbers {
-            Numbers::Directions { bits } => {
-                let sign = values.get(3).map(|&sign| u32::from(sign < 0.0));
-                fold(direction(values), *bits).into_iter().chain(sign).collect()
+            Numbers::Directions(code) => {
+                let (at, sign) = code.encode(values);
+                at.into_iter().chain(sign).collect()
             }
             Numbers::Values(quantizer) => quantizer.numbers(values),
         }
@@ -82,12 +79,8 @@ impl LayerCoding {
     /// Appends the values that integers stand for.
     pub(crate) fn values(&self, numbers: &[u32], values: &mut Vec<f32>) {
         match &self.numbers {
-            Numbers::Directions { bits } => {
-                // Only damaged data is out of range.
-                let last = (1 << bits) - 1;
-                let is = unfold([numbers[0].min(last), numbers[1].min(last)], *bits);
-                values.extend(is.to_array().map(|x| x as f32));
-                values.extend(numbers.get(2).map(|&sign| if sign == 1 { -1.0 } else { 1.0 }));
+            Numbers::Directions(code) => {
+                values.extend(code.decode([numbers[0], numbers[1]], numbers.get(2).copied()));
             }
             Numbers::Values(quantizer) => quantizer.values(numbers, values),
         }
@@ -106,7 +99,7 @@ impl LayerCoding {
     /// Returns the size in bytes.
     pub(crate) fn bytes(&self) -> usize {
         let numbers = match &self.numbers {
-            Numbers::Directions { .. } => 1,
+            Numbers::Directions(_) => 1,
             Numbers::Values(quantizer) => quantizer.bytes(),
         };
         // Kind, set, width, largest error, and length of the name.
@@ -120,7 +113,7 @@ impl LayerCoding {
         out.extend((self.name.len() as u16).to_le_bytes());
         out.extend(self.name.as_bytes());
         match &self.numbers {
-            Numbers::Directions { bits } => out.push(*bits as u8),
+            Numbers::Directions(code) => out.push(code.bits() as u8),
             Numbers::Values(quantizer) => quantizer.store(out),
         }
     }
@@ -138,10 +131,9 @@ impl LayerCoding {
         let name = name.map_err(|_| reader.wrong("the name of a layer is not UTF-8"))?;
         let numbers = if kind.is_direction() {
             let bits = u32::from(reader.u8()?);
-            if !(DIRECTION_BITS[0]..=DIRECTION_BITS[1]).contains(&bits) {
-                return Err(reader.wrong(format!("directions cannot have {bits} bits")));
-            }
-            Numbers::Directions { bits }
+            let code = DirectionCode::of_bits(bits);
+            let wrong = || reader.wrong(format!("directions cannot have {bits} bits"));
+            Numbers::Directions(code.ok_or_else(wrong)?)
         } else {
             Numbers::Values(UniformQuantizer::restore(width, reader)?)
         };

@@ -12,7 +12,7 @@ use super::header::{BlockHeader, BlockVertices, CellSizes, Units, numbers};
 use super::layout::{BlockLayout, GROUP};
 use super::original::OriginalSurface;
 use super::reference::CubicReference;
-use super::{Accuracy, BlocksError, BlocksReport};
+use super::report::{Accuracy, BlocksError, BlocksReport};
 use crate::bits::Bits;
 use crate::header_field::HeaderField;
 use crate::kd::BLOCK;
@@ -52,7 +52,7 @@ pub(super) struct Attempt {
 /// the measured distance, on the ten meshes of docs/notes/compression.md.
 const AIM: f64 = 0.985;
 /// Ratio of error to target at which the search stops.
-const NEAR: [f64; 2] = [0.99, 1.004];
+const ERROR_RATIO: [f64; 2] = [0.99, 1.004];
 const TRIES: usize = 4;
 /// Ratio at which it stops, too, of the least scale that is too large to the best one.
 const CLOSE: f64 = 1.04;
@@ -162,7 +162,7 @@ impl Fit {
             let error = self.surface.error(&attempt.assignment.moved);
             let part = error / (AIM * self.reference.error);
             let next = (scale / part.clamp(0.25, 4.0)).clamp(1.0 / 64.0, 8.0);
-            if part < NEAR[1] {
+            if part < ERROR_RATIO[1] {
                 if best.as_ref().is_none_or(|best| part > best.0) {
                     best = Some((part, attempt));
                 }
@@ -172,7 +172,10 @@ impl Fit {
                 over = over.min(scale);
             }
             let under = best.as_ref().map_or(0.0, |best| best.1.scale);
-            if (NEAR[0]..NEAR[1]).contains(&part) || next == scale || over < CLOSE * under {
+            if (ERROR_RATIO[0]..ERROR_RATIO[1]).contains(&part)
+                || next == scale
+                || over < CLOSE * under
+            {
                 break;
             }
             scale = match under < next && next < over {

@@ -6,9 +6,9 @@ use glam::{DMat3, DVec3};
 use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId};
 use rayon::prelude::*;
 
-use super::SurfaceChange;
+use super::report::SurfaceChange;
 
-/// Faces at their original positions, with what is needed to judge displacements.
+/// Faces at their original positions, prepared to judge displacements.
 pub(super) struct OriginalSurface {
     pub(super) places: Vec<DVec3>,
     pub(super) faces: Vec<Face>,
@@ -28,7 +28,7 @@ pub(super) struct Face {
     pub(super) height: f64,
 }
 
-/// Least cosine between the normals of faces that count as level with each other.
+/// Minimum cosine between the normals of faces that count as coplanar.
 const LEVEL: f64 = 0.8;
 /// Faces that are summed up together.
 const CHUNK: usize = 4096;

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::original::OriginalSurface;
-use super::{Accuracy, BlocksError, SurfaceChange};
+use super::report::{Accuracy, BlocksError, SurfaceChange};
 
 /// Cubic cells as accurate as the target, and the error that they cause.
 pub(super) struct CubicReference {
@@ -14,7 +14,7 @@ pub(super) struct CubicReference {
     pub(super) error: f64,
 }
 
-/// Least and greatest number of cells along the longest side.
+/// Minimum and maximum number of cells along the longest side.
 const CELLS: [f64; 2] = [3.0, (1 << 24) as f64];
 /// Least and usual mean distance to planes, in cells. Where rounding happens to be exact, as on a
 /// flat mesh, the measured distance is no guide.

@@ -37,7 +37,7 @@ pub struct StoredBlock {
 }
 
 impl StoredBlock {
-    /// Returns by how many cells along an axis the two vertices of a pair are told apart.
+    /// Returns the largest offset in cells between the two vertices of a pair.
     pub fn cells(&self, axis: usize) -> u64 {
         numbers(self.widths[axis])
     }

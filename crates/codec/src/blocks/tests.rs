@@ -1,21 +1,12 @@
 //! Properties of vertex blocks that hold for any mesh.
 
-use meshlod_fixtures::{grid, mesh, two_objects};
+use meshlod_fixtures::mesh;
 use meshlod_measure::{DistanceOptions, distance};
 use meshlod_mesh::Bounds;
 use meshlod_samples as samples;
 
 use super::*;
-
-fn meshes() -> Vec<Mesh> {
-    vec![
-        samples::sphere(3000),
-        samples::gyroid(4000),
-        samples::terrain(2000),
-        grid(9),
-        two_objects(),
-    ]
-}
+use crate::test_meshes::meshes;
 
 fn of_bits(mesh: &Mesh, bits: u32) -> (VertexBlocks, BlocksReport) {
     VertexBlocks::new(mesh, Accuracy::Bits(bits)).unwrap()

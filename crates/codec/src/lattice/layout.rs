@@ -25,7 +25,7 @@ pub(super) struct LatticeLayout {
 struct GroupHeader {
     /// Start of the block headers.
     at: usize,
-    /// Least middle along each axis, and the bits of those above it.
+    /// Lowest middle along each axis, and the bits of the offsets above it.
     first: [i32; 3],
     bits: [u32; 3],
     /// Span codes along blocks and across them.

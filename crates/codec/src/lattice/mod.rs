@@ -37,7 +37,7 @@ fn valid_exponent<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<i
 #[derive(Clone, Debug, PartialEq)]
 pub struct LatticeBlocks {
     lattice: Lattice,
-    /// Least cell along each axis.
+    /// Lowest cell along each axis.
     first: [i64; 3],
     layout: LatticeLayout,
     /// The mesh vertex that each stored vertex is; empty after decoding.

@@ -12,7 +12,7 @@ pub struct StoredLattice<'a> {
     pub vertices: usize,
     /// Exponent of the side of a lattice cell, -960 to 960.
     pub exponent: i32,
-    /// Least cell along each axis.
+    /// Lowest cell along each axis.
     pub first: [i64; 3],
     /// Greatest cell along each axis relative to `first`, below 2¹⁹.
     pub most: [i32; 3],

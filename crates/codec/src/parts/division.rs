@@ -10,7 +10,7 @@ use crate::bytes::reduction;
 
 /// Faces assigned to parts, the grid that these need, and the size that they would take.
 pub(super) struct Division {
-    /// Part of each face of the graph.
+    /// Part number of each face of the graph.
     of_faces: Vec<u32>,
     count: usize,
     grid: SharedGrid,

@@ -27,8 +27,8 @@ pub(super) struct SharedGrid {
 
 /// Cells of a part along an axis, from the first to the last.
 pub(super) const ACROSS: f64 = 255.0;
-/// Least side of a cell, relative to the mesh's largest absolute coordinate: `f32` cannot tell the
-/// middles of smaller cells apart.
+/// Minimum side of a cell, relative to the mesh's largest absolute coordinate: `f32` cannot tell
+/// the middles of smaller cells apart.
 const FINEST: f64 = 1.0 / (1 << 22) as f64;
 /// Largest offset of a part: twice what [`FINEST`] allows, to leave room for rounding.
 pub(super) const MAX_OFFSET: u32 = 1 << 23;

@@ -12,7 +12,7 @@ use super::face_graph::FaceGraph;
 /// gain is 1 %.
 const ROUNDS: usize = 16;
 const PATIENCE: usize = 2;
-/// Distances that are told apart, up to the side of the largest box.
+/// Number of distance buckets up to the largest box side.
 const STEPS: usize = 2048;
 /// Weight of the sum of a distance's components next to the largest one, which decides between
 /// seeds that are equally far by that alone. Five scans take within 1 % of that without it, and up
@@ -24,9 +24,9 @@ const SUM: f32 = 1.0 / 64.0;
 const BALANCE: f32 = 0.25;
 /// Limits on that factor.
 const WEIGHTS: [f32; 2] = [0.5, 2.0];
-/// Fraction of the mesh's extent along an axis from which on a box counts as spanning it.
+/// A box that covers this fraction of the mesh's extent along an axis counts as spanning it.
 const SPANNING: f64 = 0.999;
-/// Least number of faces whose boxes are merged together.
+/// Minimum number of faces whose boxes are merged.
 const CHUNK: usize = 1 << 16;
 
 /// Improves a partition until its common box shrinks no further. Every part keeps a face.

@@ -1,4 +1,4 @@
-//! Parts as they are stored, for renderers.
+//! Stored form of parts, for renderers.
 
 use std::ops::Range;
 

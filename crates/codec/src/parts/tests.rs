@@ -1,22 +1,13 @@
 //! Properties of parts that hold for any mesh.
 
-use meshlod_fixtures::{grid, mesh, two_objects};
+use meshlod_fixtures::{grid, mesh};
 use meshlod_samples as samples;
 
 use super::*;
+use crate::test_meshes::meshes;
 
 fn partitioner(mesh: &Mesh) -> Partitioner<'_> {
     Partitioner::new(mesh).unwrap()
-}
-
-fn meshes() -> Vec<Mesh> {
-    vec![
-        samples::sphere(3000),
-        samples::gyroid(4000),
-        samples::terrain(2000),
-        grid(9),
-        two_objects(),
-    ]
 }
 
 /// Faces in terms of mesh vertices, sorted.

@@ -54,7 +54,7 @@ pub(super) struct NodeAddress {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Context {
     codes: &'static [Code],
-    /// Most likely row of a new node.
+    /// Most probable row of a new node.
     row: u32,
 }
 

@@ -55,7 +55,7 @@ impl FaceLabels {
         names_bytes(labels.map(|labels| &labels.names[..])) + rows
     }
 
-    /// Appends labels, or that there are none.
+    /// Appends optional labels.
     pub(super) fn store(labels: Option<&Self>, out: &mut Vec<u8>) {
         store_names(labels.map(|labels| &labels.names[..]), out);
         labels.iter().for_each(|labels| labels.of_face.store(out));

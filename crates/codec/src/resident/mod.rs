@@ -28,8 +28,7 @@ use self::wedge_vertices::WedgeVertices;
 use crate::attributes::{LayerReport, PackedLayer};
 use crate::bytes::reduction;
 
-/// Compressed mesh in memory, of which any block of vertices and any patch of faces can be decoded
-/// alone.
+/// Compressed mesh in memory; any block of vertices and any patch of faces can be decoded alone.
 ///
 /// It holds the faces and what they use, in an order of its own, with their materials and objects.
 #[derive(Clone, Debug, PartialEq)]

@@ -48,7 +48,7 @@ pub enum StripsError {
 const HEAD: usize = 4;
 
 impl PartStrips {
-    /// Sorts strips into parts, in each of which they keep their order.
+    /// Sorts strips by part, keeping their order within a part.
     ///
     /// # Errors
     /// A strip that leaves the part of its first node.

@@ -103,8 +103,8 @@ fn vertex_in(own: &Range<u32>, number: u32) -> u32 {
     own.start.saturating_add(number).min(own.end - 1)
 }
 
-/// Numbers the vertices of nodes, of which `first[node]` is the first node of the same vertex.
-/// Returns the vertex of each node and the positions of the vertices.
+/// Numbers the vertices of nodes; `first[node]` is the first node of the same vertex. Returns the
+/// vertex of each node and the positions of the vertices.
 fn number_vertices(first: &[u32], positions: &[[f64; 3]]) -> (Vec<u32>, Vec<[f64; 3]>) {
     let mut vertex_of = vec![0; first.len()];
     let mut kept = Vec::new();

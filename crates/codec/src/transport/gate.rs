@@ -1,4 +1,4 @@
-//! Gates: edges at which a face is added, with what both encoder and decoder know there.
+//! Gates: edges at which a face is added, with the data that encoder and decoder share there.
 
 use super::border::{Border, EdgeState};
 

@@ -1,4 +1,17 @@
 //! Entropy-coded meshes for sending and storing: `.mlz` files.
+//!
+//! | files, in reading order | hold |
+//! |---|---|
+//! | `write` | from a mesh to a file: start here for the encoder |
+//! | `grid`, `face_blocks` | cells of positions, and faces in blocks |
+//! | `walk`, `border`, `gate` | the order of a block: one face after the other across an edge |
+//! | `predict`, `lanes` | where the next vertex is, for four blocks at a time |
+//! | `models`, `fit` | probabilities of a file, fitted to its mesh |
+//! | `encode`, `rans`, `encoded_layers`, `layers` | symbols, and attributes after positions |
+//! | `header`, `file` | the index of blocks, and a file that is open |
+//! | `decode`, `read` | a block from bytes nobody vouches for |
+//! | `weld_blocks`, `gather` | the mesh from its blocks |
+//! | `symbol_bits` | what each part takes |
 
 mod border;
 mod decode;

@@ -15,7 +15,7 @@ use crate::bytes::{Malformed, Reader};
 /// Bits of the tables of residuals.
 pub(super) const RESIDUAL_BITS: u32 = 11;
 const RESIDUAL_ALL: usize = 1 << RESIDUAL_BITS;
-/// Greatest residual that has a symbol of its own.
+/// Largest residual with its own symbol.
 pub(super) const MAX_RESIDUAL: i32 = 24;
 pub(super) const SYMBOLS: usize = 2 * MAX_RESIDUAL as usize + 2;
 /// Symbol that escapes to larger residuals.

@@ -32,8 +32,7 @@ impl Gate {
     }
 }
 
-/// Least variance, which stands for the rounding of positions. Of .1 to .3, .15 takes the fewest
-/// bytes.
+/// Minimum variance, for the rounding of positions. Of .1 to .3, .15 takes the fewest bytes.
 const FLOOR: f32 = 0.15;
 /// Weight of a new vertex in the spread scale: .08 and .125 take as much, .18 and .06 some
 /// thousandths more.

@@ -5,8 +5,8 @@
 
 use crate::bytes::Malformed;
 
-/// Least state between symbols; states are below 2³².
-const LEAST: u32 = 1 << 16;
+/// Minimum state between symbols; states are below 2³².
+const MIN_STATE: u32 = 1 << 16;
 
 /// Symbol of a table: its share, and equally likely bits below it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +28,7 @@ impl Symbol {
 
 /// Encodes symbols, to be decoded in the same order, and a checksum that the decoder knows by then.
 pub(super) fn encode(symbols: &[Symbol], checksum: u16, out: &mut Vec<u8>) {
-    let mut state = LEAST | u32::from(checksum);
+    let mut state = MIN_STATE | u32::from(checksum);
     let from = out.len();
     for symbol in symbols.iter().rev() {
         let Symbol { start, size, bits, low_bits, low } = *symbol;
@@ -61,14 +61,14 @@ impl<'a> Symbols<'a> {
         let (state, words) = bytes.split_first_chunk().ok_or_else(wrong)?;
         let (words, rest) = words.as_chunks();
         let state = u32::from_le_bytes(*state);
-        if state < LEAST || !rest.is_empty() {
+        if state < MIN_STATE || !rest.is_empty() {
             return Err(wrong());
         }
         Ok(Self { state, words, at: 0 })
     }
 
     pub(super) fn empty() -> Self {
-        Self { state: LEAST, words: &[], at: 0 }
+        Self { state: MIN_STATE, words: &[], at: 0 }
     }
 
     /// Returns the slot of the next symbol in a table of 2^`bits`.
@@ -88,7 +88,7 @@ impl<'a> Symbols<'a> {
             Some(&[low, high]) => u16::from_le_bytes([low, high]),
             None => 0,
         };
-        let is_low = state < LEAST;
+        let is_low = state < MIN_STATE;
         self.state = if is_low { state << 16 | u32::from(word) } else { state };
         self.at += usize::from(is_low);
         low
@@ -104,7 +104,7 @@ impl<'a> Symbols<'a> {
     pub(super) fn finish(&self, checksum: u16) -> Result<(), Malformed> {
         let rest = self.words.get(self.at..).is_some_and(|rest| rest.iter().all(|w| *w == [0; 2]));
         // Let a fuzzer sharing what follows.
-        if cfg!(fuzzing) || (self.state == LEAST | u32::from(checksum) && rest) {
+        if cfg!(fuzzing) || (self.state == MIN_STATE | u32::from(checksum) && rest) {
             return Ok(());
         }
         Err(Malformed { at: 0, reason: "a block is damaged: its checksum does not match".into() })

@@ -1,4 +1,4 @@
-//! Sizes of what a file holds.
+//! Sizes of the parts of a file, in bits.
 
 use super::TransportSizes;
 use super::layers::{BlockPart, LayerFormat, LayersFormat};

@@ -1,4 +1,4 @@
-//! Walk of the encoder over a block, from face to face.
+//! Traversal of a block by the encoder, from face to face.
 
 use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
 

@@ -21,7 +21,7 @@ const CHUNK: usize = 256;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct BeyondOptions<'a> {
-    /// Part of the limit by which a face that is not listed may still exceed it.
+    /// Fraction of the limit by which an unlisted face may still exceed it.
     ///
     /// The smaller, the more divisions faces near the limit take.
     pub slack: f64,
@@ -118,7 +118,7 @@ struct Decision<'d> {
 /// Face that is not shown to be within its limit.
 struct Examined {
     face: FaceId,
-    /// Parts that are not shown to be.
+    /// Undecided parts.
     open: Vec<Cell>,
     farthest: Probe,
     state: State,
@@ -127,7 +127,7 @@ struct Examined {
 /// State of knowledge about a face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum State {
-    /// Neither a point beyond the limit is known nor that there is none.
+    /// Undecided: no point beyond the limit is known, nor a proof that none exists.
     Open,
     /// There is a point beyond the limit.
     Beyond,

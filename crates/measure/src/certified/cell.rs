@@ -1,4 +1,4 @@
-//! Part of a face, with bounds of its distances from another surface.
+//! Cell of a face, with bounds on its distances from another surface.
 
 use glam::DVec3;
 use meshlod_mesh::FaceId;

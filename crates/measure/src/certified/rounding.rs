@@ -8,7 +8,7 @@ use rayon::prelude::*;
 /// midpoints, and a distance.
 const ULPS: f64 = 64.0;
 
-/// Lengths by which computed distances may be off, in model units.
+/// Bounds on the rounding errors of distances, in model units.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rounding {
     /// Largest error of a point and of its distance from one face.

@@ -1,4 +1,6 @@
 //! Vertices from links: all corners that linked sides connect are one vertex.
+//!
+//! docs/notes/splitting.md says how this differs from the other splitters and sewers.
 
 use std::collections::BTreeSet;
 

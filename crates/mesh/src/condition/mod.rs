@@ -37,7 +37,7 @@ pub enum Borders {
     Keep,
 }
 
-/// Which vertices the conditioning of a mesh looks at.
+/// Selection of the vertices that the conditioning of a mesh examines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
@@ -57,7 +57,7 @@ pub enum Search {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct ConditionOptions {
-    /// Which vertices are looked at.
+    /// Selection of the vertices to examine.
     pub search: Search,
     /// Treatment of boundary edges that lie on each other.
     pub borders: Borders,
@@ -106,8 +106,7 @@ impl Conditioned {
     /// Makes one vertex again of all copies of a vertex that have not moved in a simplified mesh.
     ///
     /// `level` must be made from the conditioned mesh and keep the order of its vertices. Copies
-    /// that have moved, or of which nobody can tell to which of several vertices at one position
-    /// they belong, stay apart.
+    /// stay apart if they have moved, or if several vertices at their position could be theirs.
     ///
     /// Cost: O(n), n = vertices.
     pub fn rejoin(&self, level: &mut Mesh) {

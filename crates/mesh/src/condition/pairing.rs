@@ -1,4 +1,6 @@
 //! Pairs of sides that meet at one edge: which face continues which.
+//!
+//! docs/notes/splitting.md says how this differs from the other splitters and sewers.
 
 use glam::DVec3;
 

@@ -1,4 +1,6 @@
 //! Borders that lie on each other: boundary edges at equal positions, of opposite directions.
+//!
+//! docs/notes/splitting.md says how this differs from the other splitters and sewers.
 
 use crate::condition::links::Links;
 use crate::condition::pairing::{self, normal};

@@ -24,7 +24,7 @@ pub(super) struct Overlay {
     constraints: Vec<Constraint>,
     /// Balls that the ball of the new vertex must contain.
     balls: Vec<EnclosingBall>,
-    /// Ring vertices whose balls have to grow, and by how much.
+    /// Ring vertices whose balls must grow, and the growth.
     growth: Vec<(u32, f64)>,
 }
 

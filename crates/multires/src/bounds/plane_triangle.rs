@@ -40,8 +40,8 @@ pub(super) struct Constraint {
     pub(super) coarse: usize,
 }
 
-/// Least ratio of a triangle's height to its longest edge. Rounding then moves nothing by more than
-/// 2⁻³² of the update's size.
+/// Minimum ratio of a triangle's height to its longest edge. Rounding then moves nothing by more
+/// than 2⁻³² of the update's size.
 const MIN_RELATIVE_WIDTH: f64 = 1.0 / 65536.0;
 
 impl PlaneCorner {

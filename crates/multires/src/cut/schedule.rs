@@ -94,7 +94,7 @@ impl Default for Schedule {
 
 impl Schedule {
     /// Takes up the next query. Returns true if it goes on from the last one, by a motion of the
-    /// viewpoint or because it is the same; what is due, and waits, then is all that may change.
+    /// viewpoint or because it is the same; only updates that are due or waiting can change then.
     pub(crate) fn goes_on(&mut self, criterion: &Criterion<'_>) -> bool {
         let last = std::mem::replace(&mut self.last, criterion.key());
         let is_same = last.is_some() && last == self.last;

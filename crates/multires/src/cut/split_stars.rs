@@ -49,8 +49,8 @@ impl SplitStars {
 /// Applies all updates, highest levels first, and visits each with the faces around its vertex just
 /// before, sorted so that sums over them do not depend on the cut.
 ///
-/// In a part of a file, updates whose dependencies are missing are left out, or have any star; those
-/// that depend on nothing missing have their own. Cost: linear, but for the sorting of stars.
+/// In a part of a file, updates whose dependencies are missing are left out, or have any star;
+/// those that depend on nothing missing have their own. Cost: linear, apart from sorting the stars.
 pub(crate) fn each_split_star(mt: &Implicit, mut visit: impl FnMut(u32, &[StarFace])) {
     let (mut front, mut faces, mut first) = (Front::new(mt), Vec::new(), Vec::new());
     for update in by_level(mt.update_count(), |update| MAX_LEVELS - mt.level(update)) {

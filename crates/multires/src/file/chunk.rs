@@ -43,8 +43,8 @@ pub(super) enum ChunkError {
 const OPEN: u8 = 1;
 const FUSED: u8 = 2;
 const NON_FAN: u8 = 4;
-/// Set if the first or the second child has an exact position: it is a vertex of the finest mesh, or
-/// where one is. Only in lossless files.
+/// Set if the first or the second child has an exact position: that of a vertex of the finest mesh.
+/// Only in lossless files.
 const EXACT: [u8; 2] = [8, 16];
 /// Set if the update records the wedges of its faces. Only in files with wedges.
 const RECORDED: u8 = 32;
@@ -157,7 +157,7 @@ fn write_non_fan(non_fan: &NonFanSplit, packer: &mut Packer) -> io::Result<()> {
     packer.numbers(non_fan.created_faces.as_flattened())
 }
 
-/// Decodes a chunk of `count` updates, the first of which has the number `first` in the file.
+/// Decodes a chunk of `count` updates, numbered from `first` in the file.
 ///
 /// Updates that split a node of a chunk not loaded are kept with [`NONE`] for their parent.
 pub(super) fn read(
@@ -168,49 +168,13 @@ pub(super) fn read(
 ) -> Result<(), ChunkError> {
     state.begin_run(first);
     let mut input = Unpacker::new(bytes)?;
-    let gaps: Vec<u32> = input.numbers(count)?;
-    let flags = input.bytes(count)?;
-    let wings = [input.bytes(count)?, input.bytes(count)?];
-    let (errors, levels) = read_errors(&mut input, count)?;
-    let offsets = OffsetStreams::read(&mut input, count)?;
+    let fields = FieldStreams::read(&mut input, count)?;
+    let FieldStreams { flags, errors, offsets, .. } = &fields;
     let mut next = 0;
     for at in 0..count {
         let bad = |why| ChunkError::Update { update: at, why };
-        if flags[at] & !flags_of(state) != 0 {
-            return Err(bad(UNKNOWN_FLAGS));
-        }
         let made = state.root_count() + 2 * (first + at as u32);
-        let parent = gaps[at].checked_add(next).filter(|&parent| parent < made);
-        let parent = parent.ok_or(bad("it splits a node that does not exist yet"))?;
-        next = parent + 1;
-        let parent = match state.local_node(parent) {
-            // A descendant of a node that is not loaded cannot be used either.
-            node if node != NONE && state.creator(node).is_none_or(|up| up.parent != NONE) => node,
-            _ => NONE,
-        };
-        let mut update = DetachedUpdate {
-            parent,
-            level: u16::try_from(levels[at]).map_err(|_| bad("its level is out of range"))?,
-            wings: [wings[0][at], wings[1][at]],
-            radius: Length16::default(),
-            stage: Stage::default(),
-            error: error16(errors[at]).ok_or(bad("its error is out of range"))?,
-            is_open: flags[at] & OPEN != 0,
-            fused_with_child: flags[at] & FUSED != 0,
-            non_fan: None,
-            children: [Vec3::ZERO; 2],
-        };
-        if parent != NONE {
-            let offset = offsets.offsets(at).decoded(&state.normal_predictor(parent));
-            let children = offset.children(state.lattice, state.stored_position(parent));
-            let children = children.filter(|children| state.are_finite(children));
-            update.children = children.ok_or(bad("its children are out of range"))?;
-            let radius =
-                i64::from(offset.predicted_radius8(state.lattice)) + i64::from(offsets.radii[at]);
-            let radius = u8::try_from(radius).map_err(|_| bad("its radius is out of range"))?;
-            update.radius = radius16(radius);
-            update.trouble(state.creator(parent)).map_or(Ok(()), |why| Err(bad(why)))?;
-        }
+        let update = fields.update(state, at, &mut next, made).map_err(bad)?;
         state.updates.push(update);
     }
     let nodes = state.root_count() + 2 * (first + count as u32);
@@ -222,7 +186,7 @@ pub(super) fn read(
         state.updates[start + at].non_fan = Some(Box::new(non_fan));
     }
     if state.is_lossless() {
-        read_exact(state, &mut input, start, &flags)?;
+        read_exact(state, &mut input, start, flags)?;
     }
     if state.has_stages {
         let stages = stage_coding::read(&errors_above(errors.iter().copied()), &mut input)?;
@@ -241,6 +205,90 @@ pub(super) fn read(
         })?;
     }
     if input.is_at_end()? { Ok(()) } else { Err(ChunkError::TrailingData) }
+}
+
+/// Fields of the updates of a chunk, one stream per field.
+struct FieldStreams {
+    gaps: Vec<u32>,
+    flags: Vec<u8>,
+    wings: [Vec<u8>; 2],
+    errors: Vec<u32>,
+    levels: Vec<u32>,
+    offsets: OffsetStreams,
+}
+
+impl FieldStreams {
+    fn read(input: &mut Unpacker<'_>, count: usize) -> Result<Self, ChunkError> {
+        let gaps = input.numbers(count)?;
+        let flags = input.bytes(count)?;
+        let wings = [input.bytes(count)?, input.bytes(count)?];
+        let (errors, levels) = read_errors(input, count)?;
+        let offsets = OffsetStreams::read(input, count)?;
+        Ok(Self { gaps, flags, wings, errors, levels, offsets })
+    }
+
+    /// Decodes an update without the faces of a non-fan split and its stage, or returns why it is
+    /// invalid.
+    ///
+    /// The update splits a node numbered from `next` on and below `made`; `next` becomes the number
+    /// after it.
+    #[inline]
+    fn update(
+        &self,
+        state: &DecoderState,
+        at: usize,
+        next: &mut u32,
+        made: u32,
+    ) -> Result<DetachedUpdate, &'static str> {
+        let flags = self.flags[at];
+        if flags & !flags_of(state) != 0 {
+            return Err(UNKNOWN_FLAGS);
+        }
+        let parent = self.gaps[at].checked_add(*next).filter(|&parent| parent < made);
+        let parent = parent.ok_or("it splits a node that does not exist yet")?;
+        *next = parent + 1;
+        let parent = match state.local_node(parent) {
+            // A descendant of a node that is not loaded cannot be used either.
+            node if node != NONE && state.creator(node).is_none_or(|up| up.parent != NONE) => node,
+            _ => NONE,
+        };
+        let mut update = DetachedUpdate {
+            parent,
+            level: u16::try_from(self.levels[at]).map_err(|_| "its level is out of range")?,
+            wings: [self.wings[0][at], self.wings[1][at]],
+            radius: Length16::default(),
+            stage: Stage::default(),
+            error: error16(self.errors[at]).ok_or("its error is out of range")?,
+            is_open: flags & OPEN != 0,
+            fused_with_child: flags & FUSED != 0,
+            non_fan: None,
+            children: [Vec3::ZERO; 2],
+        };
+        if parent != NONE {
+            self.place(state, at, &mut update)?;
+        }
+        Ok(update)
+    }
+
+    /// Decodes the children's positions and the radius of an update whose parent is loaded.
+    #[inline]
+    fn place(
+        &self,
+        state: &DecoderState,
+        at: usize,
+        update: &mut DetachedUpdate,
+    ) -> Result<(), &'static str> {
+        let parent = update.parent;
+        let offset = self.offsets.offsets(at).decoded(&state.normal_predictor(parent));
+        let children = offset.children(state.lattice, state.stored_position(parent));
+        let children = children.filter(|children| state.are_finite(children));
+        update.children = children.ok_or("its children are out of range")?;
+        let radius =
+            i64::from(offset.predicted_radius8(state.lattice)) + i64::from(self.offsets.radii[at]);
+        let radius = u8::try_from(radius).map_err(|_| "its radius is out of range")?;
+        update.radius = radius16(radius);
+        update.trouble(state.creator(parent)).map_or(Ok(()), Err)
+    }
 }
 
 /// Returns the flags that an update of this file may have.

@@ -1,4 +1,4 @@
-//! Values of wedges as a file has them, until the model is assembled that predicts them.
+//! Coded values of wedges, kept until the model that predicts them is assembled.
 
 use super::layer_coding::LayerCoding;
 use super::wedge_values;

@@ -68,7 +68,7 @@ fn ordinal(x: f64, zero_bits: u8) -> i64 {
     if bits < 0 { !magnitude } else { magnitude }
 }
 
-/// Returns the number of a given rank, or `None` if there is none or it is not finite.
+/// Returns the number of a given rank, or `None` if no finite number has it.
 fn from_ordinal(rank: i64, zero_bits: u8) -> Option<f64> {
     let (magnitude, sign) = if rank < 0 { (!rank, !MAGNITUDE) } else { (rank, 0) };
     let is_there = magnitude <= MAGNITUDE >> zero_bits;

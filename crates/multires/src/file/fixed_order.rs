@@ -1,4 +1,4 @@
-//! Vectors in a fixed order of operations, as what a file holds depends on their last bits.
+//! Vector arithmetic in a fixed order of operations, since files depend on the last bits.
 
 use glam::DVec3;
 

@@ -6,7 +6,7 @@ use meshlod_mesh::Frame;
 use super::lattice::Lattice;
 use super::resources::{self, OLD_RESOURCES_LEN, ResourceEntry};
 use super::{FileError, MAGIC, VERSION};
-use crate::bounds::ErrorKind;
+use crate::error_kind::ErrorKind;
 use crate::implicit::ModelInfo;
 use crate::query::Area;
 
@@ -87,6 +87,12 @@ fn kind_code(kind: ErrorKind) -> u8 {
     }
 }
 
+/// Returns the kind of errors with a code, or `None` for an unknown one.
+fn kind_of_code(code: u8) -> Option<ErrorKind> {
+    let all = [ErrorKind::Estimate, ErrorKind::Bound, ErrorKind::Measured];
+    all.into_iter().find(|&kind| kind_code(kind) == code)
+}
+
 impl Header {
     /// Length of the header and its index, in bytes.
     pub(super) fn len(&self) -> u64 {
@@ -130,8 +136,8 @@ impl Header {
             let words = [stored.bytes, stored.checksum, *updates, *faces];
             out.extend(words.iter().flat_map(|word| word.to_le_bytes()));
             // Infinite bounds become finite ones beyond everything.
-            let [min, max] =
-                [area.min, area.max].map(|x| x.clamp(DVec3::splat(-FAR), DVec3::splat(FAR)));
+            let [min, max] = [area.min, area.max]
+                .map(|x| x.clamp(DVec3::splat(-MAX_BOUND), DVec3::splat(MAX_BOUND)));
             let numbers = [-round_up(-min), round_up(max)].map(|corner| corner.to_array());
             out.extend(numbers.as_flattened().iter().flat_map(|x| x.to_le_bytes()));
             out.extend(round_up(DVec3::splat(area.error)).x.to_le_bytes());
@@ -160,7 +166,7 @@ impl Header {
         Ok((FIXED_LEN + ENTRY_LEN * u32_at(start, 36) as usize, index))
     }
 
-    /// Decodes a header with its whole index, of which [`Header::length`] told where resources begin.
+    /// Decodes a header with its whole index; [`Header::length`] returns where the resources begin.
     pub(super) fn from_bytes(bytes: &[u8]) -> Result<Self, FileError> {
         if crc32fast::hash(&bytes[BODY_AT..]) != u32_at(bytes, CHECKSUM_AT) {
             return Err(FileError::Checksum("the header".into()));
@@ -182,12 +188,8 @@ impl Header {
             about: ModelInfo {
                 frame: frame
                     .ok_or(bad("its origin is not finite or its unit is no power of two"))?,
-                error_kind: match bytes[BODY_AT + 2] {
-                    0 => ErrorKind::Estimate,
-                    1 => ErrorKind::Bound,
-                    2 => ErrorKind::Measured,
-                    _ => return Err(bad("it has an unknown kind of errors")),
-                },
+                error_kind: kind_of_code(bytes[BODY_AT + 2])
+                    .ok_or(bad("it has an unknown kind of errors"))?,
                 has_stages: bytes[BODY_AT + 3] & STAGES != 0,
             },
             lattice: lattice.ok_or(bad("the cell size of its lattice is out of range"))?,
@@ -202,30 +204,33 @@ impl Header {
             resources,
             has_old_resources: index == ResourceIndex::Old,
         };
-        let has = |flag: u8| bytes[BODY_AT + 3] & flag != 0;
-        if !this.has_wedges && has(OLD_PREDICTED | PREDICTED) {
-            return Err(bad(UNKNOWN_FLAGS));
+        this.trouble(bytes[BODY_AT + 3]).map_or(Ok(this), |why| Err(bad(why)))
+    }
+
+    /// Returns what makes the fields of a decoded header invalid, given its flags.
+    fn trouble(&self, flags: u8) -> Option<&'static str> {
+        let has = |flag: u8| flags & flag != 0;
+        if !self.has_wedges && has(OLD_PREDICTED | PREDICTED) {
+            return Some(UNKNOWN_FLAGS);
         }
-        if this.has_wedges && (has(OLD_PREDICTED) || !has(PREDICTED)) {
-            return Err(bad(OLD_WEDGES));
+        if self.has_wedges && (has(OLD_PREDICTED) || !has(PREDICTED)) {
+            return Some(OLD_WEDGES);
         }
-        if this.updates() > MAX_UPDATES || this.roots as usize > MAX_UPDATES {
-            return Err(bad("it has too many updates"));
+        if self.updates() > MAX_UPDATES || self.roots as usize > MAX_UPDATES {
+            return Some("it has too many updates");
         }
         let is_length = |length: f64| length >= 0.0 && length.is_finite();
-        if !is_length(this.diagonal) || !is_length(this.rounding) {
-            return Err(bad("its diagonal or rounding is negative or not finite"));
+        if !is_length(self.diagonal) || !is_length(self.rounding) {
+            return Some("its diagonal or rounding is negative or not finite");
         }
         let is_area = |a: &Area| a.min.is_finite() && a.max.is_finite() && a.error >= 0.0;
-        if !this.chunks.iter().all(|chunk| is_area(&chunk.area)) {
-            return Err(bad("a chunk has invalid bounds"));
-        }
-        Ok(this)
+        (!self.chunks.iter().all(|chunk| is_area(&chunk.area)))
+            .then_some("a chunk has invalid bounds")
     }
 }
 
-/// Limit of the bounds written to the index, in stored units.
-const FAR: f64 = 1e30;
+/// Limit on the bounds written to the index, in stored units.
+const MAX_BOUND: f64 = 1e30;
 /// Flag of a file with exact positions.
 const LOSSLESS: u8 = 1;
 /// Flag of a file with attributes, materials or objects.

@@ -1,7 +1,6 @@
 //! Attribute values as integers within an error bound, from which differences are taken.
 
-use glam::DVec3;
-use meshlod_mesh::octahedral::{self, fold, unfold};
+use meshlod_mesh::octahedral::DirectionCode;
 use meshlod_mesh::{AttributeBounds, Layer, LayerKind, WedgeId};
 
 /// Coding of one attribute layer.
@@ -16,21 +15,21 @@ pub(crate) struct LayerCoding {
 /// Meaning of the integers of a layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Numbers {
-    /// Octahedral directions with this number of bits twice; tangents also have a sign.
-    Directions(u8),
+    /// Octahedral directions; tangents also have a sign.
+    Directions(DirectionCode),
     /// Multiples of this power of two.
     Steps(i16),
     /// Bit patterns of `f32`, in the order of the values.
     Bits,
 }
 
-/// Greatest number by which an integer of a wedge that is split may be off the rounded value.
+/// Maximum difference between an integer of a split wedge and the rounded value.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Leeway(i32);
 
 impl Leeway {
-    /// Returns the steps, an odd number, in which a wedge may be off the place between two children
-    /// with this difference.
+    /// Returns the step, an odd number, in which the offset of a wedge from the middle of its
+    /// children is stored, given their difference.
     pub(super) fn step(self, difference: i32) -> i32 {
         let part = 1 + (difference.unsigned_abs() / 4).min(i32::MAX as u32 - 1) as i32;
         2 * part.min(self.0) + 1
@@ -39,7 +38,7 @@ impl Leeway {
 
 /// Bits by which a step may be smaller than the greatest value, the precision of `f32`.
 const F32_BITS: i32 = 23;
-/// Least and greatest exponent of a step.
+/// Minimum and maximum exponent of a step.
 pub(super) const EXPONENTS: std::ops::RangeInclusive<i16> = -149..=104;
 
 impl LayerCoding {
@@ -49,7 +48,7 @@ impl LayerCoding {
         let numbers = match bounds.map(|bounds| bounds.of(layer, wedges)) {
             None => Numbers::Bits,
             Some(bound) if layer.kind.is_direction() => {
-                Numbers::Directions(octahedral::bits_within(bound) as u8)
+                Numbers::Directions(DirectionCode::within(bound))
             }
             Some(bound) => exponent(layer, bound).map_or(Numbers::Bits, Numbers::Steps),
         };
@@ -59,7 +58,7 @@ impl LayerCoding {
     /// Returns the number of integers of a wedge.
     pub(crate) fn columns(&self) -> usize {
         match self.numbers {
-            // Two for a direction, and one for each further value.
+            // Two for a direction, and one for a sign.
             Numbers::Directions(_) => self.width - 1,
             Numbers::Steps(_) | Numbers::Bits => self.width,
         }
@@ -85,10 +84,9 @@ impl LayerCoding {
     /// Appends the integers of a wedge.
     pub(crate) fn encode(&self, values: &[f32], to: &mut Vec<i32>) {
         match self.numbers {
-            Numbers::Directions(bits) => {
-                let direction = DVec3::from_array([0, 1, 2].map(|k| values[k].into()));
-                to.extend(fold(direction, bits.into()).map(|x| x as i32));
-                to.extend(values[3..].iter().map(|&sign| i32::from(sign < 0.0)));
+            Numbers::Directions(code) => {
+                let (at, sign) = code.encode(values);
+                to.extend(at.into_iter().chain(sign).map(|x| x as i32));
             }
             Numbers::Steps(exponent) => {
                 let step = step(exponent);
@@ -114,12 +112,10 @@ impl LayerCoding {
     pub(crate) fn decode(&self, numbers: &[i32], to: &mut Vec<f32>) -> Option<()> {
         let start = to.len();
         match self.numbers {
-            Numbers::Directions(bits) => {
-                // Only damaged data is out of range.
-                let last = (1 << bits) - 1;
-                let at = [numbers[0], numbers[1]].map(|x| x.clamp(0, last) as u32);
-                to.extend(unfold(at, bits.into()).to_array().map(|x| x as f32));
-                to.extend(numbers[2..].iter().map(|&sign| if sign == 1 { -1.0 } else { 1.0 }));
+            Numbers::Directions(code) => {
+                let number = |&x: &i32| x.max(0) as u32;
+                let at = [number(&numbers[0]), number(&numbers[1])];
+                to.extend(code.decode(at, numbers.get(2).map(number)));
             }
             Numbers::Steps(exponent) => {
                 let step = step(exponent);

@@ -48,7 +48,7 @@ impl Lineage {
 }
 
 /// Number of wedges that are looked through without a list of their own.
-const FEW: usize = 4;
+const MAX_SEARCHED: usize = 4;
 
 /// Appends the wedges of an update's children, given those of the split node, or `None` for a node
 /// that is not loaded, and the number of each one's parent there, counted from the first child's.
@@ -63,13 +63,13 @@ pub(super) fn relate(
     // The first wedge of the first child below each of the split node's. A hub has thousands.
     let below = |wedge| local_of(wedge).map(|local| (local, wedge));
     let mut siblings: Vec<(u16, u32)> = match first.len() {
-        ..=FEW => Vec::new(),
+        ..=MAX_SEARCHED => Vec::new(),
         _ => first.clone().filter_map(below).collect(),
     };
     siblings.sort_unstable();
     siblings.dedup_by_key(|&mut (local, _)| local);
     let sibling_of = |local: u16| {
-        if first.len() <= FEW {
+        if first.len() <= MAX_SEARCHED {
             return first.clone().find(|&wedge| local_of(wedge) == Some(local));
         }
         let found = siblings.binary_search_by_key(&local, |&(local, _)| local);

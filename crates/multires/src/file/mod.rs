@@ -4,6 +4,20 @@
 //! therefore usable: it only lacks its finer levels. The index near the front gives the position of
 //! each chunk and the error that remains without it, so a query reads only the chunks it needs.
 //! docs/formats/mlod.md specifies the bytes.
+//!
+//! | files, in reading order | hold |
+//! |---|---|
+//! | `archive`, `surroundings`, `container`, `source` | what callers open, query and read from |
+//! | `layout`, `header`, `resources`, `attached` | sections of the file, its index, and bytes that others attach |
+//! | `write` | from a forest to a file: start here for the encoder |
+//! | `quantize`, `lattice`, `unflatten`, `chunk_plan` | numbers of fewer bits, and the order of updates in chunks |
+//! | `base`, `chunk` | the two kinds of sections; `chunk::read` is the decoder |
+//! | `decoder_state`, `child_offsets`, `normal_predictor` | what is known so far, and positions predicted from it |
+//! | `exact_coding`, `stage_coding` | optional fields of updates |
+//! | `wedge_state`, `wedge_names`, `wedge_records`, `lineage` | which wedge a face has at each corner |
+//! | `layer_coding`, `coded_values`, `wedge_values` | attribute values as integers, and their residuals |
+//! | `value_prediction`, `pair_values`, `octahedral_plane`, `slope` | predictions of these values |
+//! | `residual_models`, `range_coder`, `streams`, `fixed_order` | entropy coding, and arithmetic that is the same everywhere |
 
 mod archive;
 mod attached;

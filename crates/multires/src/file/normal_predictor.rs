@@ -15,7 +15,7 @@ pub(super) struct NormalPredictor {
     axis: usize,
 }
 
-/// Least sine of the angle between two vectors that are considered to span a plane.
+/// Minimum sine of the angle at which two vectors count as spanning a plane.
 const MIN_SINE: f64 = 0.3;
 
 impl NormalPredictor {

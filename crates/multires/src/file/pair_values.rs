@@ -1,5 +1,5 @@
-//! Values of a wedge with one child at either node: the difference of both, and by how much the
-//! parent is off the place between them.
+//! Values of a wedge with one child at either node: their difference, and the offset of the parent
+//! from a point between them.
 
 use std::ops::Range;
 
@@ -18,7 +18,7 @@ use crate::cut::StarFace;
 pub(super) struct Pair {
     /// First child, parent, second child.
     pub(super) wedges: [u32; 3],
-    /// Part of the way from the first child to the second at which the parent is.
+    /// Position of the parent between the children: 0 at the first, 1 at the second.
     part: f64,
     /// Way to the parent from that place.
     aside: DVec3,
@@ -49,7 +49,7 @@ impl PairShares {
 }
 
 impl Pair {
-    /// Returns by how much the parent is expected to differ from the first child.
+    /// Returns the expected difference of the parent from the first child.
     fn between(&self, difference: i32) -> i32 {
         (self.part * f64::from(difference)).round() as i32
     }
@@ -117,8 +117,8 @@ impl Values<'_> {
         }
     }
 
-    /// Returns by how much columns of the second child are expected to differ from the first, and
-    /// those of the parent from its place on the line between them.
+    /// Returns, by column, the expected differences of the second child from the first, and of the
+    /// parent from its place on the line between them.
     fn expected(
         &self,
         layer: &LayerColumns,

@@ -6,7 +6,7 @@ use super::lattice::Lattice;
 use super::normal_predictor::NormalPredictor;
 use super::unflatten::unflatten;
 use super::write::StoredErrors;
-use crate::bounds::ErrorKind;
+use crate::error_kind::ErrorKind;
 use crate::forest::{BuildError, Forest, MAX_LEVELS, NONE};
 use crate::implicit::{Implicit, Order};
 use crate::length16::Length16;
@@ -74,8 +74,8 @@ impl Forest {
         Ok(Quantized { forest: this, max_displacement: moved.rounded })
     }
 
-    /// Moves all nodes to the lattice and returns by how much. Exact positions take part unrounded
-    /// where triangles are kept from losing their area.
+    /// Moves all nodes to the lattice and returns the largest move. Exact positions take part
+    /// unrounded where triangles are kept from losing their area.
     fn snap_to(&mut self, lattice: Lattice) -> Result<Displacement, BuildError> {
         let order = Order::new(self);
         let mt = Implicit::in_order(self, &order)?;

@@ -10,11 +10,11 @@ pub(super) struct BitModel {
 /// Number of bits after which a model learns at a constant rate. Not tuned: a chunk has some
 /// thousand bits for each model in use.
 const MOST_SEEN: u8 = 120;
-/// Least probability, of 2¹⁶, so that no bit is impossible.
-const LEAST: u32 = 64;
+/// Minimum probability, in units of 2⁻¹⁶, so that no bit is impossible.
+const MIN_PROBABILITY: u32 = 64;
 
-/// Part of the way to a bit that a model learns from it, 2 / (2 n + 3) after n bits, rounded up in
-/// 2^-40: products with numbers of 16 bits are rounded down as quotients are.
+/// Learning rate of a model, 2 / (2 n + 3) after n bits, rounded up in 2^-40: products with numbers
+/// of 16 bits are rounded down as quotients are.
 const RATES: [u64; MOST_SEEN as usize + 1] = {
     let (mut all, mut seen) = ([0; MOST_SEEN as usize + 1], 0);
     while seen < all.len() {
@@ -45,7 +45,7 @@ impl BitModel {
 /// Returns the probability of a set bit by both models, of 2¹⁶.
 fn mean(models: [&BitModel; 2]) -> u32 {
     let [a, b] = models.map(|model| u32::from(model.probability));
-    ((a + b) / 2).clamp(LEAST, (1 << 16) - LEAST)
+    ((a + b) / 2).clamp(MIN_PROBABILITY, (1 << 16) - MIN_PROBABILITY)
 }
 
 /// Coder of bits in either direction, so that encoder and decoder share their models' code.

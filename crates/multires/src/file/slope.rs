@@ -115,8 +115,8 @@ impl Slopes {
 
 /// A symmetric matrix.
 ///
-/// Values that a file has depend on the last bit of what is computed here, so the order of operations
-/// is part of the format.
+/// The values in a file depend on the last bit of these results, so the order of operations is part
+/// of the format.
 #[derive(Clone, Copy, Debug, Default)]
 struct Symmetric {
     xx: f64,

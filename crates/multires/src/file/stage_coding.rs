@@ -1,4 +1,4 @@
-//! Coding of stages, which mostly follow errors.
+//! Coding of stages, which mostly rise with errors.
 
 use std::io;
 

@@ -7,7 +7,7 @@ use crate::cut::{Cut, Flaw};
 use crate::implicit::Implicit;
 use crate::query::{Limits, Query};
 
-/// Part of a `.mlod` file around the focus of a query, at all levels.
+/// Section of a `.mlod` file around the focus of a query, at all levels.
 ///
 /// A cut of the model has the finest triangles of the file wherever a point of the focus may be
 /// compared with one of them, and at least the coarsest elsewhere.

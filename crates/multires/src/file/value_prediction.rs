@@ -42,7 +42,7 @@ const STEP: f64 = 1.0 / 64.0;
 pub(super) struct Line {
     /// Coordinate that grows faster.
     axis: usize,
-    /// By how much the other one grows with it.
+    /// Slope of the other coordinate.
     slope: f64,
 }
 
@@ -53,7 +53,7 @@ impl Line {
         Self { axis, slope: if slope.is_finite() { slope } else { 0.0 } }
     }
 
-    /// Encodes a step as its coordinate along the line and by how much the other is off it.
+    /// Encodes a step as its coordinate along the line and the offset of the other from it.
     pub(super) fn encode(self, step: Place) -> Place {
         let along = step[self.axis];
         [along, step[1 - self.axis].wrapping_sub(self.across(along))]
@@ -114,7 +114,9 @@ impl LayerColumns {
             let start = end;
             end += layer.columns();
             let directions = match layer.numbers {
-                Numbers::Directions(bits) => Some(DirectionColumns { start, bits, number }),
+                Numbers::Directions(code) => {
+                    Some(DirectionColumns { start, bits: code.bits() as u8, number })
+                }
                 _ => None,
             };
             number += usize::from(directions.is_some());
@@ -125,8 +127,8 @@ impl LayerColumns {
         all
     }
 
-    /// Returns the columns that are numbers of their own, and not of a direction, by ranges of which
-    /// changes are computed together.
+    /// Returns the columns that do not belong to a direction, by ranges whose changes are computed
+    /// together.
     pub(super) fn plain(&self) -> impl Iterator<Item = Range<usize>> + use<> {
         let Self { start, end, directions, .. } = *self;
         let starts = (start + if directions.is_some() { 2 } else { 0 }..end).step_by(TOGETHER);
@@ -188,8 +190,8 @@ impl Known {
     /// Fits slopes to the steps around a wedge that is split, and above it; with a child, also to the
     /// step to that.
     ///
-    /// The slope of those around does not depend on the wedge's own values, so it tells by how much
-    /// these are off before they are rounded.
+    /// The slope of those around does not depend on the wedge's own values, so it gives their error
+    /// before they are rounded.
     pub(super) fn fit(
         &self,
         wedge: u32,
@@ -249,7 +251,7 @@ impl Known {
         }
     }
 
-    /// Returns by how much columns of a layer change, given the shares of known wedges.
+    /// Returns the changes of the columns of a layer, given the shares of known wedges.
     pub(super) fn changes(
         &self,
         layer: &LayerColumns,

@@ -7,7 +7,7 @@ use super::streams::{Packer, Unpacker};
 use super::wedge_state::{WedgeError, WedgeState};
 use crate::wedges::WedgeLabels;
 use meshlod_mesh::LayerKind;
-use meshlod_mesh::octahedral;
+use meshlod_mesh::octahedral::DirectionCode;
 
 /// Limits that keep a short file from asking for much memory.
 const MAX_LAYERS: u32 = 4096;
@@ -27,7 +27,7 @@ pub(super) fn write(wedges: &WedgeState, packer: &mut Packer) -> io::Result<()> 
         let (coding, parameter) = match layer.numbers {
             Numbers::Bits => (0, 0),
             Numbers::Steps(exponent) => (1, (exponent - EXPONENTS.start()) as u32),
-            Numbers::Directions(bits) => (2, bits.into()),
+            Numbers::Directions(code) => (2, code.bits()),
         };
         packer.numbers(&[kind.into(), set.into(), layer.width as u32, coding, parameter])?;
         write_text(&layer.name, packer)?;
@@ -76,15 +76,11 @@ fn read_layer(input: &mut Unpacker<'_>) -> Result<LayerCoding, WedgeError> {
         return Err(bad);
     };
     let steps = i16::try_from(parameter).ok().and_then(|n| n.checked_add(*EXPONENTS.start()));
-    let numbers = match (coding, steps) {
-        (0, _) => Numbers::Bits,
-        (1, Some(exponent)) if EXPONENTS.contains(&exponent) => Numbers::Steps(exponent),
-        (2, _)
-            if kind.is_direction()
-                && (octahedral::BITS[0]..=octahedral::BITS[1]).contains(&parameter) =>
-        {
-            Numbers::Directions(parameter as u8)
-        }
+    let code = DirectionCode::of_bits(parameter).filter(|_| kind.is_direction());
+    let numbers = match (coding, steps, code) {
+        (0, ..) => Numbers::Bits,
+        (1, Some(exponent), _) if EXPONENTS.contains(&exponent) => Numbers::Steps(exponent),
+        (2, _, Some(code)) => Numbers::Directions(code),
         _ => return Err(bad),
     };
     Ok(LayerCoding { kind, name, width: width as usize, numbers })

@@ -220,7 +220,7 @@ impl WedgeState {
         packer.encoded(lineage.len() * self.columns(), &encoder.finish())
     }
 
-    /// Decodes the wedges of the updates from `start` on, of which some have records.
+    /// Decodes the wedges of the updates from `start` on; some of them have records.
     pub(super) fn read_run(
         &mut self,
         state: &DecoderState,
@@ -287,7 +287,8 @@ impl WedgeState {
         self.check_labels()
     }
 
-    /// Returns the models of all columns. Those of a layer are alike, but for tangents.
+    /// Returns the models of all columns. The columns of a layer have equal models, except in
+    /// tangents.
     fn models(&self) -> ResidualModels {
         let mut next = 0;
         let columns = self.coding.iter().flat_map(|layer| {

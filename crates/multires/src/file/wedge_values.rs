@@ -1,4 +1,4 @@
-//! Values of the wedges of all levels, as residuals of what is predicted from those before them.
+//! Values of the wedges of all levels, as residuals of predictions from the ones before.
 //!
 //! Where a wedge *p* has one child *a* at the first node and one *b* at the second, it lies about
 //! between them. So the file has the difference of *a* and *b*, and by how much *p* is off the place

@@ -15,7 +15,7 @@ use meshlod_mesh::{Frame, Mesh};
 use meshlod_simplify::{Options, Simplifier, SimplifyError, Target, Topology};
 use thiserror::Error;
 
-use crate::bounds::ErrorKind;
+use crate::error_kind::ErrorKind;
 use crate::length16::Length16;
 use crate::measured::Posing;
 use crate::pack::ExactPositions;

@@ -6,10 +6,11 @@
 
 use std::collections::BTreeMap;
 
+use glam::DVec3;
 use meshlod_mesh::{Bounds, FaceId, Frame, VertexId};
 use meshlod_simplify::{Neighbourhood, Observe, Placed, Simplifier, Spoke, Surface};
 
-use crate::bounds::ErrorKind;
+use crate::error_kind::ErrorKind;
 use crate::forest::{BuildError, Forest, MAX_LEVELS, NONE, NonFanSplit, Stage, Update};
 use crate::length16::Length16;
 use crate::pack::ExactPositions;
@@ -144,9 +145,6 @@ impl Recorder {
         };
         let radius = self.radius(hood, placed, &both);
         let Self { forest, live, .. } = self;
-        let position = forest.frame.local(placed.position).as_vec3();
-        let is_at = |exact: &[f64; 3]| *exact == placed.position.to_array();
-        let unmoved = both.iter().find_map(|s| forest.exact.get(s.node).filter(is_at));
         let own = Length16::up(forest.frame.local_length(placed.error_estimate));
         let error = own.max(both[0].error).max(both[1].error);
         forest.rings.extend(ring().map(|v| live[v.index()].node));
@@ -170,16 +168,7 @@ impl Recorder {
                 && both[0].node as usize + 1 == forest.positions.len(),
         };
         let node = forest.positions.len() as u32;
-        forest.updates.push(update);
-        forest.positions.push(position.into());
-        if let Some(exact) = unmoved {
-            forest.exact.push(node, exact);
-        }
-        if update.fused_with_child {
-            // The two contractions of a face are judged as one.
-            let inner = forest.updates.len() - 2;
-            (forest.updates[inner].error, forest.updates[inner].radius) = (error, radius);
-        }
+        forest.add(update, placed.position);
         for v in ring() {
             let standing = &mut live[v.index()];
             standing.error = standing.error.max(error);
@@ -219,6 +208,26 @@ impl Recorder {
                 .collect(),
         };
         forest.non_fan_splits.insert(forest.updates.len() as u32, non_fan);
+    }
+}
+
+impl Forest {
+    /// Adds an update and its new node, at a position in model units.
+    fn add(&mut self, update: Update, position: DVec3) {
+        let node = self.positions.len() as u32;
+        let is_there = |exact: &[f64; 3]| *exact == position.to_array();
+        let mut children = update.children.iter();
+        let unmoved = children.find_map(|&child| self.exact.get(child).filter(is_there));
+        self.positions.push(self.frame.local(position).as_vec3().into());
+        if let Some(exact) = unmoved {
+            self.exact.push(node, exact);
+        }
+        self.updates.push(update);
+        if update.fused_with_child {
+            // The two contractions of a face are judged as one.
+            let inner = self.updates.len() - 2;
+            (self.updates[inner].error, self.updates[inner].radius) = (update.error, update.radius);
+        }
     }
 }
 

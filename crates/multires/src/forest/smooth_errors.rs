@@ -1,6 +1,6 @@
 //! Isotonic smoothing of error estimates.
 
-use crate::bounds::ErrorKind;
+use crate::error_kind::ErrorKind;
 use crate::forest::Forest;
 use crate::length16::Length16;
 

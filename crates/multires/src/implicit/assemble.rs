@@ -9,7 +9,7 @@ use meshlod_mesh::Frame;
 use super::positions::StoredPositions;
 use super::splits::{Local, Split, Splits};
 use super::{FLAG, Implicit, LAST_WING, NO_WING, OPEN, Order};
-use crate::bounds::ErrorKind;
+use crate::error_kind::ErrorKind;
 use crate::forest::MAX_RANKED;
 use crate::forest::{MAX_LEVELS, NONE, NonFanSplit, Stage};
 use crate::length16::Length16;
@@ -92,16 +92,8 @@ impl Implicit {
     ) -> (Self, Vec<u32>) {
         let roots = base.positions.len();
         let nodes = roots + 2 * updates.len();
-        let mut update_of = vec![NONE; nodes];
-        for (u, update) in updates.iter().enumerate().filter(|(_, u)| u.parent != NONE) {
-            update_of[update.parent as usize] = u as u32;
-        }
-        let numbers_of_children =
-            |update: u32| [0, 1].map(|child| roots as u32 + 2 * update + child);
-        let children = |node: u32| {
-            let update = update_of[node as usize];
-            (update != NONE).then(|| (update, numbers_of_children(update)))
-        };
+        let splits_of = SplitsOfNodes::new(roots, updates);
+        let children = |node: u32| splits_of.children(node);
         let order = Order::of((0..roots as u32).collect(), nodes, updates.len(), children);
         let (mut splits, mut non_fans) = (Vec::with_capacity(order.updates.len()), BTreeMap::new());
         let mut full_faces = base.faces.len();
@@ -110,22 +102,7 @@ impl Implicit {
         for (at, &u) in order.updates.iter().enumerate() {
             let update = &updates[u as usize];
             places.extend(update.children.map(|child| child.to_array()));
-            let below = numbers_of_children(u).map(|child| {
-                children(child).map(|(update, _)| order.index_of_update[update as usize])
-            });
-            // A child that is never split cannot be fused with its parent.
-            let fused_with_child = update.fused_with_child && below[0].is_some();
-            splits.push(Split {
-                parent: order.index_of_node[update.parent as usize]
-                    | if fused_with_child { FLAG } else { 0 },
-                second: order.second(at, below),
-                local: Local {
-                    radius: update.radius,
-                    error: update.error,
-                    level: update.level | if update.is_open { OPEN } else { 0 },
-                    wings: update.wings,
-                },
-            });
+            splits.push(splits_of.split(&order, (at, u), update));
             full_faces += update.created_face_count();
             if let Some(non_fan) = &update.non_fan {
                 // Unknown nodes stay unknown.
@@ -200,4 +177,52 @@ impl NonFanSplit {
 /// Returns true if the three corners of a face are distinct nodes.
 pub(crate) fn has_three_corners(&[a, b, c]: &[u32; 3]) -> bool {
     a != b && b != c && c != a
+}
+
+/// Detached updates by the node that each splits. The children of update u are the nodes that follow
+/// the roots and those of the updates before it.
+struct SplitsOfNodes {
+    /// Update by the node that it splits, or [`NONE`].
+    update_of: Vec<u32>,
+    roots: u32,
+}
+
+impl SplitsOfNodes {
+    fn new(roots: usize, updates: &[DetachedUpdate]) -> Self {
+        let mut update_of = vec![NONE; roots + 2 * updates.len()];
+        for (u, update) in updates.iter().enumerate().filter(|(_, u)| u.parent != NONE) {
+            update_of[update.parent as usize] = u as u32;
+        }
+        Self { update_of, roots: roots as u32 }
+    }
+
+    fn children_of(&self, update: u32) -> [u32; 2] {
+        [0, 1].map(|child| self.roots + 2 * update + child)
+    }
+
+    /// Returns the update that splits a node, if there is one, and the nodes it creates.
+    fn children(&self, node: u32) -> Option<(u32, [u32; 2])> {
+        let update = self.update_of[node as usize];
+        (update != NONE).then(|| (update, self.children_of(update)))
+    }
+
+    /// Returns update `u`, which is the one at `at` in the order of the model, as the model has it.
+    fn split(&self, order: &Order, (at, u): (usize, u32), update: &DetachedUpdate) -> Split {
+        let below = self.children_of(u).map(|child| {
+            self.children(child).map(|(update, _)| order.index_of_update[update as usize])
+        });
+        // A child that is never split cannot be fused with its parent.
+        let fused_with_child = update.fused_with_child && below[0].is_some();
+        Split {
+            parent: order.index_of_node[update.parent as usize]
+                | if fused_with_child { FLAG } else { 0 },
+            second: order.second(at, below),
+            local: Local {
+                radius: update.radius,
+                error: update.error,
+                level: update.level | if update.is_open { OPEN } else { 0 },
+                wings: update.wings,
+            },
+        }
+    }
 }

@@ -28,7 +28,7 @@ struct Priorities<'m> {
     go_by_stages: bool,
 }
 
-/// Where to stop along the falling priorities.
+/// Stop along the falling priorities.
 #[derive(Clone, Copy)]
 struct Limit {
     /// This bucket and all above it fit; the one below it fits in part.

@@ -15,7 +15,7 @@ use crate::pack::{ERRORS, error9, error16, radius8, radius16};
 pub(super) struct CompactSplits {
     roots: u32,
     splits: Vec<CompactSplit>,
-    /// Least level of an update by its error.
+    /// Minimum level of an update, by its error.
     bottoms: Box<[u16; ERRORS]>,
     /// Updates whose parent is too far for a distance, in order.
     far_parents: Vec<[u32; 2]>,

@@ -20,7 +20,7 @@ pub enum SplitRule {
     Wings,
 }
 
-/// For each update, the one that creates its node and those it depends on besides its ancestors,
+/// For each update, the one that creates its node and those it depends on other than its ancestors,
 /// reduced by the dependencies that others imply.
 #[derive(Clone, Debug)]
 pub(crate) struct Dependencies {

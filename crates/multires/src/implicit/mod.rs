@@ -38,7 +38,7 @@ use std::sync::Arc;
 use glam::{DVec3, Vec3};
 use meshlod_mesh::Frame;
 
-use crate::bounds::ErrorKind;
+use crate::error_kind::ErrorKind;
 use crate::forest::{MAX_LEVELS, NonFanSplit};
 use crate::level::Level;
 use crate::pack::{ExactPositions, PackedTable};

@@ -1,4 +1,4 @@
-//! Where the corners of faces are while contractions are replayed: as the mesh has them, or posed.
+//! Positions of the corners of faces during a replay of contractions: those of the mesh, or posed.
 
 use glam::DVec3;
 use meshlod_mesh::{Layer, Mesh, VertexId};
@@ -8,7 +8,7 @@ use crate::forest::{Forest, NONE, Stars};
 
 /// Places of the corners of all faces, which follow the contractions.
 pub(super) trait Corners {
-    /// Follows a contraction into a node, of which the stars know already.
+    /// Applies a contraction into `node`; the stars must already include it.
     fn contract(&mut self, stars: &Stars, node: u32);
 
     /// Returns the place of a corner of a face, at a node.

@@ -7,13 +7,13 @@ use meshlod_spatial::closest_point;
 use super::CoarseFace;
 use crate::forest::NONE;
 
-/// Part of the distance that matters up to which any face is near enough for a vertex. A vertex that
-/// is handed to a face other than the nearest has less room later.
-const NEAR: f64 = 0.5;
+/// A face within this fraction of the relevant distance is near enough for a vertex. A vertex that
+/// is not handed to its nearest face has less room later.
+const NEAR_FRACTION: f64 = 0.5;
 
-/// Number of vertices at a coarse side beyond which every other one is dropped for good, if they are
-/// closer to each other than the distance that matters.
-const MANY: usize = 100;
+/// Number of vertices at a coarse side beyond which every other one is dropped for good, if they
+/// are closer to each other than the relevant distance.
+const THIN_OUT_ABOVE: usize = 100;
 
 /// Vertices of the input by the face of the current mesh that they were handed to.
 #[derive(Debug)]
@@ -57,14 +57,16 @@ impl HandedOn {
         }
         let reach = coarse.iter().map(|face| face.corners[0].distance_squared(face.corners[1]));
         let reach = reach.fold(0.0, f64::max).sqrt();
-        while self.passed.len() > MANY && least * (self.passed.len() as f64).sqrt() > reach {
+        while self.passed.len() > THIN_OUT_ABOVE
+            && least * (self.passed.len() as f64).sqrt() > reach
+        {
             let mut keep = false;
             self.passed.retain(|_| {
                 keep = !keep;
                 keep
             });
         }
-        let enough = (NEAR * least).powi(2);
+        let enough = (NEAR_FRACTION * least).powi(2);
         let (mut farthest, mut near) = (0f64, 0);
         for &v in &self.passed {
             let squared;

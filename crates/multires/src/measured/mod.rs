@@ -24,7 +24,7 @@ use meshlod_mesh::{Mesh, VertexId};
 use meshlod_spatial::Bvh;
 use rayon::prelude::*;
 
-use crate::bounds::ErrorKind;
+use crate::error_kind::ErrorKind;
 use crate::forest::{Forest, MonotoneErrors, Stars};
 use crate::length16::Length16;
 use corners::{AtNodes, Corners, WedgeTable};
@@ -32,8 +32,8 @@ use handed_on::HandedOn;
 pub use posing::{PosedWedges, Posing};
 use probes::Probes;
 
-/// Distances below this part of the mesh's size are not told apart from none, and estimates are
-/// kept: the rounding of a model in memory.
+/// Distances below this fraction of the mesh's size are rounding errors of a model in memory;
+/// estimates are kept there.
 const NOISE: f64 = 1e-5;
 
 impl Forest {
@@ -141,8 +141,8 @@ impl<'f, C: Corners> Measure<'f, C> {
         }
     }
 
-    /// Replays all updates and returns their errors. `known` returns for an update the error that it
-    /// has at least, and the one that it has where no distance exceeds the noise.
+    /// Replays all updates and returns their errors. `known(u)` gives a lower bound of u's error,
+    /// and its error if all distances are below the noise.
     fn replay(mut self, known: impl Fn(usize) -> (Length16, Length16)) -> Vec<Length16> {
         let mut errors = MonotoneErrors::new(self.forest);
         for u in 0..self.forest.updates.len() {

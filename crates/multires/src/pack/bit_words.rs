@@ -3,7 +3,7 @@
 /// Bits of a word. A string of bits starts at the lowest bit of the first word.
 pub(super) const WORD: usize = u64::BITS as usize;
 
-/// Returns the least and the greatest number, or zeros if there are none.
+/// Returns the minimum and the maximum, or zeros for an empty list.
 pub(super) fn range(numbers: impl Iterator<Item = i32>) -> [i32; 2] {
     let grown = |[least, most]: [i32; 2], x: i32| [least.min(x), most.max(x)];
     let range = numbers.fold([i32::MAX, i32::MIN], grown);

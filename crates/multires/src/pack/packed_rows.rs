@@ -11,8 +11,7 @@ pub(crate) struct PackedRows {
     columns: Vec<Column>,
     row_bits: usize,
     rows: usize,
-    /// The bits from the lowest of the first word on, and up to two words more, so that any number
-    /// is in two words that are there.
+    /// Bits, lowest first, padded so that every number lies within two existing words.
     words: Vec<u64>,
 }
 
@@ -53,7 +52,7 @@ impl PackedRows {
         this
     }
 
-    /// Returns the number in a column of a row, both of which must be there.
+    /// Returns the number in a column of a row; both must exist.
     #[inline]
     pub(crate) fn get(&self, row: usize, column: usize) -> i32 {
         debug_assert!(row < self.rows, "row {row} of {}", self.rows);

@@ -3,7 +3,7 @@
 use super::bit_words::{WORD, bits_of, number_at, put, range};
 use super::packed_rows::PackedRows;
 
-/// Rows of 32-bit integers, in blocks of which each column has a range of its own.
+/// Rows of 32-bit integers in blocks; each column of a block has its own range.
 ///
 /// In a block a column takes as many words as its numbers have bits, and none if they are equal.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -12,7 +12,7 @@ pub(crate) struct PackedTable {
     columns: usize,
     /// For each block its first word, then the least number and the bits of each column.
     blocks: PackedRows,
-    /// The numbers, and two words more, so that any is in two words that are there.
+    /// The numbers, padded so that each lies within two existing words.
     words: Vec<u64>,
 }
 

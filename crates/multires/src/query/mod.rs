@@ -79,7 +79,7 @@ pub enum Tolerance<'f> {
     /// the finest level.
     Field(&'f dyn Fn([f64; 3], f64) -> f64),
     /// The least tolerance of several queries, each in its own focus, as where a mesh is shown in
-    /// several places. What is in none of these is as coarse as possible.
+    /// several places. Everything outside them is as coarse as possible.
     Each(Vec<Query<'f>>),
 }
 

@@ -20,9 +20,8 @@ pub(crate) enum Region {
     Wall(Wall),
 }
 
-/// Half the height of a region that is unbounded, in stored units, of which a model spans about
-/// one.
-const FAR: f64 = 1024.0;
+/// Half the height of an unbounded region, in stored units; a model spans about one.
+const UNBOUNDED_HALF_HEIGHT: f64 = 1024.0;
 
 /// Slack of the triangle tests: positions are rounded to 2⁻²⁴ of the unit.
 const ROUNDING: f64 = 1.0 / (1u64 << 22) as f64;
@@ -50,7 +49,8 @@ impl Region {
         match ground.shape {
             GroundShape::Line(_) => Self::Wall(Wall::new(ground.up, places)),
             GroundShape::Box(_) => {
-                (places[0][ground.up], places[1][ground.up]) = (-FAR, FAR);
+                (places[0][ground.up], places[1][ground.up]) =
+                    (-UNBOUNDED_HALF_HEIGHT, UNBOUNDED_HALF_HEIGHT);
                 Self::Box(places)
             }
         }

@@ -117,11 +117,11 @@ impl HeightField {
         Self::decode(bytes, None).map(|(field, _)| field)
     }
 
-    /// Decodes the start of a height field of `whole` bytes, and returns it with the number of parts
-    /// that are there and the number of all.
+    /// Decodes the start of a height field of `whole` bytes, and returns it with the number of
+    /// parts present and the total number.
     ///
     /// A vertex of a part that is missing gets the height by which it would have been predicted,
-    /// from the middle of its hypotenuse. So the field is that of the last part that is there, up to
+    /// from the middle of its hypotenuse. So the field is that of the last part present, up to
     /// rounding to the cells of the heights.
     ///
     /// Memory use is proportional to the number of bytes, or that of 16 million heights if they are

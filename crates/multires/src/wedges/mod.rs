@@ -87,7 +87,8 @@ impl Wedges {
         first..first + self.of_nodes.count(node)
     }
 
-    /// Returns a wedge of a node by its local number, of which uncertified files may have any.
+    /// Returns a wedge of a node by its local number, which may be out of range in an uncertified
+    /// file.
     #[inline]
     pub(crate) fn at(&self, node: u32, local: u16) -> u32 {
         match local {

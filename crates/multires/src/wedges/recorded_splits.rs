@@ -62,8 +62,8 @@ impl RecordedSplits {
         Some((start..end).map(|at| number(&self.numbers, at)))
     }
 
-    /// Returns the record of an update whose children have so many wedges and that creates so many
-    /// faces, or as much of it as an uncertified file has.
+    /// Returns the record of an update with these numbers of wedges and faces, cut short where an
+    /// uncertified file is.
     #[inline]
     pub(super) fn get(
         &self,

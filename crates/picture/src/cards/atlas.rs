@@ -5,7 +5,7 @@ use glam::{Vec2, Vec3, Vec4};
 use crate::srgb::{decode, encode};
 use crate::{Picture, PictureError};
 
-/// Square pictures of one size side by side, each with mipmaps of its own down to a single texel.
+/// Square pictures of one size side by side, each with its own mipmaps down to a single texel.
 ///
 /// Cells are numbered row after row from the top. Memory: 21 bytes a pixel.
 #[derive(Clone, Debug, PartialEq)]

@@ -26,7 +26,7 @@ pub struct Card {
     pub down: [f64; 3],
 }
 
-/// Cards as a camera sees them, without what is behind them.
+/// Cards seen by a camera, without the background.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CardLayer {
     size: [u32; 2],

@@ -3,45 +3,18 @@
 use meshlod_mesh::{Connectivity, FaceId, VertexId};
 
 use crate::engine::policy::{CandidateSink, Candidates};
+use crate::surface::candidate_states::CandidateId;
 use crate::surface::contracted::Contracted;
 use crate::surface::neighbourhood::{Neighbourhood, Spoke};
 use crate::surface::{Flags, Surface};
 
-/// Number of a candidate for contraction: side k of face f, from corner k to corner k + 1, is 4f +
-/// k; the face itself is 4f + 3.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct CandidateId(pub(crate) u32);
-
-impl CandidateId {
-    #[inline]
-    pub(crate) fn side(face: FaceId, k: usize) -> Self {
-        Self(face.0 * 4 + k as u32)
-    }
-
-    #[inline]
-    pub(crate) fn whole(face: FaceId) -> Self {
-        Self(face.0 * 4 + 3)
-    }
-
-    #[inline]
-    pub(crate) fn face(self) -> FaceId {
-        FaceId(self.0 / 4)
-    }
-
-    /// Returns the index of a candidate among the four of its face: 0 to 2 for a side, 3 for the
-    /// face.
-    #[inline]
-    pub(crate) fn slot(self) -> usize {
-        (self.0 % 4) as usize
-    }
-
-    #[inline]
-    fn vertices(self, surface: &Surface) -> Contracted {
-        let face = surface.face(self.face());
-        match self.slot() {
-            3 => Contracted::face(face),
-            k => Contracted::edge([face[k], face[(k + 1) % 3]]),
-        }
+/// Returns the vertices of a candidate.
+#[inline]
+fn vertices(surface: &Surface, id: CandidateId) -> Contracted {
+    let face = surface.face(id.face());
+    match id.slot() {
+        3 => Contracted::face(face),
+        k => Contracted::edge([face[k], face[(k + 1) % 3]]),
     }
 }
 
@@ -59,7 +32,7 @@ impl Candidates for EdgeCandidates {
 
     #[inline]
     fn vertices(&self, surface: &Surface, id: CandidateId) -> Contracted {
-        id.vertices(surface)
+        vertices(surface, id)
     }
 
     fn update(&self, neighbourhood: &Neighbourhood, _: VertexId, sink: &mut dyn CandidateSink) {
@@ -90,13 +63,13 @@ impl Candidates for FaceAndEdgeCandidates {
         let edges = connectivity
             .edges()
             .map(|side| CandidateId::side(side.face(), side.corner()))
-            .filter(|id| id.vertices(surface).iter().any(|&v| special(surface, v)));
+            .filter(|&id| vertices(surface, id).iter().any(|&v| special(surface, v)));
         faces.chain(edges).collect()
     }
 
     #[inline]
     fn vertices(&self, surface: &Surface, id: CandidateId) -> Contracted {
-        id.vertices(surface)
+        vertices(surface, id)
     }
 
     fn refused(&self, id: CandidateId, sink: &mut dyn CandidateSink) {

@@ -2,44 +2,10 @@
 
 use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId};
 
+use crate::held::Held;
 use crate::options::{Options, SimplifyError};
 use crate::surface::ties::{MOST_MEMBERS, Ties};
 use crate::surface::{Flags, Surface};
-
-/// Numbers of input vertices that are locked, protected or tied.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct Held {
-    /// Number of vertices that stay in place, by their own lock or as part of a locked boundary.
-    pub locked: usize,
-    /// Number of protected vertices, which cost more to move, without those that are locked.
-    pub protected: usize,
-    /// Number of vertices that move together with others, whether locked or not.
-    pub tied: usize,
-}
-
-impl Held {
-    /// Adds the counts of another mesh that the scene shows `copies` times.
-    pub fn add(&mut self, other: &Self, copies: usize) {
-        self.locked += copies * other.locked;
-        self.protected += copies * other.protected;
-        self.tied += copies * other.tied;
-    }
-}
-
-/// Factor on the distance that a protected vertex moves. Pixels over 24 views that show what the
-/// original hides, with `qem`: fish-clown.obj with its crossings protected, at 25 and 10 %, and
-/// fused with its lines protected; suzanne.obj at 50 %:
-///
-/// | factor | 25 % | 10 % | fused 25 % | fused 10 % | suzanne |
-/// |---|--:|--:|--:|--:|--:|
-/// | 1 | 12,158 | 49,399 | 2,529 | 22,116 | 10,206 |
-/// | 2 | 7,468 | 25,541 | 1,692 | 14,629 | 391 |
-/// | 3 | 6,546 | 23,601 | 1,856 | 11,509 | 143 |
-/// | 5 | 6,294 | 96,156 | | | 376 |
-///
-/// From 5 on everything unprotected is contracted first, whatever the cost.
-pub(crate) const PROTECTION: f64 = 2.0;
 
 /// Checks that vertex locks have the size of the mesh and that their ties are valid.
 pub(crate) fn validate(locks: &Locks, mesh: &Mesh) -> Result<(), SimplifyError> {

@@ -10,31 +10,32 @@ pub(crate) mod checks;
 pub(crate) mod estimate;
 pub(crate) mod locks;
 pub(crate) mod policy;
+pub(crate) mod prepared_surface;
 pub(crate) mod queue;
 mod tied;
 mod vanish;
 pub(crate) mod vanishing;
 mod waiting;
 
-use meshlod_mesh::{Connectivity, Mesh, VertexId};
+use meshlod_mesh::VertexId;
 use rayon::prelude::*;
 
 use self::waiting::{SurfaceCandidates, Waiting};
-use crate::engine::candidates::CandidateId;
 use crate::engine::checks::{flip, topology};
 use crate::engine::estimate::estimate;
 use crate::engine::policy::{Candidates, Memory, Observe, Placement, Priority, Stop};
+use crate::engine::prepared_surface::PreparedSurface;
 use crate::engine::queue::{Entry, Key};
 use crate::engine::vanishing::Vanishing;
-use crate::excess::Excess;
 use crate::history::volume::VolumeLoss;
-use crate::kernel::Retrace;
 use crate::options::Contractions;
 use crate::refusal::{Refusal, Refusals};
+use crate::run::{Run, Tally};
+use crate::surface::candidate_states::CandidateId;
+use crate::surface::candidate_states::State;
 use crate::surface::contracted::{Contracted, Freedom};
-use crate::surface::level::level;
 use crate::surface::neighbourhood::{Neighbourhood, freedom};
-use crate::surface::{Flags, Placed, State, Surface};
+use crate::surface::{Flags, Placed, Surface};
 
 /// Simplification algorithm, as a choice of policies. Limits and observer are passed with each run.
 pub(crate) struct Algorithm<C, M, P, L> {
@@ -287,56 +288,6 @@ fn contract_face(
         }
         contract_edge(surface, part, &Placed { kept: 0, ..*placed }, observer);
     }
-}
-
-/// A running simplification, whatever its algorithm.
-pub(crate) trait Run {
-    /// Contracts until a limit of `stop` is reached or no candidate is allowed.
-    fn run(&mut self, stop: &Stop, observer: &mut dyn Observe);
-    /// Makes one contraction. Returns false if no candidate is allowed at this cost.
-    fn step(&mut self, stop: &Stop, observer: &mut dyn Observe) -> bool;
-    /// Returns the cost of the next candidate, before any check.
-    fn next_cost(&mut self) -> Option<f64>;
-    /// Returns the number of faces left.
-    fn live_faces(&self) -> usize;
-    fn surface(&self) -> &Surface;
-    fn into_surface(self: Box<Self>) -> Surface;
-    /// Returns the input mesh in its current state.
-    fn level(&self, mesh: &Mesh) -> Mesh {
-        level(mesh, self.surface())
-    }
-    /// Returns the input mesh in its current state, repaid as far as possible the volume that
-    /// contractions owe, and the volume repaid, in cubic model units.
-    fn settled_level(&self, mesh: &Mesh) -> (Mesh, f64) {
-        (self.level(mesh), 0.0)
-    }
-    fn tally(&self) -> Tally;
-    /// Chooses the contractions to take back because of faces that are too far away; `None` if that
-    /// is not possible. Afterwards only a fresh run that [follows](Self::follow) may go on.
-    fn retrace(&mut self, _: &[Excess]) -> Option<Retrace> {
-        None
-    }
-    /// Repeats, on the unchanged input, the contractions that are not taken back.
-    fn follow(&mut self, _: Retrace) {}
-}
-
-/// Counts and totals of a simplification run so far.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Tally {
-    /// Number of connected components that have been removed as a whole.
-    pub(crate) vanished: usize,
-    pub(crate) contractions: Contractions,
-    pub(crate) refusals: Refusals,
-    /// Greatest estimated distance of any contraction from the input, in model units.
-    pub(crate) error_estimate: f64,
-    pub(crate) volume: VolumeLoss,
-}
-
-/// A surface prepared for a simplification algorithm to start on.
-pub(crate) struct PreparedSurface {
-    pub(crate) surface: Surface,
-    pub(crate) connectivity: Connectivity,
-    pub(crate) vanishing: Vanishing,
 }
 
 impl<C, M, P, L> Run for Engine<C, M, P, L>

@@ -12,8 +12,8 @@
 
 use meshlod_mesh::{Connectivity, FaceId, VertexId};
 
-use crate::engine::candidates::CandidateId;
 use crate::refusal::Refusal;
+use crate::surface::candidate_states::CandidateId;
 use crate::surface::contracted::{Contracted, Freedom};
 use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Placed, Surface};

@@ -6,7 +6,7 @@
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
-use crate::engine::candidates::CandidateId;
+use crate::surface::candidate_states::CandidateId;
 
 /// Sort key of a cost: the leading 32 bits of a non-negative `f64`, which preserve its order and 20
 /// bits of its mantissa at any scale.
@@ -40,7 +40,7 @@ const BUCKETS: usize = 1 << 14;
 
 /// Number of entries below which all are kept in order: a scene can have thousands of small meshes,
 /// and the empty buckets alone take 400 kB.
-const FEW: usize = 4096;
+const ORDERED_BELOW: usize = 4096;
 
 /// Queue entry of a candidate. Ordered by cost, then by id.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,7 +85,7 @@ pub(crate) struct Queue {
 
 impl Queue {
     pub(crate) fn new(entries: &[Entry]) -> Self {
-        if entries.len() < FEW {
+        if entries.len() < ORDERED_BELOW {
             let front = entries.iter().copied().map(Reverse).collect();
             return Self { front, next: BUCKETS, buckets: Vec::new() };
         }
@@ -170,7 +170,7 @@ mod tests {
         fn pops_in_the_order_of_a_sorted_list(
             first in prop_oneof![
                 prop::collection::vec((0.0..1e3f64, 0u32..1000), 0..100),
-                prop::collection::vec((0.0..1e3f64, 0u32..1000), FEW..FEW + 100),
+                prop::collection::vec((0.0..1e3f64, 0u32..1000), ORDERED_BELOW..ORDERED_BELOW + 100),
             ],
             later in prop::collection::vec((0.0..1e3f64, 0u32..1000), 0..100),
             before in 0usize..100,

@@ -6,7 +6,7 @@
 
 use meshlod_mesh::{Bounds, FaceId, VertexId, face_components, first_near};
 
-use crate::options::Method;
+use crate::method::{CostUnit, Method};
 use crate::surface::{Flags, Surface};
 
 /// A connected component that may be removed as a whole.
@@ -114,16 +114,16 @@ fn components(surface: &Surface, corners: &[[VertexId; 3]]) -> (Vec<u32>, usize)
 /// .0023, .0020; 1 .0033, .0023; 3 .0041, .0037. The maximum with `qem`: .99, .73, .42, .58.
 const SHRINKAGE: f64 = 0.3;
 
-/// Returns the cost of removing a component, in the units of a method's costs: as if all of it
+/// Returns the cost of removing a component, in the unit of a method's costs: as if all of it
 /// moved by a fraction of its size.
-pub(crate) fn cost(method: Method, size: f64, area: f64, faces: usize) -> f64 {
-    let cost = match method {
-        Method::Qem | Method::QemEndpoint | Method::KimJang => area * size * size,
-        Method::QemPlain => size * size,
-        Method::LindstromTurk | Method::LindstromTurkFaces => (area * size).powi(2),
-        // About one sample per face.
-        Method::Pm => faces as f64 * size * size,
-        Method::LeeJang | Method::Wu | Method::Spr => size,
+fn cost(method: Method, size: f64, area: f64, faces: usize) -> f64 {
+    let cost = match method.cost_unit() {
+        CostUnit::Distance => size,
+        CostUnit::SquaredDistance => size * size,
+        CostUnit::SampledSquaredDistance => faces as f64 * size * size,
+        CostUnit::WeightedSquaredDistance => area * size * size,
+        // Only the kernel divides by the root of an area.
+        CostUnit::SquaredVolume | CostUnit::SquaredVolumePerLength => (area * size).powi(2),
     };
     cost * SHRINKAGE.powi(method.cost_power())
 }

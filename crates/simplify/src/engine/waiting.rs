@@ -4,10 +4,11 @@
 use meshlod_mesh::VertexId;
 use rustc_hash::FxHashMap;
 
-use crate::engine::candidates::CandidateId;
 use crate::engine::policy::CandidateSink;
 use crate::engine::queue::{Entry, Queue};
-use crate::surface::{Flags, State, Surface};
+use crate::surface::candidate_states::CandidateId;
+use crate::surface::candidate_states::State;
+use crate::surface::{Flags, Surface};
 
 /// Candidates open for contraction: queued, or parked until their neighbourhood changes.
 pub(super) struct Waiting {

@@ -26,9 +26,9 @@ const MIN_COSINE: f64 = 0.2;
 const CANCELLED: f64 = 1e-9;
 
 /// Fraction of the volume below which a residual is rounding error; no step is that small.
-const ENOUGH: f64 = 1e-15;
+const NEGLIGIBLE_RESIDUAL: f64 = 1e-15;
 
-/// Number of steps of Newton's method, most of which are not needed.
+/// Limit on the steps of Newton's method; few are needed.
 const NEWTON_STEPS: usize = 12;
 
 /// Number of rounds of last-place steps. Two steps on one edge also interact, by about 1e-15 of the
@@ -305,7 +305,7 @@ impl VolumeCorrection<'_> {
             let residual = self.residual(positions);
             let normals = self.normals(positions);
             let slope: f64 = normals.iter().map(|n| n.length_squared()).sum();
-            if residual.abs() <= ENOUGH * self.wanted.abs() || slope == 0.0 {
+            if residual.abs() <= NEGLIGIBLE_RESIDUAL * self.wanted.abs() || slope == 0.0 {
                 return;
             }
             let by = -residual / slope / self.frame.scale();
@@ -317,7 +317,7 @@ impl VolumeCorrection<'_> {
 
     /// Reduces the residual by the largest steps that do not overshoot it, one per coordinate.
     fn step_coordinates(&self, written: &mut [[f64; 3]], residual: f64, digits: Digits) {
-        let least = 0.1 * ENOUGH * self.wanted.abs();
+        let least = 0.1 * NEGLIGIBLE_RESIDUAL * self.wanted.abs();
         let mut steps = Vec::new();
         for (v, normal) in self.normals(written).into_iter().enumerate() {
             for axis in 0..3 {

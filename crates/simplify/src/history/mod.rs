@@ -6,8 +6,8 @@ pub(crate) mod volume;
 
 use meshlod_mesh::{FaceId, WedgeId};
 
-use crate::engine::candidates::CandidateId;
 use crate::engine::policy::Observe;
+use crate::surface::candidate_states::CandidateId;
 use crate::surface::contracted::Contracted;
 use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Placed, Surface};

@@ -17,13 +17,13 @@ pub struct VolumeLoss {
     /// Volume before minus volume after, summed over all contractions with a closed ring, in cubic
     /// model units: table 2 of [LJ05].
     pub running_sum: f64,
-    /// Part of the sum that [`Method::LindstromTurk`](crate::Method::LindstromTurk) owes when
-    /// contractions end, where a place that conserves the volume would have spoiled the shape, in
-    /// cubic model units.
+    /// Part of the sum still owed by [`Method::LindstromTurk`](crate::Method::LindstromTurk) when
+    /// contractions end, in cubic model units: a place that conserves the volume would have spoiled
+    /// the shape.
     pub owed: f64,
     /// Part of the sum that the level has been repaid by
-    /// [`Simplifier::settled_level`](crate::Simplifier::settled_level), in cubic model units: what
-    /// is owed, as far as the shape allows, and zero until then.
+    /// [`Simplifier::settled_level`](crate::Simplifier::settled_level), in cubic model units: as
+    /// much of the debt as the shape allows, and zero until then.
     pub repaid: f64,
     /// Sum of the absolute volumes of the closed components that were removed as a whole, in cubic
     /// model units.

@@ -55,7 +55,7 @@ const NEW_VERTEX_DELAY: u16 = 6;
 /// 9, 20, .393. FLIP is the same elsewhere.
 pub(crate) const UV_FLIP_DELAY: u16 = 8;
 
-/// Part of the diagonal by which a single step may always move the surface.
+/// Fraction of the diagonal by which a single step may always move the surface.
 const RUIN: f32 = 1.0 / 3.0;
 
 /// Multiple of the largest distance so far by which a single step may always move the surface.

@@ -20,8 +20,8 @@ use crate::kernel::setup::vertex_order::is_face;
 /// Largest number of faces of a component that are sampled.
 const SAMPLED_FACES: usize = 24;
 
-/// Part of the faces, one in this many, that components must have to take part from the start.
-const MANY: usize = 32;
+/// Components that may vanish take part from the start if they have more than one face in this many.
+const EARLY_SHARE: usize = 32;
 
 /// Weights of a face's centre and of each of its corners in the mean square distance. For a
 /// quadratic function they give the exact mean.
@@ -44,7 +44,7 @@ pub(crate) struct Component {
     samples: Range<usize>,
 }
 
-/// Part of the surface of a component: a point of it, and the weight that this point has.
+/// Sample point on the surface of a component, and its weight.
 #[derive(Clone, Copy, Debug)]
 struct WeightedPoint {
     place: Vec3,
@@ -131,65 +131,70 @@ impl Components {
 
     /// Measures and samples all components.
     fn survey(
-        Pieces { mesh, frame, vertices, is_held }: &Pieces<'_, '_>,
+        pieces: &Pieces<'_, '_>,
         faces: impl Iterator<Item = [u32; 3]>,
         mut of_face: Vec<u32>,
         count: usize,
     ) -> Self {
         let mut lists = vec![Vec::new(); count];
-        let mut own = vec![Vec::new(); count];
+        let mut vertices = vec![Vec::new(); count];
         for (i, face) in faces.enumerate() {
             let component = &mut of_face[i];
             if is_face(face) {
                 lists[*component as usize].push(i);
-                own[*component as usize].extend(face);
+                vertices[*component as usize].extend(face);
             } else {
                 *component = count as u32;
             }
         }
         let left_out: Vec<usize> =
             (0..of_face.len()).filter(|&i| of_face[i] == count as u32).collect();
-        let mut input = LabelledBvh::new(mesh, of_face).expect("the mesh was found valid");
+        let mut input = LabelledBvh::new(pieces.mesh, of_face).expect("the mesh was found valid");
         left_out.into_iter().for_each(|i| input.remove(FaceId::new(i)));
         let mut components = Self {
             all: Vec::with_capacity(count),
             vertices: Vec::new(),
             samples: Vec::new(),
             faces: Vec::new(),
-            frame: **frame,
+            frame: *pieces.frame,
             input,
             waiting: BinaryHeap::new(),
             refused: Vec::new(),
             vanished: Vec::new(),
         };
-        for (faces, mut own) in lists.into_iter().zip(own) {
-            own.sort_unstable();
-            own.dedup();
-            let (mut bounds, mut held) = (Bounds::EMPTY, false);
-            for v in faces.iter().flat_map(|&i| mesh.faces[i]) {
-                bounds.add(mesh.positions[v.index()]);
-                held |= is_held[v.index()];
-            }
-            let is_protected = |v: &u32| vertices.get(*v).flags.any(VertexFlags::PROTECTED);
-            let protection = if own.iter().any(is_protected) { vertices.protection } else { 1.0 };
-            let places =
-                |i: usize| mesh.faces[i].map(|v| frame.to_local(mesh.positions[v.index()]));
-            let triangles: Vec<[Vec3; 3]> = faces.iter().map(|&i| places(i)).collect();
-            let (first, start) = (components.vertices.len(), components.samples.len());
-            components.sample(&triangles);
-            components.vertices.extend(own);
-            components.all.push(Component {
-                size: (bounds.diagonal() / frame.unit) as f32,
-                area: triangles.iter().map(area).sum(),
-                protection,
-                is_held: held,
-                faces: components.faces.len()..components.faces.len() + faces.len(),
-                vertices: first..components.vertices.len(),
-                samples: start..components.samples.len(),
-            });
-            components.faces.extend(faces.iter().map(|&i| i as u32));
+        for (faces, vertices) in lists.into_iter().zip(vertices) {
+            components.add(pieces, &faces, vertices);
         }
         components
+    }
+
+    /// Measures and samples a component, given its faces and the vertices at their corners.
+    fn add(&mut self, pieces: &Pieces<'_, '_>, faces: &[usize], mut own: Vec<u32>) {
+        let &Pieces { mesh, frame, vertices, is_held } = pieces;
+        own.sort_unstable();
+        own.dedup();
+        let (mut bounds, mut held) = (Bounds::EMPTY, false);
+        for v in faces.iter().flat_map(|&i| mesh.faces[i]) {
+            bounds.add(mesh.positions[v.index()]);
+            held |= is_held[v.index()];
+        }
+        let is_protected = |v: &u32| vertices.get(*v).flags.any(VertexFlags::PROTECTED);
+        let protection = if own.iter().any(is_protected) { vertices.protection } else { 1.0 };
+        let places = |i: usize| mesh.faces[i].map(|v| frame.to_local(mesh.positions[v.index()]));
+        let triangles: Vec<[Vec3; 3]> = faces.iter().map(|&i| places(i)).collect();
+        let (first, start) = (self.vertices.len(), self.samples.len());
+        self.sample(&triangles);
+        self.vertices.extend(own);
+        self.all.push(Component {
+            size: (bounds.diagonal() / frame.unit) as f32,
+            area: triangles.iter().map(area).sum(),
+            protection,
+            is_held: held,
+            faces: self.faces.len()..self.faces.len() + faces.len(),
+            vertices: first..self.vertices.len(),
+            samples: start..self.samples.len(),
+        });
+        self.faces.extend(faces.iter().map(|&i| i as u32));
     }
 
     /// Samples a component at the centres and corners of some of its faces.
@@ -226,8 +231,8 @@ impl Components {
         bucket(cost).min(last_bucket())
     }
 
-    /// Returns the square of the distance that counts where a component vanishes: what is farther
-    /// from the rest than it is large is lost for its size.
+    /// Returns the squared distance that counts when a component vanishes: its distance from the
+    /// rest, but at most its size.
     pub(crate) fn loss(&self, component: u32, apart: &Apart) -> f32 {
         apart.greatest.min(self.all[component as usize].size.powi(2))
     }
@@ -236,7 +241,7 @@ impl Components {
     /// must take part from the start.
     pub(crate) fn are_many(&self, faces: usize) -> bool {
         let faces_of = |entry: &Reverse<(u16, u32)>| self.all[entry.0.1 as usize].faces.len();
-        self.waiting.iter().map(faces_of).sum::<usize>() > faces / MANY
+        self.waiting.iter().map(faces_of).sum::<usize>() > faces / EARLY_SHARE
     }
 
     /// Returns the vertices of a component.

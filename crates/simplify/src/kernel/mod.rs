@@ -41,7 +41,7 @@ mod metric;
 mod partition;
 mod prepare;
 mod repay;
-mod retrace;
+pub(crate) mod retrace;
 mod run;
 mod schedule;
 mod setup;
@@ -55,11 +55,10 @@ use meshlod_mesh::{Bounds, Mesh};
 use crate::kernel::metric::Metric;
 use crate::kernel::prepare::Prepared;
 use crate::options::{Options, SimplifyError};
-use crate::simplifier::Started;
+use crate::run::Started;
 
 pub(crate) use crate::kernel::metric::plane_distance::PlaneDistance;
 pub(crate) use crate::kernel::metric::swept_volume::SweptVolume;
-pub(crate) use crate::kernel::retrace::Retrace;
 
 /// Prepares the kernel for a valid mesh. Also returns what was found in the input.
 ///

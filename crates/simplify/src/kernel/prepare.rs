@@ -4,8 +4,7 @@ use glam::Vec3;
 use meshlod_mesh::{Bounds, Lock, Mesh, VertexId};
 
 use crate::clean;
-use crate::engine::Run;
-use crate::engine::locks::Held;
+use crate::held::Held;
 use crate::kernel::attributes::AttributeModel;
 use crate::kernel::attributes::bare::NoAttributes;
 use crate::kernel::attributes::corners::Corners;
@@ -23,7 +22,7 @@ use crate::kernel::setup::build_rings::Fans;
 use crate::kernel::setup::split_non_manifold;
 use crate::kernel::setup::vertex_order::{Order, numbers};
 use crate::options::{Options, Topology};
-use crate::simplifier::InputSummary;
+use crate::run::{InputSummary, Run};
 use crate::surface::MOST_FACES;
 use crate::surface::ties::{MOST_MEMBERS, Ties};
 
@@ -33,8 +32,8 @@ const MAX_CHANNELS: usize = 8;
 /// Largest weight of a boundary: beyond it floats would overflow, and nothing changes any more.
 const MAX_BOUNDARY_WEIGHT: f64 = 1e9;
 
-/// Part of the diagonal by which a vertex may leave the bounding box of the input: to preserve the
-/// volume of something round, vertices must lie outside.
+/// Fraction of the diagonal by which a vertex may leave the bounding box of the input: vertices of
+/// a round surface must lie outside to preserve its volume.
 const BEYOND: f32 = 0.004;
 
 /// A mesh ready to be simplified.

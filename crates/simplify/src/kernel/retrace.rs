@@ -20,8 +20,7 @@ use crate::kernel::schedule::bucket_queue::{BucketQueue, NONE};
 use crate::kernel::schedule::deferral::Deferral;
 use crate::refusal::Refusals;
 
-/// Part of the distance that would do by which a bound is lowered, as another contraction may be
-/// off in other places.
+/// Safety factor on the lowered bound, since the new contraction may err elsewhere.
 const CAUTION: f32 = 0.98;
 
 /// Limits of the factor by which a bound is lowered where it was not held.
@@ -30,7 +29,7 @@ const FACTOR: [f32; 2] = [0.5, 0.97];
 /// Factor by which a bound is lowered further where it was not held again.
 const AGAIN: f32 = 0.7;
 
-/// Part of the bound below which no distance at all is allowed, so that lowering it ends.
+/// Fraction of the bound below which a lowered bound becomes zero, so that lowering ends.
 const LEAST_PART: f32 = 0.1;
 
 /// Step that stands for none.
@@ -41,7 +40,7 @@ pub(crate) struct Retrace {
     pub(crate) steps: Vec<Logged>,
     /// Steps to take back, with all that depends on them; sorted.
     pub(crate) back: Vec<u32>,
-    /// Part of the error bound that holds at each vertex from now on.
+    /// Fraction of the error bound that holds at each vertex from now on.
     pub(crate) parts: Vec<f32>,
     pub(crate) refusals: Refusals,
     pub(crate) deferral: Deferral,

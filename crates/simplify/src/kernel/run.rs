@@ -6,7 +6,6 @@ use meshlod_mesh::{Mesh, VertexId};
 
 use crate::clean;
 use crate::engine::policy::{Observe, Stop};
-use crate::engine::{Run, Tally};
 use crate::excess::{Excess, ExcessFace};
 use crate::kernel::attributes::AttributeModel;
 use crate::kernel::bound::ErrorBound;
@@ -24,6 +23,7 @@ use crate::kernel::schedule::bucket_queue::{NONE, bucket, min_cost_in};
 use crate::kernel::setup::vertex_order::{Order, numbers};
 use crate::options::Contractions;
 use crate::refusal::Refusal;
+use crate::run::{Run, Tally};
 use crate::surface::Surface;
 use crate::surface::rims::Rims;
 

@@ -18,13 +18,13 @@ pub(crate) struct VolumeTally {
     held: Unchosen,
 }
 
-/// Part of half an edge by which a place may miss the plane of equal volume without a debt, so that
-/// rounding makes none.
+/// Fraction of half an edge by which a place may miss the plane of equal volume without a debt, so
+/// that rounding leaves none.
 const NO_DEBT: f64 = 1e-4;
 
 /// Volume that contractions at each vertex of a part still owe, six times, in the frame. The next
 /// contraction whose ring has the vertex takes the debt over and aims to repay it, so that a debt
-/// goes where contractions go on. What is beyond the end owes nothing.
+/// goes where contractions go on. Vertices outside the part owe nothing.
 ///
 /// Empty as long as nothing is owed, as on most scans.
 #[derive(Debug, Default)]

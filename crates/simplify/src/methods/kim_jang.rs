@@ -2,10 +2,15 @@
 
 use glam::DVec3;
 
+use crate::engine::Algorithm;
+use crate::engine::candidates::EdgeCandidates;
 use crate::engine::policy::Placement;
-use crate::methods::qem::{Optimal, Quadrics};
+use crate::engine::prepared_surface::PreparedSurface;
+use crate::methods::qem::{Optimal, Quadrics, Recipe};
 use crate::methods::volume::{VolumePlane, along_normal};
+use crate::options::Options;
 use crate::refusal::Refusal;
+use crate::run::Run;
 use crate::surface::contracted::Freedom;
 use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Placed, Surface};
@@ -14,10 +19,21 @@ use crate::surface::{Placed, Surface};
 /// spoke; beyond it, the shortest way is taken.
 const REACH: f64 = 0.5;
 
+/// Starts the method.
+pub(super) fn start(options: &Options, ready: PreparedSurface) -> Box<dyn Run> {
+    Algorithm {
+        candidates: EdgeCandidates,
+        memory: Quadrics::new(Recipe::OURS, options, &ready, ()),
+        priority: Optimal,
+        placement: VolumeConserving,
+    }
+    .start(ready)
+}
+
 /// Placement at the quadric optimum, moved along the line from the middle of the ring until the
 /// volume is conserved, or by the shortest way where that line is nearly parallel to the surface.
 /// At a boundary the volume is that behind the cones that close it.
-pub(crate) struct VolumeConserving;
+struct VolumeConserving;
 
 impl Placement<Quadrics> for VolumeConserving {
     fn place(

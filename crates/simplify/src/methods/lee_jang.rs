@@ -2,11 +2,16 @@
 
 use glam::DVec3;
 
+use crate::engine::Algorithm;
+use crate::engine::candidates::FaceAndEdgeCandidates;
 use crate::engine::policy::Placement;
+use crate::engine::prepared_surface::PreparedSurface;
 use crate::methods::creases::{Creases, Turns};
+use crate::methods::face_order::FaceOrder;
 use crate::methods::lindstrom_turk;
 use crate::methods::volume::{VolumePlane, old_faces};
 use crate::refusal::Refusal;
+use crate::run::Run;
 use crate::surface::contracted::Freedom;
 use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Placed, Surface};
@@ -17,15 +22,27 @@ use crate::surface::{Placed, Surface};
 /// refused, and at 0.02 most are, which leaves a method for edges.
 const MOST_STRETCH: f64 = 0.1;
 
+/// Starts the method.
+pub(super) fn start(ready: PreparedSurface) -> Box<dyn Run> {
+    let surface = &ready.surface;
+    Algorithm {
+        candidates: FaceAndEdgeCandidates,
+        memory: Creases::new(surface, weight),
+        priority: FaceOrder::new(surface),
+        placement: Constriction,
+    }
+    .start(ready)
+}
+
 /// M: weight of a vertex by its least typical edge (eq. 5), so that a vertex whose edges are all
 /// alike, such as the tip of a pyramid, still counts.
-pub(crate) fn weight(turns: &Turns) -> f64 {
+fn weight(turns: &Turns) -> f64 {
     turns.farthest.exp()
 }
 
 /// Placement at the centroid, moved along the line from a point below the surface until the volume
 /// is conserved (eqs. 8 to 12).
-pub(crate) struct Constriction;
+struct Constriction;
 
 impl Placement<Creases> for Constriction {
     fn place(

@@ -9,13 +9,17 @@
 use glam::DVec3;
 use meshlod_mesh::{FaceId, VertexId};
 
-use crate::engine::policy::{Memory, Placement, Priority};
-use crate::methods::feature_edges::feature_edges;
+use crate::engine::Algorithm;
+use crate::engine::policy::{Candidates, Memory, Placement, Priority};
+use crate::engine::prepared_surface::PreparedSurface;
 use crate::methods::qem::SHORT_FIRST;
 use crate::methods::quadric::{Quadric, Symmetric};
 use crate::methods::volume::{VolumePlane, along_normal, old_faces};
+use crate::options::Options;
 use crate::refusal::Refusal;
+use crate::run::Run;
 use crate::surface::contracted::{Contracted, Freedom};
+use crate::surface::feature_edges::feature_edges;
 use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Flags, Placed, Surface};
 
@@ -37,6 +41,17 @@ const COMPATIBLE: f64 = 0.017;
 /// A sum of vectors is rounding error if its square is less than this fraction of the sum of their
 /// squares.
 const CANCELLED: f64 = 1e-12;
+
+/// Starts the method on edges, or on faces and edges.
+pub(super) fn start<C: Candidates + 'static>(
+    candidates: C,
+    options: &Options,
+    ready: PreparedSurface,
+) -> Box<dyn Run> {
+    let memoryless = Memoryless::new(options.boundary_weight);
+    let memory = Stars::new(&ready.surface);
+    Algorithm { candidates, memory, priority: memoryless, placement: memoryless }.start(ready)
+}
 
 /// Sums over the faces around a vertex, relative to it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -62,7 +77,7 @@ impl Star {
 }
 
 /// Sums over the star of every vertex.
-pub(crate) struct Stars(Vec<Star>);
+struct Stars(Vec<Star>);
 
 impl Stars {
     pub(crate) fn new(surface: &Surface) -> Self {
@@ -104,7 +119,7 @@ impl Memory for Stars {
 
 /// Least swept volume as priority and as placement, for edges and for faces.
 #[derive(Clone, Copy)]
-pub(crate) struct Memoryless {
+struct Memoryless {
     /// Weight of a squared area under a boundary.
     boundary: f64,
 }

@@ -12,11 +12,15 @@ use std::cell::RefCell;
 
 use glam::DVec3;
 
+use crate::engine::Algorithm;
+use crate::engine::candidates::EdgeCandidates;
 use crate::engine::policy::{Placement, Priority};
+use crate::engine::prepared_surface::PreparedSurface;
 use crate::methods::fan::{Fan, Nearest};
 use crate::methods::quadric::Symmetric;
 use crate::methods::samples::Samples;
 use crate::refusal::Refusal;
+use crate::run::Run;
 use crate::surface::contracted::{Contracted, Freedom};
 use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Placed, Surface};
@@ -34,8 +38,19 @@ const ROUNDS: usize = 2;
 /// .34 with 1e-2, .29 with 1e-1, and a mean of .0148, .0150, .0157.
 const HOLD: f64 = 1e-2;
 
+/// Starts the method.
+pub(super) fn start(ready: PreparedSurface) -> Box<dyn Run> {
+    Algorithm {
+        candidates: EdgeCandidates,
+        memory: Samples::new(&ready.surface, &ready.connectivity),
+        priority: Energy,
+        placement: Energy,
+    }
+    .start(ready)
+}
+
 /// Energy of surface samples [Hop96], as priority and as placement.
-pub(crate) struct Energy;
+struct Energy;
 
 impl Priority<Samples> for Energy {
     fn cost(

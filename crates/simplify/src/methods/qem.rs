@@ -13,11 +13,13 @@ use glam::DVec3;
 use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
 
 use crate::engine::policy::{Memory, Placement, Priority};
+use crate::engine::prepared_surface::PreparedSurface;
 use crate::methods::attribute_metric::AttributeMetric;
-use crate::methods::feature_edges::is_feature;
 use crate::methods::quadric::Quadric;
+use crate::options::Options;
 use crate::refusal::Refusal;
 use crate::surface::contracted::{Contracted, Freedom};
+use crate::surface::feature_edges::is_feature;
 use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Flags, Placed, Surface};
 
@@ -79,12 +81,12 @@ impl Recipe {
     };
 
     /// Quadrics as first published [GH97]: planes of equal weight, a large penalty on boundaries,
-    /// and nothing is forgotten. Seams, of which the paper has none, are treated like boundaries.
+    /// and nothing is forgotten. Seams, which the paper does not have, are treated like boundaries.
     pub(crate) const PLAIN: Self =
         Self { by_area: false, boundary_weight: PENALTY, feature_weight: PENALTY, memory: 1.0 };
 
     /// Returns the recipe with another weight of boundaries, if one is given.
-    pub(crate) fn weighing(self, boundary: Option<f64>) -> Self {
+    fn weighing(self, boundary: Option<f64>) -> Self {
         Self { boundary_weight: boundary.unwrap_or(self.boundary_weight), ..self }
     }
 }
@@ -97,18 +99,18 @@ pub(crate) struct Quadrics<A = ()> {
 }
 
 impl<A> Quadrics<A> {
+    /// Builds the quadrics of a prepared surface, with the options' weight of boundaries.
     pub(crate) fn new(
-        surface: &Surface,
-        connectivity: &Connectivity,
         recipe: Recipe,
+        options: &Options,
+        ready: &PreparedSurface,
         attributes: A,
     ) -> Self {
+        let recipe = recipe.weighing(options.boundary_weight);
+        let PreparedSurface { surface, connectivity, .. } = ready;
         let mut quadrics = vec![Quadric::default(); surface.vertex_count()];
-        for f in 0..surface.face_count() {
-            let face = FaceId(f as u32);
-            if surface.is_alive(face) {
-                add_face(&mut quadrics, surface, (face, connectivity), recipe);
-            }
+        for face in (0..surface.face_count()).map(FaceId::new).filter(|&f| surface.is_alive(f)) {
+            add_face(&mut quadrics, surface, (face, connectivity), recipe);
         }
         Self { quadrics, recipe, attributes }
     }

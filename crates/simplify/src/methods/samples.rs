@@ -8,11 +8,11 @@ use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
 
 use crate::engine::policy::Memory;
 use crate::methods::fan::{Fan, Rim};
-use crate::methods::feature_edges::is_feature;
+use crate::surface::feature_edges::is_feature;
 use crate::surface::neighbourhood::{Neighbourhood, Spoke};
 use crate::surface::{Placed, Surface};
 
-/// Scattered samples per face of the input, besides one at each vertex and one in the middle of
+/// Scattered samples per face of the input, in addition to one per vertex and one in the middle of
 /// each rim edge.
 const PER_FACE: f64 = 0.5;
 

@@ -11,8 +11,12 @@
 use glam::DVec3;
 use meshlod_mesh::{FaceId, VertexId};
 
+use crate::engine::Algorithm;
+use crate::engine::candidates::EdgeCandidates;
 use crate::engine::policy::{Placement, Priority};
+use crate::engine::prepared_surface::PreparedSurface;
 use crate::refusal::Refusal;
+use crate::run::Run;
 use crate::surface::contracted::{Contracted, Freedom};
 use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Flags, Placed, Surface};
@@ -24,8 +28,14 @@ const FLAT: f64 = 1e-4;
 /// Number of faces, real and virtual, compared on an edge; an edge with more is refused anyway.
 const MOST_SIDES: usize = 4;
 
+/// Starts the method.
+pub(super) fn start(ready: PreparedSurface) -> Box<dyn Run> {
+    Algorithm { candidates: EdgeCandidates, memory: (), priority: Turn, placement: Turn }
+        .start(ready)
+}
+
 /// Turn of the surface [Mel98], as priority and as placement.
-pub(crate) struct Turn;
+struct Turn;
 
 impl Priority<()> for Turn {
     fn cost(&self, surface: &Surface, _: &(), of: &Contracted, freedom: Freedom) -> Option<f64> {

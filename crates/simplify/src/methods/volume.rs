@@ -5,11 +5,12 @@
 //! ring. At a boundary the [cones](crate::surface::rims) that close it complete the ring.
 
 use glam::DVec3;
+use meshlod_mesh::VertexId;
 
 use crate::refusal::Refusal;
 use crate::surface::Surface;
+use crate::surface::feature_edges::feature_edges;
 use crate::surface::neighbourhood::Neighbourhood;
-use crate::surface::rims::cone_faces;
 
 /// Largest displacement along a normal, as a part of the distance to the farthest vertex around.
 const REACH: f64 = 0.5;
@@ -80,7 +81,7 @@ impl VolumePlane {
 }
 
 /// Returns the position on the surface's normal at the contracted vertex `kept` that conserves the
-/// volume. Refuses what is out of reach.
+/// volume. Refuses a position that is out of reach.
 pub(crate) fn along_normal(
     surface: &Surface,
     neighbourhood: &Neighbourhood,
@@ -115,5 +116,24 @@ pub(crate) fn old_faces(
     for removed in neighbourhood.removed_faces() {
         let [a, b, c] = surface.face(removed.face).map(|v| surface.position(v) - origin);
         each((b - a).cross(c - a), a);
+    }
+}
+
+/// Calls `each` for the triangles of the cones at the boundary edges of some vertices, with the
+/// normal, twice the area long, and a corner relative to `origin`.
+fn cone_faces(
+    surface: &Surface,
+    contracted: &[VertexId],
+    origin: DVec3,
+    mut each: impl FnMut(DVec3, DVec3),
+) {
+    if contracted.iter().all(|&v| surface.rims.apex(v).is_none()) {
+        return;
+    }
+    for edge in feature_edges(surface, contracted).into_iter().filter(|edge| edge.is_boundary) {
+        let [from, to] = edge.ends;
+        let Some(apex) = surface.rims.apex(from).or(surface.rims.apex(to)) else { continue };
+        let [a, b] = [to, from].map(|v| surface.position(v) - origin);
+        each((b - a).cross(apex - origin - a), a);
     }
 }

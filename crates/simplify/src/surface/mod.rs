@@ -4,20 +4,23 @@
 //! its faces load side by side. Position, star and flags of a vertex form one record because they
 //! are needed together. The surface need not be manifold.
 
+pub(crate) mod candidate_states;
 pub(crate) mod charts;
 pub(crate) mod contracted;
+pub(crate) mod feature_edges;
 pub(crate) mod interpolate;
 pub(crate) mod level;
 pub(crate) mod nearest;
 pub(crate) mod neighbourhood;
 pub(crate) mod rims;
+mod tied;
 pub(crate) mod ties;
 pub(crate) mod wedges;
 
 use glam::DVec3;
 use meshlod_mesh::{Connectivity, FaceId, Layer, Mesh, VertexId, WedgeId};
 
-use crate::engine::candidates::CandidateId;
+use crate::surface::candidate_states::{CandidateId, State, States};
 use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::rims::Rims;
 use crate::surface::ties::Ties;
@@ -40,48 +43,12 @@ pub(crate) const MOST_FACES: usize = 256;
 /// Size up to which a star is searched each time a face leaves it.
 const MOST_SEARCHED: u32 = 32;
 
-/// State of a candidate for contraction.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u8)]
-pub(crate) enum State {
-    /// Not open for contraction at present.
-    #[default]
-    Closed,
-    /// Waiting in the queue.
-    Queued,
-    /// Refused, and out of the queue until its neighbourhood changes.
-    Parked,
-    /// No longer open, but its queue entry remains and is dropped when it comes up.
-    Ghost,
-}
-
 /// Face with the states of its candidates, which are needed together.
 #[derive(Clone, Copy, Debug)]
 struct FaceRecord {
     vertices: [VertexId; 3],
     alive: bool,
     states: States,
-}
-
-/// States of a face's four candidates, two bits each.
-#[derive(Clone, Copy, Debug, Default)]
-struct States(u8);
-
-impl States {
-    #[inline]
-    fn get(self, slot: usize) -> State {
-        match self.0 >> (2 * slot) & 3 {
-            0 => State::Closed,
-            1 => State::Queued,
-            2 => State::Parked,
-            _ => State::Ghost,
-        }
-    }
-
-    #[inline]
-    fn set(&mut self, slot: usize, state: State) {
-        self.0 = self.0 & !(3 << (2 * slot)) | (state as u8) << (2 * slot);
-    }
 }
 
 #[derive(Clone, Copy, Debug)]

@@ -73,8 +73,7 @@ pub struct RingVertex {
     pub position: DVec3,
     /// Bit mask of the contracted vertices to which an edge leads from here.
     pub(crate) adjacent: u8,
-    /// Bit mask of the contracted vertices that are ends of a contracted edge of which this vertex
-    /// is a wing.
+    /// Bit mask of the ends of the contracted edges that have this vertex as a wing.
     pub(crate) wing: u8,
 }
 

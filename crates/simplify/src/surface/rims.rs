@@ -4,9 +4,6 @@
 use glam::DVec3;
 use meshlod_mesh::{Connectivity, Mesh, Side, Twin, UnionFind, VertexId};
 
-use crate::methods::feature_edges::feature_edges;
-use crate::surface::Surface;
-
 /// Not on a boundary.
 const NONE: u32 = u32::MAX;
 
@@ -48,7 +45,7 @@ impl Rims {
     }
 
     /// Returns the apex over the boundary at a vertex.
-    fn apex(&self, v: VertexId) -> Option<DVec3> {
+    pub(crate) fn apex(&self, v: VertexId) -> Option<DVec3> {
         let rim = *self.loop_of.get(v.index())?;
         self.apexes.get(rim as usize).copied()
     }
@@ -59,24 +56,5 @@ impl Rims {
         if let Some(&rim) = rims.find(|&&rim| rim != NONE) {
             self.loop_of[kept.index()] = rim;
         }
-    }
-}
-
-/// Calls `each` for the triangles of the cones at the boundary edges of some vertices, with the
-/// normal, twice the area long, and a corner relative to `origin`.
-pub(crate) fn cone_faces(
-    surface: &Surface,
-    contracted: &[VertexId],
-    origin: DVec3,
-    mut each: impl FnMut(DVec3, DVec3),
-) {
-    if contracted.iter().all(|&v| surface.rims.apex(v).is_none()) {
-        return;
-    }
-    for edge in feature_edges(surface, contracted).into_iter().filter(|edge| edge.is_boundary) {
-        let [from, to] = edge.ends;
-        let Some(apex) = surface.rims.apex(from).or(surface.rims.apex(to)) else { continue };
-        let [a, b] = [to, from].map(|v| surface.position(v) - origin);
-        each((b - a).cross(apex - origin - a), a);
     }
 }

@@ -103,8 +103,8 @@ impl Wedges {
         self.chart(a) == self.chart(b)
     }
 
-    /// Determines which ends of an edge can be removed: those of which every chart meets exactly
-    /// one chart of the other end.
+    /// Determines which ends of an edge can be removed: every chart of such an end meets exactly
+    /// one chart of the other.
     pub(crate) fn freedom(
         &self,
         surface: &Surface,

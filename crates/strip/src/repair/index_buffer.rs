@@ -70,7 +70,7 @@ impl IndexBuffer {
         self.used
     }
 
-    /// Takes a free place of at least this size, and gives back what is left of it.
+    /// Takes a free place of at least this size, and returns the rest of it to the free list.
     fn take(&mut self, size: usize) -> Option<usize> {
         let (&found, starts) = self.free.range_mut(size..).next()?;
         let start = starts.pop();

@@ -27,7 +27,7 @@ pub struct StripIndices {
     updates: u64,
 }
 
-/// Largest number of unused entries beside an eighth of the used ones.
+/// Maximum number of unused entries, in addition to an eighth of the used ones.
 const SPARE: usize = 64;
 
 impl StripIndices {

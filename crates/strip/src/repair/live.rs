@@ -201,7 +201,7 @@ fn follow(cover: &mut PathCover, faces: &[[VertexId; 3]], strips: &Strips) {
 
 #[cfg(test)]
 impl LiveStrips {
-    /// Panics unless the strips draw what is in the slots.
+    /// Panics unless the strips draw exactly the triangles in the slots.
     pub(crate) fn check(&self) {
         use crate::verify::{Difference, difference};
         self.cover.check();

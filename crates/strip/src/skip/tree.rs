@@ -132,7 +132,7 @@ impl MergeTree {
         shown.filter(|face| self.is_drawn(face)).collect()
     }
 
-    /// Returns whether the vertices are wedges, of which a vertex of the mesh may have several.
+    /// Returns true if the vertices are wedges; a vertex of the mesh may have several.
     pub fn has_wedges(&self) -> bool {
         self.wedges.is_some()
     }

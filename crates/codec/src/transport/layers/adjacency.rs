@@ -1,4 +1,4 @@
-//! Which faces of a block meet along which edges.
+//! Adjacency of the faces of a block across edges.
 
 /// Faces of a block over its vertices, with the side across each side.
 #[derive(Clone, Debug)]

@@ -6,7 +6,7 @@ use super::super::rans::{Symbol, Symbols};
 use super::super::read::{number, residual};
 use super::models::{BIT_BITS, Chance, LayerTables, ResidualModel};
 
-/// Part of a block that is coded.
+/// Section of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in super::super) enum BlockPart {
     /// Wedges of corners.
@@ -17,7 +17,7 @@ pub(in super::super) enum BlockPart {
     Labels,
 }
 
-/// Receiver of the decisions of a block. Encoders are told what to code, decoders return it.
+/// Receiver of the decisions of a block. An encoder receives each value, a decoder returns it.
 pub(in super::super) trait Coder {
     /// Notes that a part of the block begins.
     fn begin(&mut self, _: BlockPart) {}
@@ -39,7 +39,7 @@ impl AdaptiveBits {
     }
 }
 
-/// Appends what is coded as symbols.
+/// Coder that appends symbols.
 pub(in super::super) struct SymbolWriter<'a> {
     tables: &'a LayerTables,
     bits: AdaptiveBits,
@@ -82,7 +82,7 @@ impl Coder for SymbolWriter<'_> {
     }
 }
 
-/// Reads what is coded.
+/// Coder that reads symbols.
 pub(in super::super) struct SymbolReader<'a, 's, 'b> {
     tables: &'a LayerTables,
     bits: AdaptiveBits,

@@ -1,4 +1,4 @@
-//! Coding of directions, given what the geometry lets expect.
+//! Coding of directions as residuals of geometric predictions.
 
 use glam::DVec3;
 use meshlod_mesh::octahedral::{project, unfold};
@@ -15,11 +15,11 @@ use super::octahedron::{fold_in, shortest};
 pub(super) const DIRECTION_RESIDUALS: usize = BENDS * 2 * LEVELS * 2;
 const BENDS: usize = 3;
 
-/// Mode of a layer of directions that the geometry tells nothing of, such as a constant: each is
-/// expected to be the mean of its neighbours.
+/// Mode of a layer of directions unrelated to the geometry, such as a constant: each is predicted
+/// as the mean of its neighbours.
 pub(super) const BY_NEIGHBOURS: u8 = 0x80;
 
-/// Direction to expect.
+/// Predicted direction.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Guess {
     /// Unit direction, or zero if the geometry is not asked; `None` if it has none.
@@ -33,14 +33,14 @@ pub(super) struct Guess {
 /// Directions to expect in a block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Expected<G> {
-    /// Returns what the geometry lets expect of an entry.
+    /// Returns the direction predicted from the geometry for an entry.
     pub(super) guess: G,
-    /// Part of the neighbours' differences from their guesses that is expected again.
+    /// Fraction of the neighbours' residuals that is expected again.
     pub(super) trust: f64,
 }
 
-/// Returns what is expected in the mode [`BY_NEIGHBOURS`]: all of what the neighbours differ from
-/// nothing.
+/// Returns the parameters of the mode [`BY_NEIGHBOURS`]: no guess, and all of the neighbours'
+/// residuals.
 pub(super) fn by_neighbours() -> Expected<impl Fn(usize) -> Guess> {
     Expected { guess: |_| Guess { direction: Some(DVec3::ZERO), ..Guess::default() }, trust: 1.0 }
 }
@@ -56,7 +56,7 @@ pub(super) fn code_directions(
     let bits = layer.coding.direction_bits().expect("a layer of directions");
     let stride = job.width();
     let mut energy = Energy::new(entries.len());
-    // Difference of each direction from what the geometry lets expect.
+    // Residual of each direction against its geometric prediction.
     let mut differences: Vec<DVec3> = Vec::with_capacity(entries.len());
     let mut last = DVec3::Z;
     for entry in 0..entries.len() {

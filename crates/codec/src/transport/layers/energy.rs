@@ -1,4 +1,4 @@
-//! How well values around were predicted, which tells how well the next one will be.
+//! Residuals of the values around, from which the size of the next one is predicted.
 
 /// Sizes of residuals by entry.
 #[derive(Clone, Debug)]
@@ -27,7 +27,7 @@ impl Energy {
         self.count += 1;
     }
 
-    /// Returns the mean over the neighbours; 0 if there are none.
+    /// Returns the mean over the neighbours; 0 without neighbours.
     pub(super) fn around(&self) -> f64 {
         self.sum / f64::from(self.count.max(1))
     }

@@ -1,5 +1,5 @@
-//! Values of one layer in a block: wedges of a vertex often share them, as normals are shared
-//! across a seam of the texture.
+//! Distinct values of one layer in a block: wedges of a vertex often share them, as normals are
+//! shared across a seam of the texture.
 
 use super::adjacency::{BlockFaces, NONE};
 use super::coder::Coder;

@@ -1,8 +1,9 @@
 //! Choice of how each layer is predicted, and fitting of the tables.
 
 use super::block::{BlockCoding, BlockLayer, code_block};
-use super::format::{LayerContexts, LayersFormat};
+use super::format::LayersFormat;
 use super::geometry::BlockGeometry;
+use super::layer_format::LayerContexts;
 use super::models::TableCodes;
 use super::source::BlockSource;
 use super::statistics::Statistics;

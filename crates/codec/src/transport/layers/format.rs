@@ -1,11 +1,10 @@
 //! Description of attributes, materials and objects in the header.
 
-use meshlod_mesh::LayerKind;
-
 use super::super::MAX_LAYER_VALUES;
 use super::directions::{BY_NEIGHBOURS, DIRECTION_RESIDUALS};
 use super::entries::ENTRY_BITS;
 use super::labels::LABEL_BITS;
+use super::layer_format::{LayerContexts, LayerFormat, Predictor};
 use super::models::{LayerTables, TableCodes};
 use super::tangents::TANGENT_BITS;
 use super::uv::UV_RESIDUALS;
@@ -15,17 +14,7 @@ use crate::attributes::LayerCoding;
 use crate::bytes::{Malformed, Reader};
 use crate::labels::{restore_names, store_names};
 
-/// Attribute layer of a file.
-#[derive(Clone, Debug, PartialEq)]
-pub(in super::super) struct LayerFormat {
-    pub(in super::super) coding: LayerCoding,
-    /// How values are predicted; see the predictors.
-    pub(super) mode: u8,
-    /// Greatest integer of each component.
-    pub(super) most: Vec<u32>,
-}
-
-/// Everything that a block has besides its positions and faces.
+/// Contents of a block other than its positions and faces.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(in super::super) struct LayersFormat {
     pub(in super::super) layers: Vec<LayerFormat>,
@@ -33,35 +22,10 @@ pub(in super::super) struct LayersFormat {
     pub(in super::super) names: [Option<Vec<String>>; 2],
 }
 
-/// How a layer is predicted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Predictor {
-    Normals,
-    Tangents,
-    Uvs,
-    Values,
-}
-
-/// First contexts of a layer: of bits and of residuals.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct LayerContexts {
-    pub(super) bits: usize,
-    pub(super) residuals: usize,
-}
-
 /// Greatest integer of a component: what f32 distinguishes, on both sides of zero.
 const MAX_NUMBER: u32 = 1 << 26;
 
 impl LayerFormat {
-    pub(super) fn predictor(&self) -> Predictor {
-        match self.coding.kind {
-            LayerKind::Normal => Predictor::Normals,
-            LayerKind::Tangent => Predictor::Tangents,
-            LayerKind::Uv(_) => Predictor::Uvs,
-            _ => Predictor::Values,
-        }
-    }
-
     /// Returns the ways in which the layer may be predicted. What the surface expects comes first: it
     /// is taken where others are no better.
     pub(super) fn modes(&self) -> Vec<u8> {
@@ -76,7 +40,7 @@ impl LayerFormat {
         }
     }
 
-    /// Returns how many contexts the layer has.
+    /// Returns the numbers of contexts of the layer.
     pub(super) fn contexts(&self) -> LayerContexts {
         let (bits, residuals) = match self.predictor() {
             Predictor::Normals => (0, DIRECTION_RESIDUALS),

@@ -1,8 +1,8 @@
 //! One layer of one block, as the predictors see it.
 
 use super::entries::LayerEntries;
-use super::format::{LayerContexts, LayerFormat};
 use super::geometry::BlockGeometry;
+use super::layer_format::{LayerContexts, LayerFormat};
 
 /// Layer of a block that is being coded.
 #[derive(Clone, Copy, Debug)]

@@ -17,7 +17,9 @@ impl Chance {
     /// A code stands for a probability: 0 to 31 for seldom set, in half octaves; then seldom clear.
     fn of(code: u8) -> Self {
         const HALVES: [u32; 2] = [BIT_ALL as u32, 2896];
-        let rare = |code: u8| (HALVES[usize::from(code % 2)] >> (1 + code / 2)).max(LEAST.into());
+        let rare = |code: u8| {
+            (HALVES[usize::from(code % 2)] >> (1 + code / 2)).max(MIN_PROBABILITY.into())
+        };
         match code {
             0..CHANCES => Self(BIT_ALL - rare(code) as u16),
             _ => Self(rare((code - CHANCES).min(CHANCES - 1)) as u16),
@@ -49,7 +51,7 @@ impl Chance {
     /// Moves the probability towards a bit.
     #[inline]
     pub(super) fn adapt(&mut self, bit: bool) {
-        let to = if bit { LEAST } else { BIT_ALL - LEAST };
+        let to = if bit { MIN_PROBABILITY } else { BIT_ALL - MIN_PROBABILITY };
         let by = (i32::from(to) - i32::from(self.0)) / (1 << SLOWNESS);
         self.0 = (i32::from(self.0) + by) as u16;
     }
@@ -58,8 +60,8 @@ impl Chance {
 const CHANCES: u8 = 16;
 /// Bits of a code.
 const CHANCE_BITS: u32 = 5;
-/// Least probability of a bit, in 4096ths.
-const LEAST: u16 = 8;
+/// Minimum probability of a bit, in 4096ths.
+const MIN_PROBABILITY: u16 = 8;
 const SLOWNESS: u32 = 5;
 
 /// Distribution of the residuals of a context.
@@ -73,7 +75,7 @@ pub(super) struct ResidualModel {
 #[derive(Clone, Debug)]
 pub(in super::super) struct LayerTables {
     pub(super) bits: Vec<Chance>,
-    /// Different distributions, and which of them each context has.
+    /// Distinct distributions, and the one of each context.
     models: Vec<ResidualModel>,
     of_context: Vec<u16>,
 }

@@ -1,4 +1,4 @@
-//! Ways on the unfolded octahedron, whose sides are folded onto themselves.
+//! Shortest paths on the unfolded octahedron, whose sides are folded onto themselves.
 
 /// Returns the shortest way from one code to another, along both axes. A way may leave the square:
 /// beyond a side it comes back at the opposite place of the same side.

@@ -1,4 +1,4 @@
-//! Distributions of residuals, and the best one for what occurs.
+//! Distributions of residuals, and the best one for given counts.
 
 use super::super::models::{CLASSES, ESCAPE, MAX_RESIDUAL, parts};
 

@@ -5,7 +5,8 @@ use std::collections::HashMap;
 use meshlod_mesh::{AttributeBounds, FaceId, Layer, Mesh, VertexId, WedgeId};
 
 use super::super::walk::BlockWalk;
-use super::format::{LayerFormat, LayersFormat};
+use super::format::LayersFormat;
+use super::layer_format::LayerFormat;
 use crate::attributes::LayerCoding;
 
 /// Rounded attributes and labels of a mesh.

@@ -1,4 +1,4 @@
-//! Counts of what would be coded, to which predictions and tables are fitted.
+//! Counts of symbols, to which predictions and tables are fitted.
 
 use super::coder::Coder;
 use super::models::{Chance, TableCodes};

@@ -77,13 +77,12 @@ struct Charts<'a> {
     entries: &'a LayerEntries,
     /// −1 if the last chart seen is mirrored.
     sign: f64,
-    /// Part to which a chart is expected to stretch on as it did beyond an edge; otherwise it keeps
-    /// angles.
+    /// Weight of stretching a chart as beyond the last edge, against keeping its angles.
     trust: f64,
 }
 
 impl Charts<'_> {
-    /// Gathers what is known around an entry.
+    /// Gathers the known values around an entry.
     fn around(&self, entry: usize, uvs: &[DVec2], energy: &mut Energy) -> UvSurroundings {
         let mut all = UvSurroundings::default();
         energy.clear();

@@ -38,7 +38,7 @@ struct ValueSurroundings {
     /// The first neighbour, and the first other one.
     neighbours: [Option<usize>; 2],
     energy: Energy,
-    /// Whether the last entry has the values of a neighbour.
+    /// True if the last entry repeated a neighbour.
     was_copied: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Which corners of a block share a wedge.
+//! Coding of the corners of a block that share a wedge.
 
 use super::adjacency::{BlockFaces, NONE, next, previous};
 use super::coder::Coder;
@@ -16,8 +16,8 @@ pub(in super::super) struct BlockWedges {
 
 /// Contexts of the bits.
 pub(super) const WEDGE_BITS: usize = 3 * 9 + 3 + OTHERS;
-/// Wedges of a vertex that are tried, besides those of faces beside the corner. A wedge that is not
-/// found is stored again.
+/// Number of a vertex's wedges that are tried after those of the faces next to the corner. A wedge
+/// that is not found is stored again.
 const OTHERS: usize = 3;
 
 /// Codes the wedge of each corner: that of the face across one of its two sides, an earlier one of

@@ -77,7 +77,7 @@ impl VertexValues {
     }
 }
 
-/// Which values of a wedge are blended while its vertex moves.
+/// Selection of the values of a wedge that are blended while its vertex moves.
 ///
 /// Numbers of joints and labels cannot be blended: these, and weights of joints, change at the end.
 #[derive(Clone, Debug)]
@@ -119,7 +119,8 @@ impl Blend {
     }
 }
 
-/// Returns true if a child and the node of an update have one wedge each, of which one becomes the other.
+/// Returns true if a child and the node of an update have one wedge each, and one becomes the
+/// other.
 fn is_continued(mt: &Implicit, update: u32, node: u32, child: u32) -> bool {
     mt.wedges().is_some_and(|all| all.count(child) == 1 && all.count(node) == 1)
         && wedge_pairs(mt, update, child).next().is_some()

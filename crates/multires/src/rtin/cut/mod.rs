@@ -41,7 +41,7 @@ pub struct RtinCut<'m> {
 impl<'m> RtinCut<'m> {
     /// Creates a cut that starts as the coarsest level.
     ///
-    /// Cost: O(n), n = vertices of the field, of which it keeps six bytes each.
+    /// Cost: O(n), n = vertices of the field; it keeps six bytes for each.
     pub fn new(model: &'m Rtin) -> Self {
         let mut front = FieldFront::new(model);
         front.triangles.mark();

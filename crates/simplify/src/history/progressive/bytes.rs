@@ -11,7 +11,7 @@ use thiserror::Error;
 
 use super::check::check;
 use super::{Progressive, VertexSplit, VertexSplits};
-use crate::engine::candidates::CandidateId;
+use crate::surface::candidate_states::CandidateId;
 
 const MAGIC: &[u8; 8] = b"meshlodp";
 const VERSION: u32 = 1;

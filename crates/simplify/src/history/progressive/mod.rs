@@ -10,10 +10,10 @@ use meshlod_mesh::{Attributes, FaceId, Mesh, VertexId, WedgeId};
 
 pub use bytes::ProgressiveError;
 
-use crate::engine::candidates::CandidateId;
 use crate::history::History;
 use crate::simplifier::Simplifier;
 use crate::surface::Surface;
+use crate::surface::candidate_states::CandidateId;
 
 /// Progressive mesh: all levels of a [`Simplifier`] run, one of which is current.
 ///

@@ -1,5 +1,16 @@
 //! Attributes in the kernel: the trait [`AttributeModel`], its implementation by quadrics at the
 //! wedges, and [`NoAttributes`](bare::NoAttributes), which compiles to nothing.
+//!
+//! | files, in reading order | hold |
+//! |---|---|
+//! | `bare`, `attributed` | the two implementations: start with `attributed` |
+//! | `layers`, `attribute_quadric`, `wedge_quadrics` | costed layers as channels, and a quadric at each wedge |
+//! | `corners`, `import_export` | from the corners of the input to slots, and back |
+//! | `scratch`, `face_wedges`, `seam_sectors`, `wedge_pairs` | the slots around an edge, and which become one |
+//! | `new_values`, `update_smooth`, `update_at_seams` | a contraction: new values, then new quadrics |
+//! | `seam_costs`, `refused_edges`, `seam_release` | what seams cost, and when they give way |
+//! | `uv_flips` | faces that would flip in texture space |
+//! | `uncosted_layers` | layers outside the metric |
 
 pub(crate) mod attribute_quadric;
 pub(crate) mod attributed;

@@ -30,7 +30,7 @@ pub(crate) struct EdgeSamples {
 /// points .55 %.
 const SHARP: f32 = 0.97;
 
-/// The edges of a closed ring sum to zero but for rounding, which is less than this part of their
+/// The edges of a closed ring sum to zero, up to rounding errors below this fraction of their
 /// length.
 const CLOSED: f32 = 1e-3;
 

@@ -16,8 +16,8 @@ use crate::kernel::collapse::deviation::FaceFan;
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::mesh::one_ring::{GHOST, VertexStore};
 
-/// Part of the bound up to which the sum of distances is trusted. Distances are taken at vertices
-/// and planes only, and are sometimes larger in between. Greatest distances of the bunny,
+/// Fraction of the bound up to which the sum of distances is trusted. Distances are taken at
+/// vertices and planes only, and are sometimes larger in between. Greatest distances of the bunny,
 /// fandisk-32k and the sample `fish` relative to a bound of .1 % of the diagonal: .5 1.00, 1.00,
 /// 1.00; .7 1.40, 1.09, 1.40.
 const SURE: f32 = 0.5;
@@ -38,7 +38,7 @@ pub(crate) struct ErrorBound<'m> {
     next: Vec<u32>,
     /// Distance that the surface has moved at each vertex, all steps added up.
     travelled: Vec<f32>,
-    /// Part of the bound that holds at each vertex; empty if the whole bound holds everywhere.
+    /// Fraction of the bound that holds at each vertex; empty if the whole bound holds everywhere.
     parts: Vec<f32>,
 }
 
@@ -211,8 +211,8 @@ impl BoundPart<'_> {
         Some(probe.farthest())
     }
 
-    /// Returns the largest distance of sampled points of the old edges from the new faces. By as
-    /// much as the old edges are off, the new faces may be nearer to the input.
+    /// Returns the largest distance of sampled points of the old edges from the new faces. The new
+    /// faces may be nearer to the input by the error of the old edges.
     fn old_edges_to_new_faces(&self, edge_ring: &EdgeRing) -> f32 {
         let spokes = (0..edge_ring.len).filter(|&i| edge_ring.ids[i] != GHOST);
         let spokes = spokes.map(|i| (edge_ring.along * edge_ring.of_v1[i], edge_ring.relative(i)));

@@ -125,7 +125,7 @@ impl VertexStore {
 }
 
 impl<'v> Vertices<'v> {
-    /// Borrows vertices none of which is a copy.
+    /// Borrows vertices, assuming that none is a copy.
     pub(crate) fn new(all: &'v mut [Vertex], base: u32, long: &'v mut Vec<LongRing>) -> Self {
         Self { all, base, long, copied: &[], split: &[], first_copy: GHOST, protection: 1.0 }
     }

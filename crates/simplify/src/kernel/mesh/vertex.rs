@@ -27,7 +27,7 @@ pub(crate) struct Vertex {
     pub(crate) moved: f32,
     /// Bucket of the vertex's entry in the queue.
     pub(crate) bucket: u16,
-    /// Highest bucket of which the vertex's edges have been refused since its ring changed.
+    /// Highest bucket whose edges at this vertex have been refused since its ring changed.
     pub(crate) floor: u16,
     pub(crate) flags: VertexFlags,
     /// Number of neighbours in `ring`, or [`LONG`](crate::kernel::mesh::one_ring::LONG) if they are

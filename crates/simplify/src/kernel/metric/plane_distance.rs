@@ -23,8 +23,8 @@ use crate::kernel::metric::edge_quadric::{
 use crate::kernel::metric::edge_quadric_f64::{EdgeQuadricF64, matrix};
 use crate::kernel::metric::{Metric, VANISHING};
 use crate::kernel::simd::{LANES, TINY, select_max, sum_of};
+use crate::method::Method;
 use crate::methods::qem::{BOUNDARY_WEIGHT, MEMORY};
-use crate::options::Method;
 
 /// Weight of an edge between two charts, as in the policy engine.
 const SEAM_WEIGHT: f32 = 1.0;

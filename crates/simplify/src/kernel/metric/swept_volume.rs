@@ -21,7 +21,7 @@ use crate::kernel::metric::edge_quadric::{
 use crate::kernel::metric::edge_quadric_f64::{EdgeQuadricF64, matrix};
 use crate::kernel::metric::{Metric, VANISHING, VOLUME_SHARE};
 use crate::kernel::simd::{TINY, select_max};
-use crate::options::Method;
+use crate::method::Method;
 
 /// Squared swept volumes, without memory.
 #[derive(Clone, Copy, Debug)]
@@ -247,8 +247,8 @@ fn on_plane_of_equal_volume(quadric: &EdgeQuadricF64) -> DVec3 {
         + e2 * ((m11 * r2 - m12 * r1) / determinant)
 }
 
-/// Goes from `best` towards a place on the plane of equal volume, until the quadric has grown by
-/// what is allowed.
+/// Goes from `best` towards a place on the plane of equal volume, until the quadric has grown as
+/// far as allowed.
 ///
 /// At a corner of a box, or at the end of a bar, the plane is farther away than half the edge: there
 /// the volume is not preserved. On a scan this is very rare.

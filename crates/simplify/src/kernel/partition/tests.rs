@@ -1,4 +1,5 @@
 use meshlod_fixtures as fixtures;
+use meshlod_fixtures::shape::bare;
 use meshlod_mesh::{Mesh, VertexId};
 use meshlod_samples as samples;
 
@@ -65,7 +66,6 @@ impl Test {
 }
 
 fn meshes() -> [Mesh; 5] {
-    let bare = |mesh| Mesh { attributes: None, ..mesh };
     [
         samples::sphere(3000),
         samples::knot(3000),

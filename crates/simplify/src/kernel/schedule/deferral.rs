@@ -11,14 +11,15 @@ use crate::kernel::schedule::bucket_queue::{bucket, last_bucket, min_cost_in};
 /// nineteen models, relative to 4: 3 1.02 in the mean, .95 in the maximum (both with a
 /// [`NEGLIGIBLE`] of 1e-4); 5 1.01, 1.12. Greatest distances of horse-97k and igea at 10 %: 3 .101,
 /// .062; 4 .111, .069; 5 .098, .062; 6 .123, .067.
-const FAR: f32 = 4.0;
+const TOO_FAR: f32 = 4.0;
 
 /// Approximate number of contractions that the running mean remembers.
 const MEMORY: f32 = 64.0;
 
-/// Squared distance, in the frame, that is always usual: rounding errors, and what is invisible. On
-/// small models the mean must not have to grow from nothing. Geometric means as for [`FAR`],
-/// relative to 1e-5: 1e-8 1.03, 1.00 (with a limit of 5); 1e-6 1.02, 1.04; 1e-4 1.01, 1.04.
+/// Squared distance, in the frame, that always counts as usual: rounding errors and invisible
+/// changes. On small models the mean must not have to grow from nothing. Geometric means as for
+/// [`TOO_FAR`], relative to 1e-5: 1e-8 1.03, 1.00 (with a limit of 5); 1e-6 1.02, 1.04; 1e-4 1.01,
+/// 1.04.
 const NEGLIGIBLE: f32 = 1e-5;
 
 /// Minimum delay in buckets: one octave.
@@ -28,7 +29,7 @@ const MIN_DELAY: u16 = 4;
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Deferral {
     usual: f32,
-    /// Highest front so far. What is tried again comes before it.
+    /// Highest front so far. Edges that are retried come before it.
     front: u16,
 }
 
@@ -39,7 +40,7 @@ impl Deferral {
     /// A deferred contraction counts for the mean too, or the mean would stay behind the front.
     #[inline(always)]
     pub(crate) fn wait(&mut self, now: f32, moved: f32, front: u16) -> Option<u16> {
-        self.usual += (now.min(FAR * self.usual()) - self.usual) / MEMORY;
+        self.usual += (now.min(TOO_FAR * self.usual()) - self.usual) / MEMORY;
         self.front = self.front.max(front);
         self.delay(moved, self.front)
     }
@@ -60,7 +61,7 @@ impl Deferral {
     /// squared distance, or `None` if it may go ahead.
     #[inline(always)]
     pub(crate) fn delay(&self, moved: f32, bucket: u16) -> Option<u16> {
-        let excess = moved / (FAR * self.usual());
+        let excess = moved / (TOO_FAR * self.usual());
         if excess > 1.0 { later(self.front.max(bucket), excess) } else { None }
     }
 

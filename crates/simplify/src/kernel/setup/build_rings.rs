@@ -23,8 +23,7 @@ pub(crate) struct Fans {
 }
 
 impl Fans {
-    /// Builds the rings of vertices at these places, the last of which are copies, from `count`
-    /// faces.
+    /// Builds the rings of vertices at these places from `count` faces; copies come last.
     pub(crate) fn new<M: Metric>(
         (places, copied): (&[Vec3], Vec<u32>),
         count: usize,

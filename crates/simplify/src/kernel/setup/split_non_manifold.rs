@@ -1,5 +1,7 @@
 //! Splits non-manifold vertices: each fan of faces gets a copy, and all copies stay where they are.
 //! In the result they are one vertex again, so the topology is preserved.
+//!
+//! docs/notes/splitting.md says how this differs from the other splitters and sewers.
 
 use rustc_hash::FxHashMap;
 

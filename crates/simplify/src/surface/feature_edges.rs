@@ -48,7 +48,7 @@ fn sides_at(surface: &Surface, face: FaceId, v: VertexId) -> [(VertexId, Side); 
 
 /// Returns true if an edge with two faces is a feature: a seam, or a contact with a tied surface.
 #[inline]
-pub(super) fn is_feature(surface: &Surface, side: Side, twin: Side) -> bool {
+pub(crate) fn is_feature(surface: &Surface, side: Side, twin: Side) -> bool {
     is_seam(surface, side, twin) || is_contact(surface, ends(surface, side))
 }
 
