@@ -1,10 +1,7 @@
 #![no_main]
 
 use meshlod_fuzz::models;
-use meshlod_multires::{
-    Archive, Cut, Focus, HeightField, Implicit, Level, Model, ModelFile, Query, Rtin,
-    RtinExtractor, Tolerance, UpdateLimits, ViewCamera,
-};
+use meshlod_multires::{Archive, Cut, Focus, HeightField, Implicit, Level, Model, ModelFile, Query, Rtin, RtinExtractor, SlotMesh, Tolerance, UpdateLimits, ViewCamera};
 
 libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("mlod"), |bytes: &[u8]| {
     // With the right checksums, more mutations get past the header.

@@ -247,8 +247,8 @@ mod tests {
                     all.sort_unstable();
                     all
                 };
-                let vertices = |(slot, nodes)| cut.wedges(slot).unwrap_or(nodes);
-                let expected = sorted(cut.triangles().map(vertices).collect());
+                let vertices = |(slot, nodes)| cut.slot_mesh().wedges(slot).unwrap_or(nodes);
+                let expected = sorted(cut.slot_mesh().triangles().map(vertices).collect());
                 assert_eq!(sorted(slots.values().copied().collect()), expected);
             }
         }
@@ -285,7 +285,7 @@ mod tests {
     #[test]
     fn a_step_towards_an_earlier_query_is_not_the_answer() {
         let mut follower = CutFollower::start(model(), options(None));
-        let finest = model().levels().cut().face_count();
+        let finest = model().levels().cut().slot_mesh().face_count();
         follower.ask(uniform(0.0));
         // The worker may be done with it, and wait to hand it over.
         std::thread::sleep(std::time::Duration::from_millis(50));

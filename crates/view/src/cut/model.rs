@@ -117,7 +117,7 @@ fn normals(model: &Hierarchy, places: &[DVec3]) -> Result<Vec<DVec3>, QueryError
     let mut finest = model.cut();
     finest.update(&Query::uniform(0.0), &UpdateLimits::default())?;
     let mut sums = vec![DVec3::ZERO; places.len()];
-    for (_, nodes) in finest.triangles() {
+    for (_, nodes) in finest.slot_mesh().triangles() {
         let [a, b, c] = nodes.map(|node| places[node as usize]);
         let normal = (b - a).cross(c - a);
         nodes.iter().for_each(|&node| sums[node as usize] += normal);
