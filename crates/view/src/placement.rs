@@ -7,15 +7,19 @@ use glam::{DMat4, DVec3, DVec4, Mat4};
 use meshlod::picture::{BackFaces, Camera, Lighting, Wireframe};
 use wgpu::{BindGroup, Buffer, Queue};
 
+use crate::Renderer;
+use crate::gpu::bindings::bind_buffers;
+use crate::gpu::buffers::uniform_of;
+
 /// How one thing is seen by one camera: a small buffer on the GPU.
 ///
 /// What is drawn in two views of one frame needs two placements, since all uploads of a frame come
 /// before its first pass.
 #[derive(Debug)]
 pub struct Placement {
-    pub(crate) buffer: Buffer,
+    buffer: Buffer,
     pub(crate) bind_group: BindGroup,
-    pub(crate) queue: Queue,
+    queue: Queue,
 }
 
 /// Look of a thing that is drawn, beside its own colours.
@@ -61,7 +65,7 @@ impl Default for Shade {
 /// `Draw` of draw.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct DrawUniforms {
+struct DrawUniforms {
     clip_from_local: [[f32; 4]; 4],
     eye: [f32; 3],
     lighting: u32,
@@ -76,6 +80,15 @@ pub(crate) struct DrawUniforms {
     seed: f32,
 }
 
+impl Renderer {
+    /// Creates a placement, which must be set before it is used.
+    pub fn placement(&self) -> Placement {
+        let buffer = uniform_of(self.gpu(), "placement", &DrawUniforms::zeroed());
+        let bind_group = bind_buffers(self.gpu(), &self.draw_layout, &[&buffer]);
+        Placement { buffer, bind_group, queue: self.gpu().queue.clone() }
+    }
+}
+
 impl Placement {
     /// Sets the camera, the size of the picture in pixels, the origin of the thing in the world, and
     /// its look.
@@ -86,7 +99,7 @@ impl Placement {
 }
 
 impl DrawUniforms {
-    pub(crate) fn new(camera: &Camera, size: [u32; 2], origin: [f64; 3], shade: &Shade) -> Self {
+    fn new(camera: &Camera, size: [u32; 2], origin: [f64; 3], shade: &Shade) -> Self {
         let [right, up, forward] = camera.axes().map(|axis| DVec3::from(axis).as_vec3());
         let eye = (DVec3::from(camera.eye()) - DVec3::from(origin)).as_vec3();
         let wire = shade.wireframe.unwrap_or_default();

@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use wgpu::{Buffer, BufferUsages};
 
-use super::CutPatch;
 use super::list::{EMPTY, TriangleList};
+use super::slots::CutPatch;
 use crate::Gpu;
-use crate::renderer::buffer_of;
+use crate::gpu::buffers::buffer_of;
 
 /// Triangles that come and go, and the changes that the lists get when that is over.
 #[derive(Debug)]

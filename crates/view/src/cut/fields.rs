@@ -5,7 +5,7 @@ use meshlod::OwnedPaint;
 use meshlod::mesh::LayerKind;
 use meshlod::multires::{Hierarchy, LayerFormat, VertexValues};
 
-use super::CutModel;
+use super::model::CutModel;
 use crate::mesh::{VertexAttributes, fractions};
 
 /// Offsets of the values that are drawn among all values of a wedge, and the origin of positions.

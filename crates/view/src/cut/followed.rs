@@ -6,7 +6,7 @@ use meshlod::multires::{
     CutChange, Geomorph, HierarchyCut, Query, QueryError, SlotMesh, UpdateLimits,
 };
 
-use super::CutModel;
+use super::model::CutModel;
 
 /// Cut of a model, with or without motion.
 pub(super) enum Followed<'m> {

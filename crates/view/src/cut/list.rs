@@ -2,14 +2,14 @@
 
 use std::sync::OnceLock;
 
-use wgpu::{BindGroup, Buffer, BufferDescriptor, BufferUsages};
+use wgpu::{BindGroup, Buffer, BufferUsages};
 
-use super::CutPatch;
 use super::dirty::DirtyRanges;
 use super::groups::Group;
+use super::slots::CutPatch;
 use super::staged::Staged;
 use crate::Gpu;
-use crate::renderer::buffer_of;
+use crate::gpu::buffers::{blank_buffer, buffer_of};
 
 /// Triangles of a group by slot, on the GPU.
 #[derive(Debug)]
@@ -32,12 +32,7 @@ const USAGE: BufferUsages =
 impl TriangleList {
     /// Creates a list with room for a number of triangles.
     pub(super) fn new(gpu: &Gpu, group: Group, room: usize) -> Self {
-        let buffer = gpu.device.create_buffer(&BufferDescriptor {
-            label: Some("cut"),
-            size: (12 * room as u64).max(16),
-            usage: USAGE,
-            mapped_at_creation: false,
-        });
+        let buffer = blank_buffer(gpu, "cut", (12 * room as u64).max(16), USAGE);
         Self { group, buffer, slots: Vec::new(), storage: OnceLock::new() }
     }
 

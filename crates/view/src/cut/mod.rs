@@ -1,16 +1,29 @@
 //! Cuts of a multiresolution model on the GPU: index buffers are patched where the cut changes.
+//!
+//! In the order of reading:
+//! - the levels as they are drawn: `model`, with its `groups` of triangles, the `places` where a
+//!   scene shows them (`gpu_place` for shaders), its `materials`, and the `fields` of its vertices;
+//! - a thread that follows queries: `query` (what is asked and answered, with `error`), `follower`
+//!   in front of the thread, `worker` on it, `followed` (the cut that it changes), and `slots`
+//!   (which triangles of which group have changed);
+//! - the buffers that are changed: this file, a `list` of triangles for each group, its `dirty`
+//!   ranges, the bytes `staged` for them, vertices sent by `scatter`, and triangles that `fade`;
+//! - `pipelines`.
 
 mod dirty;
+mod error;
 mod fade;
 mod fields;
 mod followed;
 mod follower;
+mod gpu_place;
 mod groups;
 mod list;
 mod materials;
 mod model;
 mod pipelines;
 mod places;
+mod query;
 mod scatter;
 mod slots;
 mod staged;
@@ -18,21 +31,24 @@ mod worker;
 
 use wgpu::{BindGroup, Buffer, BufferUsages, IndexFormat, RenderPass};
 
+pub use self::error::CutError;
 use self::fade::Fade;
 pub use self::fields::MovedVertex;
 use self::fields::VertexFields;
-pub use self::follower::{CutError, CutFollower, CutQuery, CutStep, CutTolerance, FollowOptions};
+pub use self::follower::CutFollower;
 use self::groups::Group;
 use self::list::TriangleList;
 pub use self::model::CutModel;
-pub(crate) use self::pipelines::CutPipelines;
+use self::pipelines::CutPipelines;
 use self::places::Places;
+pub use self::query::{CutQuery, CutStep, CutTolerance, FollowOptions};
 use self::scatter::Scatter;
 pub use self::slots::CutPatch;
 use self::staged::Staged;
+use crate::gpu::buffers::buffer_of;
 use crate::mesh::{MaterialBinding, bind_faces};
 use crate::placement::Placement;
-use crate::renderer::{Renderer, buffer_of};
+use crate::renderer::Renderer;
 use crate::{Gpu, ViewError};
 
 /// Cut on the GPU: vertices of all levels, and the triangles of the current cut by mesh, material
@@ -221,7 +237,7 @@ impl GpuCut {
         let storages: Option<Vec<&BindGroup>> =
             self.lists.iter().map(|list| self.storage(renderer, list)).collect();
         let Some(storages) = storages else { return self.draw(renderer, pass, placement) };
-        pass.set_pipeline(&renderer.cuts().pulled);
+        pass.set_pipeline(&renderer.pipelines::<CutPipelines>().pulled);
         pass.set_bind_group(0, &placement.bind_group, &[]);
         pass.set_vertex_buffer(0, self.place_buffer.slice(..));
         let lists = self.lists.iter().zip(storages).filter(|(list, _)| !list.slots.is_empty());
@@ -233,7 +249,7 @@ impl GpuCut {
     }
 
     fn bind(&self, renderer: &Renderer, pass: &mut RenderPass<'_>, placement: &Placement) {
-        pass.set_pipeline(&renderer.cuts().fetched);
+        pass.set_pipeline(&renderer.pipelines::<CutPipelines>().fetched);
         pass.set_bind_group(0, &placement.bind_group, &[]);
         pass.set_vertex_buffer(0, self.positions.slice(..));
         pass.set_vertex_buffer(1, self.attributes.slice(..));

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{DMat4, DVec3};
+use glam::DVec3;
 use meshlod::mesh::{Bounds, LayerKind};
 use meshlod::multires::{Hierarchy, Implicit, Query, QueryError, UpdateLimits};
 use meshlod::{OwnedPaint, SceneLayout};
@@ -129,14 +129,4 @@ fn normals(model: &Hierarchy, places: &[DVec3]) -> Result<Vec<DVec3>, QueryError
         }
     }
     Ok(sums)
-}
-
-/// Returns the box around a box that a matrix has moved.
-pub(super) fn moved(bounds: &Bounds, transform: &DMat4) -> Bounds {
-    let corner = |i: usize| {
-        let pick = |k: usize| if i >> k & 1 == 0 { bounds.min[k] } else { bounds.max[k] };
-        transform.transform_point3(DVec3::new(pick(0), pick(1), pick(2))).to_array()
-    };
-    let corners: [[f64; 3]; 8] = std::array::from_fn(corner);
-    Bounds::of(&corners)
 }

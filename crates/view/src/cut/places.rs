@@ -8,8 +8,7 @@ use meshlod::LevelInstance;
 use meshlod::mesh::Bounds;
 use meshlod::multires::ViewCamera;
 
-use super::model::moved;
-use super::pipelines::GpuPlace;
+use super::gpu_place::GpuPlace;
 
 /// Places of all meshes, sorted by mesh; none if each is shown only where the levels have it.
 #[derive(Clone, Debug, Default)]
@@ -91,4 +90,14 @@ impl Places {
             if least == f64::INFINITY { f64::MAX } else { (slope * least).max(0.0) }
         }
     }
+}
+
+/// Returns the box around a box that a matrix has moved.
+fn moved(bounds: &Bounds, transform: &DMat4) -> Bounds {
+    let corner = |i: usize| {
+        let pick = |k: usize| if i >> k & 1 == 0 { bounds.min[k] } else { bounds.max[k] };
+        transform.transform_point3(DVec3::new(pick(0), pick(1), pick(2))).to_array()
+    };
+    let corners: [[f64; 3]; 8] = std::array::from_fn(corner);
+    Bounds::of(&corners)
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use wgpu::{Buffer, BufferUsages, CommandEncoder};
 
 use crate::Gpu;
-use crate::renderer::buffer_of;
+use crate::gpu::buffers::buffer_of;
 
 /// Changes of buffers that are collected, and then copied from one buffer.
 ///

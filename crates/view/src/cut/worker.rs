@@ -7,10 +7,11 @@ use meshlod::multires::{
     Focus, Geomorph, Query, QueryError, Tolerance, UpdateLimits, VertexValues,
 };
 
-use super::fields::VertexFields;
+use super::fields::{MovedVertex, VertexFields};
 use super::followed::Followed;
+use super::model::CutModel;
+use super::query::{CutQuery, CutStep, CutTolerance, FollowOptions};
 use super::slots::GroupSlots;
-use super::{CutModel, CutQuery, CutStep, CutTolerance, FollowOptions, MovedVertex};
 
 /// Request of a follower to its thread.
 #[derive(Debug)]

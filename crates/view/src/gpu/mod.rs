@@ -1,4 +1,13 @@
-//! The GPU: a device and its queue.
+//! The GPU: a device and its queue, and what everything makes of them.
+//!
+//! `bindings` and `buffers` come first; `shaders`, `texture` and `read` stand beside them. None knows
+//! what is drawn.
+
+pub(crate) mod bindings;
+pub(crate) mod buffers;
+pub(crate) mod read;
+pub(crate) mod shaders;
+pub(crate) mod texture;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,9 +1,26 @@
 //! Textures on the GPU.
 
 use meshlod::picture::Texture as Image;
-use wgpu::{Extent3d, Texture, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
+use wgpu::{
+    AddressMode, Extent3d, FilterMode, MipmapFilterMode, Sampler, SamplerDescriptor, Texture,
+    TextureDescriptor, TextureDimension, TextureFormat, TextureUsages,
+};
 
-use crate::Gpu;
+use super::Gpu;
+
+/// Creates a sampler that filters between texels and between levels, with an address mode for both
+/// axes and an anisotropy from 1, which is none, to 16.
+pub(crate) fn sampler(gpu: &Gpu, address: AddressMode, anisotropy: u16) -> Sampler {
+    gpu.device.create_sampler(&SamplerDescriptor {
+        address_mode_u: address,
+        address_mode_v: address,
+        mag_filter: FilterMode::Linear,
+        min_filter: FilterMode::Linear,
+        mipmap_filter: MipmapFilterMode::Linear,
+        anisotropy_clamp: anisotropy,
+        ..Default::default()
+    })
+}
 
 /// Creates a texture of one level.
 pub(crate) fn texture_2d(

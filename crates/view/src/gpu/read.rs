@@ -1,8 +1,10 @@
 //! Buffers of the GPU read back.
 
-use wgpu::{Buffer, BufferDescriptor, BufferUsages, MapMode};
+use wgpu::{Buffer, BufferUsages, MapMode};
 
-use crate::{Gpu, ViewError};
+use super::Gpu;
+use super::buffers::blank_buffer;
+use crate::ViewError;
 
 /// Reads the first bytes of a buffer, after everything submitted so far. It must be a source of
 /// copies, and the number of bytes a multiple of four.
@@ -10,12 +12,8 @@ pub(crate) fn read_buffer(gpu: &Gpu, from: &Buffer, bytes: u64) -> Result<Vec<u8
     if bytes == 0 {
         return Ok(Vec::new());
     }
-    let copy = gpu.device.create_buffer(&BufferDescriptor {
-        label: Some("read back"),
-        size: bytes,
-        usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
+    let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
+    let copy = blank_buffer(gpu, "read back", bytes, usage);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     encoder.copy_buffer_to_buffer(from, 0, &copy, 0, bytes);
     gpu.queue.submit([encoder.finish()]);
