@@ -2,8 +2,18 @@
 //!
 //! The frame never waits: files are read, meshes simplified, checked and uploaded by jobs on other
 //! threads, whose news arrive as messages.
+//!
+//! In the order of reading:
+//! - plain data: `options` (with the report at the end), `settings`, `document` (an open file),
+//!   `input` (keys and commands), `action` (what panels ask for);
+//! - beside the frame: `jobs` (threads), `work` (what they do), `timing`, `gpu_guard`;
+//! - the picture: `canvas_texture`, `picture_pane` on it, and the marks of `overlay`;
+//! - `state`, which all of this makes up, with what changes it: `orders` (jobs are started), `news`
+//!   (their results), `perform` (actions and commands), `central` (the picture and the pointer);
+//! - `panels`, which show the state and return actions, in the look of `theme`;
+//! - `app`, the order of a frame; and `school`, a window of its own.
 
-mod actions;
+mod action;
 mod app;
 mod canvas_texture;
 mod central;
@@ -13,11 +23,14 @@ mod input;
 mod jobs;
 mod news;
 mod options;
+mod orders;
 mod overlay;
 mod panels;
+mod perform;
 mod picture_pane;
 mod school;
 mod settings;
+mod state;
 mod theme;
 mod timing;
 mod work;

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::app::ViewerApp;
 use super::document::{Document, DocumentId, DocumentLevel, ShownSide};
 use super::jobs::JobKind;
+use super::state::ViewerState;
 use super::work::{self, Comparison, MadeLevel, News, NormalsState};
 use crate::stage::{Loaded, Subject};
 use crate::{Transition, view_camera};
@@ -13,7 +13,7 @@ use crate::{Transition, view_camera};
 /// Time in which vertices move to where the cut takes them.
 const MOTION: Duration = Duration::from_millis(250);
 
-impl ViewerApp {
+impl ViewerState {
     /// Takes what jobs have brought since the last frame.
     pub fn take_news(&mut self) {
         while let Some((_, outcome)) = self.jobs.poll() {
