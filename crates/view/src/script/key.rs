@@ -3,7 +3,7 @@
 use meshlod::multires::Focus;
 use serde::Deserialize;
 
-use super::ScriptError;
+use super::error::ScriptError;
 
 /// Values of a script at a frame. One that is left out is between those of the keys around it that
 /// have it.

@@ -6,9 +6,9 @@ use std::time::{Duration, Instant};
 
 use super::gpu_guard::GpuGuard;
 use super::jobs::JobKind;
+use super::load::{self, EarlyLoad};
 use super::state::ViewerState;
-use super::work::EarlyLoad;
-use super::{ViewerOptions, ViewerReport, panels, theme, work};
+use super::{ViewerOptions, ViewerReport, panels, theme};
 use crate::stage::Subject;
 use crate::{Gpu, ViewError};
 
@@ -73,7 +73,7 @@ impl ViewerApp {
         std::thread::spawn(move || {
             // A software GPU compiles shaders when they first draw. Without it, the first picture
             // takes longer and nothing else happens.
-            let _ = work::warm_up(&renderers.draft).and_then(|()| work::warm_up(&renderers.full));
+            let _ = load::warm_up(&renderers.draft).and_then(|()| load::warm_up(&renderers.full));
         });
     }
 

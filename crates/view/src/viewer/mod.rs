@@ -6,7 +6,7 @@
 //! In the order of reading:
 //! - plain data: `options` (with the report at the end), `settings`, `document` (an open file),
 //!   `input` (keys and commands), `action` (what panels ask for);
-//! - beside the frame: `jobs` (threads), `work` (what they do), `timing`, `gpu_guard`;
+//! - beside the frame: `jobs` (threads), `load` and `work` (what they do), `timing`, `gpu_guard`;
 //! - the picture: `canvas_texture`, `picture_pane` on it, and the marks of `overlay`;
 //! - `state`, which all of this makes up, with what changes it: `orders` (jobs are started), `news`
 //!   (their results), `perform` (actions and commands), `central` (the picture and the pointer);
@@ -21,6 +21,7 @@ mod document;
 mod gpu_guard;
 mod input;
 mod jobs;
+mod load;
 mod news;
 mod options;
 mod orders;
@@ -45,7 +46,7 @@ use eframe::egui_wgpu::{WgpuConfiguration, WgpuError, WgpuSetup, WgpuSetupCreate
 
 use crate::{Gpu, ViewError};
 use app::ViewerApp;
-use work::EarlyLoad;
+use load::EarlyLoad;
 
 /// Name under which the window and its settings are remembered.
 const APP_ID: &str = "meshlod";

@@ -5,8 +5,9 @@ use std::time::Duration;
 
 use super::document::{Document, DocumentId, DocumentLevel, ShownSide};
 use super::jobs::JobKind;
+use super::load;
 use super::state::ViewerState;
-use super::work::{self, Comparison, MadeLevel, News, NormalsState};
+use super::work::{Comparison, MadeLevel, News, NormalsState};
 use crate::stage::{Loaded, Subject};
 use crate::{Transition, view_camera};
 
@@ -78,7 +79,7 @@ impl ViewerState {
         for (id, loaded) in std::mem::take(&mut self.rough) {
             let renderer = self.renderer();
             self.jobs.start(JobKind::Refine, "Finding creases", move |watch| {
-                work::refine(id, &loaded, &renderer, watch)
+                load::refine(id, &loaded, &renderer, watch)
             });
         }
     }

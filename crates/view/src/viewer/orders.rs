@@ -8,7 +8,7 @@ use meshlod::Target;
 use super::document::{DocumentLevel, LevelGoal};
 use super::jobs::JobKind;
 use super::state::ViewerState;
-use super::work;
+use super::{load, work};
 use crate::stage::{Coloring, Subject, SubjectId};
 
 impl ViewerState {
@@ -16,7 +16,7 @@ impl ViewerState {
     pub fn open(&mut self, path: PathBuf) {
         let (renderer, reading) = (self.renderer(), self.options.reading);
         let label = format!("Opening {}", path.display());
-        let work = move |watch: &_| work::open(&path, &reading, &renderer, watch);
+        let work = move |watch: &_| load::open(&path, &reading, &renderer, watch);
         self.jobs.start(JobKind::Open, label, work);
     }
 
