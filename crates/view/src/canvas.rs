@@ -22,9 +22,9 @@ pub struct Canvas {
     resolved: Texture,
     resolved_view: TextureView,
     depth: TextureView,
-    /// Linear colour to which it is cleared, with alpha.
+    /// Linear colour of a cleared canvas, with alpha.
     pub clear: [f64; 4],
-    /// Keep the depths of what is drawn, for [`Canvas::depth`].
+    /// Keep the depths of each pass, for [`Canvas::depth`].
     pub keeps_depth: bool,
 }
 
@@ -83,7 +83,7 @@ impl Canvas {
         self.format
     }
 
-    /// Returns the texture that shows what was drawn.
+    /// Returns the texture with the picture, one sample a pixel.
     pub fn resolved(&self) -> &Texture {
         &self.resolved
     }
@@ -134,7 +134,7 @@ impl Canvas {
         })
     }
 
-    /// Reads the pixels, after everything submitted so far.
+    /// Reads the pixels, after all work submitted before.
     ///
     /// # Errors
     /// The device was lost.

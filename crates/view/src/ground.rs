@@ -1,7 +1,7 @@
 //! Soft shadow on the ground below a thing.
 //!
-//! The light is the sky: the shadow is a blurred picture from above, so that it stays where it is when
-//! the camera moves. It is drawn once for each thing, not for each frame.
+//! The light is the sky: the shadow is a blurred picture from above, so that it stays where it is
+//! when the camera moves. It is drawn once for each thing, not for each frame.
 
 use std::sync::Arc;
 

@@ -13,8 +13,8 @@ use crate::gpu::buffers::uniform_of;
 
 /// How one thing is seen by one camera: a small buffer on the GPU.
 ///
-/// What is drawn in two views of one frame needs two placements, since all uploads of a frame come
-/// before its first pass.
+/// A thing in two views of one frame needs two placements, since all uploads of a frame come before
+/// its first pass.
 #[derive(Debug)]
 pub struct Placement {
     buffer: Buffer,
@@ -22,7 +22,7 @@ pub struct Placement {
     queue: Queue,
 }
 
-/// Look of a thing that is drawn, beside its own colours.
+/// Look of a thing, apart from its own colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shade {
     /// Lighting of the surface.
@@ -31,7 +31,7 @@ pub struct Shade {
     pub back_faces: BackFaces,
     /// Flat shading: one normal per face.
     pub is_flat: bool,
-    /// Lines along the edges of all faces; only what is drawn face by face has them.
+    /// Lines along the edges of all faces; only drawing face by face shows them.
     pub wireframe: Option<Wireframe>,
     /// Use the colours of faces in place of the mesh's own.
     pub face_colors: bool,
@@ -39,10 +39,10 @@ pub struct Shade {
     pub own_colors: bool,
     /// Draw a checkerboard in texture coordinates in place of textures.
     pub checker: bool,
-    /// Share of the pixels that are drawn, 0 to 1, for dithered transitions. With t - 1 exactly those
-    /// pixels are drawn that t leaves out.
+    /// Share of the pixels that are drawn, 0 to 1, for dithered transitions. The shares t - 1 and t
+    /// draw complementary pixels.
     pub shown: f32,
-    /// sRGB colour that multiplies that of the surface.
+    /// sRGB colour by which the colour of the surface is multiplied.
     pub tint: [u8; 3],
 }
 
@@ -90,8 +90,8 @@ impl Renderer {
 }
 
 impl Placement {
-    /// Sets the camera, the size of the picture in pixels, the origin of the thing in the world, and
-    /// its look.
+    /// Sets the camera, the size of the picture in pixels, the origin of the thing in the world,
+    /// and its look.
     pub fn set(&self, camera: &Camera, size: [u32; 2], origin: [f64; 3], shade: &Shade) {
         let uniforms = DrawUniforms::new(camera, size, origin, shade);
         self.queue.write_buffer(&self.buffer, 0, bytemuck::bytes_of(&uniforms));
@@ -160,7 +160,7 @@ pub(crate) fn clip_from_world(camera: &Camera, size: [u32; 2], origin: [f64; 3])
     DMat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose()
 }
 
-/// sRGB colour of surfaces without colours of their own, that of [`meshlod::OwnedPaint::CLAY`].
+/// sRGB colour of surfaces without colours, the same as [`meshlod::OwnedPaint::CLAY`].
 pub(crate) const CLAY: [u8; 3] = [226, 208, 186];
 
 /// Converts an sRGB colour to linear light.

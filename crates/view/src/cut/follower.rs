@@ -1,4 +1,4 @@
-//! Thread that follows a moving query with a cut, and hands out what changes.
+//! Thread that follows a moving query with a cut, and sends the changes.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel, sync_channel};
@@ -10,7 +10,7 @@ use super::model::CutModel;
 use super::query::{CutQuery, CutStep, FollowOptions};
 use super::worker::{Answer, Request, Worker};
 
-/// Follows a moving query on a thread of its own, which ends when this is dropped.
+/// Follows a moving query on its own thread, which ends when this is dropped.
 #[derive(Debug)]
 pub struct CutFollower {
     requests: Sender<Request>,
@@ -18,7 +18,7 @@ pub struct CutFollower {
     /// Number of the last query.
     asked: u64,
     is_waiting: bool,
-    /// Numbers of the last advance that was asked for and of the last that was answered.
+    /// Numbers of the last requested advance and of the last answered one.
     advanced: [u64; 2],
 }
 
@@ -40,7 +40,7 @@ impl CutFollower {
         let _ = self.requests.send(Request::Ask(self.asked, query));
     }
 
-    /// Lets time pass for vertices that move; a step tells where they are then.
+    /// Lets time pass for vertices that move; a later step has their new positions.
     pub fn advance(&mut self, elapsed: Duration) {
         self.advanced[0] += 1;
         let _ = self.requests.send(Request::Advance(self.advanced[0], elapsed));
@@ -69,7 +69,7 @@ impl CutFollower {
         }
     }
 
-    /// Waits for the next step; `None` if nothing is asked.
+    /// Waits for the next step; `None` if no request is open.
     ///
     /// # Errors
     /// As [`CutFollower::poll`].

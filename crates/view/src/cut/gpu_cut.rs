@@ -54,8 +54,8 @@ pub enum Transition {
 }
 
 impl GpuCut {
-    /// Uploads the vertices and materials of a model, with room for the triangles of any cut if they
-    /// are one group.
+    /// Uploads the vertices and materials of a model, with room for the triangles of any cut if
+    /// they are one group.
     ///
     /// # Errors
     /// A model beyond the limits of the GPU, or a paint that does not match it.
@@ -96,8 +96,7 @@ impl GpuCut {
         self.origin
     }
 
-    /// Returns the number of triangles of the cut; those of a mesh that is shown at several places
-    /// count once.
+    /// Returns the number of triangles of the cut; those of a mesh at several places count once.
     pub fn faces(&self) -> usize {
         self.faces
     }
@@ -118,20 +117,20 @@ impl GpuCut {
         self.positions.size() + self.attributes.size() + indices
     }
 
-    /// Returns the bytes that have been uploaded since this was last asked.
+    /// Returns the bytes uploaded since the last call.
     pub fn take_uploaded(&mut self) -> u64 {
         std::mem::take(&mut self.uploaded)
     }
 
-    /// Forgets the cut, so that the steps of another [`CutFollower`](super::CutFollower) can follow. The last step must
-    /// have left no vertex on its way.
+    /// Forgets the cut, so that the steps of another [`CutFollower`](super::CutFollower) can
+    /// follow. The last step must have left no vertex on its way.
     pub fn clear(&mut self) {
         self.fade = None;
         self.faces = 0;
         self.lists.iter_mut().for_each(|list| list.slots.clear());
     }
 
-    /// Takes a step of a [`CutFollower`](super::CutFollower): only what changed is uploaded.
+    /// Takes a step of a [`CutFollower`](super::CutFollower), and uploads only its changes.
     ///
     /// A transition that is still going on ends first.
     pub fn apply(&mut self, step: &CutStep, transition: Transition) {
@@ -173,9 +172,9 @@ impl GpuCut {
         }
     }
 
-    /// Draws the triangles that go and those that come. The placements differ in
-    /// [`Shade::shown`](crate::Shade::shown): t - 1 for those that go, t for those that come, where
-    /// t rises from 0 to 1.
+    /// Draws old triangles, which disappear, and new ones, which appear. The placements differ in
+    /// [`Shade::shown`](crate::Shade::shown): t - 1 for old triangles, t for new ones, where t
+    /// rises from 0 to 1.
     pub fn draw_fade(
         &self,
         renderer: &Renderer,
@@ -194,8 +193,8 @@ impl GpuCut {
         }
     }
 
-    /// Draws the cut face by face, with a wireframe if the placement has one. A cut that is too large
-    /// for that is drawn without.
+    /// Draws the cut face by face, with a wireframe if the placement has one. A cut that is too
+    /// large for that is drawn without.
     pub fn draw_faces(
         &self,
         renderer: &Renderer,
@@ -224,7 +223,7 @@ impl GpuCut {
         pass.set_vertex_buffer(2, self.place_buffer.slice(..));
     }
 
-    /// Returns the material of a group. A group of a label beyond the materials has the last.
+    /// Returns the material of a group; the last one for a label beyond the materials.
     fn material(&self, group: &Group) -> &BindGroup {
         let last = self.materials.len() - 1;
         &self.materials[(group.material as usize).min(last)].bind_group

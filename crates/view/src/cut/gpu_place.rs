@@ -20,7 +20,7 @@ pub(super) const PLACES: VertexBufferLayout<'static> = VertexBufferLayout {
 };
 
 impl GpuPlace {
-    /// Place where the levels have a mesh.
+    /// Place of an untransformed mesh.
     pub(super) const OWN: Self = Self([
         [1.0, 0.0, 0.0, 0.0],
         [0.0, 1.0, 0.0, 0.0],

@@ -18,8 +18,8 @@ pub(super) struct TriangleList {
     pub(super) buffer: Buffer,
     /// Copy of the buffer; empty slots have no extent.
     pub(super) slots: Vec<[u32; 3]>,
-    /// Bindings for drawing face by face, made when they are first needed; `None` if a buffer is
-    /// too large for that.
+    /// Bindings for drawing face by face, made on first use; `None` if a buffer is too large for
+    /// that.
     pub(super) storage: OnceLock<Option<BindGroup>>,
 }
 
@@ -41,8 +41,8 @@ impl TriangleList {
         self.slots.get(slot as usize).copied().unwrap_or(EMPTY)
     }
 
-    /// Writes triangles into slots, and stages what is around them. Returns the bytes that were sent
-    /// at once, because the buffer had to grow.
+    /// Writes triangles into slots, and stages the changed ranges. Returns the bytes sent at once,
+    /// because the buffer had to grow.
     pub(super) fn write(&mut self, gpu: &Gpu, patches: &[CutPatch], staged: &mut Staged) -> u64 {
         let mut dirty = DirtyRanges::default();
         for patch in patches {

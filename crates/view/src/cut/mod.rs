@@ -3,9 +3,9 @@
 //! In the order of reading:
 //! - the levels as they are drawn: `model`, with its `groups` of triangles, the `places` where a
 //!   scene shows them (`gpu_place` for shaders), its `materials`, and the `fields` of its vertices;
-//! - a thread that follows queries: `query` (what is asked and answered, with `error`), `follower`
-//!   in front of the thread, `worker` on it, `followed` (the cut that it changes), and `slots`
-//!   (which triangles of which group have changed);
+//! - a thread that follows queries: `query` (queries and steps, with `error`), `follower` in front
+//!   of the thread, `worker` on it, `followed` (the cut that it changes), and `slots` (changes by
+//!   group);
 //! - the buffers that are changed: `gpu_cut`, a `list` of triangles for each group, its `dirty`
 //!   ranges, the bytes `staged` for them, vertices sent by `scatter`, and triangles that `fade`;
 //! - `pipelines`.

@@ -1,4 +1,4 @@
-//! What a follower is asked, and the steps that it answers with.
+//! Queries for a follower, and the steps of its answers.
 
 use std::time::Duration;
 
@@ -35,12 +35,12 @@ pub enum CutTolerance {
 /// Change of a cut: slots of its triangles, and vertices that move.
 #[derive(Clone, Debug, Default)]
 pub struct CutStep {
-    /// Slots that changed, with what they hold now, in the order of groups and slots.
+    /// Changed slots with their new contents, in the order of groups and slots.
     pub patches: Vec<CutPatch>,
-    /// Vertices that are not where they were.
+    /// Vertices that have moved.
     pub moved: Vec<MovedVertex>,
-    /// Number of faces that are drawn: those of the cut, and with motion also those that are on
-    /// their way out.
+    /// Number of faces that are drawn: those of the cut, and with motion also those that still
+    /// collapse.
     pub faces: usize,
     /// Number of vertices of the cut.
     pub vertices: usize,
@@ -56,11 +56,11 @@ pub struct CutStep {
 /// Limits and motion with which a [`CutFollower`](super::CutFollower) follows queries.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FollowOptions {
-    /// Most splits and merges in one step, which bounds what a frame uploads: a change touches about
-    /// six slots of 12 bytes. `None` answers every query in one step, as the first query and a search
-    /// for a number of faces are in any case.
+    /// Most splits and merges in one step, which bounds what a frame uploads: a change touches
+    /// about six slots of 12 bytes. `None` answers every query in one step, as the first query and
+    /// a search for a number of faces are in any case.
     pub changes: Option<usize>,
-    /// Time in which a vertex moves to where a split or merge takes it; `None` for changes at once.
+    /// Time in which a vertex moves to its new position; `None` for changes at once.
     /// Height fields always change at once.
     pub motion: Option<Duration>,
 }

@@ -1,4 +1,4 @@
-//! Vertices that have moved, sent in one piece and put in their places by the GPU.
+//! Moved vertices, sent in one piece and scattered by the GPU.
 
 use wgpu::{
     BindGroupLayout, Buffer, BufferUsages, CommandEncoder, ComputePassDescriptor, ComputePipeline,

@@ -1,4 +1,4 @@
-//! The thread of a follower: a cut that changes and moves as it is asked to.
+//! The thread of a follower: a cut that answers its requests.
 
 use std::sync::mpsc::{Receiver, SyncSender};
 use std::time::{Duration, Instant};
@@ -46,7 +46,7 @@ pub(super) struct Worker<'m> {
     touched: Vec<u32>,
     /// Nodes that the current step has moved, some of them more than once.
     moved: Vec<u32>,
-    /// Scratch memory for what a node is.
+    /// Scratch memory for the values of a node.
     state: VertexValues,
     /// Error found for the last number of faces.
     error: Option<f64>,
@@ -72,8 +72,8 @@ impl<'m> Worker<'m> {
         }
     }
 
-    /// Answers requests until nobody asks any more: the last query of those that have come, and all
-    /// time that has passed.
+    /// Answers requests until the follower is dropped: of several queries the last, and the sum of
+    /// all times.
     pub(super) fn serve(mut self, requests: &Receiver<Request>, answers: &SyncSender<Answer>) {
         let mut query = None;
         let (mut asked, mut advanced) = (0, 0);
@@ -176,7 +176,7 @@ impl<'m> Worker<'m> {
         Ok(change.done)
     }
 
-    /// Keeps what the last update or advance has changed.
+    /// Notes the slots and nodes that the last update or advance changed.
     fn record(&mut self) {
         self.touched.extend(self.cut.shown().touched_slots());
         self.moved.extend(self.cut.morph().into_iter().flat_map(Geomorph::moved));
@@ -196,8 +196,8 @@ impl<'m> Worker<'m> {
         moved
     }
 
-    /// Finds about the smallest error with which the cut has at most `count` faces, beginning at that
-    /// of the last search: every step costs what it changes.
+    /// Finds about the smallest error with which the cut has at most `count` faces, starting at the
+    /// error of the last search: the cost of a step is proportional to its changes.
     fn reach(&mut self, query: &CutQuery, count: usize) -> Result<bool, QueryError> {
         let unlimited = self.changes.take();
         let found = self.search(query, count);

@@ -158,7 +158,7 @@ fn instance_buffer(gpu: &Gpu, instances: usize) -> Buffer {
     blank_buffer(gpu, "flock members", size, BufferUsages::VERTEX | BufferUsages::COPY_DST)
 }
 
-/// Binds what the levels of members need, but their materials.
+/// Binds the pipeline and the buffers of members with levels; materials are bound by each draw.
 pub(super) fn bind(
     model: &FlockLevels,
     instances: &Buffer,
@@ -174,7 +174,7 @@ pub(super) fn bind(
     pass.set_index_buffer(model.indices.slice(..), IndexFormat::Uint32);
 }
 
-/// Binds what impostors need beside that.
+/// Binds the pipeline, the atlas and the instances of impostors.
 pub(super) fn bind_impostors(
     atlas: &AtlasBinding,
     instances: &Buffer,

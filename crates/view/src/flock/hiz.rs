@@ -1,4 +1,4 @@
-//! Pyramid of depths of a frame, by which the next frame leaves out what is hidden.
+//! Pyramid of depths of a frame, by which the next frame leaves out hidden members.
 
 use bytemuck::{Pod, Zeroable};
 use meshlod::flock::FlockCamera;
@@ -17,7 +17,7 @@ use crate::{Gpu, ViewError};
 /// Pyramid of the farthest depths in blocks of a picture, the finest of two by two pixels.
 ///
 /// It holds the farthest of *all* samples of a block, so a member whose bounding ball is behind it
-/// was in no sample of that frame. What a frame newly uncovers is drawn in the next one.
+/// was in no sample of that frame. Members that a frame newly uncovers are drawn in the next one.
 #[derive(Debug)]
 pub struct HiZ {
     gpu: Gpu,
@@ -102,8 +102,8 @@ impl HiZ {
         })
     }
 
-    /// Takes the depths of a picture that the camera saw, all of it, after what the encoder has so
-    /// far; once a frame.
+    /// Takes the depths of the camera's whole picture, after the commands already in the encoder;
+    /// once a frame.
     ///
     /// # Panics
     /// If the depths have another number of samples than the pyramid was made for, or fewer pixels.

@@ -47,8 +47,8 @@ impl FlockLevels {
         gpu.check_buffer("the flock's levels", 12 * table.triangles.len() as u64)?;
         let positions = bytemuck::cast_slice(&table.positions);
         let attributes = attributes(table, &surface);
-        // Without anisotropy: members are small, and llvmpipe visits every texel of a footprint, which
-        // on slivers of coarse levels is most of the texture.
+        // Without anisotropy: members are small, and llvmpipe visits every texel of a footprint,
+        // which on slivers of coarse levels is most of the texture.
         let sampler = texture::sampler(gpu, AddressMode::Repeat, 1);
         let (triangles, draws) = by_material(table, surface.materials.len());
         let fetched = |label, bytes| buffer_of(gpu, label, bytes, BufferUsages::VERTEX);

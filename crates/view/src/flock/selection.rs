@@ -24,9 +24,9 @@ use crate::{Gpu, ViewError};
 /// Flock whose levels are chosen on the GPU, and drawn without a word from the CPU.
 ///
 /// The rule is that of the policy `screen-error`, with the impostors of
-/// [`Budget::impostors_below_px`] where the flock has views of one. Members outside the frustum, and
-/// those that a [`HiZ`] hides, are not drawn. Counts by level, their sums, and the members in the
-/// order of their levels take three dispatches; a material is then one multi-draw.
+/// [`Budget::impostors_below_px`] where the flock has views of one. Members outside the frustum,
+/// and those that a [`HiZ`] hides, are not drawn. Counts by level, their sums, and the members in
+/// the order of their levels take three dispatches; a material is then one multi-draw.
 #[derive(Debug)]
 pub struct GpuSelection {
     gpu: Gpu,
@@ -83,7 +83,8 @@ impl GpuSelection {
     /// Creates the selection pass for a flock built from the same table. There are no members yet.
     ///
     /// # Errors
-    /// A GPU without indirect draws that begin at any instance: choose levels by a `Selector` there.
+    /// A GPU without indirect draws that begin at any instance: choose levels by a `Selector`
+    /// there.
     pub fn new(
         renderer: &Renderer,
         flock: &GpuFlock,
@@ -123,7 +124,8 @@ impl GpuSelection {
         })
     }
 
-    /// Uploads positions and headings of all members. Allocates only where there are more than ever.
+    /// Uploads positions and headings of all members. Allocates only where there are more than
+    /// ever.
     ///
     /// # Errors
     /// More members than the GPU can bind as storage; those of before stay.
@@ -244,7 +246,7 @@ impl GpuSelection {
         }
     }
 
-    /// Reads the levels back, after everything submitted so far: for tests and statistics.
+    /// Reads the levels back, after all work submitted before: for tests and statistics.
     ///
     /// # Errors
     /// The device was lost.

@@ -40,8 +40,8 @@ pub(crate) fn uniform_of<T: Pod>(gpu: &Gpu, label: &str, contents: &T) -> Buffer
 
 /// Creates a buffer with contents, sent in slices if they are large.
 ///
-/// Each slice is sent when the GPU is done with the one before, so nothing that another thread draws
-/// waits for more than one. Blocks this thread meanwhile.
+/// Each slice is sent when the GPU is done with the one before, so nothing that another thread
+/// draws waits for more than one. Blocks this thread meanwhile.
 pub(crate) fn upload_sliced(
     gpu: &Gpu,
     label: &str,
@@ -60,8 +60,8 @@ pub(crate) fn upload_sliced(
     buffer
 }
 
-/// Submits what was written, and waits until the GPU is done with it, without holding what other
-/// threads need to submit.
+/// Submits all writes and waits until the GPU is done with them, without a lock that other threads
+/// need to submit.
 fn settle(gpu: &Gpu) {
     let done = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&done);

@@ -6,7 +6,7 @@ use super::Gpu;
 use super::buffers::blank_buffer;
 use crate::ViewError;
 
-/// Reads the first bytes of a buffer, after everything submitted so far. It must be a source of
+/// Reads the first bytes of a buffer, after all work submitted before. It must be a source of
 /// copies, and the number of bytes a multiple of four.
 pub(crate) fn read_buffer(gpu: &Gpu, from: &Buffer, bytes: u64) -> Result<Vec<u8>, ViewError> {
     if bytes == 0 {
@@ -20,7 +20,7 @@ pub(crate) fn read_buffer(gpu: &Gpu, from: &Buffer, bytes: u64) -> Result<Vec<u8
     map(gpu, &copy)
 }
 
-/// Returns the bytes of a buffer that can be mapped, after everything submitted so far.
+/// Returns the bytes of a mappable buffer, after all work submitted before.
 pub(crate) fn map(gpu: &Gpu, buffer: &Buffer) -> Result<Vec<u8>, ViewError> {
     let (send, receive) = std::sync::mpsc::channel();
     buffer.map_async(MapMode::Read, .., move |done| {

@@ -9,7 +9,7 @@ use wgpu::{
 use super::Gpu;
 
 /// Creates a sampler that filters between texels and between levels, with an address mode for both
-/// axes and an anisotropy from 1, which is none, to 16.
+/// axes and an anisotropy from 1 (off) to 16.
 pub(crate) fn sampler(gpu: &Gpu, address: AddressMode, anisotropy: u16) -> Sampler {
     gpu.device.create_sampler(&SamplerDescriptor {
         address_mode_u: address,
@@ -51,8 +51,8 @@ pub(crate) fn upload(gpu: &Gpu, image: &Image) -> Texture {
     upload_levels(gpu, &levels)
 }
 
-/// Uploads an image as sRGB: width, height and texels of its levels, the finest first, of which there
-/// must be one.
+/// Uploads an image as sRGB: width, height and texels of its levels, at least one, the finest
+/// first.
 pub(crate) fn upload_levels(gpu: &Gpu, levels: &[(u32, u32, &[[u8; 4]])]) -> Texture {
     let (width, height, _) = levels[0];
     let texture = gpu.device.create_texture(&TextureDescriptor {

@@ -1,4 +1,5 @@
-//! Vertices as a GPU fetches them: one for every wedge, and for every normal that it is shaded with.
+//! Vertices as a GPU fetches them: one for every wedge, and for every normal that it is shaded
+//! with.
 
 use std::ops::Range;
 
@@ -41,7 +42,7 @@ impl CornerVertices {
         Self { positions: lists.positions, attributes: lists.attributes, triangles }
     }
 
-    /// Takes the vertices of a mesh as they are, where corners differ by nothing else.
+    /// Takes over the vertices of a mesh whose corners at a vertex are all alike.
     fn shared(mesh: &Mesh, surface: &Surface<'_>, is_smooth: bool, origin: [f64; 3]) -> Self {
         let origin = DVec3::from(origin);
         let place = |p: &[f64; 3]| (DVec3::from(*p) - origin).as_vec3().into();
@@ -174,7 +175,7 @@ fn color(values: &[f32]) -> [u8; 3] {
     [0, 1, 2].map(|k| (values[k].clamp(0.0, 1.0) * 255.0).round() as u8)
 }
 
-/// Sorts faces by material: returns their order, and the range of each material that has some.
+/// Sorts faces by material: returns their order, and the range of each material in use.
 pub(super) fn face_order(mesh: &Mesh, materials: usize) -> (Vec<u32>, Vec<(Range<u32>, usize)>) {
     let count = mesh.faces.len() as u32;
     let all = || (0..count).collect();

@@ -47,8 +47,8 @@ pub struct GpuMesh {
 impl GpuMesh {
     /// Uploads a mesh with the colours that [`meshlod::picture::render`] would give it.
     ///
-    /// Without normals of its own, corners get those of `normals`; with [`Normals::Flat`] vertices are
-    /// shared and faces are shaded flat. Materials are drawn one after the other.
+    /// A mesh without normals gets those of `normals`; with [`Normals::Flat`] vertices are shared
+    /// and faces are shaded flat. Materials are drawn one after the other.
     ///
     /// # Errors
     /// A mesh that breaks [`Mesh::validate`], a paint that does not match it, or a mesh beyond the
@@ -175,8 +175,8 @@ impl GpuMesh {
         }
     }
 
-    /// Draws the mesh face by face, so that a [`Shade`](crate::Shade) with a wireframe or with colours
-    /// of faces shows. A mesh that is too large for that is drawn without them.
+    /// Draws the mesh face by face, so that a [`Shade`](crate::Shade) with a wireframe or with
+    /// colours of faces shows. A mesh that is too large for that is drawn without them.
     pub fn draw_faces(
         &self,
         renderer: &Renderer,

@@ -71,7 +71,7 @@ impl MaterialBinding {
         Self::with_sampler(renderer, material, &renderer.sampler)
     }
 
-    /// Binds a material to a sampler of its own.
+    /// Binds a material to its own sampler.
     pub(crate) fn with_sampler(
         renderer: &Renderer,
         material: &SurfaceMaterial<'_>,
@@ -102,8 +102,8 @@ impl MaterialBinding {
     }
 }
 
-/// Binds positions, attributes and indices for drawing face by face, with sRGB colours of the faces;
-/// `None` if a buffer is beyond what the GPU binds as storage.
+/// Binds positions, attributes and indices for drawing face by face, with sRGB colours of the
+/// faces; `None` if a buffer is beyond what the GPU binds as storage.
 pub(crate) fn bind_faces(
     renderer: &Renderer,
     buffers: [&Buffer; 3],

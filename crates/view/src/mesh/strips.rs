@@ -15,8 +15,8 @@ use crate::{Gpu, ViewError};
 
 /// Strips of a mesh on the GPU: one index for every entry, and a restart between strips.
 ///
-/// All levels of a skip strip use the vertices of the finest one, so that only indices are sent when
-/// the level changes.
+/// All levels of a skip strip use the vertices of the finest one, so that only indices are sent
+/// when the level changes.
 #[derive(Debug)]
 pub struct GpuStrips {
     gpu: Gpu,
@@ -29,7 +29,8 @@ pub struct GpuStrips {
 }
 
 impl GpuStrips {
-    /// Uploads the vertices of a mesh, with smooth normals, and strips of it or of one of its levels.
+    /// Uploads the vertices of a mesh, with smooth normals, and strips of it or of one of its
+    /// levels.
     ///
     /// # Errors
     /// An invalid mesh, or one beyond the limits of the GPU.

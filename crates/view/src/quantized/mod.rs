@@ -33,8 +33,8 @@ use crate::renderer::Renderer;
 
 /// Compressed mesh on the GPU, its positions in the bits of their `.mlq` file.
 ///
-/// It has one colour, or with [`Shade::face_colors`](crate::Shade::face_colors) one for each part or
-/// block. Where the file has normals, they are used; otherwise faces are shaded flat.
+/// It has one colour, or with [`Shade::face_colors`](crate::Shade::face_colors) one for each part
+/// or block. Where the file has normals, they are used; otherwise faces are shaded flat.
 ///
 /// A vertex that several parts store is at the same bits in all of them, so no background shows
 /// through between parts, nor between blocks.
@@ -43,7 +43,8 @@ pub struct GpuCompressed {
     origin: [f64; 3],
     shader: SchemeShader,
     bind_group: BindGroup,
-    /// Bytes of parts; with normals, the positions of nodes. Otherwise shaders read stored bits only.
+    /// Bytes of parts; with normals, the positions of nodes. Otherwise shaders read stored bits
+    /// only.
     vertices: Option<Buffer>,
     normals: Option<Buffer>,
     indices: Buffer,
@@ -64,14 +65,14 @@ enum Draws {
     Strips(Vec<StripRun>),
 }
 
-/// Ways of drawing compressed geometry that few need.
+/// Rarely needed ways of drawing compressed geometry.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CompressedOptions<'a> {
     /// Leave out faces that are seen from behind. A crack in a closed mesh shows background then.
     pub culls_back_faces: bool,
     /// Place parts by a matrix each, folded into the camera's [LCL10], in place of adding integers:
-    /// common vertices of two parts may then be rounded apart. It is ignored without parts, and draws
-    /// without normals.
+    /// common vertices of two parts may then be rounded apart. It is ignored without parts, and
+    /// draws without normals.
     pub part_matrices: Option<&'a PartMatrices>,
 }
 
@@ -108,8 +109,8 @@ impl GpuCompressed {
         Self::upload(renderer, data, strips, normals.as_deref(), &faces)
     }
 
-    /// Uploads the positions of a mesh as three `f32`, undivided and shaded flat: the yardstick of
-    /// what decoding costs.
+    /// Uploads the positions of a mesh as three `f32`, undivided and shaded flat, to measure the
+    /// cost of decoding against.
     ///
     /// # Errors
     /// A mesh that breaks [`Mesh::validate`], or is beyond the limits of the GPU.

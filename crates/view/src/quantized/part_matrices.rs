@@ -12,8 +12,8 @@ use crate::renderer::Renderer;
 
 /// Matrices from the local cells of parts to clip space, for one camera [LCL10].
 ///
-/// They are multiplied in `f64` and rounded to `f32` for each part alone, so a vertex on a border may
-/// come out an ulp apart in two parts.
+/// They are multiplied in `f64` and rounded to `f32` for each part alone, so a vertex on a border
+/// may come out an ulp apart in two parts.
 #[derive(Debug)]
 pub struct PartMatrices {
     buffer: Buffer,

@@ -1,4 +1,4 @@
-//! Pipelines of the schemes, compiled when they are first needed.
+//! Pipelines of the schemes, compiled on first use.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -11,7 +11,7 @@ use wgpu::{
 use crate::gpu::bindings::{STORAGE, UNIFORM, layout_for};
 use crate::renderer::{PipelineBuild, Pipelines, Renderer};
 
-/// Shader of a scheme. The short paths decode what is common, the wide ones everything.
+/// Shader of a scheme. The short paths decode common data, the wide ones all data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum SchemeShader {
     Plain,
@@ -34,7 +34,7 @@ pub(super) enum SchemeEntry {
     ByMatrix,
 }
 
-/// Pipeline of a shader: what it draws, and which faces.
+/// Settings of a pipeline of a scheme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct PipelineKey {
     pub shader: SchemeShader,
@@ -45,7 +45,7 @@ pub(super) struct PipelineKey {
     pub culls: bool,
 }
 
-/// Pipelines of compressed geometry, and the layouts of what they bind.
+/// Pipelines of compressed geometry, and the layouts of their bindings.
 #[derive(Debug)]
 pub(super) struct SchemePipelines {
     /// Uniforms, words, headers.

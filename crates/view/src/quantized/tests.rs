@@ -28,7 +28,7 @@ fn decode_all(@builtin(global_invocation_id) id: vec3u) {
 }
 ";
 
-/// Decodes all places. Of parts, `fetched` has the fetched word and the part of each vertex.
+/// Decodes all places. For parts, `fetched` has the fetched word and the part of each vertex.
 fn places(
     renderer: &Renderer,
     data: &SchemeData<'_>,

@@ -1,4 +1,4 @@
-//! Values of any types, one of each, made when they are first needed.
+//! One value of each type, made on first use.
 
 use std::any::{Any, TypeId};
 use std::collections::HashMap;
@@ -8,14 +8,14 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 /// Value of some type, empty until it is made.
 type CacheCell = Arc<OnceLock<Arc<dyn Any + Send + Sync>>>;
 
-/// One value of each type that was asked for.
+/// One value of each requested type.
 #[derive(Default)]
 pub(super) struct TypedCache(Mutex<HashMap<TypeId, CacheCell>>);
 
 impl TypedCache {
     /// Returns the value of a type, after making it if it is the first request.
     ///
-    /// Others who ask for the same type meanwhile wait. `make` may ask for other types.
+    /// Threads that request the same type meanwhile wait. `make` may request other types.
     pub fn get<T: Any + Send + Sync>(&self, make: impl FnOnce() -> T) -> Arc<T> {
         let cell = {
             let mut cells = self.0.lock().unwrap_or_else(PoisonError::into_inner);

@@ -1,7 +1,7 @@
 //! Pipelines for one kind of target.
 //!
-//! What draws something keeps its pipelines in a type of its own, which implements [`Pipelines`];
-//! the renderer compiles each type once and knows none of them.
+//! Each kind of drawing has its own type of [`Pipelines`]; the renderer compiles each type once and
+//! knows none of them.
 
 mod backdrop;
 mod build;
@@ -24,7 +24,7 @@ use crate::gpu::texture::sampler;
 
 /// Pipelines that draw into render passes of one format.
 ///
-/// They are compiled when they are first needed.
+/// They are compiled on first use.
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,
@@ -35,7 +35,7 @@ pub struct Renderer {
     compiled: TypedCache,
 }
 
-/// Pipelines of one kind of thing that is drawn, with the layouts of their bindings.
+/// Pipelines of one kind of drawing, with the layouts of their bindings.
 pub(crate) trait Pipelines: Any + Send + Sync {
     /// Compiles the pipelines.
     fn compile(renderer: &Renderer) -> Self;

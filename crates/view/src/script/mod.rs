@@ -1,7 +1,7 @@
 //! Scripts: films of a stage, drawn without a window.
 //!
-//! A script is JSON. Angles are in degrees, distances in those at which the model fills the picture;
-//! between its keys everything changes evenly:
+//! A script is JSON. Angles are in degrees, distances in those at which the model fills the
+//! picture; between its keys everything changes evenly:
 //!
 //! ```json
 //! {
@@ -29,7 +29,7 @@ pub use self::film::{ScriptFilm, ScriptFrame};
 use self::key::{Key, Pose};
 use crate::stage::Display;
 
-/// Film of what is on a stage.
+/// Film of a stage.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Script {
@@ -108,8 +108,7 @@ impl Script {
         self.display.unwrap_or(Display { is_dark: false, ..Display::default() })
     }
 
-    /// Returns the pose of a frame: between the keys around it, each value by its own last and next
-    /// key that has it.
+    /// Returns the pose of a frame, each value interpolated between the nearest keys with one.
     fn pose(&self, frame: u32) -> Pose {
         Pose::between(&self.keys, f64::from(frame))
     }

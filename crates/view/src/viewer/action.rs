@@ -1,4 +1,4 @@
-//! What panels ask for.
+//! Requests of panels.
 
 use meshlod::picture::UpAxis;
 

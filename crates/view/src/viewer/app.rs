@@ -1,4 +1,4 @@
-//! The window: the order of a frame, and what ends it.
+//! The window: the order of a frame, screenshots, and closing.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
@@ -27,7 +27,7 @@ pub(crate) struct ViewerApp {
     close_at: Option<Instant>,
 }
 
-/// State of the picture that was asked for at the start.
+/// State of the screenshot of the options.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Shot {
     Waiting,
@@ -67,7 +67,7 @@ impl ViewerApp {
         Ok(this)
     }
 
-    /// Compiles the pipelines beside everything else.
+    /// Compiles the pipelines in the background.
     fn warm_up(&self) {
         let renderers = Arc::clone(&self.state.renderers);
         std::thread::spawn(move || {
@@ -97,8 +97,8 @@ impl ViewerApp {
         next
     }
 
-    /// Returns true if the picture shows everything as it should: with final normals, and the cut
-    /// that was asked for.
+    /// Returns true if the picture is final: with refined normals and a cut that satisfies its
+    /// query.
     fn is_settled(&self) -> bool {
         let is_busy = self.state.jobs.has(JobKind::Refine) || !self.state.rough.is_empty();
         let is_changing = self
@@ -110,7 +110,7 @@ impl ViewerApp {
         !is_busy && !is_changing && self.state.pane.is_final(self.state.changes)
     }
 
-    /// Writes the picture that was asked for, and closes the window when it is time.
+    /// Takes the screenshot and closes the window, each when it is time.
     fn keep_schedule(&mut self, ctx: &egui::Context) {
         let is_loading = self.state.jobs.has(JobKind::Open);
         let is_shown =
@@ -126,7 +126,7 @@ impl ViewerApp {
         }
     }
 
-    /// Writes the picture that was asked for once it is final, and closes the window after that.
+    /// Writes the screenshot once the picture is final, and closes the window after that.
     fn take_shot(&mut self, path: PathBuf, ctx: &egui::Context) {
         match self.shot {
             Shot::Waiting if self.state.documents.is_empty() => self.shot = Shot::Writing,
@@ -145,8 +145,8 @@ impl ViewerApp {
         }
     }
 
-    /// Closes the window when a time has passed since the first call, and no picture is being
-    /// written.
+    /// Closes the window a number of seconds after the first call, but not while the screenshot is
+    /// being written.
     fn close_after(&mut self, seconds: f64, ctx: &egui::Context) {
         let wait = Duration::from_secs_f64(seconds.clamp(0.0, 1e6));
         let end = *self.close_at.get_or_insert(Instant::now() + wait);

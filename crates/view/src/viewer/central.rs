@@ -18,7 +18,7 @@ pub(crate) const DRAG_ZOOM_PER_POINT: f64 = 0.008;
 const LOOK_PER_POINT: f64 = 0.003;
 
 impl ViewerState {
-    /// Shows the picture in what panels have left.
+    /// Shows the picture in the space between the panels.
     pub fn show_center(&mut self, ui: &mut Ui) {
         egui::CentralPanel::no_frame().show(ui, |ui| {
             let rect = ui.available_rect_before_wrap();

@@ -1,4 +1,4 @@
-//! The work of jobs until a file is on the screen: reading, uploading, refining its normals.
+//! The work of jobs that open files: reading, uploading, refining normals.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use super::work::{News, NormalsState};
 use crate::stage::{LoadError, Loaded, LoadedContent, Stage, Subject, SubjectId};
 use crate::{Canvas, Renderer, ViewError};
 
-/// File that is being read since before there was a GPU.
+/// File whose reading began before the GPU was open.
 pub(crate) struct EarlyLoad {
     pub path: PathBuf,
     reading: JoinHandle<Result<Loaded, LoadError>>,
@@ -65,7 +65,7 @@ fn upload(loaded: Loaded, renderer: &Renderer, watch: &Watch) -> Outcome<News> {
     Ok(Some(News::Opened(Arc::new(loaded), subject, state)))
 }
 
-/// Makes a subject again, with the normals that its file asks for.
+/// Makes a subject again, with the normals of its file.
 pub(crate) fn refine(
     id: SubjectId,
     loaded: &Loaded,

@@ -5,13 +5,13 @@
 //!
 //! In the order of reading:
 //! - plain data: `options` (with the report at the end), `settings`, `document` (an open file),
-//!   `input` (keys and commands), `action` (what panels ask for);
-//! - beside the frame: `jobs` (threads), `load` and `work` (what they do), `timing`, `gpu_guard`;
+//!   `input` (keys and commands), `action` (requests of panels);
+//! - background: `jobs` (threads), `load` and `work` (their work), `timing`, `gpu_guard`;
 //! - the picture: `canvas_texture`, `picture_pane` on it, and the marks of `overlay`;
-//! - `state`, which all of this makes up, with what changes it: `orders` (jobs are started), `news`
-//!   (their results), `perform` (actions and commands), `central` (the picture and the pointer);
-//! - `panels`, which show the state and return actions, in the look of `theme`;
-//! - `app`, the order of a frame; and `school`, a window of its own.
+//! - `state` holds all of this; it is changed by `orders` (starts jobs), `news` (takes their
+//!   results), `perform` (actions and commands) and `central` (the picture and the pointer);
+//! - `panels` show the state and return actions, in the look of `theme`;
+//! - `app` has the order of a frame; `school` is another window.
 
 mod action;
 mod app;
@@ -72,7 +72,7 @@ pub fn run(options: ViewerOptions) -> Result<ViewerReport, ViewError> {
     report.map_err(|_| ViewError::Failed("a thread of the viewer panicked".into()))
 }
 
-/// Opens the window until it is closed; returns the files that were open, for another try.
+/// Opens the window until it is closed; returns the open files, for another try.
 fn open_window(
     options: &ViewerOptions,
     report: &Arc<Mutex<ViewerReport>>,

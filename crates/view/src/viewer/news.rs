@@ -11,11 +11,11 @@ use super::work::{Comparison, MadeLevel, News, NormalsState};
 use crate::stage::{Loaded, Subject};
 use crate::{Transition, view_camera};
 
-/// Time in which vertices move to where the cut takes them.
+/// Time in which vertices move to their new positions.
 const MOTION: Duration = Duration::from_millis(250);
 
 impl ViewerState {
-    /// Takes what jobs have brought since the last frame.
+    /// Takes the news of jobs since the last frame.
     pub fn take_news(&mut self) {
         while let Some((_, outcome)) = self.jobs.poll() {
             match outcome {
@@ -74,7 +74,7 @@ impl ViewerState {
         }
     }
 
-    /// Starts to refine the normals of what is on the screen by now.
+    /// Starts to refine the normals of subjects that are on the screen by now.
     pub fn refine_normals(&mut self) {
         for (id, loaded) in std::mem::take(&mut self.rough) {
             let renderer = self.renderer();
@@ -123,7 +123,7 @@ impl ViewerState {
         self.changes += 1;
     }
 
-    /// Tells the cut that is shown what to follow, and takes what has changed in it.
+    /// Sends the current query to the cut of the active document, and applies its changes.
     pub fn follow_cuts(&mut self, seconds: f32) {
         let (camera, target) = (self.stage.rig.camera(), self.stage.rig.pose().target);
         let size = self.stage.slot_size(self.size).map(|side| side.max(1));

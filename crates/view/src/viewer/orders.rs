@@ -20,7 +20,7 @@ impl ViewerState {
         self.jobs.start(JobKind::Open, label, work);
     }
 
-    /// Starts to simplify the active document to the level that it orders.
+    /// Starts to simplify the active document, by its settings.
     pub fn simplify(&mut self) {
         self.jobs.cancel(JobKind::Simplify);
         self.jobs.cancel(JobKind::Compare);
@@ -66,7 +66,7 @@ impl ViewerState {
         self.jobs.start(JobKind::Check, "Checking", move |watch| work::check(id, &loaded, watch));
     }
 
-    /// Starts what the wanted colouring needs and the shown subjects lack.
+    /// Starts a job for colours that the chosen colouring needs and a shown subject lacks.
     pub fn ensure_colors(&mut self) {
         let wanted = self.stage.display.coloring;
         if self.tried.first().is_some_and(|&(_, coloring)| coloring != wanted) {

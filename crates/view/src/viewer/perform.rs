@@ -15,7 +15,7 @@ use crate::stage::Shading;
 const ORBIT_STEP: f64 = std::f64::consts::PI / 12.0;
 /// Speed of a flight at its start, in diagonals per second.
 const FLIGHT_SPEED: f64 = 0.4;
-/// Radius of what is shown around a finding, relative to the diagonal.
+/// Radius of the view of a finding, relative to the diagonal.
 const FINDING_RADIUS: f64 = 0.03;
 
 impl ViewerState {
@@ -27,7 +27,7 @@ impl ViewerState {
         }
     }
 
-    /// Does what the keys of this frame ask for, unless a field has them.
+    /// Carries out the commands of the keys of this frame, unless a text field has the focus.
     pub fn take_keys(&mut self, ctx: &egui::Context) {
         if ctx.egui_wants_keyboard_input() {
             return;
@@ -115,7 +115,7 @@ impl ViewerState {
         ctx.send_viewport_cmd(ViewportCommand::CursorVisible(!flies));
     }
 
-    /// Flies to where everything that is shown fills the picture.
+    /// Flies to where all shown subjects fill the picture.
     pub fn frame_all(&mut self) {
         let (bounds, aspect) = (self.stage.bounds(), self.stage.aspect(self.size));
         self.stage.rig.fly_to_bounds(&bounds, aspect);
@@ -190,7 +190,7 @@ impl ViewerState {
         self.show_document();
     }
 
-    /// Returns a path in the working directory that no file has yet.
+    /// Returns an unused path in the working directory.
     fn picture_path(&self) -> PathBuf {
         let name =
             self.document().map_or("meshlod".into(), |document| document.loaded.path.clone());

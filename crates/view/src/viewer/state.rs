@@ -1,4 +1,4 @@
-//! State of the viewer: what panels show and actions change.
+//! State of the viewer, which panels show and actions change.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
@@ -33,9 +33,9 @@ pub(crate) struct ViewerState {
     pub has_help: bool,
     /// Speed of a flight, in diagonals per second; `None` while the camera orbits.
     pub flight: Option<f64>,
-    /// Number of changes of subjects, which a picture depends on.
+    /// Number of changes of subjects; a change outdates the picture.
     pub changes: u64,
-    /// Lines that the status bar shows, the last one first to go.
+    /// Messages for the status bar, which shows the last.
     pub notices: Vec<Notice>,
     /// Size of the picture in pixels.
     pub size: [u32; 2],
@@ -43,8 +43,8 @@ pub(crate) struct ViewerState {
     pub load_ms: Option<f64>,
     /// Subjects whose normals are to be refined once they are on the screen.
     pub rough: Vec<(SubjectId, Arc<Loaded>)>,
-    /// Colours that jobs were started for: one that was refused or cancelled is not tried again
-    /// until other colours were chosen.
+    /// Colourings that jobs were started for: a refused or cancelled one is not tried again until
+    /// another is chosen.
     pub tried: Vec<(SubjectId, Coloring)>,
     /// True once a frame has drawn a subject.
     pub has_drawn: bool,
@@ -117,7 +117,7 @@ impl ViewerState {
         self.notices.push(Notice { text: text.into(), is_problem: false, until });
     }
 
-    /// Shows a line about what went wrong, and keeps it for the report.
+    /// Shows an error message, and keeps it for the report.
     pub fn complain(&mut self, text: impl Into<String>) {
         let (text, until) = (text.into(), Instant::now() + Duration::from_secs(12));
         // Some come with every frame.
@@ -128,7 +128,7 @@ impl ViewerState {
         self.notices.push(Notice { text, is_problem: true, until });
     }
 
-    /// Notes which files are open, for the case that the window must be opened again.
+    /// Notes the open files, in case the window must be opened again.
     pub fn note_open_files(&self) {
         if let Ok(mut open) = self.open_files.lock() {
             *open = self.documents.iter().map(|document| document.loaded.path.clone()).collect();

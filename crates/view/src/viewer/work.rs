@@ -29,15 +29,15 @@ pub(crate) enum News {
     Saved(PathBuf),
 }
 
-/// Whether a subject has the normals that its file asks for.
+/// Whether a subject has the normals of its file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NormalsState {
     Final,
-    /// Smooth ones, which are made several times as fast as those with creases.
+    /// Smooth normals, which take a fraction of the time of those with creases.
     Rough,
 }
 
-/// Level that was made, on the GPU.
+/// New level, on the GPU.
 pub(crate) struct MadeLevel {
     pub loaded: Arc<Loaded>,
     pub subject: Subject,
@@ -53,7 +53,7 @@ pub(crate) struct Comparison {
     pub distance: LevelDistance,
 }
 
-/// Largest number of findings of a kind that are listed.
+/// Largest number of listed findings of one kind.
 const FINDINGS_LISTED: usize = 500;
 /// Ratio of the faces from step to step of a simplification that can be cancelled between steps.
 const STEP: f64 = 0.85;
@@ -104,7 +104,7 @@ pub(crate) fn simplify(
     Ok(Some(News::Simplified(document, Box::new(made))))
 }
 
-/// Returns the targets on the way to one, between which a run can be cancelled.
+/// Returns intermediate targets and the target itself; a run can be cancelled between them.
 fn steps(faces: usize, target: Target) -> Vec<Target> {
     match target {
         Target::Faces(to) => {
@@ -121,7 +121,7 @@ fn steps(faces: usize, target: Target) -> Vec<Target> {
     }
 }
 
-/// Observer that tells a job's progress.
+/// Observer that reports the progress of a simplification.
 struct Counter<'w> {
     watch: &'w Watch,
     gone: usize,

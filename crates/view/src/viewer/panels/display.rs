@@ -1,4 +1,4 @@
-//! How everything is shown.
+//! Settings of the display: shading, colours, ground, axes.
 
 use egui::Ui;
 use meshlod::picture::UpAxis;

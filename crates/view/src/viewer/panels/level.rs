@@ -1,4 +1,4 @@
-//! Simplification: method, target, and the level that came of it.
+//! Simplification: method, target, and the resulting level.
 
 use egui::{ComboBox, Slider, Ui};
 use meshlod::Method;

@@ -20,7 +20,7 @@ use super::theme;
 /// Width of the side panel, in points.
 const WIDTH: f32 = 292.0;
 
-/// Shows all panels, and returns what they ask for.
+/// Shows all panels, and returns the actions that they request.
 pub(crate) fn show(state: &mut ViewerState, ui: &mut Ui) -> Vec<Action> {
     let mut actions = Vec::new();
     let bar = Frame::new().fill(theme::PANEL).inner_margin(Margin::symmetric(12, 6));

@@ -1,4 +1,4 @@
-//! Bottom bar: what is drawn, what runs, what happened.
+//! Bottom bar: size of the picture's subjects, running jobs, messages.
 
 use egui::{Align, Layout, RichText, Ui};
 

@@ -1,4 +1,4 @@
-//! Parts that panels are made of, and numbers as they show them.
+//! Widgets of panels, and formats of numbers.
 
 use egui::{RichText, Ui};
 
@@ -87,8 +87,8 @@ pub(super) fn wide_button(ui: &mut Ui, text: &str, is_main: bool) -> bool {
     ui.vertical_centered_justified(|ui| ui.add(button).clicked()).inner
 }
 
-/// Shows the progress of a job of a kind with a button that cancels it; returns false if there is
-/// none.
+/// Shows the progress of a job of a kind with a button that cancels it; returns false if no such
+/// job runs.
 pub(super) fn progress(
     state: &ViewerState,
     ui: &mut Ui,
