@@ -96,7 +96,7 @@ impl NativeCut {
 
     /// Number of faces.
     fn face_count(&self, py: Python<'_>) -> usize {
-        py.detach(|| self.lock().cut.with_dependent(|_, cut| cut.face_count()))
+        py.detach(|| self.lock().cut.with_dependent(|_, cut| cut.slot_mesh().face_count()))
     }
 
     /// Positions and attributes of the vertices of all levels, which the triangles refer to.
@@ -137,13 +137,14 @@ impl Shown {
     }
 
     fn all_triangles(&self) -> Vec<[i32; 3]> {
-        let slots = self.cut.with_dependent(|_, cut| cut.slots());
+        let slots = self.cut.with_dependent(|_, cut| cut.slot_mesh().slots());
         self.triangles(0..slots as u32)
     }
 
     /// Returns the vertices of the triangles in slots: wedges, or nodes without wedges.
     fn triangles(&self, slots: impl Iterator<Item = u32>) -> Vec<[i32; 3]> {
         self.cut.with_dependent(|_, cut| {
+            let cut = cut.slot_mesh();
             let triangle = |slot| cut.wedges(slot).or_else(|| cut.triangle(slot));
             slots.map(|slot| triangle(slot).map_or(EMPTY, |t| t.map(|v| v as i32))).collect()
         })
@@ -179,7 +180,7 @@ impl Update {
         let Shown { cut, written } = shown;
         let change = cut.with_dependent_mut(|_, cut| {
             let change = cut.update(&self.query.query(), &limits)?;
-            written.extend(cut.touched_slots());
+            written.extend(cut.slot_mesh().touched_slots());
             Ok(change)
         })?;
         self.changes = self.changes.map(|left| left.saturating_sub(change.splits + change.merges));

@@ -6,7 +6,7 @@
 use std::error::Error;
 use std::fs::File;
 
-use meshlod::multires::{ModelFile, Query, UpdateLimits, ViewCamera};
+use meshlod::multires::{ModelFile, Query, SlotMesh, UpdateLimits, ViewCamera};
 use meshlod::{BuildOptions, build, samples};
 
 fn main() -> Result<(), Box<dyn Error>> {

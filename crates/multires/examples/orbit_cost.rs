@@ -14,8 +14,8 @@ use cpu_time::ThreadTime;
 use glam::DVec3;
 use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, WedgeId};
 use meshlod_multires::{
-    Archive, Cut, Forest, Geomorph, Hierarchy, Implicit, ModelFile, Query, Storage, UpdateLimits,
-    VertexValues, ViewCamera,
+    Archive, Cut, Forest, Geomorph, Hierarchy, Implicit, ModelFile, Query, SlotMesh, Storage,
+    UpdateLimits, VertexValues, ViewCamera,
 };
 use meshlod_simplify::Options;
 

@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use meshlod_io::ReadOptions;
 use meshlod_mesh::{LayerKind, Mesh};
-use meshlod_multires::{Forest, Geomorph, Implicit, Query, UpdateLimits, ViewCamera};
+use meshlod_multires::{Forest, Geomorph, Implicit, Query, SlotMesh, UpdateLimits, ViewCamera};
 use meshlod_picture::{Camera, Normals, Paint, Picture, Style, flip, render};
 use meshlod_simplify::Options;
 

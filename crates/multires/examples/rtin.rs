@@ -8,7 +8,7 @@ use std::error::Error;
 use cpu_time::ThreadTime;
 use meshlod_mesh::Bounds;
 use meshlod_multires::{
-    Focus, HeightField, HeightPrecision, Query, Rtin, RtinCut, RtinExtractor, Tolerance,
+    Focus, HeightField, HeightPrecision, Query, Rtin, RtinCut, RtinExtractor, SlotMesh, Tolerance,
     UpdateLimits, ViewCamera,
 };
 

@@ -1,10 +1,11 @@
 //! Models of either kind, and cuts that follow queries on them: what a viewer needs to know.
 
-use crate::cut::{Cut, CutChange, Located, Patch, UpdateLimits};
+use crate::cut::{Cut, CutChange, Located, UpdateLimits};
 use crate::implicit::Implicit;
 use crate::level::Level;
 use crate::query::{Focus, Query, QueryError};
 use crate::rtin::{Rtin, RtinCut};
+use crate::slot_mesh::SlotMesh;
 
 /// All levels of a surface in memory, whatever their updates are.
 #[derive(Clone, Debug)]
@@ -100,68 +101,11 @@ impl HierarchyCut<'_> {
         }
     }
 
-    /// Returns the number of faces of the current level.
-    pub fn face_count(&self) -> usize {
+    /// Returns the current level as triangles in slots.
+    pub fn slot_mesh(&self) -> &dyn SlotMesh {
         match self {
-            Self::Contractions(cut) => cut.face_count(),
-            Self::RightTriangles(cut) => cut.face_count(),
-        }
-    }
-
-    /// Returns the number of vertices of the current level.
-    pub fn vertex_count(&self) -> usize {
-        match self {
-            Self::Contractions(cut) => cut.vertex_count(),
-            Self::RightTriangles(cut) => cut.vertex_count(),
-        }
-    }
-
-    /// Returns the number of triangle slots, which is the length of a list indexed by
-    /// [`Patch::slot`].
-    pub fn slots(&self) -> usize {
-        match self {
-            Self::Contractions(cut) => cut.slots(),
-            Self::RightTriangles(cut) => cut.slots(),
-        }
-    }
-
-    /// Returns the three nodes of the triangle in a slot, or `None` if the slot is empty.
-    pub fn triangle(&self, slot: u32) -> Option<[u32; 3]> {
-        match self {
-            Self::Contractions(cut) => cut.triangle(slot),
-            Self::RightTriangles(cut) => cut.triangle(slot),
-        }
-    }
-
-    /// Iterates over the triangles of the current level, each by its slot and its three nodes.
-    pub fn triangles(&self) -> impl Iterator<Item = (u32, [u32; 3])> + '_ {
-        (0..self.slots() as u32).filter_map(|slot| Some((slot, self.triangle(slot)?)))
-    }
-
-    /// Iterates over the triangle slots that the last update changed, in no particular order.
-    pub fn patches(&self) -> impl Iterator<Item = Patch> + '_ {
-        let (contractions, triangles) = match self {
-            Self::Contractions(cut) => (Some(cut.patches()), None),
-            Self::RightTriangles(cut) => (None, Some(cut.patches())),
-        };
-        contractions.into_iter().flatten().chain(triangles.into_iter().flatten())
-    }
-
-    /// Iterates over the triangle slots that the last update wrote, see [`Cut::touched_slots`].
-    pub fn touched_slots(&self) -> impl Iterator<Item = u32> + '_ {
-        let (contractions, triangles) = match self {
-            Self::Contractions(cut) => (Some(cut.touched_slots()), None),
-            Self::RightTriangles(cut) => (None, Some(cut.patches().map(|patch| patch.slot))),
-        };
-        contractions.into_iter().flatten().chain(triangles.into_iter().flatten())
-    }
-
-    /// Returns the wedges at the corners of the triangle in a slot; `None` if the slot is empty or
-    /// the model has no wedges, as height fields have none. See [`Cut::wedges`].
-    pub fn wedges(&self, slot: u32) -> Option<[u32; 3]> {
-        match self {
-            Self::Contractions(cut) => cut.wedges(slot),
-            Self::RightTriangles(_) => None,
+            Self::Contractions(cut) => cut,
+            Self::RightTriangles(cut) => cut,
         }
     }
 

@@ -19,11 +19,12 @@
 //! | [`Extractor::uniform`] | the smallest cut | one tolerance everywhere: only errors matter |
 //! | [`Extractor::at_most`] | the best cut within a face budget | budgets |
 //!
-//! [`Cut::level_within`] and [`Cut::locate`] answer spatial queries on a cut.
+//! [`Cut::level_within`] and [`Cut::locate`] answer spatial queries on a cut. The triangles of a
+//! cut lie in slots, of which an update changes some: see [`SlotMesh`].
 //!
 //! ```
 //! use meshlod_samples as samples;
-//! use meshlod_multires::{Forest, Model, Query, UpdateLimits, ViewCamera};
+//! use meshlod_multires::{Forest, Model, Query, SlotMesh, UpdateLimits, ViewCamera};
 //! use meshlod_simplify::Options;
 //!
 //! let mesh = samples::torus(5000);
@@ -83,14 +84,15 @@ mod model;
 mod pack;
 mod query;
 mod rtin;
+mod slot_mesh;
 mod wedges;
 
 #[cfg(test)]
 mod tests;
 
 pub use cut::{
-    Certificate, CertifyError, Cut, CutChange, Flaw, Geomorph, Located, Motion, Patch,
-    UpdateLimits, VertexValues,
+    Certificate, CertifyError, Cut, CutChange, Flaw, Geomorph, Located, Motion, UpdateLimits,
+    VertexValues,
 };
 pub use error_kind::ErrorKind;
 pub use explicit::{Explicit, ExplicitCut};
@@ -109,4 +111,5 @@ pub use rtin::{
     FieldBytesError, Fit, HeightField, HeightFieldError, HeightPrecision, Rtin, RtinCertifyError,
     RtinCut, RtinExtractor, RtinFlaw,
 };
+pub use slot_mesh::{Patch, SlotMesh};
 pub use wedges::LayerFormat;

@@ -7,7 +7,7 @@
 
 use meshlod_fixtures::shared_mesh;
 use meshlod_mesh::{Bounds, Mesh};
-use meshlod_multires::{Cut, Forest, Model, Query, QueryError, UpdateLimits, ViewCamera};
+use meshlod_multires::{Cut, Forest, Model, Query, QueryError, SlotMesh, UpdateLimits, ViewCamera};
 use meshlod_simplify::{Method, Options};
 use meshlod_strip::{
     CutStrips, StripEffort, StripIndices, StripOptions, StripQuality, StripStatistics, stripify,

@@ -4,7 +4,7 @@ mod verify;
 mod vertices;
 
 use meshlod_mesh::VertexId;
-use meshlod_multires::{Cut, Implicit};
+use meshlod_multires::{Cut, Implicit, SlotMesh};
 
 use crate::repair::{LiveStrips, StripEffort, StripIndices};
 use crate::stripify::{StripOptions, stripify};

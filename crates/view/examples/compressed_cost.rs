@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Prints a row for each scheme, beside the decoded mesh in the order of its faces.
+/// Prints a row for each scheme, compared with the decoded mesh in the order of its faces.
 fn measure(renderer: &Renderer, name: &str, mesh: &Mesh, side: u32) -> Result<(), Box<dyn Error>> {
     for (scheme, compressed) in schemes(mesh)? {
         let decoded = compressed.decode()?;

@@ -1,5 +1,5 @@
-//! Measures what a cut costs the processor and sends to the GPU while a camera orbits, at once and with
-//! vertices that move, and looks for cracks in it.
+//! Measures what a cut costs the processor and sends to the GPU while a camera orbits, at once and
+//! with vertices that move, and looks for cracks in it.
 //!
 //! `cargo run --release -p meshlod-view --example cut_cost -- MODEL.mlod [PIXELS] [VIEWS]`
 
@@ -74,8 +74,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     look_for_cracks(&gpu, &renderer, &mut cut, &model, &orbit, &bounds, views)
 }
 
-/// Orbits by a tenth of a degree a frame, and returns for each frame the milliseconds of the cut and of
-/// its upload, and the percentage of the index buffers that was sent.
+/// Orbits by a tenth of a degree a frame, and returns for each frame the milliseconds of the cut
+/// and of its upload, and the percentage of the index buffers that was sent.
 fn follow(
     gpu: &Gpu,
     cut: &mut GpuCut,
@@ -109,8 +109,9 @@ fn follow(
     Ok(figures)
 }
 
-/// Draws cuts of many kinds from many sides, and counts the pixels with background that the processor
-/// covers in full: its faces leave no gaps. Only single pixels are looked at, since models have holes.
+/// Draws cuts of many kinds from many sides, and counts the pixels with background that the
+/// processor covers in full: its faces leave no gaps. Only single pixels are looked at, since
+/// models have holes.
 fn look_for_cracks(
     gpu: &Gpu,
     renderer: &Renderer,
@@ -163,7 +164,7 @@ fn look_for_cracks(
     Ok(())
 }
 
-/// Returns the pixels with background of which all eight neighbours are covered.
+/// Returns the background pixels whose eight neighbours are all covered.
 fn pinholes(picture: &Picture) -> Vec<[u32; 2]> {
     let [width, height] = [picture.width(), picture.height()];
     let alpha = |x: u32, y: u32| picture.pixel(x, y)[3];

@@ -1,9 +1,9 @@
-//! Measures how much the picture of a model in its own textures jumps while a cut follows an orbit, at
-//! once and with vertices that move.
+//! Measures how much the picture of a model in its own textures jumps while a cut follows an orbit,
+//! at once and with vertices that move.
 //!
-//! `cargo run --release -p meshlod-view --example cut_popping -- MODEL.mlod…`. Between two pictures the
-//! camera stands still: it is the later one's. Cuts change by a degree at a pixel, in pictures of 512 by
-//! 512. Differences are sums over pixels, for each triangle whose slot changes.
+//! `cargo run --release -p meshlod-view --example cut_popping -- MODEL.mlod…`. Between two pictures
+//! the camera stands still: it is the later one's. Cuts change by a degree at a pixel, in pictures
+//! of 512 by 512. Differences are sums over pixels, for each triangle whose slot changes.
 
 use std::error::Error;
 use std::path::Path;
@@ -40,8 +40,8 @@ fn main() -> Result<(), Failure> {
     })
 }
 
-/// Returns the differences over an orbit from each cut to the next, those from each cut to the first
-/// frame of the motion, and the number of triangles that changed.
+/// Returns the differences over an orbit from each cut to the next, those from each cut to the
+/// first frame of the motion, and the number of triangles that changed.
 fn measure(gpu: &Gpu, path: &Path) -> Result<[f64; 3], Failure> {
     let loaded = Loaded::read(path, &ReadOptions::default())?;
     let LoadedContent::Levels(model) = &loaded.content else { return Err("no levels".into()) };
@@ -89,7 +89,7 @@ struct Film {
 }
 
 impl Film {
-    /// Applies what a follower has ready, and returns the number of slots that changed.
+    /// Applies the next step of a follower if it is ready, and returns the number of changed slots.
     fn take(&mut self, follower: &mut CutFollower) -> Result<f64, Failure> {
         let mut changed = 0;
         while let Some(step) = follower.wait() {

@@ -2,12 +2,13 @@
 
 use meshlod::picture::Picture;
 use wgpu::{
-    BufferDescriptor, BufferUsages, Color, CommandEncoder, Extent3d, LoadOp, Operations,
-    RenderPass, StoreOp, Texture, TextureUsages, TextureView,
+    BufferUsages, Color, CommandEncoder, Extent3d, LoadOp, Operations, RenderPass, StoreOp,
+    Texture, TextureUsages, TextureView,
 };
 
-use crate::read::map;
-use crate::texture::texture_2d;
+use crate::gpu::buffers::blank_buffer;
+use crate::gpu::read::map;
+use crate::gpu::texture::texture_2d;
 use crate::{Gpu, TargetFormat, ViewError};
 
 /// Target in memory, with depth, and readable as a [`Picture`].
@@ -21,9 +22,9 @@ pub struct Canvas {
     resolved: Texture,
     resolved_view: TextureView,
     depth: TextureView,
-    /// Linear colour to which it is cleared, with alpha.
+    /// Linear colour of a cleared canvas, with alpha.
     pub clear: [f64; 4],
-    /// Keep the depths of what is drawn, for [`Canvas::depth`].
+    /// Keep the depths of each pass, for [`Canvas::depth`].
     pub keeps_depth: bool,
 }
 
@@ -82,7 +83,7 @@ impl Canvas {
         self.format
     }
 
-    /// Returns the texture that shows what was drawn.
+    /// Returns the texture with the picture, one sample a pixel.
     pub fn resolved(&self) -> &Texture {
         &self.resolved
     }
@@ -133,19 +134,15 @@ impl Canvas {
         })
     }
 
-    /// Reads the pixels, after everything submitted so far.
+    /// Reads the pixels, after all work submitted before.
     ///
     /// # Errors
     /// The device was lost.
     pub fn read(&self) -> Result<Picture, ViewError> {
         let [width, height] = self.size;
         let row = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let buffer = self.gpu.device.create_buffer(&BufferDescriptor {
-            label: Some("pixels"),
-            size: u64::from(row) * u64::from(height),
-            usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
+        let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
+        let buffer = blank_buffer(&self.gpu, "pixels", u64::from(row) * u64::from(height), usage);
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let layout = wgpu::TexelCopyBufferLayout {
             offset: 0,

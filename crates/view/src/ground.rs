@@ -1,22 +1,28 @@
 //! Soft shadow on the ground below a thing.
 //!
-//! The light is the sky: the shadow is a blurred picture from above, so that it stays where it is when
-//! the camera moves. It is drawn once for each thing, not for each frame.
+//! The light is the sky: the shadow is a blurred picture from above, so that it stays where it is
+//! when the camera moves. It is drawn once for each thing, not for each frame.
+
+use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 use meshlod::mesh::Bounds;
 use meshlod::picture::{Camera, Lighting, UpAxis};
 use wgpu::{
-    BindGroup, BlendState, Buffer, BufferUsages, CommandEncoder, CompareFunction, FilterMode,
-    PrimitiveTopology, RenderPass, RenderPipeline, SamplerDescriptor, TextureFormat, TextureUsages,
-    TextureView,
+    AddressMode, BindGroup, BlendState, Buffer, CommandEncoder, CompareFunction, PrimitiveTopology,
+    RenderPass, RenderPipeline, TextureFormat, TextureUsages, TextureView,
 };
 
+use crate::gpu::bindings::bind_image;
+use crate::gpu::buffers::uniform_of;
+use crate::gpu::texture::{sampler, texture_2d};
 use crate::placement::{Placement, clip_from_local};
-use crate::renderer::{PipelineBuild, Renderer, bind_group, buffer_of};
-use crate::texture::texture_2d;
-use crate::{Canvas, Shade, TargetFormat, ViewError};
+use crate::renderer::{PipelineBuild, Pipelines, Renderer};
+use crate::{Canvas, Gpu, Shade, TargetFormat, ViewError};
+
+/// Shader of shadows, which also blurs them.
+const SHADER: &str = include_str!("shaders/ground.wgsl");
 
 /// Shadow of a thing on the ground.
 #[derive(Debug)]
@@ -28,8 +34,17 @@ pub struct Ground {
     /// Placement of the ground in the picture.
     place: Buffer,
     bind_group: BindGroup,
-    pipeline: RenderPipeline,
+    pipelines: Arc<GroundPipelines>,
     format: TargetFormat,
+}
+
+/// Pipelines of shadows.
+#[derive(Debug)]
+struct GroundPipelines {
+    /// Draws the ground with its shadow.
+    shadow: RenderPipeline,
+    /// Blurs a map of coverage along one axis.
+    blur: RenderPipeline,
 }
 
 /// `Place` of ground.wgsl.
@@ -54,6 +69,8 @@ const ROOM: f64 = 1.7;
 /// Rounds of blur, with the distance of their taps in pixels.
 const BLURS: [f32; 3] = [1.0, 2.0, 3.5];
 
+const BLUR_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
+
 const OPACITY: f32 = 0.45;
 
 impl Ground {
@@ -69,7 +86,6 @@ impl Ground {
         origin: [f64; 3],
         draw: impl FnOnce(&mut RenderPass<'_>, &Placement),
     ) -> Result<Self, ViewError> {
-        let gpu = renderer.gpu();
         let (axis, [right, ahead]) = match up {
             UpAxis::Y => (1, [Vec3::X, Vec3::NEG_Z]),
             UpAxis::Z => (2, [Vec3::X, Vec3::Y]),
@@ -80,37 +96,25 @@ impl Ground {
             (0.5 * ROOM * a.hypot(b)).max(bounds.diagonal() * 1e-3).max(f64::MIN_POSITIVE.sqrt());
         middle[axis] = bounds.min[axis];
 
-        let canvas = Canvas::with_format(gpu, [SIDE; 2], renderer.format())?;
+        let canvas = Canvas::with_format(renderer.gpu(), [SIDE; 2], renderer.format())?;
         let placement = renderer.placement();
         let above = camera_above(bounds, middle, half, axis, ahead);
         let shade = Shade { lighting: Lighting::Unlit, ..Shade::default() };
         placement.set(&above, [SIDE; 2], origin, &shade);
         canvas.draw(|pass| draw(pass, &placement));
-        let map = blurred(renderer, canvas.resolved());
+        let pipelines = renderer.pipelines::<GroundPipelines>();
+        let map = blurred(renderer.gpu(), &pipelines.blur, canvas.resolved());
 
-        let shader = renderer.shader("ground", include_str!("shaders/ground.wgsl").into());
-        let pipeline = renderer.pipeline(&PipelineBuild {
-            entries: ["square", "shadow"],
-            topology: PrimitiveTopology::TriangleStrip,
-            depth: (CompareFunction::Greater, false),
-            // Seen from below, the ground hides nothing.
-            cull: Some(wgpu::Face::Front),
-            blend: Some(BlendState::ALPHA_BLENDING),
-            ..PipelineBuild::new("ground", &shader)
-        });
-        let usage = BufferUsages::UNIFORM | BufferUsages::COPY_DST;
-        let place = buffer_of(gpu, "ground", bytemuck::bytes_of(&PlaceUniforms::zeroed()), usage);
-        let layout = pipeline.get_bind_group_layout(0);
-        let bind_group = shadow_group(renderer, &layout, &place, &map);
-        let origin = DVec3::from(origin);
+        let place = uniform_of(renderer.gpu(), "ground", &PlaceUniforms::zeroed());
+        let bind_group = bind_map(renderer.gpu(), &pipelines.shadow, &place, &map);
         Ok(Self {
-            origin,
+            origin: DVec3::from(origin),
             middle,
             half,
             axes: [right, ahead],
             place,
             bind_group,
-            pipeline,
+            pipelines,
             format: renderer.format(),
         })
     }
@@ -141,7 +145,7 @@ impl Ground {
             step: 0.0,
         };
         renderer.gpu().queue.write_buffer(&self.place, 0, bytemuck::bytes_of(&uniforms));
-        pass.set_pipeline(&self.pipeline);
+        pass.set_pipeline(&self.pipelines.shadow);
         pass.set_bind_group(0, &self.bind_group, &[]);
         pass.draw(0..4, 0..1);
     }
@@ -157,11 +161,48 @@ fn camera_above(bounds: &Bounds, middle: DVec3, half: f64, axis: usize, ahead: V
     Camera::look_at(eye.into(), middle.into(), ahead.as_dvec3().into(), fov_rad)
 }
 
+impl Pipelines for GroundPipelines {
+    fn compile(renderer: &Renderer) -> Self {
+        Self { shadow: shadow_pipeline(renderer), blur: blur_pipeline(renderer) }
+    }
+}
+
+fn shadow_pipeline(renderer: &Renderer) -> RenderPipeline {
+    let shader = renderer.shader("ground", SHADER);
+    renderer.pipeline(&PipelineBuild {
+        entries: ["square", "shadow"],
+        topology: PrimitiveTopology::TriangleStrip,
+        depth: (CompareFunction::Greater, false),
+        // Seen from below, the ground hides nothing.
+        cull: Some(wgpu::Face::Front),
+        blend: Some(BlendState::ALPHA_BLENDING),
+        ..PipelineBuild::new("ground", &shader)
+    })
+}
+
 /// Blurs a map of coverage.
-fn blurred(renderer: &Renderer, map: &wgpu::Texture) -> TextureView {
-    let gpu = renderer.gpu();
-    let shader = renderer.shader("blur", include_str!("shaders/ground.wgsl").into());
-    let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+fn blurred(gpu: &Gpu, pipeline: &RenderPipeline, map: &wgpu::Texture) -> TextureView {
+    let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
+    let mut from = map.create_view(&Default::default());
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    for step in BLURS {
+        for along in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] {
+            let uniforms = PlaceUniforms { ahead: along, step, ..PlaceUniforms::zeroed() };
+            let place = uniform_of(gpu, "blur", &uniforms);
+            let to = texture_2d(gpu, [SIDE; 2], BLUR_FORMAT, 1, usage);
+            let to = to.create_view(&Default::default());
+            let group = bind_map(gpu, pipeline, &place, &from);
+            draw_blur(&mut encoder, pipeline, &group, &to);
+            from = to;
+        }
+    }
+    gpu.queue.submit([encoder.finish()]);
+    from
+}
+
+fn blur_pipeline(renderer: &Renderer) -> RenderPipeline {
+    let shader = renderer.shader("blur", SHADER);
+    renderer.gpu().device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("blur"),
         layout: None,
         vertex: wgpu::VertexState {
@@ -177,66 +218,36 @@ fn blurred(renderer: &Renderer, map: &wgpu::Texture) -> TextureView {
             module: &shader,
             entry_point: Some("blur"),
             compilation_options: Default::default(),
-            targets: &[Some(TextureFormat::Rgba8Unorm.into())],
+            targets: &[Some(BLUR_FORMAT.into())],
         }),
         multiview_mask: None,
         cache: None,
-    });
-    let layout = pipeline.get_bind_group_layout(0);
-    let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
-    let buffer = || {
-        texture_2d(gpu, [SIDE; 2], TextureFormat::Rgba8Unorm, 1, usage)
-            .create_view(&Default::default())
-    };
-    let mut from = map.create_view(&Default::default());
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    for step in BLURS {
-        for along in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] {
-            let uniforms = PlaceUniforms { ahead: along, step, ..PlaceUniforms::zeroed() };
-            let place =
-                buffer_of(gpu, "blur", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM);
-            let to = buffer();
-            let group = shadow_group(renderer, &layout, &place, &from);
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &to,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: Default::default(),
-                })],
-                ..Default::default()
-            });
-            pass.set_pipeline(&pipeline);
-            pass.set_bind_group(0, &group, &[]);
-            pass.draw(0..3, 0..1);
-            drop(pass);
-            from = to;
-        }
-    }
-    submit(renderer, encoder);
-    from
+    })
 }
 
-fn submit(renderer: &Renderer, encoder: CommandEncoder) {
-    renderer.gpu().queue.submit([encoder.finish()]);
-}
-
-fn shadow_group(
-    renderer: &Renderer,
-    layout: &wgpu::BindGroupLayout,
-    place: &Buffer,
-    map: &TextureView,
-) -> BindGroup {
-    let device = &renderer.gpu().device;
-    let sampler = device.create_sampler(&SamplerDescriptor {
-        mag_filter: FilterMode::Linear,
-        min_filter: FilterMode::Linear,
+/// Records one blur of a map into `to`.
+fn draw_blur(
+    encoder: &mut CommandEncoder,
+    pipeline: &RenderPipeline,
+    group: &BindGroup,
+    to: &TextureView,
+) {
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: to,
+            depth_slice: None,
+            resolve_target: None,
+            ops: Default::default(),
+        })],
         ..Default::default()
     });
-    let resources = [
-        place.as_entire_binding(),
-        wgpu::BindingResource::TextureView(map),
-        wgpu::BindingResource::Sampler(&sampler),
-    ];
-    bind_group(device, layout, resources)
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, group, &[]);
+    pass.draw(0..3, 0..1);
+}
+
+/// Binds the place of the ground and a map of its shadow.
+fn bind_map(gpu: &Gpu, pipeline: &RenderPipeline, place: &Buffer, map: &TextureView) -> BindGroup {
+    let sampler = sampler(gpu, AddressMode::ClampToEdge, 1);
+    bind_image(gpu, &pipeline.get_bind_group_layout(0), place, map, &sampler)
 }

@@ -1,8 +1,8 @@
 //! Draws meshes, levels, cuts and flocks on the GPU, with wgpu; and a viewer for them.
 //!
 //! The renderer draws into any render pass. A [`Gpu`] is the device, a [`Renderer`] the pipelines
-//! for one kind of target, a [`Placement`] how one thing is seen by one camera. What is drawn are
-//! [`GpuMesh`]es. A [`Canvas`] is a target without a window:
+//! for one kind of target, a [`Placement`] how one thing is seen by one camera. The simplest thing
+//! is a [`GpuMesh`]. A [`Canvas`] is a target without a window:
 //!
 //! ```no_run
 //! use meshlod::picture::{Camera, Normals, Paint, View};
@@ -25,8 +25,8 @@
 //!
 //! # What always holds
 //! - Depth is reversed and without a far plane: 1 at the near plane, 0 at infinity. Clear it to 0.
-//! - Positions on the GPU are `f32` relative to an origin near the model, so that coordinates in the
-//!   millions lose nothing; matrices are made in `f64`.
+//! - Positions on the GPU are `f32` relative to an origin near the model, so that coordinates in
+//!   the millions lose nothing; matrices are made in `f64`.
 //! - Colours are computed in linear light, as by [`meshlod::picture`]. Targets are sRGB formats.
 #![forbid(unsafe_code)]
 
@@ -39,16 +39,11 @@ mod ground;
 mod mesh;
 mod placement;
 mod quantized;
-mod read;
 mod render;
 mod renderer;
 mod school;
 pub mod script;
 pub mod stage;
-mod strips;
-mod target;
-mod texture;
-mod upload;
 #[cfg(feature = "viewer")]
 pub mod viewer;
 
@@ -61,11 +56,9 @@ pub use error::ViewError;
 pub use flock::{GpuFlock, GpuObstacles, GpuSelection, HiZ};
 pub use gpu::Gpu;
 pub use ground::Ground;
-pub use mesh::GpuMesh;
+pub use mesh::{GpuMesh, GpuStrips};
 pub use placement::{Placement, Shade};
 pub use quantized::{CompressedOptions, GpuCompressed, PartMatrices};
 pub use render::{render, view_camera};
-pub use renderer::{Backdrop, Renderer};
+pub use renderer::{Backdrop, Renderer, TargetFormat};
 pub use school::{SchoolFrame, SchoolHistory, SchoolShow};
-pub use strips::GpuStrips;
-pub use target::TargetFormat;

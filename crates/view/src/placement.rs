@@ -7,18 +7,22 @@ use glam::{DMat4, DVec3, DVec4, Mat4};
 use meshlod::picture::{BackFaces, Camera, Lighting, Wireframe};
 use wgpu::{BindGroup, Buffer, Queue};
 
+use crate::Renderer;
+use crate::gpu::bindings::bind_buffers;
+use crate::gpu::buffers::uniform_of;
+
 /// How one thing is seen by one camera: a small buffer on the GPU.
 ///
-/// What is drawn in two views of one frame needs two placements, since all uploads of a frame come
-/// before its first pass.
+/// A thing in two views of one frame needs two placements, since all uploads of a frame come before
+/// its first pass.
 #[derive(Debug)]
 pub struct Placement {
-    pub(crate) buffer: Buffer,
+    buffer: Buffer,
     pub(crate) bind_group: BindGroup,
-    pub(crate) queue: Queue,
+    queue: Queue,
 }
 
-/// Look of a thing that is drawn, beside its own colours.
+/// Look of a thing, apart from its own colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shade {
     /// Lighting of the surface.
@@ -27,7 +31,7 @@ pub struct Shade {
     pub back_faces: BackFaces,
     /// Flat shading: one normal per face.
     pub is_flat: bool,
-    /// Lines along the edges of all faces; only what is drawn face by face has them.
+    /// Lines along the edges of all faces; only drawing face by face shows them.
     pub wireframe: Option<Wireframe>,
     /// Use the colours of faces in place of the mesh's own.
     pub face_colors: bool,
@@ -35,10 +39,10 @@ pub struct Shade {
     pub own_colors: bool,
     /// Draw a checkerboard in texture coordinates in place of textures.
     pub checker: bool,
-    /// Share of the pixels that are drawn, 0 to 1, for dithered transitions. With t - 1 exactly those
-    /// pixels are drawn that t leaves out.
+    /// Share of the pixels that are drawn, 0 to 1, for dithered transitions. The shares t - 1 and t
+    /// draw complementary pixels.
     pub shown: f32,
-    /// sRGB colour that multiplies that of the surface.
+    /// sRGB colour by which the colour of the surface is multiplied.
     pub tint: [u8; 3],
 }
 
@@ -61,7 +65,7 @@ impl Default for Shade {
 /// `Draw` of draw.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct DrawUniforms {
+struct DrawUniforms {
     clip_from_local: [[f32; 4]; 4],
     eye: [f32; 3],
     lighting: u32,
@@ -76,9 +80,18 @@ pub(crate) struct DrawUniforms {
     seed: f32,
 }
 
+impl Renderer {
+    /// Creates a placement, which must be set before it is used.
+    pub fn placement(&self) -> Placement {
+        let buffer = uniform_of(self.gpu(), "placement", &DrawUniforms::zeroed());
+        let bind_group = bind_buffers(self.gpu(), &self.draw_layout, &[&buffer]);
+        Placement { buffer, bind_group, queue: self.gpu().queue.clone() }
+    }
+}
+
 impl Placement {
-    /// Sets the camera, the size of the picture in pixels, the origin of the thing in the world, and
-    /// its look.
+    /// Sets the camera, the size of the picture in pixels, the origin of the thing in the world,
+    /// and its look.
     pub fn set(&self, camera: &Camera, size: [u32; 2], origin: [f64; 3], shade: &Shade) {
         let uniforms = DrawUniforms::new(camera, size, origin, shade);
         self.queue.write_buffer(&self.buffer, 0, bytemuck::bytes_of(&uniforms));
@@ -86,7 +99,7 @@ impl Placement {
 }
 
 impl DrawUniforms {
-    pub(crate) fn new(camera: &Camera, size: [u32; 2], origin: [f64; 3], shade: &Shade) -> Self {
+    fn new(camera: &Camera, size: [u32; 2], origin: [f64; 3], shade: &Shade) -> Self {
         let [right, up, forward] = camera.axes().map(|axis| DVec3::from(axis).as_vec3());
         let eye = (DVec3::from(camera.eye()) - DVec3::from(origin)).as_vec3();
         let wire = shade.wireframe.unwrap_or_default();
@@ -147,7 +160,7 @@ pub(crate) fn clip_from_world(camera: &Camera, size: [u32; 2], origin: [f64; 3])
     DMat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose()
 }
 
-/// sRGB colour of surfaces without colours of their own, that of [`meshlod::OwnedPaint::CLAY`].
+/// sRGB colour of surfaces without colours, the same as [`meshlod::OwnedPaint::CLAY`].
 pub(crate) const CLAY: [u8; 3] = [226, 208, 186];
 
 /// Converts an sRGB colour to linear light.

@@ -8,9 +8,9 @@ use crate::{Canvas, Gpu, GpuMesh, Renderer, Shade, TargetFormat, ViewError};
 
 /// Draws a picture of a mesh in a style of [`meshlod::picture::render`].
 ///
-/// Pixels on surfaces are the same within a few levels of 255; along edges the samples differ, four to a
-/// pixel whatever the style asks for. A mesh beyond the storage limits of the GPU is drawn without a
-/// wireframe and without colours of faces.
+/// Pixels on surfaces are the same within a few levels of 255; along edges the samples differ, four
+/// to a pixel whatever the style asks for. A mesh beyond the storage limits of the GPU is drawn
+/// without a wireframe and without colours of faces.
 ///
 /// # Errors
 /// As [`GpuMesh::new`]; a size beyond the limits of the GPU; a GPU that was lost.
@@ -42,7 +42,7 @@ pub fn render(
 }
 
 impl Shade {
-    /// Returns the look that a style of pictures asks for.
+    /// Returns the look of a style of pictures.
     pub fn of(style: &Style<'_>) -> Self {
         Self {
             lighting: style.lighting,
@@ -54,7 +54,7 @@ impl Shade {
     }
 }
 
-/// Returns the camera of [`meshlod::multires`] queries that sees what a camera of pictures does, in a
+/// Converts a camera of pictures to one of [`meshlod::multires`] queries with the same view, for a
 /// picture of a width and height in pixels.
 pub fn view_camera(camera: &Camera, size: [u32; 2]) -> ViewCamera {
     let [_, up, forward] = camera.axes();

@@ -1,7 +1,8 @@
 //! Search for cracks: background that shows through a closed mesh.
 //!
 //! `MESHLOD_CRACK_VIEWS` and `MESHLOD_CRACK_SIDE` search in more views and pixels, and
-//! `MESHLOD_CRACK_MESHES` in meshes of the shared folder, such as `horse-97k.ply,armadillo-52k.ply`.
+//! `MESHLOD_CRACK_MESHES` in meshes of the shared folder, such as
+//! `horse-97k.ply,armadillo-52k.ply`.
 
 mod common;
 
@@ -61,8 +62,8 @@ fn closed_meshes() -> Vec<(String, Mesh)> {
     meshes
 }
 
-/// Counts the cracks of all views as it is drawn by default, then by a matrix for each part if it has
-/// parts; both with faces from behind and without them.
+/// Counts the cracks of all views as it is drawn by default, then by a matrix for each part if it
+/// has parts; both with faces from behind and without them.
 fn cracks_all_round(stage: &Stage<'_>, compressed: &Compressed) -> [[usize; 2]; 2] {
     cracks_in(stage, compressed, compressed)
 }
@@ -94,7 +95,8 @@ fn cracks_in(stage: &Stage<'_>, compressed: &Compressed, whole: &Compressed) -> 
     count
 }
 
-/// Returns a mesh by all schemes; parts at the reduction that is asked for, or all that is possible.
+/// Returns a mesh by all schemes; parts at the reduction that is asked for, or all that is
+/// possible.
 fn schemes_with_parts(mesh: &Mesh) -> Vec<(&'static str, Compressed)> {
     let by = |scheme, target| {
         compress(mesh, scheme, target, &AttributeBounds::default()).unwrap().compressed

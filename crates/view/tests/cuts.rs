@@ -1,4 +1,4 @@
-//! Cuts on the GPU: what they upload, and that they have no cracks.
+//! Cuts on the GPU: their uploads, and that they have no cracks.
 
 mod common;
 

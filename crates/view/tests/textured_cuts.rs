@@ -1,5 +1,5 @@
-//! Cuts of scenes: materials, textures, colours and instances are drawn as the mesh's are, and vertices
-//! that move draw what `multires` says.
+//! Cuts of scenes: materials, textures, colours and instances are drawn as the mesh's are, and
+//! vertices that move draw what `multires` says.
 
 mod common;
 

@@ -4,8 +4,8 @@ use anyhow::Result;
 use meshlod::measure::{DistanceOptions, distance};
 use meshlod::mesh::{Bounds, Mesh};
 use meshlod::multires::{
-    Archive, Cut, Explicit, Focus, Forest, Implicit, Model, Query, Recorder, SplitRule, Storage,
-    Tolerance, UpdateLimits, ViewCamera,
+    Archive, Cut, Explicit, Focus, Forest, Implicit, Model, Query, Recorder, SlotMesh, SplitRule,
+    Storage, Tolerance, UpdateLimits, ViewCamera,
 };
 use meshlod::simplify::Simplifier;
 use meshlod::{Options, Target, Topology};

@@ -1,6 +1,6 @@
 use meshlod_multires::{
     Archive, Cut, Focus, HeightField, Implicit, Level, Model, ModelFile, Query, Rtin,
-    RtinExtractor, Tolerance, UpdateLimits, ViewCamera,
+    RtinExtractor, SlotMesh, Tolerance, UpdateLimits, ViewCamera,
 };
 
 use crate::accept::accept;

@@ -2,7 +2,7 @@
 
 use meshlod_measure::{BeyondOptions, FaceBeyond, PreparedSurface, faces_beyond};
 use meshlod_mesh::{Bounds, FaceId, Mesh, VertexId};
-use meshlod_multires::{Cut, Implicit, Limits, Surroundings};
+use meshlod_multires::{Cut, Implicit, Limits, SlotMesh, Surroundings};
 
 /// Part of a limit by which a face that passes may still exceed it, which the limits make up for.
 const SLACK: f64 = 0.01;

@@ -30,8 +30,8 @@ pub(crate) use self::schedule::{Schedule, ScheduleEntry, Span};
 pub(crate) use self::split_stars::{SplitStars, StarFace, each_split_star};
 use crate::implicit::Implicit;
 use crate::level::Level;
-use crate::query::{Ball, Criterion};
-use crate::query::{Query, QueryError};
+use crate::query::{Ball, Criterion, Query, QueryError};
+use crate::slot_mesh::{Patch, SlotMesh};
 
 /// A mesh extracted from an [`Implicit`] model, refined and coarsened to follow a sequence of
 /// queries such as the views of a moving camera.
@@ -76,17 +76,6 @@ pub struct CutChange {
     pub inspected: usize,
     /// True if the cut satisfies the query; false if a limit was reached first.
     pub done: bool,
-}
-
-/// Change of one slot in a cut's list of triangles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Patch {
-    /// Index of the changed slot.
-    pub slot: u32,
-    /// Nodes of the triangle that was in the slot before; `None` if the slot was empty.
-    pub old: Option<[u32; 3]>,
-    /// Nodes of the triangle that is in the slot now; `None` if the slot is empty.
-    pub new: Option<[u32; 3]>,
 }
 
 impl<'m> Cut<'m> {
@@ -159,59 +148,45 @@ impl<'m> Cut<'m> {
         Ok(meter.change)
     }
 
-    /// Returns the number of faces of the current mesh.
-    pub fn face_count(&self) -> usize {
-        self.front.triangles.len()
-    }
-
-    /// Returns the number of vertices of the current mesh.
-    pub fn vertex_count(&self) -> usize {
-        self.front.vertex_count()
-    }
-
-    /// Returns the number of triangle slots, which is the length of a list indexed by
-    /// [`Patch::slot`].
-    pub fn slots(&self) -> usize {
-        self.front.triangles.slots()
-    }
-
-    /// Iterates over the triangles of the current mesh, each by its slot and its three nodes.
-    pub fn triangles(&self) -> impl Iterator<Item = (u32, [u32; 3])> + '_ {
-        self.front.triangles.iter()
-    }
-
-    /// Returns the three nodes of the triangle in a slot, or `None` if the slot is empty.
-    pub fn triangle(&self, slot: u32) -> Option<[u32; 3]> {
-        self.front.triangles.real(slot)
-    }
-
     /// Returns true if a node of the model is a vertex of the current mesh.
     pub fn shows(&self, node: u32) -> bool {
         self.front.is_active(node)
     }
 
-    /// Returns the wedges at the corners of the triangle in a slot, in the numbers of
-    /// [`Implicit::layers`]; `None` if the slot is empty or the model has no wedges.
-    pub fn wedges(&self, slot: u32) -> Option<[u32; 3]> {
-        self.triangle(slot).and_then(|_| self.front.triangles.wedges(slot))
-    }
-
-    /// Iterates over the triangle slots that the last update changed, in no particular order.
-    pub fn patches(&self) -> impl Iterator<Item = Patch> + '_ {
-        self.front.triangles.changes().map(|(slot, old, new)| Patch { slot, old, new })
-    }
-
-    /// Iterates over the triangle slots that the last update wrote, in no particular order.
-    ///
-    /// Beside those of [`patches`](Self::patches) these may be slots that hold the same nodes as
-    /// before, though at other wedges: two faces may have the same three vertices.
-    pub fn touched_slots(&self) -> impl Iterator<Item = u32> + '_ {
-        self.front.triangles.touched()
-    }
-
     /// Returns a copy of the current mesh.
     pub fn level(&self) -> Level {
-        self.front.level_of(&self.triangles().map(|(slot, _)| slot).collect::<Vec<_>>())
+        let slots = self.front.triangles.iter().map(|(slot, _)| slot);
+        self.front.level_of(&slots.collect::<Vec<_>>())
+    }
+}
+
+impl SlotMesh for Cut<'_> {
+    fn face_count(&self) -> usize {
+        self.front.triangles.len()
+    }
+
+    fn vertex_count(&self) -> usize {
+        self.front.vertex_count()
+    }
+
+    fn slots(&self) -> usize {
+        self.front.triangles.slots()
+    }
+
+    fn triangle(&self, slot: u32) -> Option<[u32; 3]> {
+        self.front.triangles.real(slot)
+    }
+
+    fn wedges(&self, slot: u32) -> Option<[u32; 3]> {
+        self.front.triangles.real_wedges(slot)
+    }
+
+    fn patches(&self) -> Box<dyn Iterator<Item = Patch> + '_> {
+        Box::new(self.front.triangles.changes())
+    }
+
+    fn touched_slots(&self) -> Box<dyn Iterator<Item = u32> + '_> {
+        Box::new(self.front.triangles.touched())
     }
 }
 

@@ -4,6 +4,7 @@
 //! that changed since a mark are recorded for renderers.
 
 use crate::forest::NONE;
+use crate::slot_mesh::Patch;
 
 /// An empty slot.
 const HOLE: [u32; 3] = [NONE; 3];
@@ -90,6 +91,12 @@ impl Triangles {
         self.all.get(t as usize).map(|triangle| triangle.nodes).filter(|nodes| *nodes != HOLE)
     }
 
+    /// Returns the wedges at the corners of a triangle; `None` for an empty slot, and in a model
+    /// that has none.
+    pub(super) fn real_wedges(&self, t: u32) -> Option<[u32; 3]> {
+        self.real(t).and_then(|_| self.wedges(t))
+    }
+
     /// Iterates over the triangles by slot and nodes.
     pub(super) fn iter(&self) -> impl Iterator<Item = (u32, [u32; 3])> + '_ {
         let all = self.all.iter().enumerate().map(|(t, triangle)| (t as u32, triangle.nodes));
@@ -107,13 +114,14 @@ impl Triangles {
         self.changed.clear();
     }
 
-    /// Returns the slots changed since the mark, with their old and new content.
-    pub(super) fn changes(
-        &self,
-    ) -> impl Iterator<Item = (u32, Option<[u32; 3]>, Option<[u32; 3]>)> {
+    /// Iterates over the slots changed since the mark.
+    pub(super) fn changes(&self) -> impl Iterator<Item = Patch> + '_ {
         let real = |nodes: [u32; 3]| (nodes != HOLE).then_some(nodes);
-        let all = self.changed.iter().map(|&(t, was)| (t, was, self.all[t as usize].nodes));
-        all.filter(|(_, was, is)| was != is).map(move |(t, was, is)| (t, real(was), real(is)))
+        let patch = move |&(slot, old): &(u32, [u32; 3])| {
+            let new = self.all[slot as usize].nodes;
+            (old != new).then(|| Patch { slot, old: real(old), new: real(new) })
+        };
+        self.changed.iter().filter_map(patch)
     }
 
     /// Iterates over the slots written since the mark, also where they are as before.

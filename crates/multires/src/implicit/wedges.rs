@@ -20,7 +20,7 @@ impl Implicit {
     /// Appends the values of a wedge in all [`layers`](Self::layers), one layer after another.
     ///
     /// A model keeps the integers that a file has for them, and decodes them here.
-    /// [`Cut::wedges`](crate::Cut::wedges) has the wedges of a cut's triangles. Nothing is appended if
+    /// [`SlotMesh::wedges`](crate::SlotMesh::wedges) has the wedges of a cut's triangles. Nothing is appended if
     /// the model has no layers.
     ///
     /// # Panics

@@ -5,7 +5,7 @@ use meshlod_simplify::Method;
 
 use super::attributes;
 use super::walks::{Dice, forest, query};
-use crate::{Cut, Forest, Hierarchy, Implicit, LayerFormat, UpdateLimits};
+use crate::{Cut, Forest, Hierarchy, Implicit, LayerFormat, SlotMesh, UpdateLimits};
 
 /// Gives a model the normal (node, 0, 1) at each node, and checks every cut of a walk.
 fn check(name: &str, mesh: &Mesh, mt: Implicit) {
@@ -52,17 +52,21 @@ fn touched_slots_keep_a_copy_of_the_wedges() {
         let forest = Forest::lossless(&mesh, &Default::default()).unwrap();
         let model = Hierarchy::from(Implicit::new(&forest).unwrap());
         let mut cut = model.cut();
-        let mut copy: Vec<_> = (0..cut.slots() as u32).map(|slot| cut.wedges(slot)).collect();
+        let mut copy: Vec<_> =
+            (0..cut.slot_mesh().slots() as u32).map(|slot| cut.slot_mesh().wedges(slot)).collect();
         let (mut dice, mut touched) = (Dice(4), 0);
         for _ in 0..8 {
             let limits = UpdateLimits { changes: Some((60.0 * dice.roll()) as usize), time: None };
             cut.update(&query(&mut dice, &mesh), &limits).unwrap();
-            copy.resize(cut.slots(), None);
-            for slot in cut.touched_slots() {
-                copy[slot as usize] = cut.wedges(slot);
+            copy.resize(cut.slot_mesh().slots(), None);
+            for slot in cut.slot_mesh().touched_slots() {
+                copy[slot as usize] = cut.slot_mesh().wedges(slot);
                 touched += 1;
             }
-            assert!((0..cut.slots() as u32).all(|slot| copy[slot as usize] == cut.wedges(slot)));
+            assert!(
+                (0..cut.slot_mesh().slots() as u32)
+                    .all(|slot| copy[slot as usize] == cut.slot_mesh().wedges(slot))
+            );
         }
         assert!(touched > 0, "{name}");
     }

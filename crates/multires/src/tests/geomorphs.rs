@@ -8,7 +8,7 @@ use meshlod_simplify::{Method, Options};
 
 use super::attributes;
 use super::walks::{Dice, each, query};
-use crate::{Cut, Forest, Geomorph, Implicit, Motion, Query, UpdateLimits, VertexValues};
+use crate::{Cut, Forest, Geomorph, Implicit, Motion, Query, SlotMesh, UpdateLimits, VertexValues};
 
 const DURATION: Duration = Duration::from_millis(100);
 const STILL: Duration = Duration::ZERO;

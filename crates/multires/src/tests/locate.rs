@@ -5,7 +5,7 @@ use meshlod_samples as samples;
 use meshlod_spatial::closest_point;
 
 use super::walks::{Dice, each, forest, query};
-use crate::{Cut, Focus, Implicit, UpdateLimits};
+use crate::{Cut, Focus, Implicit, SlotMesh, UpdateLimits};
 
 #[test]
 fn triangles_within_a_focus_are_found() {

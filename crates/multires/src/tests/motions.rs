@@ -7,7 +7,7 @@ use meshlod_samples as samples;
 use meshlod_simplify::Method;
 
 use super::walks::{Dice, cone, forest, topology};
-use crate::{Cut, Implicit, Query, Tolerance, UpdateLimits, ViewCamera};
+use crate::{Cut, Implicit, Query, SlotMesh, Tolerance, UpdateLimits, ViewCamera};
 
 /// A viewpoint that wanders around a mesh in steps of very different lengths.
 struct Wanderer {

@@ -10,8 +10,8 @@ use meshlod_simplify::{Method, Options};
 
 use crate::implicit::Order;
 use crate::{
-    Cut, Explicit, ExplicitCut, Focus, Forest, Implicit, Level, Model, Query, SplitRule, Tolerance,
-    UpdateLimits, ViewCamera,
+    Cut, Explicit, ExplicitCut, Focus, Forest, Implicit, Level, Model, Query, SlotMesh, SplitRule,
+    Tolerance, UpdateLimits, ViewCamera,
 };
 
 pub(crate) const METHODS: [Method; 5] = [

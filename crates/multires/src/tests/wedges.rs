@@ -12,7 +12,8 @@ use super::walks::{Dice, cone, query, soup, split_nodes};
 use crate::forest::NONE;
 use crate::implicit::Order;
 use crate::{
-    Cut, Explicit, ExplicitCut, Focus, Forest, Level, Model, Query, Tolerance, UpdateLimits,
+    Cut, Explicit, ExplicitCut, Focus, Forest, Level, Model, Query, SlotMesh, Tolerance,
+    UpdateLimits,
 };
 
 /// Gives a mesh up to three wedges a vertex and up to three materials, both at random, so that

@@ -2,7 +2,7 @@
 
 use meshlod_fixtures::{charted, grid, moebius, seam_strip, voxel_figure};
 use meshlod_mesh::{Labels, Mesh, VertexId};
-use meshlod_multires::{Focus, Forest, Model, Query, Tolerance, UpdateLimits};
+use meshlod_multires::{Focus, Forest, Model, Query, SlotMesh, Tolerance, UpdateLimits};
 use meshlod_samples as samples;
 use meshlod_simplify::Method;
 

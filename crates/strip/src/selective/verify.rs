@@ -1,7 +1,7 @@
 //! Checks that the strips of a cut draw its triangles with their attributes and materials.
 
 use meshlod_mesh::VertexId;
-use meshlod_multires::{Cut, Implicit};
+use meshlod_multires::{Cut, Implicit, SlotMesh};
 use rustc_hash::FxHashMap;
 
 use super::CutStrips;

@@ -8,7 +8,7 @@ pub(super) struct DirtyRanges {
     slots: Vec<u32>,
 }
 
-/// Distance of slots that are uploaded together with what is between them: 84 bytes cost less than
+/// Distance of slots that are uploaded together with those between them: 84 bytes cost less than
 /// another call.
 const GAP: u32 = 8;
 

@@ -1,18 +1,18 @@
-//! Triangles that come and go in a dithered transition.
+//! Triangles that appear and disappear in a dithered transition.
 
 use std::ops::Range;
 
 use wgpu::{Buffer, BufferUsages};
 
-use super::CutPatch;
 use super::list::{EMPTY, TriangleList};
+use super::slots::CutPatch;
 use crate::Gpu;
-use crate::renderer::buffer_of;
+use crate::gpu::buffers::buffer_of;
 
-/// Triangles that come and go, and the changes that the lists get when that is over.
+/// Old and new triangles of a transition, and the changes of the lists at its end.
 #[derive(Debug)]
 pub(super) struct Fade {
-    /// Triangles that go, and those that come.
+    /// Old triangles, then new ones.
     pub(super) sides: [FadeSide; 2],
     pub(super) changes: Vec<CutPatch>,
 }
@@ -26,7 +26,7 @@ pub(super) struct FadeSide {
 }
 
 impl Fade {
-    /// Uploads what patches take from lists and put there; they are in the order of groups.
+    /// Uploads the old and the new triangles of patches, which are in the order of groups.
     pub(super) fn new(gpu: &Gpu, lists: &[TriangleList], changes: &[CutPatch]) -> Self {
         let old = |patch: &CutPatch| lists[patch.group as usize].at(patch.slot);
         let new = |patch: &CutPatch| patch.vertices.unwrap_or(EMPTY);

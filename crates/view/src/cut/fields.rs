@@ -1,11 +1,11 @@
-//! Vertices of the GPU made of positions and layers of a model.
+//! Vertices for the GPU, from positions and layers of a model.
 
 use glam::{DVec3, Vec3};
 use meshlod::OwnedPaint;
 use meshlod::mesh::LayerKind;
 use meshlod::multires::{Hierarchy, LayerFormat, VertexValues};
 
-use super::CutModel;
+use super::model::CutModel;
 use crate::mesh::{VertexAttributes, fractions};
 
 /// Offsets of the values that are drawn among all values of a wedge, and the origin of positions.
@@ -19,7 +19,7 @@ pub(super) struct VertexFields {
     color: Option<usize>,
 }
 
-/// Vertex as the GPU has it.
+/// Vertex in the buffers of the GPU.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct GpuVertex {
     pub(super) position: [f32; 3],

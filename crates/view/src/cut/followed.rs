@@ -3,10 +3,10 @@
 use std::time::Duration;
 
 use meshlod::multires::{
-    CutChange, Geomorph, HierarchyCut, Query, QueryError, UpdateLimits, VertexValues,
+    CutChange, Geomorph, HierarchyCut, Query, QueryError, SlotMesh, UpdateLimits,
 };
 
-use super::CutModel;
+use super::model::CutModel;
 
 /// Cut of a model, with or without motion.
 pub(super) enum Followed<'m> {
@@ -44,69 +44,27 @@ impl<'m> Followed<'m> {
         }
     }
 
-    /// Returns true if vertices move to where a split or merge takes them.
-    pub(super) fn moves(&self) -> bool {
-        matches!(self, Self::Morph(_))
-    }
-
-    /// Appends the slots that the last update or advance has written.
-    pub(super) fn touched_slots(&self, to: &mut Vec<u32>) {
+    /// Returns the moving cut; `None` if the cut changes at once.
+    pub(super) fn morph(&self) -> Option<&Geomorph<'m>> {
         match self {
-            Self::Cut(cut) => to.extend(cut.touched_slots()),
-            Self::Morph(morph) => to.extend(morph.touched_slots()),
+            Self::Cut(_) => None,
+            Self::Morph(morph) => Some(morph),
         }
     }
 
-    /// Appends the nodes that the last update or advance has moved.
-    pub(super) fn moved_nodes(&self, to: &mut Vec<u32>) {
-        if let Self::Morph(morph) = self {
-            to.extend(morph.moved());
-        }
-    }
-
-    /// Sets `to` to what a node that has moved is now.
-    pub(super) fn values(&self, node: u32, to: &mut VertexValues) {
-        if let Self::Morph(morph) = self {
-            morph.values(node, to);
-        }
-    }
-
-    /// Returns the vertices of the triangle that a slot shows: wedges, or nodes without wedges.
-    pub(super) fn vertices(&self, slot: u32) -> Option<[u32; 3]> {
+    /// Returns the mesh that is drawn.
+    pub(super) fn shown(&self) -> &dyn SlotMesh {
         match self {
-            Self::Cut(cut) => cut.wedges(slot).or_else(|| cut.triangle(slot)),
-            Self::Morph(morph) => morph.wedges(slot).or_else(|| morph.triangle(slot)),
+            Self::Cut(cut) => cut.slot_mesh(),
+            Self::Morph(morph) => &**morph,
         }
     }
 
-    pub(super) fn slots(&self) -> usize {
+    /// Returns the answer to the last query, which the drawn mesh moves towards.
+    pub(super) fn goal(&self) -> &dyn SlotMesh {
         match self {
-            Self::Cut(cut) => cut.slots(),
-            Self::Morph(morph) => morph.slots(),
-        }
-    }
-
-    /// Returns the number of faces of the cut that is moved towards.
-    pub(super) fn face_count(&self) -> usize {
-        match self {
-            Self::Cut(cut) => cut.face_count(),
-            Self::Morph(morph) => morph.goal().face_count(),
-        }
-    }
-
-    /// Returns the number of faces that are drawn.
-    pub(super) fn shown_faces(&self) -> usize {
-        match self {
-            Self::Cut(cut) => cut.face_count(),
-            Self::Morph(morph) => morph.face_count(),
-        }
-    }
-
-    /// Returns the number of vertices of the cut that is moved towards.
-    pub(super) fn vertex_count(&self) -> usize {
-        match self {
-            Self::Cut(cut) => cut.vertex_count(),
-            Self::Morph(morph) => morph.goal().vertex_count(),
+            Self::Cut(cut) => cut.slot_mesh(),
+            Self::Morph(morph) => morph.goal(),
         }
     }
 }

@@ -1,85 +1,16 @@
-//! Thread that follows a moving query with a cut, and hands out what changes.
+//! Thread that follows a moving query with a cut, and sends the changes.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel, sync_channel};
 use std::thread;
 use std::time::Duration;
 
-use meshlod::multires::{Focus, QueryError, ViewCamera};
-use thiserror::Error;
-
+use super::error::CutError;
+use super::model::CutModel;
+use super::query::{CutQuery, CutStep, FollowOptions};
 use super::worker::{Answer, Request, Worker};
-use super::{CutModel, CutPatch, MovedVertex};
 
-/// Query for a [`CutFollower`].
-#[derive(Clone, Debug)]
-pub struct CutQuery {
-    /// Region that is fine.
-    pub focus: Focus,
-    /// Fineness within the focus.
-    pub tolerance: CutTolerance,
-}
-
-/// Fineness of a cut.
-#[derive(Clone, Debug)]
-pub enum CutTolerance {
-    /// Error in model units.
-    Uniform(f64),
-    /// Error in pixels of a camera.
-    Pixels {
-        /// Camera from which it is seen.
-        camera: ViewCamera,
-        /// Number of pixels.
-        pixels: f64,
-    },
-    /// As fine as a number of faces allows, with one error everywhere.
-    Faces(usize),
-}
-
-/// Change of a cut: slots of its triangles, and vertices that move.
-#[derive(Clone, Debug, Default)]
-pub struct CutStep {
-    /// Slots that changed, with what they hold now, in the order of groups and slots.
-    pub patches: Vec<CutPatch>,
-    /// Vertices that are not where they were.
-    pub moved: Vec<MovedVertex>,
-    /// Number of faces that are drawn: those of the cut, and with motion also those that are on
-    /// their way out.
-    pub faces: usize,
-    /// Number of vertices of the cut.
-    pub vertices: usize,
-    /// True if the cut satisfies the query; false if a limit was reached first.
-    pub is_done: bool,
-    /// True if vertices are still on their way: see [`CutFollower::advance`].
-    pub is_moving: bool,
-    /// Time that the cut took to change, in milliseconds.
-    pub milliseconds: f64,
-}
-
-/// Limits and motion with which a [`CutFollower`] follows queries.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct FollowOptions {
-    /// Most splits and merges in one step, which bounds what a frame uploads: a change touches about
-    /// six slots of 12 bytes. `None` answers every query in one step, as the first query and a search
-    /// for a number of faces are in any case.
-    pub changes: Option<usize>,
-    /// Time in which a vertex moves to where a split or merge takes it; `None` for changes at once.
-    /// Height fields always change at once.
-    pub motion: Option<Duration>,
-}
-
-/// Reason why a follower has no answer.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum CutError {
-    /// The query is invalid; the cut has not changed.
-    #[error(transparent)]
-    Query(#[from] QueryError),
-    /// The thread has ended, which it never does by itself.
-    #[error("the thread that follows the cut has ended")]
-    Ended,
-}
-
-/// Follows a moving query on a thread of its own, which ends when this is dropped.
+/// Follows a moving query on its own thread, which ends when this is dropped.
 #[derive(Debug)]
 pub struct CutFollower {
     requests: Sender<Request>,
@@ -87,7 +18,7 @@ pub struct CutFollower {
     /// Number of the last query.
     asked: u64,
     is_waiting: bool,
-    /// Numbers of the last advance that was asked for and of the last that was answered.
+    /// Numbers of the last requested advance and of the last answered one.
     advanced: [u64; 2],
 }
 
@@ -109,7 +40,7 @@ impl CutFollower {
         let _ = self.requests.send(Request::Ask(self.asked, query));
     }
 
-    /// Lets time pass for vertices that move; a step tells where they are then.
+    /// Lets time pass for vertices that move; a later step has their new positions.
     pub fn advance(&mut self, elapsed: Duration) {
         self.advanced[0] += 1;
         let _ = self.requests.send(Request::Advance(self.advanced[0], elapsed));
@@ -138,7 +69,7 @@ impl CutFollower {
         }
     }
 
-    /// Waits for the next step; `None` if nothing is asked.
+    /// Waits for the next step; `None` if no request is open.
     ///
     /// # Errors
     /// As [`CutFollower::poll`].
@@ -183,10 +114,13 @@ impl CutFollower {
 mod tests {
     use std::collections::HashMap;
 
-    use meshlod::multires::{Forest, HeightField, Hierarchy, Implicit, Query, Rtin, UpdateLimits};
+    use meshlod::multires::{
+        Focus, Forest, HeightField, Hierarchy, Implicit, Query, Rtin, UpdateLimits,
+    };
     use meshlod::{SceneLayout, samples};
 
     use super::*;
+    use crate::CutTolerance;
 
     fn of(levels: Hierarchy) -> Arc<CutModel> {
         Arc::new(CutModel::new(levels, &SceneLayout::default()).unwrap())
@@ -247,8 +181,8 @@ mod tests {
                     all.sort_unstable();
                     all
                 };
-                let vertices = |(slot, nodes)| cut.wedges(slot).unwrap_or(nodes);
-                let expected = sorted(cut.triangles().map(vertices).collect());
+                let vertices = |(slot, nodes)| cut.slot_mesh().wedges(slot).unwrap_or(nodes);
+                let expected = sorted(cut.slot_mesh().triangles().map(vertices).collect());
                 assert_eq!(sorted(slots.values().copied().collect()), expected);
             }
         }
@@ -285,7 +219,7 @@ mod tests {
     #[test]
     fn a_step_towards_an_earlier_query_is_not_the_answer() {
         let mut follower = CutFollower::start(model(), options(None));
-        let finest = model().levels().cut().face_count();
+        let finest = model().levels().cut().slot_mesh().face_count();
         follower.ask(uniform(0.0));
         // The worker may be done with it, and wait to hand it over.
         std::thread::sleep(std::time::Duration::from_millis(50));

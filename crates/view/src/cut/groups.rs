@@ -52,7 +52,7 @@ impl Groups {
         self.of_vertices.get(vertex as usize).copied().unwrap_or(0)
     }
 
-    /// Returns the box of each mesh that a group has, by the positions of its vertices.
+    /// Returns the box of each mesh of the groups, around its vertices.
     pub(super) fn boxes(&self, levels: &Hierarchy) -> BTreeMap<u32, Bounds> {
         let mut boxes: BTreeMap<u32, Bounds> =
             self.all.iter().map(|group| (group.mesh, Bounds::EMPTY)).collect();

@@ -2,14 +2,14 @@
 
 use std::sync::OnceLock;
 
-use wgpu::{BindGroup, Buffer, BufferDescriptor, BufferUsages};
+use wgpu::{BindGroup, Buffer, BufferUsages};
 
-use super::CutPatch;
 use super::dirty::DirtyRanges;
 use super::groups::Group;
+use super::slots::CutPatch;
 use super::staged::Staged;
 use crate::Gpu;
-use crate::renderer::buffer_of;
+use crate::gpu::buffers::{blank_buffer, buffer_of};
 
 /// Triangles of a group by slot, on the GPU.
 #[derive(Debug)]
@@ -18,8 +18,8 @@ pub(super) struct TriangleList {
     pub(super) buffer: Buffer,
     /// Copy of the buffer; empty slots have no extent.
     pub(super) slots: Vec<[u32; 3]>,
-    /// Bindings for drawing face by face, made when they are first needed; `None` if a buffer is
-    /// too large for that.
+    /// Bindings for drawing face by face, made on first use; `None` if a buffer is too large for
+    /// that.
     pub(super) storage: OnceLock<Option<BindGroup>>,
 }
 
@@ -32,12 +32,7 @@ const USAGE: BufferUsages =
 impl TriangleList {
     /// Creates a list with room for a number of triangles.
     pub(super) fn new(gpu: &Gpu, group: Group, room: usize) -> Self {
-        let buffer = gpu.device.create_buffer(&BufferDescriptor {
-            label: Some("cut"),
-            size: (12 * room as u64).max(16),
-            usage: USAGE,
-            mapped_at_creation: false,
-        });
+        let buffer = blank_buffer(gpu, "cut", (12 * room as u64).max(16), USAGE);
         Self { group, buffer, slots: Vec::new(), storage: OnceLock::new() }
     }
 
@@ -46,8 +41,8 @@ impl TriangleList {
         self.slots.get(slot as usize).copied().unwrap_or(EMPTY)
     }
 
-    /// Writes triangles into slots, and stages what is around them. Returns the bytes that were sent
-    /// at once, because the buffer had to grow.
+    /// Writes triangles into slots, and stages the changed ranges. Returns the bytes sent at once,
+    /// because the buffer had to grow.
     pub(super) fn write(&mut self, gpu: &Gpu, patches: &[CutPatch], staged: &mut Staged) -> u64 {
         let mut dirty = DirtyRanges::default();
         for patch in patches {

@@ -4,7 +4,7 @@ use meshlod::Mesh;
 use meshlod::mesh::{Attributes, Labels, Layer};
 use meshlod::multires::LayerFormat;
 
-use super::CutModel;
+use super::model::CutModel;
 use crate::ViewError;
 use crate::mesh::{MaterialBinding, Surface};
 use crate::renderer::Renderer;

@@ -1,8 +1,8 @@
-//! Levels of a model as they are drawn: with normals, and with what a scene makes of them.
+//! Levels of a model as they are drawn: with normals, groups, places and colours.
 
 use std::sync::Arc;
 
-use glam::{DMat4, DVec3};
+use glam::DVec3;
 use meshlod::mesh::{Bounds, LayerKind};
 use meshlod::multires::{Hierarchy, Implicit, Query, QueryError, UpdateLimits};
 use meshlod::{OwnedPaint, SceneLayout};
@@ -13,7 +13,7 @@ use super::places::Places;
 /// Levels of a model as a [`GpuCut`](super::GpuCut) draws them and a
 /// [`CutFollower`](super::CutFollower) follows them.
 ///
-/// What the GPU calls a vertex is a wedge of the model, or a node if it has no wedges.
+/// A vertex on the GPU is a wedge of the model, or a node if it has no wedges.
 #[derive(Clone, Debug)]
 pub struct CutModel {
     levels: Hierarchy,
@@ -29,11 +29,11 @@ pub struct CutModel {
 }
 
 impl CutModel {
-    /// Prepares levels that are drawn as the layout of their scene tells; the default one shows them
-    /// as they are, with the materials that they have.
+    /// Prepares levels to be drawn in the layout of their scene; the default layout shows them
+    /// untransformed, with their own materials.
     ///
-    /// Levels without normals get computed ones: those of the finest level by the areas of its faces,
-    /// and those of a coarser vertex by what it stands for. Cost: that of refining to the finest
+    /// Levels without normals get computed ones: in the finest level by the areas of faces, at a
+    /// coarser vertex the sum over the vertices that it replaces. Cost: refining to the finest
     /// level, once, and linear.
     ///
     /// # Errors
@@ -112,12 +112,12 @@ impl CutModel {
     }
 }
 
-/// Sums the normals of all faces of the finest level that a node stands for.
+/// Sums, for each node, the normals of the faces of the finest level at the vertices it replaces.
 fn normals(model: &Hierarchy, places: &[DVec3]) -> Result<Vec<DVec3>, QueryError> {
     let mut finest = model.cut();
     finest.update(&Query::uniform(0.0), &UpdateLimits::default())?;
     let mut sums = vec![DVec3::ZERO; places.len()];
-    for (_, nodes) in finest.triangles() {
+    for (_, nodes) in finest.slot_mesh().triangles() {
         let [a, b, c] = nodes.map(|node| places[node as usize]);
         let normal = (b - a).cross(c - a);
         nodes.iter().for_each(|&node| sums[node as usize] += normal);
@@ -129,14 +129,4 @@ fn normals(model: &Hierarchy, places: &[DVec3]) -> Result<Vec<DVec3>, QueryError
         }
     }
     Ok(sums)
-}
-
-/// Returns the box around a box that a matrix has moved.
-pub(super) fn moved(bounds: &Bounds, transform: &DMat4) -> Bounds {
-    let corner = |i: usize| {
-        let pick = |k: usize| if i >> k & 1 == 0 { bounds.min[k] } else { bounds.max[k] };
-        transform.transform_point3(DVec3::new(pick(0), pick(1), pick(2))).to_array()
-    };
-    let corners: [[f64; 3]; 8] = std::array::from_fn(corner);
-    Bounds::of(&corners)
 }

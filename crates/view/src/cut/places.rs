@@ -8,14 +8,13 @@ use meshlod::LevelInstance;
 use meshlod::mesh::Bounds;
 use meshlod::multires::ViewCamera;
 
-use super::model::moved;
-use super::pipelines::GpuPlace;
+use super::gpu_place::GpuPlace;
 
-/// Places of all meshes, sorted by mesh; none if each is shown only where the levels have it.
+/// Places of all meshes, sorted by mesh; empty if each mesh is shown once, untransformed.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Places {
     instances: Vec<LevelInstance>,
-    /// Box of each mesh, where the levels have it.
+    /// Box of each mesh, untransformed.
     boxes: BTreeMap<u32, Bounds>,
 }
 
@@ -28,12 +27,12 @@ impl Places {
         Self { instances, boxes }
     }
 
-    /// Returns true if everything is shown where the levels have it, and only there.
+    /// Returns true if each mesh is shown once, untransformed.
     pub(super) fn is_own(&self) -> bool {
         self.instances.is_empty()
     }
 
-    /// Returns the places as the GPU takes them, for positions relative to an origin.
+    /// Returns the places for shaders, for positions relative to an origin.
     pub(super) fn for_gpu(&self, origin: DVec3) -> Vec<GpuPlace> {
         match self.is_own() {
             true => vec![GpuPlace::OWN],
@@ -41,7 +40,7 @@ impl Places {
         }
     }
 
-    /// Returns which of the places are those of a mesh.
+    /// Returns the range of a mesh's places.
     pub(super) fn of(&self, mesh: u32) -> Range<u32> {
         if self.is_own() {
             return 0..1;
@@ -91,4 +90,14 @@ impl Places {
             if least == f64::INFINITY { f64::MAX } else { (slope * least).max(0.0) }
         }
     }
+}
+
+/// Returns the box around a box that a matrix has moved.
+fn moved(bounds: &Bounds, transform: &DMat4) -> Bounds {
+    let corner = |i: usize| {
+        let pick = |k: usize| if i >> k & 1 == 0 { bounds.min[k] } else { bounds.max[k] };
+        transform.transform_point3(DVec3::new(pick(0), pick(1), pick(2))).to_array()
+    };
+    let corners: [[f64; 3]; 8] = std::array::from_fn(corner);
+    Bounds::of(&corners)
 }

@@ -1,14 +1,15 @@
-//! Vertices that have moved, sent in one piece and put in their places by the GPU.
+//! Moved vertices, sent in one piece and scattered by the GPU.
 
 use wgpu::{
-    BindGroupLayout, Buffer, BufferBindingType, BufferUsages, CommandEncoder,
-    ComputePassDescriptor, ComputePipeline, ShaderStages,
+    BindGroupLayout, Buffer, BufferUsages, CommandEncoder, ComputePassDescriptor, ComputePipeline,
+    ShaderStages,
 };
 
-use super::MovedVertex;
+use super::fields::MovedVertex;
 use crate::Gpu;
-use crate::flock::compute_pipeline;
-use crate::renderer::{bind_group, buffer_binding, buffer_of, layout, storage};
+use crate::gpu::bindings::{STORAGE, WRITTEN, bind_buffers, layout_for};
+use crate::gpu::buffers::buffer_of;
+use crate::gpu::shaders::compute_pipeline;
 
 /// Pass that writes moved vertices into the buffers of all levels.
 ///
@@ -34,10 +35,7 @@ impl Scatter {
         if buffers.iter().any(|buffer| buffer.size() > limit) {
             return None;
         }
-        let written = buffer_binding(BufferBindingType::Storage { read_only: false });
-        let compute = ShaderStages::COMPUTE;
-        let bindings = [(compute, storage()), (compute, written), (compute, written)];
-        let layout = layout(&gpu.device, &bindings);
+        let layout = layout_for(gpu, ShaderStages::COMPUTE, &[STORAGE, WRITTEN, WRITTEN]);
         let source = include_str!("../shaders/cut_moved.wgsl");
         let pipeline = compute_pipeline(gpu, "moved vertices", source, "scatter", &[&layout]);
         Some(Self { layout, pipeline })
@@ -58,9 +56,8 @@ impl Scatter {
             words.extend_from_slice(bytemuck::cast_slice(&[now.attributes]));
         }
         let sent = buffer_of(gpu, "moved", bytemuck::cast_slice(&words), BufferUsages::STORAGE);
-        let [positions, attributes] = buffers.map(Buffer::as_entire_binding);
-        let all = [sent.as_entire_binding(), positions, attributes];
-        let bound = bind_group(&gpu.device, &self.layout, all);
+        let [positions, attributes] = buffers;
+        let bound = bind_buffers(gpu, &self.layout, &[&sent, positions, attributes]);
         let groups = (moved.len() as u32).div_ceil(GROUP);
         let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
         pass.set_pipeline(&self.pipeline);

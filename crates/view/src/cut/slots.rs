@@ -1,4 +1,4 @@
-//! Slots of triangles by group: each group has a list of its own, in which its triangles have slots.
+//! Slots of triangles by group: each group has its own list, in which its triangles have slots.
 
 use super::groups::Groups;
 
@@ -13,7 +13,7 @@ pub(super) struct GroupSlots {
     lengths: Vec<u32>,
 }
 
-/// Triangle in the list of a group; with no vertices an empty slot.
+/// Triangle in the list of a group; `vertices` is `None` in an empty slot.
 #[derive(Clone, Copy, Debug)]
 struct Place {
     vertices: Option<[u32; 3]>,
@@ -41,8 +41,8 @@ impl GroupSlots {
         Self { places: Vec::new(), free: vec![Vec::new(); count], lengths: vec![0; count] }
     }
 
-    /// Takes what slots of the cut hold now, and returns what has changed in the lists of the groups,
-    /// in rising order.
+    /// Takes the new contents of slots of the cut, and returns the changes of the groups' lists, in
+    /// rising order.
     pub(super) fn update(
         &mut self,
         groups: &Groups,

@@ -5,11 +5,11 @@ use std::ops::Range;
 use wgpu::{Buffer, BufferUsages, CommandEncoder};
 
 use crate::Gpu;
-use crate::renderer::buffer_of;
+use crate::gpu::buffers::buffer_of;
 
 /// Changes of buffers that are collected, and then copied from one buffer.
 ///
-/// A buffer of its own for each of them, which `Queue::write_buffer` takes, costs more than its bytes.
+/// `Queue::write_buffer` takes a buffer for each change, which costs more than the bytes.
 #[derive(Debug, Default)]
 pub(super) struct Staged {
     bytes: Vec<u8>,

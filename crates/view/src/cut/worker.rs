@@ -1,14 +1,17 @@
-//! The thread of a follower: a cut that changes and moves as it is asked to.
+//! The thread of a follower: a cut that answers its requests.
 
 use std::sync::mpsc::{Receiver, SyncSender};
 use std::time::{Duration, Instant};
 
-use meshlod::multires::{Focus, Query, QueryError, Tolerance, UpdateLimits, VertexValues};
+use meshlod::multires::{
+    Focus, Geomorph, Query, QueryError, Tolerance, UpdateLimits, VertexValues,
+};
 
-use super::fields::VertexFields;
+use super::fields::{MovedVertex, VertexFields};
 use super::followed::Followed;
+use super::model::CutModel;
+use super::query::{CutQuery, CutStep, CutTolerance, FollowOptions};
 use super::slots::GroupSlots;
-use super::{CutModel, CutQuery, CutStep, CutTolerance, FollowOptions, MovedVertex};
 
 /// Request of a follower to its thread.
 #[derive(Debug)]
@@ -43,7 +46,7 @@ pub(super) struct Worker<'m> {
     touched: Vec<u32>,
     /// Nodes that the current step has moved, some of them more than once.
     moved: Vec<u32>,
-    /// Scratch memory for what a node is.
+    /// Scratch memory for the values of a node.
     state: VertexValues,
     /// Error found for the last number of faces.
     error: Option<f64>,
@@ -69,8 +72,8 @@ impl<'m> Worker<'m> {
         }
     }
 
-    /// Answers requests until nobody asks any more: the last query of those that have come, and all
-    /// time that has passed.
+    /// Answers requests until the follower is dropped: of several queries the last, and the sum of
+    /// all times.
     pub(super) fn serve(mut self, requests: &Receiver<Request>, answers: &SyncSender<Answer>) {
         let mut query = None;
         let (mut asked, mut advanced) = (0, 0);
@@ -104,7 +107,7 @@ impl<'m> Worker<'m> {
     /// Lets time pass, and then changes the cut towards a query.
     fn step(&mut self, query: Option<&CutQuery>, elapsed: Duration) -> Result<CutStep, QueryError> {
         let start = Instant::now();
-        let before = self.is_first.then(|| self.cut.slots());
+        let before = self.is_first.then(|| self.cut.shown().slots());
         if elapsed > Duration::ZERO {
             self.is_moving = self.cut.advance(elapsed);
             self.record();
@@ -118,13 +121,16 @@ impl<'m> Worker<'m> {
         self.is_first = false;
         self.touched.sort_unstable();
         self.touched.dedup();
-        let now = self.touched.drain(..).map(|slot| (slot, self.cut.vertices(slot)));
+        let shown = self.cut.shown();
+        // Wedges, or nodes without wedges.
+        let vertices = |slot| shown.wedges(slot).or_else(|| shown.triangle(slot));
+        let now = self.touched.drain(..).map(|slot| (slot, vertices(slot)));
         let patches = self.slots.update(&self.model.groups, now);
         Ok(CutStep {
             patches,
             moved: self.take_moved(),
-            faces: self.cut.shown_faces(),
-            vertices: self.cut.vertex_count(),
+            faces: self.cut.shown().face_count(),
+            vertices: self.cut.goal().vertex_count(),
             is_done,
             is_moving: self.is_moving,
             milliseconds: start.elapsed().as_secs_f64() * 1e3,
@@ -165,32 +171,33 @@ impl<'m> Worker<'m> {
         let changes = self.changes.filter(|_| !self.is_first);
         let limits = UpdateLimits { changes, time: None };
         let change = self.cut.update(&Query { focus, tolerance }, &limits)?;
-        self.is_moving |= self.cut.moves() && change.splits + change.merges > 0;
+        self.is_moving |= self.cut.morph().is_some() && change.splits + change.merges > 0;
         self.record();
         Ok(change.done)
     }
 
-    /// Keeps what the last update or advance has changed.
+    /// Notes the slots and nodes that the last update or advance changed.
     fn record(&mut self) {
-        self.cut.touched_slots(&mut self.touched);
-        self.cut.moved_nodes(&mut self.moved);
+        self.touched.extend(self.cut.shown().touched_slots());
+        self.moved.extend(self.cut.morph().into_iter().flat_map(Geomorph::moved));
     }
 
     /// Returns the vertices that have moved, each once and as it is now, in rising order.
     fn take_moved(&mut self) -> Vec<MovedVertex> {
         let mut moved = Vec::new();
-        let Some(levels) = self.model.contractions() else { return moved };
+        let levels = self.model.contractions();
+        let (Some(morph), Some(levels)) = (self.cut.morph(), levels) else { return moved };
         self.moved.sort_unstable();
         self.moved.dedup();
         for node in self.moved.drain(..) {
-            self.cut.values(node, &mut self.state);
+            morph.values(node, &mut self.state);
             self.fields.moved(levels.wedges_of(node).start, &self.state, &mut moved);
         }
         moved
     }
 
-    /// Finds about the smallest error with which the cut has at most `count` faces, beginning at that
-    /// of the last search: every step costs what it changes.
+    /// Finds about the smallest error with which the cut has at most `count` faces, starting at the
+    /// error of the last search: the cost of a step is proportional to its changes.
     fn reach(&mut self, query: &CutQuery, count: usize) -> Result<bool, QueryError> {
         let unlimited = self.changes.take();
         let found = self.search(query, count);
@@ -225,6 +232,6 @@ impl<'m> Worker<'m> {
     /// Changes the cut to an error, and returns its faces.
     fn faces_at(&mut self, query: &CutQuery, error: f64) -> Result<usize, QueryError> {
         self.update(self.focus(query), Tolerance::Uniform(error))?;
-        Ok(self.cut.face_count())
+        Ok(self.cut.goal().face_count())
     }
 }

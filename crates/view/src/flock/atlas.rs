@@ -3,11 +3,15 @@
 use bytemuck::{Pod, Zeroable};
 use meshlod::flock::levels::Impostor;
 use meshlod::picture::Picture;
-use wgpu::{AddressMode, BindGroup, BindingResource, BufferUsages, FilterMode, SamplerDescriptor};
+use wgpu::{AddressMode, BindGroup};
 
+use super::pipelines::FlockPipelines;
+use crate::gpu::bindings::bind_image;
+use crate::gpu::buffers::uniform_of;
+use crate::gpu::texture;
 use crate::placement::linear;
-use crate::renderer::{Renderer, bind_group, buffer_of};
-use crate::{Gpu, ViewError, texture};
+use crate::renderer::Renderer;
+use crate::{Gpu, ViewError};
 
 /// Atlas of impostors on the GPU.
 #[derive(Debug)]
@@ -45,26 +49,11 @@ impl AtlasBinding {
             side_px: impostor.side_px as f32,
             padding: 0.0,
         };
-        let contents = bytemuck::bytes_of(&uniforms);
-        let buffer = buffer_of(gpu, "atlas", contents, BufferUsages::UNIFORM);
-        let sampler = gpu.device.create_sampler(&SamplerDescriptor {
-            address_mode_u: AddressMode::ClampToEdge,
-            address_mode_v: AddressMode::ClampToEdge,
-            mag_filter: FilterMode::Linear,
-            min_filter: FilterMode::Linear,
-            mipmap_filter: wgpu::MipmapFilterMode::Linear,
-            ..Default::default()
-        });
-        let bind_group = bind_group(
-            &gpu.device,
-            &renderer.flocks().atlas_layout,
-            [
-                buffer.as_entire_binding(),
-                BindingResource::TextureView(&view),
-                BindingResource::Sampler(&sampler),
-            ],
-        );
-        Ok(Self { bind_group })
+        let buffer = uniform_of(gpu, "atlas", &uniforms);
+        let sampler = texture::sampler(gpu, AddressMode::ClampToEdge, 1);
+        let pipelines = renderer.pipelines::<FlockPipelines>();
+        let layout = &pipelines.atlas_layout;
+        Ok(Self { bind_group: bind_image(gpu, layout, &buffer, &view, &sampler) })
     }
 }
 

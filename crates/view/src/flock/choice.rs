@@ -2,16 +2,15 @@
 
 use meshlod::flock::levels::NEAREST_FACING;
 use meshlod::flock::select::ChainLevels;
-use wgpu::{
-    BindGroup, BindGroupLayout, Buffer, BufferBindingType, BufferDescriptor, BufferUsages,
-    ComputePipeline, ShaderStages,
-};
+use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages, ComputePipeline, ShaderStages};
 
 use super::hiz;
 use super::instances::Instance;
-use super::pipelines::{SHARED, compute_pipeline};
+use super::pipelines::SHARED;
 use crate::Gpu;
-use crate::renderer::{bind_group, buffer_binding, layout, storage, uniform};
+use crate::gpu::bindings::{STORAGE, UNIFORM, WRITTEN, bind_buffers, layout_for};
+use crate::gpu::buffers::blank_buffer;
+use crate::gpu::shaders::compute_pipeline;
 
 /// Buffers with room for a number of members.
 #[derive(Debug)]
@@ -49,25 +48,20 @@ impl MemberBuffers {
         room: usize,
     ) -> Self {
         let made = |label, bytes: usize, usage: BufferUsages| {
-            gpu.device.create_buffer(&BufferDescriptor {
-                label: Some(label),
-                size: (room.max(1) * bytes) as u64,
-                usage: usage | BufferUsages::STORAGE,
-                mapped_at_creation: false,
-            })
+            let size = (room.max(1) * bytes) as u64;
+            blank_buffer(gpu, label, size, usage | BufferUsages::STORAGE)
         };
         let bytes = size_of::<Instance>();
         let source = made("members", bytes, BufferUsages::COPY_DST);
         let chosen = made("chosen levels", 8, BufferUsages::COPY_SRC);
         let instances = made("sorted members", bytes, BufferUsages::VERTEX);
-        let common = [view, &source, &chosen, slots].map(Buffer::as_entire_binding);
-        let scatter = [instances.as_entire_binding()];
+        let common = [view, &source, &chosen, slots];
         Self {
             uploaded: Vec::with_capacity(room),
             count: 0,
             room,
-            common: bind_group(&gpu.device, &pipelines.common_layout, common),
-            scatter: bind_group(&gpu.device, &pipelines.scatter_layout, scatter),
+            common: bind_buffers(gpu, &pipelines.common_layout, &common),
+            scatter: bind_buffers(gpu, &pipelines.scatter_layout, &[&instances]),
             source,
             chosen,
             instances,
@@ -77,14 +71,11 @@ impl MemberBuffers {
 
 impl ChoicePipelines {
     pub fn new(gpu: &Gpu) -> Self {
-        let compute = |ty| (ShaderStages::COMPUTE, ty);
-        let written = || compute(buffer_binding(BufferBindingType::Storage { read_only: false }));
-        let read = || compute(storage());
-        let of = |bindings: &[_]| layout(&gpu.device, bindings);
-        let common_layout = of(&[compute(uniform()), read(), written(), written()]);
+        let layout = |bindings: &[_]| layout_for(gpu, ShaderStages::COMPUTE, bindings);
+        let common_layout = layout(&[UNIFORM, STORAGE, WRITTEN, WRITTEN]);
         let rule_layout = hiz::choice_layout(gpu);
-        let plan_layout = of(&[read(), written()]);
-        let scatter_layout = of(&[written()]);
+        let plan_layout = layout(&[STORAGE, WRITTEN]);
+        let scatter_layout = layout(&[WRITTEN]);
         let source = [constants().as_str(), SHARED, SHADER].concat();
         let made = |entry, second| {
             compute_pipeline(gpu, "choice of levels", &source, entry, &[&common_layout, second])

@@ -6,11 +6,13 @@ use glam::Vec3;
 use meshlod::flock::levels::{Impostor, LevelTable, Look};
 use meshlod::flock::select::InstanceLevel;
 use meshlod::flock::{Flock, FlockCamera};
-use wgpu::{Buffer, BufferDescriptor, BufferUsages, IndexFormat, RenderPass};
+use wgpu::{Buffer, BufferUsages, IndexFormat, RenderPass};
 
 use super::atlas::AtlasBinding;
 use super::instances::{Instance, LevelSlots, SortedInstances};
 use super::model::FlockLevels;
+use super::pipelines::FlockPipelines;
+use crate::gpu::buffers::blank_buffer;
 use crate::placement::Placement;
 use crate::renderer::Renderer;
 use crate::{Gpu, ViewError};
@@ -152,15 +154,11 @@ impl GpuFlock {
 
 /// Creates a buffer with room for a number of instances.
 fn instance_buffer(gpu: &Gpu, instances: usize) -> Buffer {
-    gpu.device.create_buffer(&BufferDescriptor {
-        label: Some("flock members"),
-        size: (instances.max(1) * size_of::<Instance>()) as u64,
-        usage: BufferUsages::VERTEX | BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    })
+    let size = (instances.max(1) * size_of::<Instance>()) as u64;
+    blank_buffer(gpu, "flock members", size, BufferUsages::VERTEX | BufferUsages::COPY_DST)
 }
 
-/// Binds what the levels of members need, but their materials.
+/// Binds the pipeline and the buffers of members with levels; materials are bound by each draw.
 pub(super) fn bind(
     model: &FlockLevels,
     instances: &Buffer,
@@ -168,7 +166,7 @@ pub(super) fn bind(
     pass: &mut RenderPass<'_>,
     placement: &Placement,
 ) {
-    pass.set_pipeline(&renderer.flocks().members);
+    pass.set_pipeline(&renderer.pipelines::<FlockPipelines>().members);
     pass.set_bind_group(0, &placement.bind_group, &[]);
     pass.set_vertex_buffer(0, model.positions.slice(..));
     pass.set_vertex_buffer(1, model.attributes.slice(..));
@@ -176,14 +174,14 @@ pub(super) fn bind(
     pass.set_index_buffer(model.indices.slice(..), IndexFormat::Uint32);
 }
 
-/// Binds what impostors need beside that.
+/// Binds the pipeline, the atlas and the instances of impostors.
 pub(super) fn bind_impostors(
     atlas: &AtlasBinding,
     instances: &Buffer,
     renderer: &Renderer,
     pass: &mut RenderPass<'_>,
 ) {
-    pass.set_pipeline(&renderer.flocks().impostors);
+    pass.set_pipeline(&renderer.pipelines::<FlockPipelines>().impostors);
     pass.set_bind_group(1, &atlas.bind_group, &[]);
     pass.set_vertex_buffer(0, instances.slice(..));
 }

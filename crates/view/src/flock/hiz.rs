@@ -1,21 +1,23 @@
-//! Pyramid of depths of a frame, by which the next frame leaves out what is hidden.
+//! Pyramid of depths of a frame, by which the next frame leaves out hidden members.
 
 use bytemuck::{Pod, Zeroable};
 use meshlod::flock::FlockCamera;
 use wgpu::{
-    BindGroup, BindGroupLayout, BindingType, Buffer, BufferBindingType, BufferDescriptor,
-    BufferUsages, CommandEncoder, ComputePipeline, ShaderStages, TextureSampleType, TextureView,
-    TextureViewDimension,
+    BindGroup, BindGroupLayout, Buffer, BufferUsages, CommandEncoder, ComputePipeline,
+    ShaderStages, TextureSampleType, TextureView,
 };
 
-use super::pipelines::compute_pipeline;
-use crate::renderer::{bind_group, buffer_binding, buffer_of, layout, storage, uniform};
+use crate::gpu::bindings::{
+    STORAGE, UNIFORM, WRITTEN, bind_buffers, bind_group, layout_for, texture,
+};
+use crate::gpu::buffers::{blank_buffer, buffer_of, uniform_of};
+use crate::gpu::shaders::compute_pipeline;
 use crate::{Gpu, ViewError};
 
 /// Pyramid of the farthest depths in blocks of a picture, the finest of two by two pixels.
 ///
 /// It holds the farthest of *all* samples of a block, so a member whose bounding ball is behind it
-/// was in no sample of that frame. What a frame newly uncovers is drawn in the next one.
+/// was in no sample of that frame. Members that a frame newly uncovers are drawn in the next one.
 #[derive(Debug)]
 pub struct HiZ {
     gpu: Gpu,
@@ -71,33 +73,20 @@ impl HiZ {
         let steps = steps(size);
         let entries = steps.last().map_or(0, |s| s.at + s.size[0] * s.size[1]);
         gpu.check_storage("the pyramid of depths", 4 * u64::from(entries))?;
-        let device = &gpu.device;
-        let usage = BufferUsages::STORAGE;
-        let pyramid = device.create_buffer(&BufferDescriptor {
-            label: Some("pyramid of depths"),
-            size: 4 * u64::from(entries),
-            usage,
-            mapped_at_creation: false,
-        });
-        let compute = ShaderStages::COMPUTE;
-        let written = buffer_binding(BufferBindingType::Storage { read_only: false });
-        let step_layout = layout(device, &[(compute, uniform()), (compute, written)]);
-        let depths = BindingType::Texture {
-            sample_type: TextureSampleType::Depth,
-            view_dimension: TextureViewDimension::D2,
-            multisampled: samples > 1,
-        };
-        let depth_layout = layout(device, &[(compute, depths)]);
+        let (bytes, usage) = (4 * u64::from(entries), BufferUsages::STORAGE);
+        let pyramid = blank_buffer(gpu, "pyramid of depths", bytes, usage);
+        let step_layout = layout_for(gpu, ShaderStages::COMPUTE, &[UNIFORM, WRITTEN]);
+        let depths = texture(TextureSampleType::Depth, samples > 1);
+        let depth_layout = layout_for(gpu, ShaderStages::COMPUTE, &[depths]);
         let depth = if samples > 1 { "texture_depth_multisampled_2d" } else { "texture_depth_2d" };
         let source = format!("alias Depth = {depth};\nconst SAMPLES = {samples}u;\n{SHADER}");
         let made = |entry: &str, layouts: &[&BindGroupLayout]| {
             compute_pipeline(gpu, "pyramid of depths", &source, entry, layouts)
         };
         let bind = |step: &StepUniforms| {
-            let contents = bytemuck::bytes_of(step);
-            let buffer = buffer_of(gpu, "step", contents, BufferUsages::UNIFORM);
-            let both = [buffer.as_entire_binding(), pyramid.as_entire_binding()];
-            (bind_group(device, &step_layout, both), step.size.map(|side| side.div_ceil(8)))
+            let buffer = uniform_of(gpu, "step", step);
+            let bindings = bind_buffers(gpu, &step_layout, &[&buffer, &pyramid]);
+            (bindings, step.size.map(|side| side.div_ceil(8)))
         };
         Ok(Self {
             gpu: gpu.clone(),
@@ -113,8 +102,8 @@ impl HiZ {
         })
     }
 
-    /// Takes the depths of a picture that the camera saw, all of it, after what the encoder has so
-    /// far; once a frame.
+    /// Takes the depths of the camera's whole picture, after the commands already in the encoder;
+    /// once a frame.
     ///
     /// # Panics
     /// If the depths have another number of samples than the pyramid was made for, or fewer pixels.
@@ -128,7 +117,7 @@ impl HiZ {
         self.gpu.queue.write_buffer(&self.next_camera, 0, bytemuck::bytes_of(&seen));
         encoder.copy_buffer_to_buffer(&self.next_camera, 0, &self.camera, 0, self.camera.size());
         let view = wgpu::BindingResource::TextureView(depths);
-        let depth = bind_group(&self.gpu.device, &self.depth_layout, [view]);
+        let depth = bind_group(&self.gpu, &self.depth_layout, [view]);
         let mut pass = encoder.begin_compute_pass(&Default::default());
         for (level, (step, [columns, rows])) in self.steps.iter().enumerate() {
             pass.set_pipeline(if level == 0 { &self.gather } else { &self.halve });
@@ -154,8 +143,7 @@ pub(super) fn no_camera(gpu: &Gpu) -> Buffer {
 
 /// Returns the layout of the rule, the camera and the pyramid of depths for a choice.
 pub(super) fn choice_layout(gpu: &Gpu) -> BindGroupLayout {
-    let compute = ShaderStages::COMPUTE;
-    layout(&gpu.device, &[(compute, storage()), (compute, uniform()), (compute, storage())])
+    layout_for(gpu, ShaderStages::COMPUTE, &[STORAGE, UNIFORM, STORAGE])
 }
 
 /// Returns how each level is made: blocks halve, rounded up, down to one.

@@ -7,7 +7,7 @@ use glam::Vec3;
 use meshlod::flock::Members;
 use meshlod::flock::select::InstanceLevel;
 
-/// Member as a buffer of instances has it: 24 bytes.
+/// Member in a buffer of instances: 24 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub(super) struct Instance {

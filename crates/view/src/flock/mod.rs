@@ -16,5 +16,4 @@ mod selection;
 pub use drawn::GpuFlock;
 pub use hiz::HiZ;
 pub use obstacles::GpuObstacles;
-pub(crate) use pipelines::{FlockPipelines, compute_pipeline};
 pub use selection::GpuSelection;

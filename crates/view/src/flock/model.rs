@@ -5,13 +5,13 @@ use std::ops::Range;
 use meshlod::flock::levels::{LevelTable, Look};
 use meshlod::mesh::{Layer, LayerKind, WedgeId};
 use meshlod::picture::Paint;
-use wgpu::{
-    AddressMode, Buffer, BufferUsages, FilterMode, MipmapFilterMode, Sampler, SamplerDescriptor,
-};
+use wgpu::{AddressMode, Buffer, BufferUsages};
 
+use crate::ViewError;
+use crate::gpu::buffers::buffer_of;
+use crate::gpu::texture;
 use crate::mesh::{MaterialBinding, Surface, VertexAttributes, VertexColors, fractions};
-use crate::renderer::{Renderer, buffer_of};
-use crate::{Gpu, ViewError};
+use crate::renderer::Renderer;
 
 /// All levels of a table in one vertex and one index buffer, with the materials of the model.
 #[derive(Debug)]
@@ -47,22 +47,16 @@ impl FlockLevels {
         gpu.check_buffer("the flock's levels", 12 * table.triangles.len() as u64)?;
         let positions = bytemuck::cast_slice(&table.positions);
         let attributes = attributes(table, &surface);
-        let sampler = sampler(gpu);
+        // Without anisotropy: members are small, and llvmpipe visits every texel of a footprint,
+        // which on slivers of coarse levels is most of the texture.
+        let sampler = texture::sampler(gpu, AddressMode::Repeat, 1);
         let (triangles, draws) = by_material(table, surface.materials.len());
+        let fetched = |label, bytes| buffer_of(gpu, label, bytes, BufferUsages::VERTEX);
+        let indices = bytemuck::cast_slice(&triangles);
         Ok(Self {
-            positions: buffer_of(gpu, "flock positions", positions, BufferUsages::VERTEX),
-            attributes: buffer_of(
-                gpu,
-                "flock attributes",
-                bytemuck::cast_slice(&attributes),
-                BufferUsages::VERTEX,
-            ),
-            indices: buffer_of(
-                gpu,
-                "flock levels",
-                bytemuck::cast_slice(&triangles),
-                BufferUsages::INDEX,
-            ),
+            positions: fetched("flock positions", positions),
+            attributes: fetched("flock attributes", bytemuck::cast_slice(&attributes)),
+            indices: buffer_of(gpu, "flock levels", indices, BufferUsages::INDEX),
             draws,
             materials: surface
                 .materials
@@ -73,19 +67,6 @@ impl FlockLevels {
             coarsest: table.chains[0].levels.end - 1,
         })
     }
-}
-
-/// Returns a sampler without anisotropy: members are small, and llvmpipe visits every texel of a
-/// footprint, which on slivers of coarse levels is most of the texture.
-fn sampler(gpu: &Gpu) -> Sampler {
-    gpu.device.create_sampler(&SamplerDescriptor {
-        address_mode_u: AddressMode::Repeat,
-        address_mode_v: AddressMode::Repeat,
-        mag_filter: FilterMode::Linear,
-        min_filter: FilterMode::Linear,
-        mipmap_filter: MipmapFilterMode::Linear,
-        ..Default::default()
-    })
 }
 
 /// Returns normal, colour and texture coordinates of every vertex of a table.

@@ -6,27 +6,27 @@ use bytemuck::{Pod, Zeroable};
 use meshlod::flock::levels::LevelTable;
 use meshlod::flock::select::{Budget, ChainLevels, InstanceLevel};
 use meshlod::flock::{Flock, FlockCamera};
-use wgpu::{
-    BindGroup, Buffer, BufferDescriptor, BufferUsages, CommandEncoder, Features, RenderPass,
-};
+use wgpu::{BindGroup, Buffer, BufferUsages, CommandEncoder, Features, RenderPass};
 
 use super::atlas::AtlasBinding;
 use super::choice::{ChoicePipelines, MemberBuffers};
 use super::drawn::{GpuFlock, bind, bind_impostors};
 use super::hiz::{self, HiZ};
 use super::instances::Instance;
-use super::model::FlockLevels;
+use super::model::{FlockLevels, LevelDraw};
+use crate::gpu::bindings::bind_buffers;
+use crate::gpu::buffers::{blank_buffer, buffer_of, uniform_of};
+use crate::gpu::read::read_buffer;
 use crate::placement::Placement;
-use crate::read::read_buffer;
-use crate::renderer::{Renderer, bind_group, buffer_of};
+use crate::renderer::Renderer;
 use crate::{Gpu, ViewError};
 
 /// Flock whose levels are chosen on the GPU, and drawn without a word from the CPU.
 ///
 /// The rule is that of the policy `screen-error`, with the impostors of
-/// [`Budget::impostors_below_px`] where the flock has views of one. Members outside the frustum, and
-/// those that a [`HiZ`] hides, are not drawn. Counts by level, their sums, and the members in the
-/// order of their levels take three dispatches; a material is then one multi-draw.
+/// [`Budget::impostors_below_px`] where the flock has views of one. Members outside the frustum,
+/// and those that a [`HiZ`] hides, are not drawn. Counts by level, their sums, and the members in
+/// the order of their levels take three dispatches; a material is then one multi-draw.
 #[derive(Debug)]
 pub struct GpuSelection {
     gpu: Gpu,
@@ -80,55 +80,36 @@ const HYSTERESIS: f32 = 1.1;
 const ARGUMENTS: u64 = 20;
 
 impl GpuSelection {
-    /// Creates a choice for the levels of a flock, whose table must be the one that it was made of.
-    /// There are no members yet.
+    /// Creates the selection pass for a flock built from the same table. There are no members yet.
     ///
     /// # Errors
-    /// A GPU without indirect draws that begin at any instance: choose levels by a `Selector` there.
+    /// A GPU without indirect draws that begin at any instance: choose levels by a `Selector`
+    /// there.
     pub fn new(
         renderer: &Renderer,
         flock: &GpuFlock,
         table: &Arc<LevelTable>,
     ) -> Result<Self, ViewError> {
         let gpu = renderer.gpu();
-        if !gpu.device.features().contains(Features::INDIRECT_FIRST_INSTANCE) {
-            let why = "it has no indirect draws that begin at any instance, which choosing levels \
-                       on the GPU needs; choose them on the CPU";
-            return Err(ViewError::Failed(why.into()));
-        }
+        check_features(gpu)?;
         let model = flock.model.clone();
         let pipelines = ChoicePipelines::new(gpu);
         let by_distance = ChainLevels::new();
         let rule = rule(&by_distance, table);
         let (stored, filled) = (BufferUsages::STORAGE, BufferUsages::COPY_DST);
         let rule_buffer = buffer_of(gpu, "rule", bytemuck::cast_slice(&rule), stored | filled);
-        let view = [ViewUniforms::zeroed()];
-        let view =
-            buffer_of(gpu, "choice", bytemuck::cast_slice(&view), BufferUsages::UNIFORM | filled);
+        let view = uniform_of(gpu, "choice", &ViewUniforms::zeroed());
         let zeros = vec![0u32; 2 * (model.levels + 1)];
         let slots = buffer_of(gpu, "slots", bytemuck::cast_slice(&zeros), stored | filled);
-        let draws = model
-            .draws
-            .iter()
-            .flat_map(|draw| [draw.level as u32, draw.indices.start, draw.indices.len() as u32]);
-        let draws: Vec<u32> = draws.collect();
-        let draws = buffer_of(gpu, "draws", bytemuck::cast_slice(&draws), stored);
-        let arguments = gpu.device.create_buffer(&BufferDescriptor {
-            label: Some("arguments of draws"),
-            size: ARGUMENTS * (model.draws.len() as u64 + 1),
-            usage: stored | BufferUsages::INDIRECT | BufferUsages::COPY_SRC,
-            mapped_at_creation: false,
-        });
-        let both = [draws.as_entire_binding(), arguments.as_entire_binding()];
-        let plan = bind_group(&gpu.device, &pipelines.plan_layout, both);
+        let (plan, arguments) = plan_of(gpu, &pipelines, &model);
         let (camera, pyramid) = (hiz::no_camera(gpu), buffer_of(gpu, "no depths", &[], stored));
-        let open = [&rule_buffer, &camera, &pyramid].map(Buffer::as_entire_binding);
-        let open = bind_group(&gpu.device, &pipelines.rule_layout, open);
-        let members = MemberBuffers::new(gpu, &pipelines, &view, &slots, 0);
+        let open = [&rule_buffer, &camera, &pyramid];
         Ok(Self {
             gpu: gpu.clone(),
             atlas: flock.atlas.clone(),
             table: table.clone(),
+            members: MemberBuffers::new(gpu, &pipelines, &view, &slots, 0),
+            open: bind_buffers(gpu, &pipelines.rule_layout, &open),
             model,
             pipelines,
             rule,
@@ -138,14 +119,13 @@ impl GpuSelection {
             slots,
             arguments,
             plan,
-            open,
-            members,
             origin: [0.0; 3],
             facing: true,
         })
     }
 
-    /// Uploads positions and headings of all members. Allocates only where there are more than ever.
+    /// Uploads positions and headings of all members. Allocates only where there are more than
+    /// ever.
     ///
     /// # Errors
     /// More members than the GPU can bind as storage; those of before stay.
@@ -191,8 +171,7 @@ impl GpuSelection {
         let Self { pipelines, members, .. } = self;
         let hidden = depths.map(|depths| {
             let all = [&self.rule_buffer, &depths.camera, &depths.pyramid];
-            let all = all.map(Buffer::as_entire_binding);
-            bind_group(&self.gpu.device, &pipelines.rule_layout, all)
+            bind_buffers(&self.gpu, &pipelines.rule_layout, &all)
         });
         encoder.clear_buffer(&self.slots, 0, None);
         let groups = members.count.div_ceil(GROUP);
@@ -267,7 +246,7 @@ impl GpuSelection {
         }
     }
 
-    /// Reads the levels back, after everything submitted so far: for tests and statistics.
+    /// Reads the levels back, after all work submitted before: for tests and statistics.
     ///
     /// # Errors
     /// The device was lost.
@@ -284,6 +263,28 @@ impl GpuSelection {
             };
         Ok(chosen.chunks_exact(8).map(level).collect())
     }
+}
+
+/// Fails on a GPU without the indirect draws that choosing on the GPU needs.
+fn check_features(gpu: &Gpu) -> Result<(), ViewError> {
+    if gpu.device.features().contains(Features::INDIRECT_FIRST_INSTANCE) {
+        return Ok(());
+    }
+    let why = "it has no indirect draws that begin at any instance, which choosing levels on the \
+               GPU needs; choose them on the CPU";
+    Err(ViewError::Failed(why.into()))
+}
+
+/// Creates the buffer of the arguments of all draws, and the bindings of the shader that fills it.
+fn plan_of(gpu: &Gpu, pipelines: &ChoicePipelines, model: &FlockLevels) -> (BindGroup, Buffer) {
+    let of_draw =
+        |draw: &LevelDraw| [draw.level as u32, draw.indices.start, draw.indices.len() as u32];
+    let draws: Vec<[u32; 3]> = model.draws.iter().map(of_draw).collect();
+    let draws = buffer_of(gpu, "draws", bytemuck::cast_slice(&draws), BufferUsages::STORAGE);
+    let size = ARGUMENTS * (model.draws.len() as u64 + 1);
+    let usage = BufferUsages::STORAGE | BufferUsages::INDIRECT | BufferUsages::COPY_SRC;
+    let arguments = blank_buffer(gpu, "arguments of draws", size, usage);
+    (bind_buffers(gpu, &pipelines.plan_layout, &[&draws, &arguments]), arguments)
 }
 
 /// Returns the level for each distance, and the facing levels of each depth, as shaders read them.

@@ -1,14 +1,15 @@
-//! Vertices as a GPU fetches them: one for every wedge, and for every normal that it is shaded with.
+//! Vertices as a GPU fetches them: one for every wedge, and for every normal that it is shaded
+//! with.
 
 use std::ops::Range;
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use meshlod::Mesh;
-use meshlod::mesh::LayerKind;
+use meshlod::mesh::{Bounds, Layer, LayerKind};
 use meshlod::picture::{Normals, corner_normals};
 
-use super::VertexAttributes;
 use super::colors::{Surface, VertexColors};
+use super::vertex::{VertexAttributes, fractions};
 
 /// Vertices of a mesh, and the three of each face.
 pub(super) struct CornerVertices {
@@ -32,70 +33,22 @@ impl CornerVertices {
         if mesh.attributes.is_none() && (is_smooth || normals == Normals::Flat) {
             return Self::shared(mesh, surface, is_smooth, origin);
         }
-        let normals = (normals != Normals::Flat).then(|| corner_normals(mesh, normals));
-        let layer = |kind| mesh.attributes.as_ref().and_then(|all| all.layer(kind));
-        let uvs = layer(LayerKind::Uv(0));
-        let colors = match surface.vertex_colors {
-            VertexColors::Wedges => layer(LayerKind::Color(0)),
-            _ => None,
+        let corners = CornerAttributes::new(mesh, surface, normals);
+        let mut lists = VertexLists::new(mesh, origin);
+        let triangle = |face: usize| {
+            [0, 1, 2].map(|k| lists.vertex(mesh.faces[face][k].index(), corners.of(face, k)))
         };
-        let wedges = mesh.attributes.as_ref().map(|all| &all.corners);
-        let origin = DVec3::from(origin);
-        let mut this = Self {
-            positions: Vec::with_capacity(mesh.positions.len()),
-            attributes: Vec::with_capacity(mesh.positions.len()),
-            triangles: Vec::with_capacity(mesh.faces.len()),
-        };
-        // The vertices made for each vertex of the mesh, as lists.
-        let mut first = vec![NONE; mesh.positions.len()];
-        let mut next = Vec::with_capacity(mesh.positions.len());
-        for (face, corners) in mesh.faces.iter().enumerate() {
-            let triangle = [0, 1, 2].map(|k| {
-                let v = corners[k].index();
-                let normal = normals.as_ref().map_or([0.0; 3], |all| all[face][k]);
-                let wedge = wedges.map(|all| all[face][k]);
-                let uv = match (uvs, wedge) {
-                    (Some(layer), Some(wedge)) => [layer.of(wedge)[0], layer.of(wedge)[1]],
-                    _ => [0.0; 2],
-                };
-                let color = match &surface.vertex_colors {
-                    VertexColors::White => [255; 3],
-                    VertexColors::Vertices(colors) => colors[v],
-                    VertexColors::Wedges => match (colors, wedge) {
-                        (Some(layer), Some(wedge)) => color(layer.of(wedge)),
-                        _ => [255; 3],
-                    },
-                };
-                let [r, g, b] = color;
-                let wanted =
-                    VertexAttributes { normal: fractions(normal), color: [r, g, b, 255], uv };
-                let mut at = first[v];
-                while at != NONE && !same(&this.attributes[at as usize], &wanted) {
-                    at = next[at as usize];
-                }
-                if at == NONE {
-                    at = this.positions.len() as u32;
-                    let place = DVec3::from(mesh.positions[v]) - origin;
-                    this.positions.push(place.as_vec3().into());
-                    this.attributes.push(wanted);
-                    next.push(std::mem::replace(&mut first[v], at));
-                }
-                at
-            });
-            this.triangles.push(triangle);
-        }
-        this
+        let triangles = (0..mesh.faces.len()).map(triangle).collect();
+        Self { positions: lists.positions, attributes: lists.attributes, triangles }
     }
-}
 
-impl CornerVertices {
-    /// Takes the vertices of a mesh as they are, where corners differ by nothing else.
+    /// Takes over the vertices of a mesh whose corners at a vertex are all alike.
     fn shared(mesh: &Mesh, surface: &Surface<'_>, is_smooth: bool, origin: [f64; 3]) -> Self {
         let origin = DVec3::from(origin);
         let place = |p: &[f64; 3]| (DVec3::from(*p) - origin).as_vec3().into();
         let mut attributes = match is_smooth {
             true => smooth_attributes(mesh),
-            false => vec![WHITE; mesh.positions.len()],
+            false => vec![VertexAttributes::WHITE; mesh.positions.len()],
         };
         if let VertexColors::Vertices(colors) = &surface.vertex_colors {
             for (attributes, &[r, g, b]) in attributes.iter_mut().zip(colors) {
@@ -110,11 +63,102 @@ impl CornerVertices {
     }
 }
 
-const WHITE: VertexAttributes = VertexAttributes { normal: [0; 4], color: [255; 4], uv: [0.0; 2] };
+/// Source of the attributes of corners.
+struct CornerAttributes<'a> {
+    mesh: &'a Mesh,
+    /// Normals of the corners of each face; `None` for none.
+    normals: Option<Vec<[[f32; 3]; 3]>>,
+    uvs: Option<&'a Layer>,
+    colors: Option<&'a Layer>,
+    /// sRGB colours of vertices.
+    vertex_colors: Option<&'a [[u8; 3]]>,
+}
+
+impl<'a> CornerAttributes<'a> {
+    fn new(mesh: &'a Mesh, surface: &'a Surface<'_>, normals: Normals) -> Self {
+        let layer = |kind| mesh.attributes.as_ref().and_then(|all| all.layer(kind));
+        let (colors, vertex_colors) = match &surface.vertex_colors {
+            VertexColors::White => (None, None),
+            VertexColors::Wedges => (layer(LayerKind::Color(0)), None),
+            VertexColors::Vertices(colors) => (None, Some(&colors[..])),
+        };
+        Self {
+            mesh,
+            normals: (normals != Normals::Flat).then(|| corner_normals(mesh, normals)),
+            uvs: layer(LayerKind::Uv(0)),
+            colors,
+            vertex_colors,
+        }
+    }
+
+    /// Returns the attributes of the `k`-th corner of a face.
+    fn of(&self, face: usize, k: usize) -> VertexAttributes {
+        let wedge = self.mesh.attributes.as_ref().map(|all| all.corners[face][k]);
+        let values = |layer: Option<&'a Layer>| Some(Layer::of(layer?, wedge?));
+        let vertex = self.mesh.faces[face][k].index();
+        let of_vertex = self.vertex_colors.map(|colors| colors[vertex]);
+        let [r, g, b] = of_vertex.or(values(self.colors).map(color)).unwrap_or([255; 3]);
+        VertexAttributes {
+            normal: fractions(self.normals.as_ref().map_or([0.0; 3], |all| all[face][k])),
+            color: [r, g, b, 255],
+            uv: values(self.uvs).map_or([0.0; 2], |uv| [uv[0], uv[1]]),
+        }
+    }
+}
+
+/// Vertices made so far, in a list for each vertex of the mesh.
+struct VertexLists<'a> {
+    mesh: &'a Mesh,
+    origin: DVec3,
+    positions: Vec<[f32; 3]>,
+    attributes: Vec<VertexAttributes>,
+    first: Vec<u32>,
+    next: Vec<u32>,
+}
+
+impl<'a> VertexLists<'a> {
+    fn new(mesh: &'a Mesh, origin: [f64; 3]) -> Self {
+        let count = mesh.positions.len();
+        Self {
+            mesh,
+            origin: origin.into(),
+            positions: Vec::with_capacity(count),
+            attributes: Vec::with_capacity(count),
+            first: vec![NONE; count],
+            next: Vec::with_capacity(count),
+        }
+    }
+
+    /// Returns the vertex with these attributes at vertex `v` of the mesh, made if it is new.
+    fn vertex(&mut self, v: usize, wanted: VertexAttributes) -> u32 {
+        let mut at = self.first[v];
+        while at != NONE && !same(&self.attributes[at as usize], &wanted) {
+            at = self.next[at as usize];
+        }
+        if at == NONE {
+            at = self.positions.len() as u32;
+            let place = DVec3::from(self.mesh.positions[v]) - self.origin;
+            self.positions.push(place.as_vec3().into());
+            self.attributes.push(wanted);
+            self.next.push(std::mem::replace(&mut self.first[v], at));
+        }
+        at
+    }
+}
+
+/// Returns the middle of the box of all positions that faces use.
+pub(crate) fn middle(mesh: &Mesh) -> [f64; 3] {
+    let used = mesh.faces.iter().flatten().map(|v| &mesh.positions[v.index()]);
+    let bounds = Bounds::of(used);
+    if bounds.is_empty() {
+        return [0.0; 3];
+    }
+    [0, 1, 2].map(|axis| bounds.min[axis] / 2.0 + bounds.max[axis] / 2.0)
+}
 
 /// Returns white attributes with the smooth normal of each vertex.
 pub(crate) fn smooth_attributes(mesh: &Mesh) -> Vec<VertexAttributes> {
-    let mut all = vec![WHITE; mesh.positions.len()];
+    let mut all = vec![VertexAttributes::WHITE; mesh.positions.len()];
     for (face, normals) in mesh.faces.iter().zip(corner_normals(mesh, Normals::Smooth)) {
         for (v, normal) in face.iter().zip(normals) {
             all[v.index()].normal = fractions(normal);
@@ -131,13 +175,7 @@ fn color(values: &[f32]) -> [u8; 3] {
     [0, 1, 2].map(|k| (values[k].clamp(0.0, 1.0) * 255.0).round() as u8)
 }
 
-/// Packs a unit vector in 16-bit fractions.
-pub(crate) fn fractions(normal: [f32; 3]) -> [i16; 4] {
-    let [x, y, z] = Vec3::from(normal).to_array().map(|x| (x * 32767.0).round() as i16);
-    [x, y, z, 0]
-}
-
-/// Sorts faces by material: returns their order, and the range of each material that has some.
+/// Sorts faces by material: returns their order, and the range of each material in use.
 pub(super) fn face_order(mesh: &Mesh, materials: usize) -> (Vec<u32>, Vec<(Range<u32>, usize)>) {
     let count = mesh.faces.len() as u32;
     let all = || (0..count).collect();

@@ -4,7 +4,9 @@ use std::borrow::Cow;
 
 use meshlod::Mesh;
 use meshlod::mesh::LayerKind;
-use meshlod::picture::{Paint, PictureError, Texture, Values};
+use meshlod::picture::{Materials, Paint, PaintMaterial, PictureError, Texture, Values};
+
+use crate::placement::linear;
 
 /// Colours of a mesh: of its materials, its vertices and its faces. They are multiplied.
 pub(crate) struct Surface<'a> {
@@ -30,73 +32,63 @@ pub(crate) enum VertexColors {
     Vertices(Vec<[u8; 3]>),
 }
 
-/// Colour of a surface without what the paint asks for.
+/// Fallback colour where the paint's attribute is missing.
 const BARE: [u8; 3] = [205; 3];
 
 /// Colour of values that are not a number.
 const NOT_A_NUMBER: [u8; 3] = [128; 3];
 
 impl<'a> Surface<'a> {
+    /// Finds the colours of a mesh in a paint.
+    ///
+    /// # Errors
+    /// A paint that does not match the mesh.
     pub(crate) fn new(mesh: &'a Mesh, paint: &Paint<'a>) -> Result<Self, PictureError> {
-        let plain = |color: [u8; 3]| Self {
-            materials: vec![SurfaceMaterial {
-                base_color: crate::placement::linear(color),
-                texture: None,
-                is_single_sided: false,
-            }],
-            vertex_colors: VertexColors::White,
-            face_colors: None,
-        };
-        let white = || plain([255; 3]);
         let layer = |kind| mesh.attributes.as_ref().and_then(|all| all.layer(kind));
+        let has_colors = layer(LayerKind::Color(0)).is_some_and(|layer| layer.width >= 3);
+        let has_uv = layer(LayerKind::Uv(0)).is_some();
         Ok(match *paint {
-            Paint::Plain(color) => plain(color),
+            Paint::Plain(color) => Self::plain(color),
             Paint::FaceColors(colors) => {
                 check("colours of faces", colors.len(), mesh.faces.len())?;
-                Self { face_colors: Some(Cow::Borrowed(colors)), ..white() }
+                Self { face_colors: Some(Cow::Borrowed(colors)), ..Self::white() }
             }
             Paint::FaceValues(values) => {
                 check("values of faces", values.values.len(), mesh.faces.len())?;
-                Self { face_colors: Some(mapped(&values).into()), ..white() }
+                Self { face_colors: Some(mapped(&values).into()), ..Self::white() }
             }
             Paint::VertexValues(values) => {
                 check("values of vertices", values.values.len(), mesh.positions.len())?;
-                Self { vertex_colors: VertexColors::Vertices(mapped(&values)), ..white() }
+                Self { vertex_colors: VertexColors::Vertices(mapped(&values)), ..Self::white() }
             }
-            Paint::Colors => match layer(LayerKind::Color(0)).filter(|layer| layer.width >= 3) {
-                Some(_) => Self { vertex_colors: VertexColors::Wedges, ..white() },
-                None => plain(BARE),
-            },
-            Paint::Checker { squares } => match layer(LayerKind::Uv(0)) {
-                Some(_) => Self {
-                    materials: vec![SurfaceMaterial {
-                        base_color: [1.0; 3],
-                        texture: Some(Cow::Owned(Texture::checker(squares))),
-                        is_single_sided: false,
-                    }],
-                    ..white()
-                },
-                None => plain(BARE),
-            },
+            Paint::Colors if has_colors => {
+                Self { vertex_colors: VertexColors::Wedges, ..Self::white() }
+            }
+            Paint::Checker { squares } if has_uv => {
+                let texture = Some(Cow::Owned(Texture::checker(squares)));
+                let checker =
+                    SurfaceMaterial { base_color: [1.0; 3], texture, is_single_sided: false };
+                Self { materials: vec![checker], ..Self::white() }
+            }
+            Paint::Colors | Paint::Checker { .. } => Self::plain(BARE),
             Paint::Materials(all) => {
-                let expected = mesh.materials.as_ref().map_or(1, |labels| labels.names.len());
-                check("materials", all.materials.len(), expected)?;
-                let has_uv = layer(LayerKind::Uv(0)).is_some();
-                let texture = |index: usize| {
-                    let found = all.textures.get(index).map(Cow::Borrowed);
-                    let count = all.textures.len();
-                    found.ok_or(PictureError::NoTexture { material: 0, texture: index, count })
-                };
-                let material = |material: &meshlod::picture::PaintMaterial| {
-                    let texture = material.texture.filter(|_| has_uv).map(texture).transpose()?;
-                    let base_color = material.base_color;
-                    Ok(SurfaceMaterial { base_color, texture, is_single_sided: false })
-                };
-                let materials =
-                    all.materials.iter().map(material).collect::<Result<_, PictureError>>()?;
-                Self { materials, ..white() }
+                Self { materials: materials(mesh, all, has_uv)?, ..Self::white() }
             }
         })
+    }
+
+    /// Returns a surface of one sRGB colour.
+    fn plain(color: [u8; 3]) -> Self {
+        let base_color = linear(color);
+        Self {
+            materials: vec![SurfaceMaterial { base_color, texture: None, is_single_sided: false }],
+            vertex_colors: VertexColors::White,
+            face_colors: None,
+        }
+    }
+
+    fn white() -> Self {
+        Self::plain([255; 3])
     }
 
     /// Gives each material label its own material, single-sided where it says so; see
@@ -112,6 +104,26 @@ impl<'a> Surface<'a> {
         }
         self
     }
+}
+
+/// Returns the materials of a paint, with textures if the mesh has texture coordinates.
+fn materials<'a>(
+    mesh: &Mesh,
+    all: &'a Materials,
+    has_uv: bool,
+) -> Result<Vec<SurfaceMaterial<'a>>, PictureError> {
+    let expected = mesh.materials.as_ref().map_or(1, |labels| labels.names.len());
+    check("materials", all.materials.len(), expected)?;
+    let texture = |index: usize| {
+        let found = all.textures.get(index).map(Cow::Borrowed);
+        let count = all.textures.len();
+        found.ok_or(PictureError::NoTexture { material: 0, texture: index, count })
+    };
+    let material = |material: &PaintMaterial| {
+        let texture = material.texture.filter(|_| has_uv).map(texture).transpose()?;
+        Ok(SurfaceMaterial { base_color: material.base_color, texture, is_single_sided: false })
+    };
+    all.materials.iter().map(material).collect()
 }
 
 /// Returns the colours of values.

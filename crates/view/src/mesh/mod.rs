@@ -3,6 +3,8 @@
 mod build;
 mod colors;
 mod pipelines;
+mod strips;
+mod vertex;
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -11,14 +13,16 @@ use meshlod::Mesh;
 use meshlod::picture::{Normals, Paint, PictureError};
 use wgpu::{BindGroup, Buffer, BufferUsages, IndexFormat, RenderPass};
 
+pub(crate) use self::build::middle;
 use self::build::{CornerVertices, face_order};
-pub(crate) use self::build::{fractions, smooth_attributes};
 pub(crate) use self::colors::{Surface, VertexColors};
-pub(crate) use self::pipelines::{MaterialBinding, MeshPipelines, VERTEX_BUFFERS};
+pub(crate) use self::pipelines::{MaterialBinding, MeshPipelines, bind_faces};
+pub use self::strips::GpuStrips;
+pub(crate) use self::vertex::{VERTEX_BUFFERS, VertexAttributes, fractions};
 use crate::ViewError;
+use crate::gpu::buffers::upload_sliced;
 use crate::placement::Placement;
-use crate::renderer::{Renderer, bind_group};
-use crate::upload::upload_sliced;
+use crate::renderer::Renderer;
 
 /// Mesh on the GPU: wedges with normals, texture coordinates and colours; and its materials.
 ///
@@ -40,22 +44,11 @@ pub struct GpuMesh {
     storage: Option<BindGroup>,
 }
 
-/// Attributes of a vertex, as buffers have them: 20 bytes.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-pub(crate) struct VertexAttributes {
-    /// Normal as 16-bit fractions; the fourth is padding.
-    pub normal: [i16; 4],
-    /// sRGB colour.
-    pub color: [u8; 4],
-    pub uv: [f32; 2],
-}
-
 impl GpuMesh {
     /// Uploads a mesh with the colours that [`meshlod::picture::render`] would give it.
     ///
-    /// Without normals of its own, corners get those of `normals`; with [`Normals::Flat`] vertices are
-    /// shared and faces are shaded flat. Materials are drawn one after the other.
+    /// A mesh without normals gets those of `normals`; with [`Normals::Flat`] vertices are shared
+    /// and faces are shaded flat. Materials are drawn one after the other.
     ///
     /// # Errors
     /// A mesh that breaks [`Mesh::validate`], a paint that does not match it, or a mesh beyond the
@@ -171,8 +164,7 @@ impl GpuMesh {
 
     /// Draws the mesh.
     pub fn draw(&self, renderer: &Renderer, pass: &mut RenderPass<'_>, placement: &Placement) {
-        let pipelines = renderer.meshes();
-        pass.set_pipeline(&pipelines.fetched);
+        pass.set_pipeline(&renderer.pipelines::<MeshPipelines>().fetched);
         pass.set_bind_group(0, &placement.bind_group, &[]);
         pass.set_vertex_buffer(0, self.positions.slice(..));
         pass.set_vertex_buffer(1, self.attributes.slice(..));
@@ -183,8 +175,8 @@ impl GpuMesh {
         }
     }
 
-    /// Draws the mesh face by face, so that a [`Shade`](crate::Shade) with a wireframe or with colours
-    /// of faces shows. A mesh that is too large for that is drawn without them.
+    /// Draws the mesh face by face, so that a [`Shade`](crate::Shade) with a wireframe or with
+    /// colours of faces shows. A mesh that is too large for that is drawn without them.
     pub fn draw_faces(
         &self,
         renderer: &Renderer,
@@ -192,7 +184,7 @@ impl GpuMesh {
         placement: &Placement,
     ) {
         let Some(storage) = &self.storage else { return self.draw(renderer, pass, placement) };
-        pass.set_pipeline(&renderer.meshes().pulled);
+        pass.set_pipeline(&renderer.pipelines::<MeshPipelines>().pulled);
         pass.set_bind_group(0, &placement.bind_group, &[]);
         pass.set_bind_group(2, storage, &[]);
         for (faces, material) in &self.ranges {
@@ -204,34 +196,6 @@ impl GpuMesh {
     fn bind_storage(&self, renderer: &Renderer, colors: &[u32]) -> Option<BindGroup> {
         bind_faces(renderer, [&self.positions, &self.attributes, &self.indices], colors)
     }
-}
-
-/// Binds positions, attributes and indices for drawing face by face, with sRGB colours of the faces;
-/// `None` if a buffer is beyond what the GPU binds as storage.
-pub(crate) fn bind_faces(
-    renderer: &Renderer,
-    buffers: [&Buffer; 3],
-    colors: &[u32],
-) -> Option<BindGroup> {
-    let gpu = renderer.gpu();
-    let limit = gpu.device.limits().max_storage_buffer_binding_size;
-    if buffers.iter().any(|buffer| buffer.size() > limit) {
-        return None;
-    }
-    let colors = upload_sliced(gpu, "colours", bytemuck::cast_slice(colors), BufferUsages::STORAGE);
-    let [a, b, c] = buffers.map(Buffer::as_entire_binding);
-    let all = [a, b, c, colors.as_entire_binding()];
-    Some(bind_group(&gpu.device, &renderer.meshes().storage_layout, all))
-}
-
-/// Returns the middle of the box of all positions that faces use.
-pub(crate) fn middle(mesh: &Mesh) -> [f64; 3] {
-    let used = mesh.faces.iter().flatten().map(|v| &mesh.positions[v.index()]);
-    let bounds = meshlod::mesh::Bounds::of(used);
-    if bounds.is_empty() {
-        return [0.0; 3];
-    }
-    [0, 1, 2].map(|axis| bounds.min[axis] / 2.0 + bounds.max[axis] / 2.0)
 }
 
 /// Packs a colour as shaders unpack it.

@@ -2,13 +2,15 @@
 
 use bytemuck::{Pod, Zeroable};
 use wgpu::{
-    BindGroup, BindGroupLayout, BindingResource, BufferUsages, RenderPipeline, Sampler,
-    ShaderStages, VertexBufferLayout, VertexStepMode, vertex_attr_array,
+    BindGroup, BindGroupLayout, Buffer, BufferUsages, RenderPipeline, Sampler, ShaderStages,
 };
 
 use super::colors::SurfaceMaterial;
-use crate::renderer::{PipelineBuild, Renderer, bind_group, buffer_of, layout, storage};
-use crate::texture;
+use super::vertex::VERTEX_BUFFERS;
+use crate::gpu::bindings::{STORAGE, bind_buffers, bind_image, layout_for};
+use crate::gpu::buffers::{uniform_of, upload_sliced};
+use crate::gpu::texture;
+use crate::renderer::{PipelineBuild, Pipelines, Renderer};
 
 /// Pipelines of meshes.
 #[derive(Debug)]
@@ -21,20 +23,6 @@ pub(crate) struct MeshPipelines {
     pub pulled: RenderPipeline,
     pub storage_layout: BindGroupLayout,
 }
-
-/// Layout of positions, then of attributes.
-pub(crate) const VERTEX_BUFFERS: [VertexBufferLayout<'static>; 2] = [
-    VertexBufferLayout {
-        array_stride: 12,
-        step_mode: VertexStepMode::Vertex,
-        attributes: &vertex_attr_array![0 => Float32x3],
-    },
-    VertexBufferLayout {
-        array_stride: 20,
-        step_mode: VertexStepMode::Vertex,
-        attributes: &vertex_attr_array![1 => Snorm16x4, 2 => Unorm8x4, 3 => Float32x2],
-    },
-];
 
 /// Material of a mesh, bound to its texture.
 #[derive(Clone, Debug)]
@@ -51,34 +39,30 @@ struct MaterialUniforms {
     padding: [u32; 2],
 }
 
-impl Renderer {
-    /// Returns the pipelines of meshes.
-    pub(crate) fn meshes(&self) -> &MeshPipelines {
-        self.meshes.get_or_init(|| {
-            let source =
-                concat!(include_str!("../shaders/draw.wgsl"), include_str!("../shaders/mesh.wgsl"));
-            let shader = self.shader("mesh", source.into());
-            let storages = [(ShaderStages::VERTEX, storage()); 4];
-            let storage_layout = layout(&self.gpu().device, &storages);
-            let basic = [&self.draw_layout, &self.material_layout];
-            let fetched = PipelineBuild {
-                layouts: &basic,
-                buffers: &VERTEX_BUFFERS,
-                ..PipelineBuild::new("mesh", &shader)
-            };
-            let topology = wgpu::PrimitiveTopology::TriangleStrip;
-            let strips = PipelineBuild { topology, label: "strips", ..fetched.clone() };
-            let pulled = PipelineBuild {
-                label: "faces",
-                entries: ["pulled", "shaded"],
-                layouts: &[basic[0], basic[1], &storage_layout],
-                buffers: &[],
-                ..fetched.clone()
-            };
-            let [fetched, strips, pulled] =
-                [&fetched, &strips, &pulled].map(|build| self.pipeline(build));
-            MeshPipelines { fetched, strips, pulled, storage_layout }
-        })
+impl Pipelines for MeshPipelines {
+    fn compile(renderer: &Renderer) -> Self {
+        let source =
+            concat!(include_str!("../shaders/draw.wgsl"), include_str!("../shaders/mesh.wgsl"));
+        let shader = renderer.shader("mesh", source);
+        let storage_layout = layout_for(renderer.gpu(), ShaderStages::VERTEX, &[STORAGE; 4]);
+        let basic = [&renderer.draw_layout, &renderer.material_layout];
+        let fetched = PipelineBuild {
+            layouts: &basic,
+            buffers: &VERTEX_BUFFERS,
+            ..PipelineBuild::new("mesh", &shader)
+        };
+        let topology = wgpu::PrimitiveTopology::TriangleStrip;
+        let strips = PipelineBuild { topology, label: "strips", ..fetched.clone() };
+        let pulled = PipelineBuild {
+            label: "faces",
+            entries: ["pulled", "shaded"],
+            layouts: &[basic[0], basic[1], &storage_layout],
+            buffers: &[],
+            ..fetched.clone()
+        };
+        let [fetched, strips, pulled] =
+            [&fetched, &strips, &pulled].map(|build| renderer.pipeline(build));
+        Self { fetched, strips, pulled, storage_layout }
     }
 }
 
@@ -87,7 +71,7 @@ impl MaterialBinding {
         Self::with_sampler(renderer, material, &renderer.sampler)
     }
 
-    /// Binds a material to a sampler of its own.
+    /// Binds a material to its own sampler.
     pub(crate) fn with_sampler(
         renderer: &Renderer,
         material: &SurfaceMaterial<'_>,
@@ -101,22 +85,13 @@ impl MaterialBinding {
             is_single_sided: material.is_single_sided.into(),
             padding: [0; 2],
         };
-        let buffer =
-            buffer_of(gpu, "material", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM);
+        let buffer = uniform_of(gpu, "material", &uniforms);
         let image = match &material.texture {
             Some(image) => texture::upload(gpu, image),
             None => texture::white(gpu),
         };
         let view = image.create_view(&Default::default());
-        let bind_group = bind_group(
-            &gpu.device,
-            &renderer.material_layout,
-            [
-                buffer.as_entire_binding(),
-                BindingResource::TextureView(&view),
-                BindingResource::Sampler(sampler),
-            ],
-        );
+        let bind_group = bind_image(gpu, &renderer.material_layout, &buffer, &view, sampler);
         Self { bind_group }
     }
 
@@ -125,4 +100,23 @@ impl MaterialBinding {
         let material = SurfaceMaterial { base_color, texture: None, is_single_sided: false };
         Self::new(renderer, &material)
     }
+}
+
+/// Binds positions, attributes and indices for drawing face by face, with sRGB colours of the
+/// faces; `None` if a buffer is beyond what the GPU binds as storage.
+pub(crate) fn bind_faces(
+    renderer: &Renderer,
+    buffers: [&Buffer; 3],
+    colors: &[u32],
+) -> Option<BindGroup> {
+    let gpu = renderer.gpu();
+    let limit = gpu.device.limits().max_storage_buffer_binding_size;
+    if buffers.iter().any(|buffer| buffer.size() > limit) {
+        return None;
+    }
+    let colors = upload_sliced(gpu, "colours", bytemuck::cast_slice(colors), BufferUsages::STORAGE);
+    let pipelines = renderer.pipelines::<MeshPipelines>();
+    let [positions, attributes, indices] = buffers;
+    let all = [positions, attributes, indices, &colors];
+    Some(bind_buffers(gpu, &pipelines.storage_layout, &all))
 }

@@ -1,12 +1,10 @@
 //! Blocks: words as they are stored, and a matrix for every 32 vertices.
 
-use std::borrow::Cow;
-
 use bytemuck::{Pod, Zeroable};
 use meshlod::codec::{StoredBlock, StoredBlocks};
 
+use super::data::SchemeData;
 use super::pipelines::SchemeShader;
-use super::{SchemeData, one_run};
 
 /// `Block` of blocks.wgsl.
 #[repr(C)]
@@ -25,19 +23,8 @@ struct GpuBlock {
 /// Returns words and matrices of blocks.
 pub(super) fn data<'a>(stored: &StoredBlocks<'a>, faces: usize) -> SchemeData<'a> {
     let blocks: Vec<GpuBlock> = stored.blocks.iter().map(GpuBlock::new).collect();
-    SchemeData {
-        origin: stored.centre,
-        scale: [1.0; 3],
-        shader: SchemeShader::Blocks { is_wide: !stored.blocks.iter().all(is_narrow) },
-        fetched: None,
-        storages: [
-            Cow::Borrowed(bytemuck::cast_slice(stored.words)),
-            Cow::Owned(bytemuck::cast_slice(&blocks).to_vec()),
-        ],
-        runs: one_run(faces),
-        strips: None,
-        parts: None,
-    }
+    let shader = SchemeShader::Blocks { is_wide: !stored.blocks.iter().all(is_narrow) };
+    SchemeData::of_bits(shader, stored.centre, stored.words, &blocks, faces)
 }
 
 /// Returns true if the short path decodes a block: pairs of at most 31 bits an axis and 64 in all.

@@ -1,12 +1,10 @@
 //! Lattice: words as they are stored, and an integer shear for every 32 vertices.
 
-use std::borrow::Cow;
-
 use bytemuck::{Pod, Zeroable};
 use meshlod::codec::{StoredLattice, StoredShear};
 
+use super::data::SchemeData;
 use super::pipelines::SchemeShader;
-use super::{SchemeData, one_run};
 
 /// `Shear` of lattice.wgsl.
 #[repr(C)]
@@ -35,19 +33,9 @@ pub(super) fn data<'a>(stored: &StoredLattice<'a>, faces: usize) -> SchemeData<'
         false => SchemeShader::WideLattice,
         true => SchemeShader::Lattice { has_three_words: widest > Some(64) },
     };
-    SchemeData {
-        origin: [place(0), place(1), place(2)],
-        scale: [cell; 3],
-        shader,
-        fetched: None,
-        storages: [
-            Cow::Borrowed(bytemuck::cast_slice(stored.words)),
-            Cow::Owned(bytemuck::cast_slice(&shears).to_vec()),
-        ],
-        runs: one_run(faces),
-        strips: None,
-        parts: None,
-    }
+    let origin = [place(0), place(1), place(2)];
+    let data = SchemeData::of_bits(shader, origin, stored.words, &shears, faces);
+    SchemeData { scale: [cell; 3], ..data }
 }
 
 /// Returns true if the short path decodes a block: four vertices in at most 96 bits, and heights

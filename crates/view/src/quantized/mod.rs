@@ -1,6 +1,7 @@
 //! Compressed geometry, drawn as it is stored: positions are decoded in the vertex shader.
 
 mod blocks;
+mod data;
 mod lattice;
 mod normals;
 mod part_matrices;
@@ -11,7 +12,6 @@ mod strips;
 #[cfg(test)]
 mod tests;
 
-use std::borrow::Cow;
 use std::ops::Range;
 
 use bytemuck::{Pod, Zeroable};
@@ -21,18 +21,20 @@ use meshlod::mesh::LayerKind;
 use meshlod::picture::PictureError;
 use wgpu::{BindGroup, Buffer, BufferUsages, IndexFormat, RenderPass};
 
+use self::data::{SchemeData, storage_of};
 pub use self::part_matrices::PartMatrices;
-pub(crate) use self::pipelines::SchemePipelines;
-use self::pipelines::{PipelineKey, SchemeEntry, SchemeShader};
+use self::pipelines::{PipelineKey, SchemeEntry, SchemePipelines, SchemeShader};
 use self::strips::StripRun;
+use crate::ViewError;
+use crate::gpu::bindings::bind_buffers;
+use crate::gpu::buffers::{buffer_of, uniform_of};
 use crate::placement::Placement;
-use crate::renderer::{Renderer, bind_group, buffer_of};
-use crate::{Gpu, ViewError};
+use crate::renderer::Renderer;
 
 /// Compressed mesh on the GPU, its positions in the bits of their `.mlq` file.
 ///
-/// It has one colour, or with [`Shade::face_colors`](crate::Shade::face_colors) one for each part or
-/// block. Where the file has normals, they are used; otherwise faces are shaded flat.
+/// It has one colour, or with [`Shade::face_colors`](crate::Shade::face_colors) one for each part
+/// or block. Where the file has normals, they are used; otherwise faces are shaded flat.
 ///
 /// A vertex that several parts store is at the same bits in all of them, so no background shows
 /// through between parts, nor between blocks.
@@ -41,7 +43,8 @@ pub struct GpuCompressed {
     origin: [f64; 3],
     shader: SchemeShader,
     bind_group: BindGroup,
-    /// Bytes of parts; with normals, the positions of nodes. Otherwise shaders read stored bits only.
+    /// Bytes of parts; with normals, the positions of nodes. Otherwise shaders read stored bits
+    /// only.
     vertices: Option<Buffer>,
     normals: Option<Buffer>,
     indices: Buffer,
@@ -62,14 +65,14 @@ enum Draws {
     Strips(Vec<StripRun>),
 }
 
-/// Ways of drawing compressed geometry that few need.
+/// Rarely needed ways of drawing compressed geometry.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CompressedOptions<'a> {
     /// Leave out faces that are seen from behind. A crack in a closed mesh shows background then.
     pub culls_back_faces: bool,
     /// Place parts by a matrix each, folded into the camera's [LCL10], in place of adding integers:
-    /// common vertices of two parts may then be rounded apart. It is ignored without parts, and draws
-    /// without normals.
+    /// common vertices of two parts may then be rounded apart. It is ignored without parts, and
+    /// draws without normals.
     pub part_matrices: Option<&'a PartMatrices>,
 }
 
@@ -80,26 +83,6 @@ struct SchemeUniforms {
     scale: [f32; 3],
     padding: u32,
 }
-
-/// Positions of a scheme, as the GPU takes them.
-struct SchemeData<'a> {
-    origin: [f64; 3],
-    /// Sides of a cell.
-    scale: [f64; 3],
-    shader: SchemeShader,
-    /// Bytes that vertices are fetched from; `None` if shaders read their bits.
-    fetched: Option<Cow<'a, [u8]>>,
-    /// Stored words, and headers of parts or blocks.
-    storages: [Cow<'a, [u8]>; 2],
-    /// Faces of each instance.
-    runs: Vec<Range<u32>>,
-    /// Strips that draw all faces, and their indices.
-    strips: Option<(Vec<StripRun>, Vec<u16>)>,
-    parts: Option<(Vec<[i32; 4]>, [f64; 3])>,
-}
-
-/// Most bytes of stored bits: shaders count bits in 32 bits.
-const MOST_WORD_BYTES: u64 = 1 << 29;
 
 impl GpuCompressed {
     /// Uploads a compressed mesh: stored bits, headers as matrices, and decoded faces.
@@ -122,19 +105,19 @@ impl GpuCompressed {
         };
         let of_nodes = normals.is_some().then(|| bytemuck::cast_slice(&stored.position_of).into());
         let strips = strips::strips(&stored);
-        let data = SchemeData { fetched: data.fetched.or(of_nodes), strips, ..data };
-        Self::upload(renderer, data, normals.as_deref(), &faces)
+        let data = SchemeData { fetched: data.fetched.or(of_nodes), ..data };
+        Self::upload(renderer, data, strips, normals.as_deref(), &faces)
     }
 
-    /// Uploads the positions of a mesh as three `f32`, undivided and shaded flat: the yardstick of
-    /// what decoding costs.
+    /// Uploads the positions of a mesh as three `f32`, undivided and shaded flat, to measure the
+    /// cost of decoding against.
     ///
     /// # Errors
     /// A mesh that breaks [`Mesh::validate`], or is beyond the limits of the GPU.
     pub fn uncompressed(renderer: &Renderer, mesh: &Mesh) -> Result<Self, ViewError> {
         mesh.validate().map_err(PictureError::from)?;
         let faces: Vec<_> = mesh.faces.iter().map(|face| face.map(|v| v.0)).collect();
-        Self::upload(renderer, plain::data(mesh), None, &faces)
+        Self::upload(renderer, plain::data(mesh), None, None, &faces)
     }
 
     /// Returns the point of the world that positions are relative to, for
@@ -180,7 +163,7 @@ impl GpuCompressed {
             (None, Some(_)) => SchemeEntry::WithNormals,
             (None, None) => SchemeEntry::Bare,
         };
-        let pipelines = renderer.schemes();
+        let pipelines = renderer.pipelines::<SchemePipelines>();
         let is_strips = matches!(self.draws, Draws::Strips(_));
         let (shader, culls) = (self.shader, options.culls_back_faces);
         let key = PipelineKey { shader, entry, is_strips, culls };
@@ -221,64 +204,46 @@ impl GpuCompressed {
     fn upload(
         renderer: &Renderer,
         data: SchemeData<'_>,
+        strips: Option<(Vec<StripRun>, Vec<u16>)>,
         normals: Option<&[[i16; 2]]>,
         faces: &[[u32; 3]],
     ) -> Result<Self, ViewError> {
         let gpu = renderer.gpu();
         let normals: &[u8] = normals.map_or(&[], bytemuck::cast_slice);
-        let fetched = data.fetched.as_deref();
-        let (draws, indices) = match &data.strips {
+        data.check(gpu)?;
+        gpu.check_buffer("the compressed mesh's normals", normals.len() as u64)?;
+        let vertex = |bytes: &[u8]| buffer_of(gpu, "vertices", bytes, BufferUsages::VERTEX);
+        let vertex_bytes = (data.bytes() + normals.len()) as u64;
+        let (draws, indices) = match &strips {
             Some((runs, indices)) => {
                 (Draws::Strips(runs.clone()), bytemuck::cast_slice::<_, u8>(indices))
             }
-            None => (Draws::Lists(data.runs), bytemuck::cast_slice(faces)),
+            None => (Draws::Lists(data.runs.clone()), bytemuck::cast_slice(faces)),
         };
-        let index_bytes = indices.len() as u64;
-        gpu.check_buffer("the compressed vertices", fetched.map_or(0, <[u8]>::len) as u64)?;
-        gpu.check_buffer("the compressed mesh's normals", normals.len() as u64)?;
-        gpu.check_buffer("the compressed mesh's faces", index_bytes)?;
-        let [words, headers] = &data.storages;
-        let (what, needed) = ("the bits of compressed positions", words.len() as u64);
-        gpu.check_storage(what, needed)?;
-        if needed > MOST_WORD_BYTES {
-            return Err(ViewError::TooLarge { what, needed, limit: MOST_WORD_BYTES });
-        }
-        gpu.check_storage("the headers of compressed positions", headers.len() as u64)?;
-        let uniforms = SchemeUniforms { scale: data.scale.map(|x| x as f32), padding: 0 };
-        let uniforms =
-            buffer_of(gpu, "scheme", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM);
-        let storage = |bytes: &[u8]| storage_of(gpu, bytes, BufferUsages::empty());
-        let storages = [storage(words), storage(headers)];
-        let bindings = [&uniforms, &storages[0], &storages[1]].map(Buffer::as_entire_binding);
-        let vertex = |bytes: &[u8]| buffer_of(gpu, "vertices", bytes, BufferUsages::VERTEX);
-        let fetched_bytes = fetched.map_or(0, <[u8]>::len) + normals.len();
+        gpu.check_buffer("the compressed mesh's faces", indices.len() as u64)?;
         Ok(Self {
             origin: data.origin,
             shader: data.shader,
-            bind_group: bind_group(&gpu.device, &renderer.schemes().layout, bindings),
-            vertices: fetched.map(vertex),
+            bind_group: bind_positions(renderer, &data),
+            vertices: data.fetched.as_deref().map(vertex),
             normals: (!normals.is_empty()).then(|| vertex(normals)),
             indices: buffer_of(gpu, "faces", indices, BufferUsages::INDEX),
             draws,
             faces: faces.len() as u32,
-            vertex_bytes: (fetched_bytes + words.len() + headers.len()) as u64,
-            index_bytes,
-            parts: data.parts,
+            vertex_bytes,
+            index_bytes: indices.len() as u64,
+            parts: data.offsets.map(|offsets| (offsets, data.scale)),
         })
     }
 }
 
-/// Creates a storage buffer that is large enough for a binding of any of the shaders.
-fn storage_of(gpu: &Gpu, bytes: &[u8], usage: BufferUsages) -> Buffer {
-    const LEAST: usize = 64;
-    let mut padded = Cow::Borrowed(bytes);
-    if bytes.len() < LEAST {
-        padded.to_mut().resize(LEAST, 0);
-    }
-    buffer_of(gpu, "compressed positions", &padded, BufferUsages::STORAGE | usage)
-}
-
-/// Returns the range of all faces, as one instance.
-fn one_run(faces: usize) -> Vec<Range<u32>> {
-    std::iter::once(0..faces as u32).collect()
+/// Uploads the size of a cell, the words and the headers of a scheme, and binds them.
+fn bind_positions(renderer: &Renderer, data: &SchemeData<'_>) -> BindGroup {
+    let gpu = renderer.gpu();
+    let uniforms = SchemeUniforms { scale: data.scale.map(|x| x as f32), padding: 0 };
+    let uniforms = uniform_of(gpu, "scheme", &uniforms);
+    let [words, headers] =
+        data.storages.each_ref().map(|bytes| storage_of(gpu, bytes, BufferUsages::empty()));
+    let pipelines = renderer.pipelines::<SchemePipelines>();
+    bind_buffers(gpu, &pipelines.layout, &[&uniforms, &words, &headers])
 }

@@ -4,14 +4,16 @@ use glam::{DMat4, DVec3};
 use meshlod::picture::Camera;
 use wgpu::{BindGroup, Buffer, BufferUsages, Queue};
 
-use super::storage_of;
+use super::data::storage_of;
+use super::pipelines::SchemePipelines;
+use crate::gpu::bindings::bind_buffers;
 use crate::placement::clip_from_world;
-use crate::renderer::{Renderer, bind_group};
+use crate::renderer::Renderer;
 
 /// Matrices from the local cells of parts to clip space, for one camera [LCL10].
 ///
-/// They are multiplied in `f64` and rounded to `f32` for each part alone, so a vertex on a border may
-/// come out an ulp apart in two parts.
+/// They are multiplied in `f64` and rounded to `f32` for each part alone, so a vertex on a border
+/// may come out an ulp apart in two parts.
 #[derive(Debug)]
 pub struct PartMatrices {
     buffer: Buffer,
@@ -38,8 +40,8 @@ impl PartMatrices {
         let gpu = renderer.gpu();
         let bytes = vec![0; 64 * local.len()];
         let buffer = storage_of(gpu, &bytes, BufferUsages::COPY_DST);
-        let layout = &renderer.schemes().matrix_layout;
-        let bind_group = bind_group(&gpu.device, layout, [buffer.as_entire_binding()]);
+        let pipelines = renderer.pipelines::<SchemePipelines>();
+        let bind_group = bind_buffers(gpu, &pipelines.matrix_layout, &[&buffer]);
         Self { buffer, bind_group, queue: gpu.queue.clone(), local, origin }
     }
 

@@ -5,10 +5,10 @@ use std::ops::Range;
 
 use meshlod::codec::{Malformed, StoredMesh, StoredParts};
 
-use super::SchemeData;
+use super::data::SchemeData;
 use super::pipelines::SchemeShader;
 
-/// Parts of one instance: as many as a byte tells apart.
+/// Parts of one instance: as many as a byte can number.
 pub(super) const RUN: usize = 256;
 
 /// Returns bytes and offsets of parts.
@@ -40,8 +40,7 @@ pub(super) fn data<'a>(
         fetched: Some(Cow::Owned(bytes)),
         storages: [Cow::Owned(bytemuck::cast_slice(&offsets).to_vec()), Cow::default()],
         runs,
-        strips: None,
-        parts: Some((offsets, cell)),
+        offsets: Some(offsets),
     })
 }
 

@@ -1,4 +1,4 @@
-//! Pipelines of the schemes, compiled when they are first needed.
+//! Pipelines of the schemes, compiled on first use.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -8,9 +8,10 @@ use wgpu::{
     VertexBufferLayout, VertexFormat, VertexStepMode, vertex_attr_array,
 };
 
-use crate::renderer::{PipelineBuild, Renderer, layout, storage, uniform};
+use crate::gpu::bindings::{STORAGE, UNIFORM, layout_for};
+use crate::renderer::{PipelineBuild, Pipelines, Renderer};
 
-/// Shader of a scheme. The short paths decode what is common, the wide ones everything.
+/// Shader of a scheme. The short paths decode common data, the wide ones all data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum SchemeShader {
     Plain,
@@ -33,7 +34,7 @@ pub(super) enum SchemeEntry {
     ByMatrix,
 }
 
-/// Pipeline of a shader: what it draws, and which faces.
+/// Settings of a pipeline of a scheme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct PipelineKey {
     pub shader: SchemeShader,
@@ -44,9 +45,9 @@ pub(super) struct PipelineKey {
     pub culls: bool,
 }
 
-/// Pipelines of compressed geometry, and the layouts of what they bind.
+/// Pipelines of compressed geometry, and the layouts of their bindings.
 #[derive(Debug)]
-pub(crate) struct SchemePipelines {
+pub(super) struct SchemePipelines {
     /// Uniforms, words, headers.
     pub layout: BindGroupLayout,
     pub matrix_layout: BindGroupLayout,
@@ -57,19 +58,14 @@ const DRAW: &str = include_str!("../shaders/draw.wgsl");
 const COMMON: &str = include_str!("shaders/compressed.wgsl");
 const BITS: &str = include_str!("shaders/bits.wgsl");
 
-impl Renderer {
-    /// Returns the pipelines of compressed geometry.
-    pub(crate) fn schemes(&self) -> &SchemePipelines {
-        self.schemes.get_or_init(|| {
-            let device = &self.gpu().device;
-            let vertex = ShaderStages::VERTEX;
-            let bindings = [(vertex, uniform()), (vertex, storage()), (vertex, storage())];
-            SchemePipelines {
-                layout: layout(device, &bindings),
-                matrix_layout: layout(device, &[(vertex, storage())]),
-                compiled: Mutex::default(),
-            }
-        })
+impl Pipelines for SchemePipelines {
+    fn compile(renderer: &Renderer) -> Self {
+        let layout = |types: &[_]| layout_for(renderer.gpu(), ShaderStages::VERTEX, types);
+        Self {
+            layout: layout(&[UNIFORM, STORAGE, STORAGE]),
+            matrix_layout: layout(&[STORAGE]),
+            compiled: Mutex::default(),
+        }
     }
 }
 
@@ -77,13 +73,13 @@ impl SchemePipelines {
     /// Returns a pipeline, after compiling it if it is the first of its kind.
     pub(super) fn get(&self, renderer: &Renderer, key: PipelineKey) -> Arc<RenderPipeline> {
         let mut compiled = self.compiled.lock().unwrap_or_else(PoisonError::into_inner);
-        let made = || Arc::new(self.compile(renderer, key));
+        let made = || Arc::new(self.build(renderer, key));
         compiled.entry(key).or_insert_with(made).clone()
     }
 
-    fn compile(&self, renderer: &Renderer, key: PipelineKey) -> RenderPipeline {
+    fn build(&self, renderer: &Renderer, key: PipelineKey) -> RenderPipeline {
         let PipelineKey { shader, entry, is_strips, culls } = key;
-        let module = renderer.shader("compressed", shader.source());
+        let module = renderer.shader("compressed", &shader.source());
         let layouts = [&renderer.draw_layout, &self.layout, &self.matrix_layout];
         let count = if entry == SchemeEntry::ByMatrix { 3 } else { 2 };
         let position = match shader {

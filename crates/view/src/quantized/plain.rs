@@ -5,8 +5,8 @@ use std::borrow::Cow;
 use glam::DVec3;
 use meshlod::Mesh;
 
+use super::data::{SchemeData, one_run};
 use super::pipelines::SchemeShader;
-use super::{SchemeData, one_run};
 use crate::mesh::middle;
 
 /// Returns the positions of a mesh relative to its middle.
@@ -21,7 +21,6 @@ pub(super) fn data(mesh: &Mesh) -> SchemeData<'static> {
         fetched: Some(Cow::Owned(bytemuck::cast_slice(&positions).to_vec())),
         storages: Default::default(),
         runs: one_run(mesh.faces.len()),
-        strips: None,
-        parts: None,
+        offsets: None,
     }
 }

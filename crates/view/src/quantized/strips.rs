@@ -13,7 +13,7 @@ pub(super) struct StripRun {
     pub indices: Range<u32>,
     /// Node that index 0 stands for.
     pub first_node: i32,
-    /// Run of parts that the shader finds its part in.
+    /// Run of parts in which the shader looks up its part.
     pub instance: u32,
 }
 

@@ -3,11 +3,14 @@
 use meshlod::codec::{CompressionTarget, Reconstruction, Scheme, compress};
 use meshlod::mesh::AttributeBounds;
 use meshlod::samples;
-use wgpu::{BufferDescriptor, ShaderStages};
+use wgpu::{BindGroupLayout, ComputePipeline, ShaderStages};
 
 use super::*;
-use crate::TargetFormat;
-use crate::renderer::{buffer_binding, layout, storage, uniform};
+use crate::gpu::bindings::{STORAGE, UNIFORM, WRITTEN, layout_for};
+use crate::gpu::buffers::blank_buffer;
+use crate::gpu::read::map;
+use crate::gpu::shaders::compute_pipeline;
+use crate::{Gpu, TargetFormat};
 
 /// Compute shader that writes the place of every vertex.
 const DECODE_ALL: &str = "
@@ -25,7 +28,7 @@ fn decode_all(@builtin(global_invocation_id) id: vec3u) {
 }
 ";
 
-/// Decodes all places. Of parts, `fetched` has the fetched word and the part of each vertex.
+/// Decodes all places. For parts, `fetched` has the fetched word and the part of each vertex.
 fn places(
     renderer: &Renderer,
     data: &SchemeData<'_>,
@@ -33,66 +36,59 @@ fn places(
     count: usize,
 ) -> Vec<[f32; 3]> {
     let gpu = renderer.gpu();
-    let device = &gpu.device;
-    let place = match data.shader {
-        SchemeShader::Parts => "placed(unpack4xU8(fetched[2u * id.x]), fetched[2u * id.x + 1u])",
-        _ => "decoded(id.x)",
-    };
-    let module =
-        renderer.shader("decode", data.shader.source() + &DECODE_ALL.replace("PLACE", place));
-    let stage = ShaderStages::COMPUTE;
-    let written = buffer_binding(wgpu::BufferBindingType::Storage { read_only: false });
-    let none = layout(device, &[]);
-    let scheme = layout(device, &[(stage, uniform()), (stage, storage()), (stage, storage())]);
-    let test = layout(device, &[(stage, written), (stage, storage())]);
-    let layouts = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: None,
-        bind_group_layouts: &[Some(&none), Some(&scheme), Some(&none), Some(&test)],
-        immediate_size: 0,
-    });
-    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: None,
-        layout: Some(&layouts),
-        module: &module,
-        entry_point: Some("decode_all"),
-        compilation_options: Default::default(),
-        cache: None,
-    });
-    let uniforms = SchemeUniforms { scale: data.scale.map(|x| x as f32), padding: 0 };
-    let uniforms = buffer_of(gpu, "scheme", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM);
-    let of = |bytes: &[u8]| storage_of(gpu, bytes, BufferUsages::empty());
-    let storages = data.storages.each_ref().map(|bytes| of(bytes));
-    let fetched = of(bytemuck::cast_slice(fetched));
-    let size = 12 * count as u64;
-    let buffer = |usage| {
-        device.create_buffer(&BufferDescriptor {
-            label: None,
-            size,
-            usage,
-            mapped_at_creation: false,
-        })
-    };
-    let out = buffer(BufferUsages::STORAGE | BufferUsages::COPY_SRC);
-    let read = buffer(BufferUsages::COPY_DST | BufferUsages::MAP_READ);
-    let bindings = [&uniforms, &storages[0], &storages[1]].map(Buffer::as_entire_binding);
-    let scheme = bind_group(device, &scheme, bindings);
-    let test = bind_group(device, &test, [&out, &fetched].map(Buffer::as_entire_binding));
-    let mut encoder = device.create_command_encoder(&Default::default());
+    let bound = TestBindings::new(gpu, data, fetched, count);
+    let pipeline = decode_pipeline(gpu, data.shader, &bound);
+    let size = bound.places.size();
+    let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
+    let read = blank_buffer(gpu, "read", size, usage);
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
     {
         let mut pass = encoder.begin_compute_pass(&Default::default());
         pass.set_pipeline(&pipeline);
-        pass.set_bind_group(1, &scheme, &[]);
-        pass.set_bind_group(3, &test, &[]);
-        pass.set_bind_group(0, &bind_group(device, &none, []), &[]);
-        pass.set_bind_group(2, &bind_group(device, &none, []), &[]);
+        for (at, group) in (0..).zip(&bound.groups) {
+            pass.set_bind_group(at, group, &[]);
+        }
         pass.dispatch_workgroups(count.div_ceil(64) as u32, 1, 1);
     }
-    encoder.copy_buffer_to_buffer(&out, 0, &read, 0, size);
+    encoder.copy_buffer_to_buffer(&bound.places, 0, &read, 0, size);
     gpu.queue.submit([encoder.finish()]);
-    read.map_async(wgpu::MapMode::Read, .., |done| done.unwrap());
-    gpu.wait().unwrap();
-    let bytes = read.get_mapped_range(..).unwrap();
-    bytemuck::pod_collect_to_vec(&bytes[..])
+    bytemuck::pod_collect_to_vec(&map(gpu, &read).unwrap())
+}
+
+/// Bindings of the decoding shader: groups 1 and 3 have those of the scheme and of the test.
+struct TestBindings {
+    layouts: [BindGroupLayout; 4],
+    groups: [BindGroup; 4],
+    places: Buffer,
+}
+
+impl TestBindings {
+    fn new(gpu: &Gpu, data: &SchemeData<'_>, fetched: &[[u32; 2]], count: usize) -> Self {
+        let layout = |types: &[_]| layout_for(gpu, ShaderStages::COMPUTE, types);
+        let scheme = layout(&[UNIFORM, STORAGE, STORAGE]);
+        let layouts = [layout(&[]), scheme, layout(&[]), layout(&[WRITTEN, STORAGE])];
+        let uniforms = SchemeUniforms { scale: data.scale.map(|x| x as f32), padding: 0 };
+        let uniforms = uniform_of(gpu, "scheme", &uniforms);
+        let of = |bytes: &[u8]| storage_of(gpu, bytes, BufferUsages::empty());
+        let [words, headers] = data.storages.each_ref().map(|bytes| of(bytes));
+        let fetched = of(bytemuck::cast_slice(fetched));
+        let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
+        let places = blank_buffer(gpu, "places", 12 * count as u64, usage);
+        let bound: [&[&Buffer]; 4] =
+            [&[], &[&uniforms, &words, &headers], &[], &[&places, &fetched]];
+        let groups = [0, 1, 2, 3].map(|at| bind_buffers(gpu, &layouts[at], bound[at]));
+        Self { layouts, groups, places }
+    }
+}
+
+/// Compiles the shader that writes the places of a scheme.
+fn decode_pipeline(gpu: &Gpu, shader: SchemeShader, bound: &TestBindings) -> ComputePipeline {
+    let place = match shader {
+        SchemeShader::Parts => "placed(unpack4xU8(fetched[2u * id.x]), fetched[2u * id.x + 1u])",
+        _ => "decoded(id.x)",
+    };
+    let source = shader.source() + &DECODE_ALL.replace("PLACE", place);
+    compute_pipeline(gpu, "decode", &source, "decode_all", &bound.layouts.each_ref())
 }
 
 /// Compares all places of a mesh, and returns the shader and the largest distance relative to the

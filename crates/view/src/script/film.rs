@@ -26,7 +26,7 @@ pub struct ScriptFilm {
     frame: u32,
 }
 
-/// Picture of a film, with its figures, which are what serde writes.
+/// Picture of a film, with its figures; serde writes only the figures.
 #[derive(Debug, Serialize)]
 pub struct ScriptFrame {
     /// Number of the frame, from 0.
@@ -38,15 +38,15 @@ pub struct ScriptFrame {
     pub faces: usize,
     /// Bytes that were sent to the GPU for this frame: changes of a cut.
     pub sent_bytes: u64,
-    /// Size of the cut in the index buffer, in bytes; 0 for what is no cut.
+    /// Size of the cut in the index buffer, in bytes; 0 without a cut.
     pub index_bytes: u64,
-    /// Time that the cut took to change, in milliseconds; 0 for what is no cut.
+    /// Time that the cut took to change, in milliseconds; 0 without a cut.
     pub cut_ms: f64,
     /// Time of uploading and drawing, until the GPU was done, in milliseconds.
     pub draw_ms: f64,
 }
 
-/// Error of a cut in pixels, for scripts that do not ask for any.
+/// Default error of a cut, in pixels.
 const PIXELS: f64 = 1.0;
 
 impl ScriptFilm {

@@ -3,10 +3,10 @@
 use meshlod::multires::Focus;
 use serde::Deserialize;
 
-use super::ScriptError;
+use super::error::ScriptError;
 
-/// Values of a script at a frame. One that is left out is between those of the keys around it that
-/// have it.
+/// Values of a script at a frame. A missing value is interpolated between the nearest keys with
+/// one.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Key {
@@ -106,8 +106,8 @@ impl Pose {
     }
 }
 
-/// Returns a value between the last key that has it and the next one, and that of the only one on
-/// either side; `None` if no key has it.
+/// Interpolates a value between the last key with one and the next; with keys on one side only,
+/// returns the nearest value; `None` if no key has one.
 fn interpolated(keys: &[Key], frame: f64, of: fn(&Key) -> Option<f64>) -> Option<f64> {
     let all = || keys.iter().filter_map(|key| Some((f64::from(key.frame), of(key)?)));
     let before = all().take_while(|(at, _)| *at <= frame).last();

@@ -1,7 +1,7 @@
 //! Scripts: films of a stage, drawn without a window.
 //!
-//! A script is JSON. Angles are in degrees, distances in those at which the model fills the picture;
-//! between its keys everything changes evenly:
+//! A script is JSON. Angles are in degrees, distances in those at which the model fills the
+//! picture; between its keys everything changes evenly:
 //!
 //! ```json
 //! {
@@ -16,18 +16,20 @@
 //!
 //! docs/scripts has more, and docs/notes/view.md describes every field.
 
+mod error;
 mod film;
 mod key;
 
 use meshlod::picture::UpAxis;
 use serde::Deserialize;
-use thiserror::Error;
 
+use self::error::MAX_FRAMES;
+pub use self::error::ScriptError;
 pub use self::film::{ScriptFilm, ScriptFrame};
 use self::key::{Key, Pose};
 use crate::stage::Display;
 
-/// Film of what is on a stage.
+/// Film of a stage.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Script {
@@ -48,46 +50,6 @@ pub struct Script {
     keys: Vec<Key>,
 }
 
-/// Reason why a script cannot be run.
-#[derive(Debug, Error)]
-pub enum ScriptError {
-    /// The text is not JSON of a script.
-    #[error("{0}")]
-    Json(#[from] serde_json::Error),
-    /// The script has no frames, or more than a film can have.
-    #[error("frames must be between 1 and {MAX_FRAMES}, not {0}")]
-    Frames(u32),
-    /// The first key is not at the first frame.
-    #[error("the first key must be at frame 0")]
-    NoStart,
-    /// A key is not after the one before, or beyond the last frame.
-    #[error("the frames of keys must ascend and be below {frames}; that of key {key} does not")]
-    Order {
-        /// Number of the key, from 0.
-        key: usize,
-        /// Number of frames.
-        frames: u32,
-    },
-    /// The size of the pictures is out of range.
-    #[error("sides of size must be between 1 and 16384 pixels, not {} x {}", .0[0], .0[1])]
-    Size([u32; 2]),
-    /// A number of a key is out of range.
-    #[error("key {key}: {name} must be {range}, not {value}")]
-    Range {
-        /// Number of the key, from 0.
-        key: usize,
-        /// Name of the field.
-        name: &'static str,
-        /// Range of the field, in words.
-        range: &'static str,
-        /// Value in the script.
-        value: f64,
-    },
-    /// The field of view is out of range.
-    #[error("fov must be between 5 and 120 degrees, not {0}")]
-    Fov(f64),
-}
-
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(rename_all = "lowercase")]
 enum Up {
@@ -95,9 +57,6 @@ enum Up {
     Y,
     Z,
 }
-
-/// Longest film: a quarter of an hour.
-const MAX_FRAMES: u32 = 27_000;
 
 fn default_size() -> [u32; 2] {
     [960, 540]
@@ -149,8 +108,7 @@ impl Script {
         self.display.unwrap_or(Display { is_dark: false, ..Display::default() })
     }
 
-    /// Returns the pose of a frame: between the keys around it, each value by its own last and next
-    /// key that has it.
+    /// Returns the pose of a frame, each value interpolated between the nearest keys with one.
     fn pose(&self, frame: u32) -> Pose {
         Pose::between(&self.keys, f64::from(frame))
     }

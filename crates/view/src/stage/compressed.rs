@@ -6,7 +6,8 @@ use wgpu::RenderPass;
 
 use crate::{GpuCompressed, Placement, Renderer, ViewError};
 
-/// Compressed mesh on the GPU: its positions are never decoded, except by the shader that draws them.
+/// Compressed mesh on the GPU: its positions are never decoded, except by the shader that draws
+/// them.
 #[derive(Debug)]
 pub struct CompressedSubject {
     mesh: GpuCompressed,

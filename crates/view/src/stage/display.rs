@@ -1,4 +1,4 @@
-//! How everything on a stage is shown.
+//! Display of a stage: shading, colours, background.
 
 use meshlod::picture::{BackFaces, Background, Lighting, Wireframe};
 use serde::{Deserialize, Serialize};
@@ -20,7 +20,7 @@ pub struct Display {
     pub back_faces: bool,
     /// Draw a soft shadow on the ground.
     pub ground: bool,
-    /// Dark background in place of the light one of pictures.
+    /// Use a dark background in place of the light one of pictures.
     pub is_dark: bool,
 }
 
@@ -83,7 +83,7 @@ impl Coloring {
         }
     }
 
-    /// Returns true if each face has a colour of its own.
+    /// Returns true if each face has its own colour.
     pub(crate) fn is_by_face(self) -> bool {
         self.is_by_mesh_face() || self == Self::Parts
     }

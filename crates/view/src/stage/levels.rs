@@ -1,4 +1,4 @@
-//! Levels of detail on a stage: a cut that follows what is asked of it.
+//! Levels of detail on a stage: a cut that follows queries.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -15,15 +15,15 @@ use crate::{
 
 /// Levels of a multiresolution model on the GPU, and the cut of them that is shown.
 ///
-/// The cut changes on a thread of its own: ask for a cut with [`LevelsSubject::ask`], and take what is
-/// ready with [`LevelsSubject::poll`] before every frame.
+/// The cut changes on its own thread: ask for a cut with [`LevelsSubject::ask`], and take the steps
+/// that are ready with [`LevelsSubject::poll`] before every frame.
 #[derive(Debug)]
 pub struct LevelsSubject {
     model: Arc<CutModel>,
     cut: GpuCut,
     follower: CutFollower,
     motion: Option<Duration>,
-    /// Follower that takes over with its first step, since vertices are to move otherwise.
+    /// Follower with another motion, which takes over with its first step.
     next: Option<CutFollower>,
     query: CutQuery,
     /// How the cut changes on the screen, if vertices do not move.
@@ -40,10 +40,10 @@ pub struct LevelsSubject {
 /// Duration of a dithered transition, in seconds.
 const FADE_S: f32 = 0.25;
 
-/// Splits and merges in one step, about 1.5 MB of uploads: what a frame can take.
+/// Splits and merges in one step, about 1.5 MB of uploads: as much as a frame can take.
 const CHANGES: usize = 20_000;
 
-/// Faces that are shown before anything is asked for.
+/// Faces shown before the first query.
 const FIRST_FACES: usize = 50_000;
 
 fn start(model: &Arc<CutModel>, motion: Option<Duration>) -> CutFollower {
@@ -77,11 +77,11 @@ impl LevelsSubject {
         Ok(this)
     }
 
-    /// Sets the time in which vertices move to where the cut takes them; with `None` the cut changes
-    /// as [`transition`](Self::transition) says. Height fields have no such motion.
+    /// Sets the time in which vertices move to their new positions; with `None` the cut changes as
+    /// [`transition`](Self::transition) says. Height fields have no such motion.
     ///
-    /// Another follower starts, and takes over when it has reached the query; until then the cut that
-    /// is shown follows as before.
+    /// Another follower starts, and takes over when it has reached the query; until then the cut
+    /// that is shown follows as before.
     pub fn set_motion(&mut self, motion: Option<Duration>) {
         if motion == self.motion {
             return;
@@ -101,8 +101,9 @@ impl LevelsSubject {
         self.follower.ask(query);
     }
 
-    /// Takes the next step towards the cut that was asked for, if it is ready, and returns whether
-    /// the picture changes. While old triangles dissolve into new ones, the next step waits.
+    /// Takes the next step towards the answer to the last query, if it is ready, and returns
+    /// whether the picture changes. While old triangles dissolve into new ones, the next step
+    /// waits.
     ///
     /// `seconds` is the time since the last call.
     ///
@@ -137,7 +138,7 @@ impl LevelsSubject {
         }
     }
 
-    /// Waits until the cut is the one that was asked for, and shows it at once.
+    /// Waits until the cut answers the last query, and shows it at once.
     ///
     /// # Errors
     /// As [`LevelsSubject::poll`].
@@ -150,7 +151,7 @@ impl LevelsSubject {
         Ok(())
     }
 
-    /// Waits for the cut that was asked for, until every vertex is where it is to be.
+    /// Waits until the cut answers the last query and every vertex has arrived.
     fn settle(&mut self) -> Result<(), CutError> {
         loop {
             while let Some(step) = self.follower.wait() {
@@ -163,7 +164,7 @@ impl LevelsSubject {
         }
     }
 
-    /// Goes on with another follower, given its first step. Vertices are brought home before.
+    /// Goes on with another follower, given its first step, after all vertices have arrived.
     fn take_over(&mut self, first: Result<CutStep, CutError>) -> Result<(), CutError> {
         let Some(next) = self.next.take() else { return Ok(()) };
         let first = first?;
@@ -184,7 +185,7 @@ impl LevelsSubject {
         self.last = CutStep { patches: Vec::new(), moved: Vec::new(), ..step };
     }
 
-    /// Returns true while the cut is on the way to the one that was asked for.
+    /// Returns true while the cut is on the way to the answer to the last query.
     pub fn is_changing(&self) -> bool {
         self.follower.is_waiting()
             || self.cut.is_fading()
@@ -197,7 +198,7 @@ impl LevelsSubject {
         &self.last
     }
 
-    /// Returns the bytes that have been sent to the GPU since this was last asked.
+    /// Returns the bytes sent to the GPU since the last call.
     pub fn take_uploaded(&mut self) -> u64 {
         self.cut.take_uploaded()
     }
@@ -226,8 +227,8 @@ impl LevelsSubject {
         self.cut.draw_fade(renderer, pass, [&self.fading[0], &self.fading[1]]);
     }
 
-    /// Sets what dissolves as the placement of the whole is set by `set`, with the share of its
-    /// pixels that is shown.
+    /// Calls `set` for the placements of dissolving triangles, with the share of their pixels that
+    /// is shown.
     pub(super) fn place_fade(&self, set: impl Fn(&Placement, f32)) {
         let t = (self.fade_s / FADE_S).clamp(0.0, 1.0);
         set(&self.fading[0], t - 1.0);

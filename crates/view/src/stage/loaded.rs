@@ -17,7 +17,7 @@ use thiserror::Error;
 
 use crate::CutModel;
 
-/// File in memory, ready to be shown: a mesh with its appearance, and what the file holds beside it.
+/// File in memory, ready to be shown: a mesh, its appearance, and the other contents of the file.
 #[derive(Clone, Debug)]
 pub struct Loaded {
     /// Path of the file.
@@ -39,11 +39,11 @@ pub struct Loaded {
     pub content: LoadedContent,
     /// Time that reading and decoding took.
     pub time: Duration,
-    /// Lines about what the file refers to and could not be read.
+    /// Warnings, such as those about images that could not be read.
     pub warnings: Vec<String>,
 }
 
-/// Contents of a file, beside its surface.
+/// Contents of a file, apart from its surface.
 #[derive(Clone, Debug)]
 pub enum LoadedContent {
     /// A mesh file.

@@ -1,5 +1,5 @@
-//! Model of the viewer, without a window: what is loaded, what is on the GPU, how it is shown and
-//! from where. Scripts without a window use it as the viewer does.
+//! Model of the viewer, without a window: loaded files, subjects on the GPU, their display and the
+//! camera. Scripts without a window use it as the viewer does.
 //!
 //! A file is [`Loaded`] on any thread and uploaded as a [`Subject`] on any thread; a [`Stage`]
 //! shows subjects in slots side by side, all seen by one [`CameraRig`] and in one [`Display`].

@@ -1,4 +1,4 @@
-//! Colours that tell neighbours apart.
+//! Distinct colours for numbered things.
 
 /// Returns the sRGB colour of a number: neighbours in number differ clearly in hue.
 pub(crate) fn color_of(number: u32) -> [u8; 3] {

@@ -58,8 +58,8 @@ struct Flight {
 const FLIGHT_SECONDS: f64 = 0.35;
 /// Part of the picture's width or height that a framed object fills.
 const FILL: f64 = 0.8;
-/// Range of distances relative to the size of what was last framed would be a trap for flights far
-/// away, so only what `f64` can square is refused.
+/// Distances whose squares fit in `f64`. A range relative to the last framed object would trap
+/// flights far away.
 const DISTANCES: [f64; 2] = [1e-120, 1e120];
 
 impl Default for CameraRig {

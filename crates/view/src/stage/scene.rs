@@ -7,7 +7,7 @@ use wgpu::RenderPass;
 use super::{CameraRig, Display, Subject};
 use crate::{Backdrop, Ground, Placement, Renderer, Shade, ViewError};
 
-/// Subjects on the GPU, which of them are shown side by side, how, and from where.
+/// Subjects on the GPU, with the slots, the display and the camera that show them.
 #[derive(Debug, Default)]
 pub struct Stage {
     /// Camera, the same in all slots.
@@ -40,7 +40,7 @@ impl Stage {
         SubjectId(self.subjects.len() - 1)
     }
 
-    /// Puts another subject in the place of one.
+    /// Replaces a subject by another.
     pub fn replace(&mut self, id: SubjectId, subject: Subject) {
         self.subjects[id.0] = Some(subject);
         self.grounds[id.0] = None;
@@ -73,12 +73,12 @@ impl Stage {
         self.slots.iter().map(|slot| slot.subject)
     }
 
-    /// Returns the number of faces of everything that is shown.
+    /// Returns the number of faces of all shown subjects.
     pub fn faces(&self) -> usize {
         self.shown().filter_map(|id| self.subject(id)).map(Subject::faces).sum()
     }
 
-    /// Returns the box around everything that is shown.
+    /// Returns the box around all shown subjects.
     pub fn bounds(&self) -> Bounds {
         let mut bounds = Bounds::EMPTY;
         for subject in self.shown().filter_map(|id| self.subject(id)) {
@@ -104,7 +104,7 @@ impl Stage {
         project(&self.rig.camera(), point, slot_size)
     }
 
-    /// Draws what is shown from above, once, for its shadow on the ground. Call it before
+    /// Draws each shown subject from above, once, for its shadow on the ground. Call it before
     /// [`Stage::draw`]; a stage without ground needs no preparation.
     ///
     /// # Errors

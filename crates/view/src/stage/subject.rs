@@ -14,7 +14,7 @@ use super::palette::color_of;
 use super::{Coloring, CompressedSubject, Display, LevelsSubject, Loaded, LoadedContent};
 use crate::{GpuMesh, Placement, Renderer, ViewError};
 
-/// Thing on the GPU that a stage shows; a clone shares what is on the GPU.
+/// Thing on the GPU that a stage shows.
 #[derive(Debug)]
 pub enum Subject {
     /// A mesh of one level.
@@ -25,7 +25,7 @@ pub enum Subject {
     Compressed(Box<CompressedSubject>),
 }
 
-/// Mesh on the GPU, with what its colourings need.
+/// Mesh on the GPU, with the data of its colourings; a clone shares the buffers.
 #[derive(Clone, Debug)]
 pub struct MeshSubject {
     mesh: GpuMesh,
@@ -61,7 +61,7 @@ impl Subject {
         })
     }
 
-    /// Returns the mesh; `None` for what is no mesh of one level.
+    /// Returns the mesh of one level; `None` for other subjects.
     pub fn as_mesh(&self) -> Option<&MeshSubject> {
         if let Self::Mesh(mesh) = self { Some(mesh) } else { None }
     }
@@ -134,15 +134,15 @@ impl Subject {
         }
     }
 
-    /// Returns the display in which the subject is drawn: the one wanted, with the colours of the
-    /// file where it lacks others.
+    /// Returns the display in which the subject is drawn: `wanted`, with the colours of the file if
+    /// the subject lacks those of `wanted`.
     pub fn display(&self, wanted: &Display) -> Display {
         let coloring = if self.has(wanted.coloring) { wanted.coloring } else { Coloring::Own };
         Display { coloring, ..*wanted }
     }
 
-    /// Sets the placements of what dissolves in the subject, by a way to set one with a share of
-    /// its pixels.
+    /// Calls `set` for the placements of dissolving triangles, with the share of their pixels that
+    /// is shown.
     pub(super) fn place_fade(&self, set: impl Fn(&Placement, f32)) {
         if let Self::Levels(levels) = self {
             levels.place_fade(set);
@@ -194,9 +194,9 @@ impl MeshSubject {
         })
     }
 
-    /// Uploads distances of the vertices of a mesh from another, to be shown by
-    /// [`Coloring::Heat`]; `most` is the distance of the darkest colour. `mesh` must be the one that
-    /// the subject was made of.
+    /// Uploads distances of the vertices of a mesh from another, to be shown by [`Coloring::Heat`];
+    /// `most` is the distance of the darkest colour. `mesh` must be the one that the subject was
+    /// made of.
     ///
     /// # Errors
     /// Distances that do not match the mesh, or a mesh beyond the limits of the GPU.

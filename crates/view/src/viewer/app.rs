@@ -1,61 +1,25 @@
-//! The window: its state, and the order of a frame.
+//! The window: the order of a frame, screenshots, and closing.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use eframe::egui_wgpu::RenderState;
-use meshlod::picture::UpAxis;
-
-use super::document::{Document, DocumentId};
 use super::gpu_guard::GpuGuard;
-use super::jobs::{JobKind, Jobs};
-use super::picture_pane::{PaneRenderers, PicturePane};
-use super::settings::Settings;
-use super::timing::FrameTimes;
-use super::work::{EarlyLoad, News};
-use super::{ViewerOptions, ViewerReport, panels, theme, work};
-use crate::stage::{Coloring, Loaded, Stage, Subject, SubjectId};
-use crate::{Gpu, Renderer, ViewError};
+use super::jobs::JobKind;
+use super::load::{self, EarlyLoad};
+use super::state::ViewerState;
+use super::{ViewerOptions, ViewerReport, panels, theme};
+use crate::stage::Subject;
+use crate::{Gpu, ViewError};
 
 /// Time between frames that show progress.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(60);
 
-/// Everything that the window shows and does.
+/// The window with its state.
 pub(crate) struct ViewerApp {
-    pub options: ViewerOptions,
-    pub state: RenderState,
-    pub renderers: Arc<PaneRenderers>,
-    pub guard: GpuGuard,
-    pub stage: Stage,
-    pub pane: PicturePane,
-    pub jobs: Jobs<News>,
-    pub documents: Vec<Document>,
-    /// Index of the document that panels are about.
-    pub active: usize,
-    pub settings: Settings,
-    pub times: FrameTimes,
-    pub has_help: bool,
-    /// Speed of a flight, in diagonals per second; `None` while the camera orbits.
-    pub flight: Option<f64>,
-    /// Number of changes of subjects, which a picture depends on.
-    pub changes: u64,
-    /// Lines that the status bar shows, the last one first to go.
-    pub notices: Vec<Notice>,
-    /// Size of the picture in pixels.
-    pub size: [u32; 2],
-    pub problems: Vec<String>,
-    pub load_ms: Option<f64>,
-    /// Subjects whose normals are to be refined once they are on the screen.
-    pub rough: Vec<(SubjectId, Arc<Loaded>)>,
-    /// Colours that jobs were started for: one that was refused or cancelled is not tried again
-    /// until other colours were chosen.
-    pub tried: Vec<(SubjectId, Coloring)>,
-    /// True once a frame has drawn a subject.
-    pub has_drawn: bool,
-    next_document: usize,
+    state: ViewerState,
+    guard: GpuGuard,
     report: Arc<Mutex<ViewerReport>>,
-    open: Arc<Mutex<Vec<PathBuf>>>,
     last_frame: Instant,
     /// Time between the last two frames, a tenth of a second at most.
     last_seconds: f32,
@@ -63,15 +27,7 @@ pub(crate) struct ViewerApp {
     close_at: Option<Instant>,
 }
 
-/// Line in the status bar.
-#[derive(Clone, Debug)]
-pub(crate) struct Notice {
-    pub text: String,
-    pub is_problem: bool,
-    pub until: Instant,
-}
-
-/// State of the picture that was asked for at the start.
+/// State of the screenshot of the options.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Shot {
     Waiting,
@@ -80,7 +36,7 @@ enum Shot {
 }
 
 impl ViewerApp {
-    /// Takes over a window that has just opened.
+    /// Takes over a window that has just opened; `open` lists the open files from now on.
     pub fn new(
         context: &eframe::CreationContext<'_>,
         options: ViewerOptions,
@@ -88,102 +44,37 @@ impl ViewerApp {
         report: Arc<Mutex<ViewerReport>>,
         open: Arc<Mutex<Vec<PathBuf>>>,
     ) -> Result<Self, ViewError> {
-        let state = context.wgpu_render_state.clone().ok_or(ViewError::NoGpu)?;
-        let gpu = Gpu::new(&state.adapter, state.device.clone(), state.queue.clone());
+        let render_state = context.wgpu_render_state.clone().ok_or(ViewError::NoGpu)?;
+        let (device, queue) = (render_state.device.clone(), render_state.queue.clone());
+        let gpu = Gpu::new(&render_state.adapter, device, queue);
         let guard = GpuGuard::of(&gpu, &context.egui_ctx);
-        let renderers = Arc::new(PaneRenderers::new(&gpu));
         theme::apply(&context.egui_ctx);
-        let settings = Settings::read(context.storage);
-        let mut stage = Stage::default();
-        stage.display = settings.display;
-        stage.rig.set_up(if settings.is_z_up { UpAxis::Z } else { UpAxis::Y });
-        stage.rig.set_fov_rad(settings.fov_deg.to_radians());
         let mut this = Self {
-            jobs: Jobs::new(&context.egui_ctx),
-            times: FrameTimes::new(options.started),
-            options,
-            state,
+            state: ViewerState::new(context, render_state, &gpu, options, open),
             guard,
-            stage,
-            pane: PicturePane::default(),
-            documents: Vec::new(),
-            active: 0,
-            settings,
-            has_help: false,
-            flight: None,
-            changes: 0,
-            notices: Vec::new(),
-            size: [0; 2],
-            problems: Vec::new(),
-            load_ms: None,
-            rough: Vec::new(),
-            tried: Vec::new(),
-            has_drawn: false,
-            next_document: 0,
             report,
-            open,
             last_frame: Instant::now(),
             last_seconds: 0.0,
             shot: Shot::Waiting,
             close_at: None,
-            renderers,
         };
         this.warm_up();
         for early in early {
-            let (name, renderer) = (early.path.display().to_string(), this.renderer());
+            let (name, renderer) = (early.path.display().to_string(), this.state.renderer());
             let work = move |watch: &_| early.upload(&renderer, watch);
-            this.jobs.start(JobKind::Open, format!("Opening {name}"), work);
+            this.state.jobs.start(JobKind::Open, format!("Opening {name}"), work);
         }
         Ok(this)
     }
 
-    /// Compiles the pipelines beside everything else.
+    /// Compiles the pipelines in the background.
     fn warm_up(&self) {
-        let renderers = Arc::clone(&self.renderers);
+        let renderers = Arc::clone(&self.state.renderers);
         std::thread::spawn(move || {
             // A software GPU compiles shaders when they first draw. Without it, the first picture
             // takes longer and nothing else happens.
-            let _ = work::warm_up(&renderers.draft).and_then(|()| work::warm_up(&renderers.full));
+            let _ = load::warm_up(&renderers.draft).and_then(|()| load::warm_up(&renderers.full));
         });
-    }
-
-    /// Returns the renderer that uploads and draws.
-    pub fn renderer(&self) -> Arc<Renderer> {
-        Arc::clone(&self.renderers.full)
-    }
-
-    pub fn next_document_id(&mut self) -> DocumentId {
-        self.next_document += 1;
-        DocumentId(self.next_document)
-    }
-
-    /// Returns the document that panels are about.
-    pub fn document(&self) -> Option<&Document> {
-        self.documents.get(self.active)
-    }
-
-    /// Shows a line for a few seconds.
-    pub fn notify(&mut self, text: impl Into<String>) {
-        let until = Instant::now() + Duration::from_secs(5);
-        self.notices.push(Notice { text: text.into(), is_problem: false, until });
-    }
-
-    /// Shows a line about what went wrong, and keeps it for the report.
-    pub fn complain(&mut self, text: impl Into<String>) {
-        let (text, until) = (text.into(), Instant::now() + Duration::from_secs(12));
-        // Some come with every frame.
-        if self.problems.contains(&text) {
-            return;
-        }
-        self.problems.push(text.clone());
-        self.notices.push(Notice { text, is_problem: true, until });
-    }
-
-    /// Notes which files are open, for the case that the window must be opened again.
-    pub fn note_open_files(&self) {
-        if let Ok(mut open) = self.open.lock() {
-            *open = self.documents.iter().map(|document| document.loaded.path.clone()).collect();
-        }
     }
 
     /// Ends flights and the window when their time has come. Returns the time to the next frame, if
@@ -193,71 +84,84 @@ impl ViewerApp {
         self.last_frame = Instant::now();
         self.last_seconds = seconds as f32;
         let mut next = None;
-        if self.stage.rig.advance(seconds) || self.fly(ctx, seconds) {
+        if self.state.stage.rig.advance(seconds) || self.state.fly(ctx, seconds) {
             next = Some(Duration::ZERO);
         }
-        self.notices.retain(|notice| notice.until > Instant::now());
-        if self.jobs.running().next().is_some() {
+        self.state.notices.retain(|notice| notice.until > Instant::now());
+        if self.state.jobs.running().next().is_some() {
             // Progress moves; more often would take time from the work.
             next = next.or(Some(PROGRESS_INTERVAL));
-        } else if !self.notices.is_empty() {
+        } else if !self.state.notices.is_empty() {
             next = next.or(Some(Duration::from_millis(500)));
         }
         next
     }
 
-    /// Returns true if the picture shows everything as it should: with final normals, and the cut
-    /// that was asked for.
+    /// Returns true if the picture is final: with refined normals and a cut that satisfies its
+    /// query.
     fn is_settled(&self) -> bool {
-        let is_busy = self.jobs.has(JobKind::Refine) || !self.rough.is_empty();
+        let is_busy = self.state.jobs.has(JobKind::Refine) || !self.state.rough.is_empty();
         let is_changing = self
+            .state
             .stage
             .shown()
-            .filter_map(|id| self.stage.subject(id))
+            .filter_map(|id| self.state.stage.subject(id))
             .any(|subject| matches!(subject, Subject::Levels(levels) if levels.is_changing()));
-        !is_busy && !is_changing && self.pane.is_final(self.changes)
+        !is_busy && !is_changing && self.state.pane.is_final(self.state.changes)
     }
 
-    /// Writes the picture that was asked for, and closes the window when it is time.
+    /// Takes the screenshot and closes the window, each when it is time.
     fn keep_schedule(&mut self, ctx: &egui::Context) {
-        let is_loading = self.jobs.has(JobKind::Open);
-        let is_shown = self.times.first_picture_ms.is_some() || self.documents.is_empty();
+        let is_loading = self.state.jobs.has(JobKind::Open);
+        let is_shown =
+            self.state.times.first_picture_ms.is_some() || self.state.documents.is_empty();
         if is_loading || !is_shown {
             return;
         }
-        if let Some(path) = self.options.screenshot.clone() {
-            match self.shot {
-                Shot::Waiting if self.documents.is_empty() => self.shot = Shot::Writing,
-                Shot::Waiting if self.is_settled() => {
-                    self.save_picture(path);
-                    self.shot = Shot::Writing;
-                }
-                Shot::Waiting => ctx.request_repaint_after(PROGRESS_INTERVAL),
-                Shot::Writing if !self.jobs.has(JobKind::Save) => {
-                    self.shot = Shot::Done;
-                    if self.options.seconds.is_none() {
-                        ctx.send_viewport_cmd(egui::ViewportCommand::Close);
-                    }
-                }
-                _ => {}
-            }
+        if let Some(path) = self.state.options.screenshot.clone() {
+            self.take_shot(path, ctx);
         }
-        if let Some(seconds) = self.options.seconds {
-            let wait = Duration::from_secs_f64(seconds.clamp(0.0, 1e6));
-            let end = *self.close_at.get_or_insert(Instant::now() + wait);
-            match end.checked_duration_since(Instant::now()) {
-                Some(rest) => ctx.request_repaint_after(rest),
-                None if self.shot != Shot::Writing => {
+        if let Some(seconds) = self.state.options.seconds {
+            self.close_after(seconds, ctx);
+        }
+    }
+
+    /// Writes the screenshot once the picture is final, and closes the window after that.
+    fn take_shot(&mut self, path: PathBuf, ctx: &egui::Context) {
+        match self.shot {
+            Shot::Waiting if self.state.documents.is_empty() => self.shot = Shot::Writing,
+            Shot::Waiting if self.is_settled() => {
+                self.state.save_picture(path);
+                self.shot = Shot::Writing;
+            }
+            Shot::Waiting => ctx.request_repaint_after(PROGRESS_INTERVAL),
+            Shot::Writing if !self.state.jobs.has(JobKind::Save) => {
+                self.shot = Shot::Done;
+                if self.state.options.seconds.is_none() {
                     ctx.send_viewport_cmd(egui::ViewportCommand::Close);
                 }
-                None => {}
             }
+            _ => {}
+        }
+    }
+
+    /// Closes the window a number of seconds after the first call, but not while the screenshot is
+    /// being written.
+    fn close_after(&mut self, seconds: f64, ctx: &egui::Context) {
+        let wait = Duration::from_secs_f64(seconds.clamp(0.0, 1e6));
+        let end = *self.close_at.get_or_insert(Instant::now() + wait);
+        match end.checked_duration_since(Instant::now()) {
+            Some(rest) => ctx.request_repaint_after(rest),
+            None if self.shot != Shot::Writing => {
+                ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+            }
+            None => {}
         }
     }
 
     fn watch_gpu(&mut self, ctx: &egui::Context) {
         for error in self.guard.take_errors() {
-            self.complain(format!("GPU: {error}"));
+            self.state.complain(format!("GPU: {error}"));
         }
         if self.guard.is_lost() {
             if let Ok(mut report) = self.report.lock() {
@@ -269,23 +173,25 @@ impl ViewerApp {
 
     fn write_report(&self) {
         let Ok(mut report) = self.report.lock() else { return };
-        let shown: Vec<_> = self.stage.shown().filter_map(|id| self.stage.subject(id)).collect();
-        let [median_frame_ms, longest_frame_ms] = self.times.summary();
-        let [median_loading_frame_ms, longest_loading_frame_ms] = self.times.loading_summary();
+        let shown: Vec<_> =
+            self.state.stage.shown().filter_map(|id| self.state.stage.subject(id)).collect();
+        let [median_frame_ms, longest_frame_ms] = self.state.times.summary();
+        let [median_loading_frame_ms, longest_loading_frame_ms] =
+            self.state.times.loading_summary();
         *report = ViewerReport {
-            gpu: self.renderers.full.gpu().name().to_owned(),
+            gpu: self.state.renderers.full.gpu().name().to_owned(),
             faces: shown.iter().map(|subject| subject.faces()).sum(),
             vertices: shown.iter().map(|subject| subject.vertices()).sum(),
             gpu_bytes: shown.iter().map(|subject| subject.bytes()).sum(),
-            frames: self.times.frames(),
+            frames: self.state.times.frames(),
             median_frame_ms,
             longest_frame_ms,
             median_loading_frame_ms,
             longest_loading_frame_ms,
-            load_ms: self.load_ms,
-            first_frame_ms: self.times.first_frame_ms,
-            first_picture_ms: self.times.first_picture_ms,
-            problems: self.problems.clone(),
+            load_ms: self.state.load_ms,
+            first_frame_ms: self.state.times.first_frame_ms,
+            first_picture_ms: self.state.times.first_picture_ms,
+            problems: self.state.problems.clone(),
             gpu_was_lost: report.gpu_was_lost,
         };
     }
@@ -294,39 +200,41 @@ impl ViewerApp {
 impl eframe::App for ViewerApp {
     fn logic(&mut self, ctx: &egui::Context, _: &mut eframe::Frame) {
         self.watch_gpu(ctx);
-        if self.times.first_picture_ms.is_some() {
-            self.refine_normals();
+        if self.state.times.first_picture_ms.is_some() {
+            self.state.refine_normals();
         }
-        self.take_news();
+        self.state.take_news();
         self.keep_schedule(ctx);
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
-        self.times.begin(self.jobs.has(JobKind::Open));
+        self.state.times.begin(self.state.jobs.has(JobKind::Open));
         let ctx = ui.ctx().clone();
-        self.take_dropped_files(&ctx);
-        self.take_keys(&ctx);
+        self.state.take_dropped_files(&ctx);
+        self.state.take_keys(&ctx);
         let next = self.advance(&ctx);
-        panels::show(self, ui);
-        self.show_center(ui);
-        panels::help::show(self, &ctx);
-        self.follow_cuts(self.last_seconds);
-        self.ensure_colors();
+        for action in panels::show(&mut self.state, ui) {
+            self.state.act(action, &ctx);
+        }
+        self.state.show_center(ui);
+        panels::help::show(&mut self.state, &ctx);
+        self.state.follow_cuts(self.last_seconds);
+        self.state.ensure_colors();
         if let Some(wait) = next {
             ctx.request_repaint_after(wait);
         }
         if next.is_none_or(|wait| wait > PROGRESS_INTERVAL) {
-            self.times.rest();
+            self.state.times.rest();
         }
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        self.settings.display = self.stage.display;
-        self.settings.write(storage);
+        self.state.settings.display = self.state.stage.display;
+        self.state.settings.write(storage);
     }
 
     fn on_exit(&mut self) {
-        self.note_open_files();
+        self.state.note_open_files();
         self.write_report();
     }
 }

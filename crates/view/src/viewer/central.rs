@@ -2,10 +2,10 @@
 
 use egui::{Align2, Color32, FontId, PointerButton, Rect, Response, Sense, Ui, Vec2, pos2};
 
-use super::app::ViewerApp;
 use super::document::ShownSide;
 use super::input::{DragAction, drag_action, flight};
 use super::overlay::{self, SlotView};
+use super::state::ViewerState;
 use super::theme;
 
 /// Radians of turn per point of a drag: once across a window turns around.
@@ -17,8 +17,8 @@ pub(crate) const DRAG_ZOOM_PER_POINT: f64 = 0.008;
 /// Radians per point that the pointer moves in a flight.
 const LOOK_PER_POINT: f64 = 0.003;
 
-impl ViewerApp {
-    /// Shows the picture in what panels have left.
+impl ViewerState {
+    /// Shows the picture in the space between the panels.
     pub fn show_center(&mut self, ui: &mut Ui) {
         egui::CentralPanel::no_frame().show(ui, |ui| {
             let rect = ui.available_rect_before_wrap();
@@ -38,8 +38,13 @@ impl ViewerApp {
     fn show_picture(&mut self, ui: &Ui, rect: Rect) {
         let limit = self.renderers.full.gpu().device.limits().max_texture_dimension_2d;
         let size = self.size.map(|side| side.min(limit));
-        let drawn =
-            self.pane.draw(&mut self.stage, &self.renderers, &self.state, size, self.changes);
+        let drawn = self.pane.draw(
+            &mut self.stage,
+            &self.renderers,
+            &self.render_state,
+            size,
+            self.changes,
+        );
         if self.pane.is_draft() {
             ui.ctx().request_repaint();
         }

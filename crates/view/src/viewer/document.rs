@@ -1,4 +1,4 @@
-//! Open files: what belongs to one of them.
+//! An open file, with its level, its findings and its query.
 
 use std::sync::Arc;
 
@@ -61,7 +61,7 @@ pub(crate) struct LevelOrder {
     pub pixels: f64,
 }
 
-/// Simplified level with what its report says.
+/// Simplified level with the figures of its report.
 #[derive(Debug)]
 pub(crate) struct DocumentLevel {
     pub loaded: Arc<Loaded>,
@@ -108,11 +108,11 @@ pub(crate) struct CutControl {
     pub radius: f64,
     /// Camera of the query, if it does not follow the view.
     pub frozen: Option<Camera>,
-    /// Vertices move to where the cut takes them.
+    /// Vertices move smoothly to their new positions.
     pub moves: bool,
     /// Old triangles dissolve into new ones, if vertices do not move.
     pub dissolves: bool,
-    /// Query that was asked for last.
+    /// The last query sent to the cut.
     pub asked: Option<CutWish>,
 }
 
@@ -185,7 +185,7 @@ impl Document {
         }
     }
 
-    /// Returns true if there is something to show beside the original.
+    /// Returns true if there is a level to compare with the original.
     pub fn has_sides(&self) -> bool {
         self.level.is_some()
     }

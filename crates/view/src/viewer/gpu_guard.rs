@@ -1,4 +1,4 @@
-//! Complaints of the GPU, kept for the frame to look at.
+//! Errors of the GPU, kept for the next frame.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};

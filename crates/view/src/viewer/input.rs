@@ -4,7 +4,7 @@ use egui::{Key, Modifiers, PointerButton};
 
 use crate::stage::Side;
 
-/// Wish of a key.
+/// Command of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Command {
     Look(Side),
@@ -40,7 +40,7 @@ pub(crate) enum DragAction {
     Zoom,
 }
 
-/// Key with what it does; also a line of the help.
+/// Key and its command; also a line of the help.
 pub(crate) struct Binding {
     pub key: Key,
     pub modifiers: Modifiers,
@@ -127,7 +127,7 @@ pub(crate) fn command_of(key: Key, modifiers: Modifiers) -> Option<Command> {
     BINDINGS.iter().find(is_pressed).map(|binding| binding.command)
 }
 
-/// Returns what a drag with a button does.
+/// Returns the effect of a drag with a button.
 pub(crate) fn drag_action(button: PointerButton, modifiers: Modifiers) -> Option<DragAction> {
     match button {
         PointerButton::Primary | PointerButton::Middle if modifiers.shift => Some(DragAction::Pan),

@@ -1,11 +1,12 @@
-//! Work beside the frame: threads with progress that can be cancelled, whose news arrive as messages.
+//! Background jobs: threads that report progress, can be cancelled, and send their news as
+//! messages.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-/// Jobs that run, and the way their news come back.
+/// Running jobs, and the channel of their news.
 #[derive(Debug)]
 pub(crate) struct Jobs<N> {
     sender: Sender<(JobId, Outcome<N>)>,
@@ -42,7 +43,7 @@ pub(crate) enum JobKind {
     Save,
 }
 
-/// Progress of a job and the wish to end it, shared with its thread.
+/// Progress and cancellation of a job, shared with its thread.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Watch(Arc<JobState>);
 
@@ -53,11 +54,11 @@ struct JobState {
     done: AtomicU64,
 }
 
-/// End of a job: news, nothing after it was cancelled, or a line about what went wrong.
+/// End of a job: news, `None` if it was cancelled, or an error message.
 pub(crate) type Outcome<N> = Result<Option<N>, String>;
 
 impl Watch {
-    /// Returns true if nobody waits for the job any more.
+    /// Returns true if the job should stop.
     pub fn is_cancelled(&self) -> bool {
         self.0.is_cancelled.load(Ordering::Relaxed)
     }
@@ -85,7 +86,7 @@ impl<N: Send + 'static> Jobs<N> {
         Self { sender, receiver, running: Vec::new(), next: 0, wake: wake.clone() }
     }
 
-    /// Starts a job on a thread of its own. A panic becomes a line about what went wrong.
+    /// Starts a job on its own thread. A panic becomes an error message.
     pub fn start(
         &mut self,
         kind: JobKind,

@@ -2,8 +2,18 @@
 //!
 //! The frame never waits: files are read, meshes simplified, checked and uploaded by jobs on other
 //! threads, whose news arrive as messages.
+//!
+//! In the order of reading:
+//! - plain data: `options` (with the report at the end), `settings`, `document` (an open file),
+//!   `input` (keys and commands), `action` (requests of panels);
+//! - background: `jobs` (threads), `load` and `work` (their work), `timing`, `gpu_guard`;
+//! - the picture: `canvas_texture`, `picture_pane` on it, and the marks of `overlay`;
+//! - `state` holds all of this; it is changed by `orders` (starts jobs), `news` (takes their
+//!   results), `perform` (actions and commands) and `central` (the picture and the pointer);
+//! - `panels` show the state and return actions, in the look of `theme`;
+//! - `app` has the order of a frame; `school` is another window.
 
-mod actions;
+mod action;
 mod app;
 mod canvas_texture;
 mod central;
@@ -11,13 +21,17 @@ mod document;
 mod gpu_guard;
 mod input;
 mod jobs;
+mod load;
 mod news;
 mod options;
+mod orders;
 mod overlay;
 mod panels;
+mod perform;
 mod picture_pane;
 mod school;
 mod settings;
+mod state;
 mod theme;
 mod timing;
 mod work;
@@ -32,7 +46,7 @@ use eframe::egui_wgpu::{WgpuConfiguration, WgpuError, WgpuSetup, WgpuSetupCreate
 
 use crate::{Gpu, ViewError};
 use app::ViewerApp;
-use work::EarlyLoad;
+use load::EarlyLoad;
 
 /// Name under which the window and its settings are remembered.
 const APP_ID: &str = "meshlod";
@@ -58,7 +72,7 @@ pub fn run(options: ViewerOptions) -> Result<ViewerReport, ViewError> {
     report.map_err(|_| ViewError::Failed("a thread of the viewer panicked".into()))
 }
 
-/// Opens the window until it is closed; returns the files that were open, for another try.
+/// Opens the window until it is closed; returns the open files, for another try.
 fn open_window(
     options: &ViewerOptions,
     report: &Arc<Mutex<ViewerReport>>,

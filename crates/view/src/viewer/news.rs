@@ -3,18 +3,19 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::app::ViewerApp;
 use super::document::{Document, DocumentId, DocumentLevel, ShownSide};
 use super::jobs::JobKind;
-use super::work::{self, Comparison, MadeLevel, News, NormalsState};
+use super::load;
+use super::state::ViewerState;
+use super::work::{Comparison, MadeLevel, News, NormalsState};
 use crate::stage::{Loaded, Subject};
 use crate::{Transition, view_camera};
 
-/// Time in which vertices move to where the cut takes them.
+/// Time in which vertices move to their new positions.
 const MOTION: Duration = Duration::from_millis(250);
 
-impl ViewerApp {
-    /// Takes what jobs have brought since the last frame.
+impl ViewerState {
+    /// Takes the news of jobs since the last frame.
     pub fn take_news(&mut self) {
         while let Some((_, outcome)) = self.jobs.poll() {
             match outcome {
@@ -73,12 +74,12 @@ impl ViewerApp {
         }
     }
 
-    /// Starts to refine the normals of what is on the screen by now.
+    /// Starts to refine the normals of subjects that are on the screen by now.
     pub fn refine_normals(&mut self) {
         for (id, loaded) in std::mem::take(&mut self.rough) {
             let renderer = self.renderer();
             self.jobs.start(JobKind::Refine, "Finding creases", move |watch| {
-                work::refine(id, &loaded, &renderer, watch)
+                load::refine(id, &loaded, &renderer, watch)
             });
         }
     }
@@ -122,7 +123,7 @@ impl ViewerApp {
         self.changes += 1;
     }
 
-    /// Tells the cut that is shown what to follow, and takes what has changed in it.
+    /// Sends the current query to the cut of the active document, and applies its changes.
     pub fn follow_cuts(&mut self, seconds: f32) {
         let (camera, target) = (self.stage.rig.camera(), self.stage.rig.pose().target);
         let size = self.stage.slot_size(self.size).map(|side| side.max(1));

@@ -29,9 +29,9 @@ pub struct ViewerOptions {
 pub struct ViewerReport {
     /// Name of the GPU.
     pub gpu: String,
-    /// Number of faces that were drawn at the end.
+    /// Number of faces drawn at the end.
     pub faces: usize,
-    /// Number of vertices of what was drawn at the end.
+    /// Number of vertices of the subjects drawn at the end.
     pub vertices: usize,
     /// Size of vertices and faces on the GPU, in bytes.
     pub gpu_bytes: u64,
@@ -51,7 +51,7 @@ pub struct ViewerReport {
     pub first_frame_ms: Option<f64>,
     /// Time from the start of the process to the first picture of a file, in milliseconds.
     pub first_picture_ms: Option<f64>,
-    /// Lines about files that could not be shown.
+    /// Error messages, such as those about files that could not be shown.
     pub problems: Vec<String>,
     /// True if the GPU was lost while the window was open.
     pub gpu_was_lost: bool,

@@ -10,10 +10,10 @@ use super::canvas_texture::CanvasTexture;
 use crate::stage::{Display, Stage, SubjectId};
 use crate::{Gpu, Renderer, TargetFormat, ViewError};
 
-/// Picture of the stage, drawn again only when something has changed.
+/// Picture of the stage, drawn again only after a change.
 ///
-/// A large model that is new is drawn with one sample a pixel and without its shadow first, so that
-/// there is something to see, and as it should be in the frame after.
+/// A new large model is drawn as a draft first, with one sample a pixel and without its shadow, and
+/// in full in the next frame.
 #[derive(Debug, Default)]
 pub(crate) struct PicturePane {
     canvas: CanvasTexture,
@@ -27,12 +27,12 @@ struct Drawn {
     camera: Camera,
     display: Display,
     shown: Vec<SubjectId>,
-    /// Number of changes of subjects so far.
+    /// Number of changes of subjects.
     changes: u64,
     is_draft: bool,
 }
 
-/// Renderers of the picture, by what they are for.
+/// Renderers of final pictures and of drafts.
 #[derive(Debug)]
 pub(crate) struct PaneRenderers {
     pub full: Arc<Renderer>,
@@ -90,7 +90,7 @@ impl PicturePane {
         self.drawn.as_ref().is_some_and(|drawn| drawn.is_draft)
     }
 
-    /// Returns true if the picture shows all changes of subjects, as it should.
+    /// Returns true if the picture shows all changes of subjects and is no draft.
     pub fn is_final(&self, changes: u64) -> bool {
         self.drawn.as_ref().is_some_and(|drawn| drawn.changes == changes && !drawn.is_draft)
     }

@@ -1,4 +1,4 @@
-//! Settings that the viewer remembers from one run to the next, beside its window.
+//! Settings that the viewer remembers from one run to the next.
 
 use serde::{Deserialize, Serialize};
 
@@ -26,7 +26,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Reads the settings; those that are missing or make no sense are the default ones.
+    /// Reads the settings; missing or invalid ones are the default.
     pub fn read(storage: Option<&dyn eframe::Storage>) -> Self {
         storage.and_then(|storage| eframe::get_value(storage, KEY)).unwrap_or_default()
     }

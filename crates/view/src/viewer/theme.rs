@@ -8,7 +8,7 @@ pub(crate) const PANEL: Color32 = Color32::from_rgb(30, 32, 36);
 const FIELD: Color32 = Color32::from_rgb(44, 47, 53);
 const FIELD_HOVERED: Color32 = Color32::from_rgb(56, 60, 68);
 const LINE: Color32 = Color32::from_rgb(48, 51, 57);
-/// Colour of what is selected or active.
+/// Colour of selected and active items.
 pub(crate) const ACCENT: Color32 = Color32::from_rgb(88, 146, 232);
 const TEXT: Color32 = Color32::from_rgb(206, 210, 217);
 /// Colour of headings and values.

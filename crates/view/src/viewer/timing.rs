@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-/// Times between frames, and those to the first ones.
+/// Times between frames, and times to the first frame and picture.
 #[derive(Debug)]
 pub(crate) struct FrameTimes {
     started: Instant,
@@ -50,8 +50,7 @@ impl FrameTimes {
         self.last = Some(now);
     }
 
-    /// Says that the next frame comes only when something happens, so that the time to it says
-    /// nothing.
+    /// Marks a pause: the time to the next frame, which waits for an event, is not counted.
     pub fn rest(&mut self) {
         self.last = None;
     }

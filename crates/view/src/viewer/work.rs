@@ -1,25 +1,21 @@
-//! The work of jobs: reading, simplifying, comparing, checking, colouring, saving.
+//! The work of jobs on open files: simplifying, comparing, checking, colouring, saving.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
-use std::thread::JoinHandle;
 use std::time::Instant;
 
 use meshlod::jobs::{self, CheckReport, CheckRequest};
 use meshlod::measure::{PreparedSurface, vertex_errors};
-use meshlod::picture::{Normals, Picture};
+use meshlod::picture::Picture;
 use meshlod::simplify::Observe;
 use meshlod::{
-    Borders, ConditionedScene, Method, Options, OwnedPaint, ReadOptions, Report, Scene,
-    SceneSimplifier, Target,
+    Borders, ConditionedScene, Method, Options, Report, Scene, SceneSimplifier, Target,
 };
 
 use super::document::{DocumentId, LevelDistance};
 use super::jobs::{Outcome, Watch};
-use crate::stage::{
-    Coloring, LoadError, Loaded, LoadedContent, MeshSubject, Stage, Subject, SubjectId,
-};
-use crate::{Canvas, Renderer, ViewError};
+use crate::Renderer;
+use crate::stage::{Coloring, Loaded, MeshSubject, Subject, SubjectId};
 
 /// Result of a job.
 pub(crate) enum News {
@@ -32,15 +28,15 @@ pub(crate) enum News {
     Saved(PathBuf),
 }
 
-/// Whether a subject has the normals that its file asks for.
+/// Whether a subject has the normals of its file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NormalsState {
     Final,
-    /// Smooth ones, which are made several times as fast as those with creases.
+    /// Smooth normals, which take a fraction of the time of those with creases.
     Rough,
 }
 
-/// Level that was made, on the GPU.
+/// New level, on the GPU.
 pub(crate) struct MadeLevel {
     pub loaded: Arc<Loaded>,
     pub subject: Subject,
@@ -56,89 +52,10 @@ pub(crate) struct Comparison {
     pub distance: LevelDistance,
 }
 
-/// File that is being read since before there was a GPU.
-pub(crate) struct EarlyLoad {
-    pub path: PathBuf,
-    reading: JoinHandle<Result<Loaded, LoadError>>,
-}
-
-/// Largest number of findings of a kind that are listed.
+/// Largest number of listed findings of one kind.
 const FINDINGS_LISTED: usize = 500;
-/// Faces above which a file is first shown with smooth normals: 100,000 take 0.15 s with creases on
-/// one core.
-const ROUGH_FACES: usize = 100_000;
 /// Ratio of the faces from step to step of a simplification that can be cancelled between steps.
 const STEP: f64 = 0.85;
-
-impl EarlyLoad {
-    pub fn start(path: &Path, reading: &ReadOptions) -> Self {
-        let (from, reading) = (path.to_owned(), *reading);
-        let read = std::thread::spawn(move || Loaded::read(&from, &reading));
-        Self { path: path.to_owned(), reading: read }
-    }
-
-    /// Waits for the file and uploads it.
-    pub fn upload(self, renderer: &Renderer, watch: &Watch) -> Outcome<News> {
-        let read = self.reading.join();
-        let internal = || format!("{}: an internal error", self.path.display());
-        let loaded = read.map_err(|_| internal())?.map_err(|error| error.to_string())?;
-        upload(loaded, renderer, watch)
-    }
-}
-
-/// Reads a file and uploads it.
-pub(crate) fn open(
-    path: &Path,
-    reading: &ReadOptions,
-    renderer: &Renderer,
-    watch: &Watch,
-) -> Outcome<News> {
-    let loaded = Loaded::read(path, reading).map_err(|error| error.to_string())?;
-    upload(loaded, renderer, watch)
-}
-
-fn upload(loaded: Loaded, renderer: &Renderer, watch: &Watch) -> Outcome<News> {
-    if watch.is_cancelled() {
-        return Ok(None);
-    }
-    let is_mesh = matches!(loaded.content, LoadedContent::Mesh | LoadedContent::Transport);
-    let has_creases = is_mesh && matches!(loaded.normals, Normals::Creased { .. });
-    let is_rough = has_creases && loaded.mesh.faces.len() > ROUGH_FACES;
-    let (state, first) = match is_rough {
-        true => (NormalsState::Rough, Loaded { normals: Normals::Smooth, ..loaded.clone() }),
-        false => (NormalsState::Final, loaded.clone()),
-    };
-    let subject = Subject::new(renderer, &first);
-    let subject = subject.map_err(|error| format!("{}: {error}", loaded.name()))?;
-    Ok(Some(News::Opened(Arc::new(loaded), subject, state)))
-}
-
-/// Makes a subject again, with the normals that its file asks for.
-pub(crate) fn refine(
-    id: SubjectId,
-    loaded: &Loaded,
-    renderer: &Renderer,
-    watch: &Watch,
-) -> Outcome<News> {
-    if watch.is_cancelled() {
-        return Ok(None);
-    }
-    let subject = Subject::new(renderer, loaded).map_err(|error| error.to_string())?;
-    Ok(Some(News::Colored(id, subject)))
-}
-
-/// Draws a few pixels of a small mesh, so that all shaders of the first picture are compiled.
-pub(crate) fn warm_up(renderer: &Renderer) -> Result<(), ViewError> {
-    let mesh = meshlod::samples::sphere(20);
-    let loaded = Loaded::from_mesh("warm-up", mesh, Arc::new(OwnedPaint::CLAY));
-    let mut stage = Stage::default();
-    let id = stage.add(Subject::new(renderer, &loaded)?);
-    stage.show(&[id]);
-    stage.rig.frame(&loaded.bounds, 1.0);
-    let canvas = Canvas::with_format(renderer.gpu(), [8, 8], renderer.format())?;
-    canvas.draw(|pass| stage.draw(renderer, pass, [8, 8]));
-    Ok(())
-}
 
 /// Simplifies a document by a method to a target.
 pub(crate) fn simplify(
@@ -186,7 +103,7 @@ pub(crate) fn simplify(
     Ok(Some(News::Simplified(document, Box::new(made))))
 }
 
-/// Returns the targets on the way to one, between which a run can be cancelled.
+/// Returns intermediate targets and the target itself; a run can be cancelled between them.
 fn steps(faces: usize, target: Target) -> Vec<Target> {
     match target {
         Target::Faces(to) => {
@@ -203,7 +120,7 @@ fn steps(faces: usize, target: Target) -> Vec<Target> {
     }
 }
 
-/// Observer that tells a job's progress.
+/// Observer that reports the progress of a simplification.
 struct Counter<'w> {
     watch: &'w Watch,
     gone: usize,

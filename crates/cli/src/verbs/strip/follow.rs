@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use meshlod::multires::{Cut, Implicit, ModelFile, UpdateLimits};
+use meshlod::multires::{Cut, Implicit, ModelFile, SlotMesh, UpdateLimits};
 use meshlod::strip::{CutStrips, Difference, StripIndices, StripStatistics};
 use serde::Serialize;
 

@@ -21,9 +21,10 @@ use self::vertex_values::Blend;
 pub use self::vertex_values::VertexValues;
 use super::certificate::CertifyError;
 use super::front::{Front, SplitOrMerge, VertexState};
-use super::{Cut, CutChange, Patch, UpdateLimits};
+use super::{Cut, CutChange, UpdateLimits};
 use crate::implicit::Implicit;
 use crate::query::{Query, QueryError};
+use crate::slot_mesh::{Patch, SlotMesh};
 
 /// A cut that follows a sequence of queries, as a [`Cut`] does, and moves instead of popping.
 ///
@@ -141,49 +142,9 @@ impl<'m> Geomorph<'m> {
         &self.goal
     }
 
-    /// Returns the number of triangle slots, see [`Cut::slots`].
-    pub fn slots(&self) -> usize {
-        self.shown.triangles.slots()
-    }
-
-    /// Returns the number of faces that are shown, those without area included.
-    pub fn face_count(&self) -> usize {
-        self.shown.triangles.len()
-    }
-
-    /// Returns the three nodes of the triangle in a slot, or `None` if the slot is empty.
-    pub fn triangle(&self, slot: u32) -> Option<[u32; 3]> {
-        self.shown.triangles.real(slot)
-    }
-
-    /// Iterates over the triangles that are shown, each by its slot and its three nodes.
-    pub fn triangles(&self) -> impl Iterator<Item = (u32, [u32; 3])> + '_ {
-        self.shown.triangles.iter()
-    }
-
-    /// Returns the wedges at the corners of the triangle in a slot, see [`Cut::wedges`].
-    pub fn wedges(&self, slot: u32) -> Option<[u32; 3]> {
-        self.triangle(slot).and_then(|_| self.shown.triangles.wedges(slot))
-    }
-
     /// Returns true if a node of the model is a vertex of the mesh that is shown.
     pub fn shows(&self, node: u32) -> bool {
         self.shown.is_active(node)
-    }
-
-    /// Iterates over the triangle slots that the last call of [`update`](Self::update) or
-    /// [`advance`](Self::advance) changed, in no particular order.
-    pub fn patches(&self) -> impl Iterator<Item = Patch> + '_ {
-        self.shown.triangles.changes().map(|(slot, old, new)| Patch { slot, old, new })
-    }
-
-    /// Iterates over the triangle slots that the last call of
-    /// [`update`](Self::update) or [`advance`](Self::advance) wrote, in no particular order.
-    ///
-    /// Beside those of [`patches`](Self::patches) these may be slots that hold the same nodes as
-    /// before, though at other wedges: two faces may have the same three vertices.
-    pub fn touched_slots(&self) -> impl Iterator<Item = u32> + '_ {
-        self.shown.triangles.touched()
     }
 
     /// Iterates over the vertices that the last call of [`update`](Self::update) or
@@ -240,7 +201,7 @@ impl<'m> Geomorph<'m> {
             let [a, b, c] = nodes.map(place);
             a != b && b != c && c != a
         };
-        let kept = self.triangles().filter(|&(_, nodes)| has_area(nodes));
+        let kept = self.shown.triangles.iter().filter(|&(_, nodes)| has_area(nodes));
         let slots: Vec<u32> = kept.map(|(slot, _)| slot).collect();
         let level = self.shown.level_of(&slots);
         let mut mesh = level.mesh();
@@ -268,5 +229,37 @@ impl<'m> Geomorph<'m> {
                 }
             }
         }
+    }
+}
+
+/// The mesh that is shown. Its patches are those of the last call of [`Geomorph::update`] or
+/// [`Geomorph::advance`].
+impl SlotMesh for Geomorph<'_> {
+    fn face_count(&self) -> usize {
+        self.shown.triangles.len()
+    }
+
+    fn vertex_count(&self) -> usize {
+        self.shown.vertex_count()
+    }
+
+    fn slots(&self) -> usize {
+        self.shown.triangles.slots()
+    }
+
+    fn triangle(&self, slot: u32) -> Option<[u32; 3]> {
+        self.shown.triangles.real(slot)
+    }
+
+    fn wedges(&self, slot: u32) -> Option<[u32; 3]> {
+        self.shown.triangles.real_wedges(slot)
+    }
+
+    fn patches(&self) -> Box<dyn Iterator<Item = Patch> + '_> {
+        Box::new(self.shown.triangles.changes())
+    }
+
+    fn touched_slots(&self) -> Box<dyn Iterator<Item = u32> + '_> {
+        Box::new(self.shown.triangles.touched())
     }
 }

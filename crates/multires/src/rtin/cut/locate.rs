@@ -11,6 +11,7 @@ use crate::cut::Located;
 use crate::level::Level;
 use crate::query::{Focus, QueryError, Region};
 use crate::rtin::grid::{Extent, RightTriangle, middle};
+use crate::slot_mesh::SlotMesh;
 
 /// A triangle of the cut with its closest point and the squared distance, in stored units.
 struct ClosestTriangle {

@@ -15,9 +15,10 @@ use std::collections::VecDeque;
 use self::front::FieldFront;
 use self::inspect::Inspected;
 use super::Rtin;
-use crate::cut::{CutChange, Meter, Patch, Schedule, UpdateLimits};
+use crate::cut::{CutChange, Meter, Schedule, UpdateLimits};
 use crate::level::Level;
 use crate::query::{Criterion, Query, QueryError};
+use crate::slot_mesh::{Patch, SlotMesh};
 
 /// A level of an [`Rtin`], refined and coarsened to follow a sequence of queries such as the views
 /// of a moving camera.
@@ -103,40 +104,9 @@ impl<'m> RtinCut<'m> {
         self.front.model
     }
 
-    /// Returns the number of faces of the current level.
-    pub fn face_count(&self) -> usize {
-        self.front.triangles.len()
-    }
-
-    /// Returns the number of vertices of the current level.
-    pub fn vertex_count(&self) -> usize {
-        self.front.vertex_count()
-    }
-
-    /// Returns the number of triangle slots, which is the length of a list indexed by
-    /// [`Patch::slot`].
-    pub fn slots(&self) -> usize {
-        self.front.triangles.slots()
-    }
-
-    /// Iterates over the triangles of the current level, each by its slot and its three nodes.
-    pub fn triangles(&self) -> impl Iterator<Item = (u32, [u32; 3])> + '_ {
-        self.front.triangles.iter()
-    }
-
-    /// Returns the three nodes of the triangle in a slot, or `None` if the slot is empty.
-    pub fn triangle(&self, slot: u32) -> Option<[u32; 3]> {
-        self.front.triangles.get(slot)
-    }
-
-    /// Iterates over the triangle slots that the last update changed, in no particular order.
-    pub fn patches(&self) -> impl Iterator<Item = Patch> + '_ {
-        self.front.triangles.changes().map(|(slot, old, new)| Patch { slot, old, new })
-    }
-
     /// Returns a copy of the current level.
     pub fn level(&self) -> Level {
-        self.level_of(self.triangles().map(|(_, nodes)| nodes).collect())
+        self.level_of(self.front.triangles.iter().map(|(_, nodes)| nodes).collect())
     }
 
     /// Returns triangles as a level.
@@ -144,5 +114,35 @@ impl<'m> RtinCut<'m> {
         let model = self.model();
         let place = |node: u32| model.stored_position(node);
         Level::from_nodes(model.frame, model.vertices.len(), place, faces)
+    }
+}
+
+impl SlotMesh for RtinCut<'_> {
+    fn face_count(&self) -> usize {
+        self.front.triangles.len()
+    }
+
+    fn vertex_count(&self) -> usize {
+        self.front.vertex_count()
+    }
+
+    fn slots(&self) -> usize {
+        self.front.triangles.slots()
+    }
+
+    fn triangle(&self, slot: u32) -> Option<[u32; 3]> {
+        self.front.triangles.get(slot)
+    }
+
+    fn wedges(&self, _: u32) -> Option<[u32; 3]> {
+        None
+    }
+
+    fn patches(&self) -> Box<dyn Iterator<Item = Patch> + '_> {
+        Box::new(self.front.triangles.changes())
+    }
+
+    fn touched_slots(&self) -> Box<dyn Iterator<Item = u32> + '_> {
+        Box::new(self.patches().map(|patch| patch.slot))
     }
 }

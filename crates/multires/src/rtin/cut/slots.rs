@@ -1,6 +1,7 @@
 //! Triangles by slot, with a record of the slots that changed.
 
 use crate::forest::NONE;
+use crate::slot_mesh::Patch;
 
 /// An empty slot.
 const HOLE: [u32; 3] = [NONE; 3];
@@ -45,12 +46,13 @@ impl TriangleSlots {
         (0..).zip(&self.nodes).filter_map(|(slot, &nodes)| Some((slot, real(nodes)?)))
     }
 
-    /// Returns the slots changed since the mark, with their old and new triangles.
-    pub(super) fn changes(
-        &self,
-    ) -> impl Iterator<Item = (u32, Option<[u32; 3]>, Option<[u32; 3]>)> + '_ {
-        let all = self.changed.iter().map(|&(slot, was)| (slot, was, self.nodes[slot as usize]));
-        all.filter(|(_, was, is)| was != is).map(|(slot, was, is)| (slot, real(was), real(is)))
+    /// Iterates over the slots changed since the mark.
+    pub(super) fn changes(&self) -> impl Iterator<Item = Patch> + '_ {
+        let patch = |&(slot, old): &(u32, [u32; 3])| {
+            let new = self.nodes[slot as usize];
+            (old != new).then(|| Patch { slot, old: real(old), new: real(new) })
+        };
+        self.changed.iter().filter_map(patch)
     }
 
     /// Puts a triangle into an empty slot, and returns the slot.
@@ -96,10 +98,11 @@ mod tests {
         let second = slots.add([3, 4, 5]);
         slots.replace(first, [6, 7, 8]);
         slots.replace(first, [0, 1, 2]);
-        assert_eq!(slots.changes().collect::<Vec<_>>(), [(second, None, Some([3, 4, 5]))]);
+        let patch = |slot, old, new| Patch { slot, old, new };
+        assert_eq!(slots.changes().collect::<Vec<_>>(), [patch(second, None, Some([3, 4, 5]))]);
         slots.mark();
         slots.remove(first);
-        assert_eq!(slots.changes().collect::<Vec<_>>(), [(first, Some([0, 1, 2]), None)]);
+        assert_eq!(slots.changes().collect::<Vec<_>>(), [patch(first, Some([0, 1, 2]), None)]);
         assert_eq!((slots.len(), slots.slots(), slots.get(first)), (1, 2, None));
         assert_eq!(slots.add([9, 1, 2]), first, "an empty slot is used again");
         assert_eq!(slots.iter().collect::<Vec<_>>(), [(first, [9, 1, 2]), (second, [3, 4, 5])]);

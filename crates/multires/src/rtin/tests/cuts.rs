@@ -16,8 +16,8 @@ use crate::query::Region;
 use crate::rtin::{HeightField, Rtin, RtinCut, RtinExtractor};
 use crate::tests::walks::{Dice, forest, query};
 use crate::{
-    Archive, CutChange, Focus, HeightPrecision, ModelFile, Patch, Query, Storage, UpdateLimits,
-    ViewCamera,
+    Archive, CutChange, Focus, HeightPrecision, ModelFile, Patch, Query, SlotMesh, Storage,
+    UpdateLimits, ViewCamera,
 };
 
 /// A cut, a copy of its triangles that only follows patches, and an extractor.
@@ -217,24 +217,31 @@ fn cuts_of_any_file_whole_or_truncated_answer_as_the_file_does() {
             let file = ModelFile::open(there.to_vec()).unwrap();
             let levels = file.read().unwrap();
             let (mut cut, mut dice) = (levels.cut(), Dice(2));
-            let mut slots: BTreeMap<_, _> = cut.triangles().collect();
+            let mut slots: BTreeMap<_, _> = cut.slot_mesh().triangles().collect();
             for _ in 0..10 {
                 let query = query(&mut dice, mesh);
                 cut.update(&query, &UpdateLimits::default()).unwrap();
-                for Patch { slot, new, .. } in cut.patches() {
+                for Patch { slot, new, .. } in cut.slot_mesh().patches() {
                     match new {
                         Some(nodes) => slots.insert(slot, nodes),
                         None => slots.remove(&slot),
                     };
                 }
-                assert!(cut.triangles().eq(slots.iter().map(|(&slot, &nodes)| (slot, nodes))));
+                assert!(
+                    cut.slot_mesh()
+                        .triangles()
+                        .eq(slots.iter().map(|(&slot, &nodes)| (slot, nodes)))
+                );
                 let expected = file.extract(&query).unwrap().level.mesh();
-                assert_eq!(cut.face_count(), expected.faces.len(), "{part} {query:?}");
+                assert_eq!(cut.slot_mesh().face_count(), expected.faces.len(), "{part} {query:?}");
                 let found = cut.locate(dice.place(mesh)).unwrap();
                 let corners = found.nodes.map(|node| DVec3::from(levels.position(node)));
                 let at = DVec3::from(found.closest);
                 assert!(closest_point(at, &corners).distance(at) < 1e-5);
-                assert!(cut.face_count() <= levels.most_faces() && slots.contains_key(&found.slot));
+                assert!(
+                    cut.slot_mesh().face_count() <= levels.most_faces()
+                        && slots.contains_key(&found.slot)
+                );
             }
         }
     }

@@ -1,15 +1,16 @@
-//! How everything is shown.
+//! Settings of the display: shading, colours, ground, axes.
 
 use egui::Ui;
 use meshlod::picture::UpAxis;
 
-use super::{Action, choices, section};
+use super::widgets::{choices, section};
 use crate::stage::{Coloring, Shading};
-use crate::viewer::app::ViewerApp;
+use crate::viewer::action::Action;
+use crate::viewer::state::ViewerState;
 
-pub(super) fn show(app: &mut ViewerApp, ui: &mut Ui, out: &mut Vec<Action>) {
+pub(super) fn show(state: &mut ViewerState, ui: &mut Ui, out: &mut Vec<Action>) {
     section(ui, "Display", true, |ui| {
-        let display = &mut app.stage.display;
+        let display = &mut state.stage.display;
         let shadings = [(Shading::Smooth, "Smooth"), (Shading::Flat, "Flat")];
         ui.horizontal(|ui| {
             if let Some(shading) = choices(ui, display.shading, &shadings) {
@@ -35,15 +36,15 @@ pub(super) fn show(app: &mut ViewerApp, ui: &mut Ui, out: &mut Vec<Action>) {
         ui.horizontal(|ui| {
             ui.label("Up");
             let axes = [(UpAxis::Y, "Y"), (UpAxis::Z, "Z")];
-            if let Some(up) = choices(ui, app.stage.rig.up(), &axes) {
+            if let Some(up) = choices(ui, state.stage.rig.up(), &axes) {
                 out.push(Action::SetUp(up));
             }
             ui.add_space(6.0);
-            let slider = egui::Slider::new(&mut app.settings.fov_deg, 10.0..=100.0);
+            let slider = egui::Slider::new(&mut state.settings.fov_deg, 10.0..=100.0);
             ui.spacing_mut().slider_width = 74.0;
             if ui.add(slider.suffix("°").fixed_decimals(0)).on_hover_text("Field of view").changed()
             {
-                app.stage.rig.set_fov_rad(app.settings.fov_deg.to_radians());
+                state.stage.rig.set_fov_rad(state.settings.fov_deg.to_radians());
             }
         });
     });

@@ -3,12 +3,12 @@
 use egui::Ui;
 use meshlod::multires::Hierarchy;
 
-use super::{bytes, grouped, length, row, section};
+use super::widgets::{bytes, grouped, length, row, section};
 use crate::stage::{Loaded, LoadedContent};
-use crate::viewer::app::ViewerApp;
+use crate::viewer::state::ViewerState;
 
-pub(super) fn show(app: &ViewerApp, ui: &mut Ui) {
-    let Some(document) = app.document() else { return };
+pub(super) fn show(state: &ViewerState, ui: &mut Ui) {
+    let Some(document) = state.document() else { return };
     section(ui, "File", true, |ui| facts(&document.loaded, ui));
 }
 

@@ -3,29 +3,32 @@
 use egui::{RichText, ScrollArea, Ui};
 use meshlod::check::{Finding, Kind, Objects};
 
-use super::{Action, grouped, progress, section, theme, wide_button};
-use crate::viewer::app::ViewerApp;
+use super::widgets::{grouped, progress, section, wide_button};
+use crate::viewer::action::Action;
 use crate::viewer::document::Findings;
 use crate::viewer::jobs::JobKind;
 use crate::viewer::overlay::severity_color;
+use crate::viewer::state::ViewerState;
+use crate::viewer::theme;
 
 /// Height of the list of one kind, in points.
 const LIST_HEIGHT: f32 = 180.0;
 
-pub(super) fn show(app: &mut ViewerApp, ui: &mut Ui, out: &mut Vec<Action>) {
-    if app.document().is_none() {
+pub(super) fn show(state: &mut ViewerState, ui: &mut Ui, out: &mut Vec<Action>) {
+    if state.document().is_none() {
         return;
     }
     section(ui, "Findings", true, |ui| {
-        let is_checked = app.document().is_some_and(|document| document.findings.report.is_some());
-        let is_running = progress(app, ui, JobKind::Check, out);
+        let is_checked =
+            state.document().is_some_and(|document| document.findings.report.is_some());
+        let is_running = progress(state, ui, JobKind::Check, out);
         if !is_checked {
             if !is_running && wide_button(ui, "Check the mesh", false) {
                 out.push(Action::Check);
             }
             return;
         }
-        if let Some(document) = app.documents.get_mut(app.active) {
+        if let Some(document) = state.documents.get_mut(state.active) {
             list(&mut document.findings, ui, out);
         }
     });

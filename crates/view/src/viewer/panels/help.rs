@@ -2,12 +2,12 @@
 
 use egui::{Align2, Grid, RichText, Window};
 
-use crate::viewer::app::ViewerApp;
 use crate::viewer::input::{BINDINGS, MOUSE_HELP};
+use crate::viewer::state::ViewerState;
 use crate::viewer::theme;
 
-pub(crate) fn show(app: &mut ViewerApp, ctx: &egui::Context) {
-    let mut is_open = app.has_help;
+pub(crate) fn show(state: &mut ViewerState, ctx: &egui::Context) {
+    let mut is_open = state.has_help;
     Window::new("Keys and mouse")
         .open(&mut is_open)
         .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
@@ -24,5 +24,5 @@ pub(crate) fn show(app: &mut ViewerApp, ctx: &egui::Context) {
                 }
             });
         });
-    app.has_help = is_open;
+    state.has_help = is_open;
 }

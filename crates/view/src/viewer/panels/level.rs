@@ -1,33 +1,35 @@
-//! Simplification: method, target, and the level that came of it.
+//! Simplification: method, target, and the resulting level.
 
 use egui::{ComboBox, Slider, Ui};
 use meshlod::Method;
 
-use super::{Action, choices, grouped, length, progress, row, section, wide_button};
-use crate::viewer::app::ViewerApp;
+use super::widgets::{choices, grouped, length, progress, row, section, wide_button};
+use crate::viewer::action::Action;
 use crate::viewer::document::{DocumentLevel, LevelGoal, LevelOrder};
 use crate::viewer::jobs::JobKind;
+use crate::viewer::state::ViewerState;
+use crate::viewer::theme;
 
-pub(super) fn show(app: &mut ViewerApp, ui: &mut Ui, out: &mut Vec<Action>) {
-    if app.document().is_none() {
+pub(super) fn show(state: &mut ViewerState, ui: &mut Ui, out: &mut Vec<Action>) {
+    if state.document().is_none() {
         return;
     }
     section(ui, "Simplify", true, |ui| {
-        if let Some(document) = app.documents.get_mut(app.active) {
+        if let Some(document) = state.documents.get_mut(state.active) {
             let faces = document.loaded.mesh.faces.len();
             if order(&mut document.order, faces, ui) {
                 out.push(Action::Simplify);
             }
         }
-        if !progress(app, ui, JobKind::Simplify, out) && wide_button(ui, "Simplify", true) {
+        if !progress(state, ui, JobKind::Simplify, out) && wide_button(ui, "Simplify", true) {
             out.push(Action::Simplify);
         }
-        let Some(document) = app.document() else { return };
+        let Some(document) = state.document() else { return };
         if let Some(level) = &document.level {
             ui.add_space(4.0);
             result(level, document.loaded.bounds.diagonal(), ui);
             let is_measured = level.distance.is_some();
-            if !progress(app, ui, JobKind::Compare, out)
+            if !progress(state, ui, JobKind::Compare, out)
                 && !is_measured
                 && wide_button(ui, "Measure the distance", false)
             {
@@ -81,7 +83,7 @@ fn result(level: &DocumentLevel, diagonal: f64, ui: &mut Ui) {
     }
     if !level.reached {
         let text = "The target is out of reach: this is as far as the method goes.";
-        ui.colored_label(super::theme::WARNING, text);
+        ui.colored_label(theme::WARNING, text);
     }
 }
 

@@ -2,14 +2,15 @@
 
 use egui::{ComboBox, Slider, Ui};
 
-use super::{Action, choices, grouped, row, section};
+use super::widgets::{choices, grouped, row, section};
 use crate::stage::Subject;
-use crate::viewer::app::ViewerApp;
+use crate::viewer::action::Action;
 use crate::viewer::document::{CutControl, FocusKind, LevelGoal};
+use crate::viewer::state::ViewerState;
 
-pub(super) fn show(app: &mut ViewerApp, ui: &mut Ui, out: &mut Vec<Action>) {
-    let Some(document) = app.documents.get_mut(app.active) else { return };
-    let subject = app.stage.subject(document.original);
+pub(super) fn show(state: &mut ViewerState, ui: &mut Ui, out: &mut Vec<Action>) {
+    let Some(document) = state.documents.get_mut(state.active) else { return };
+    let subject = state.stage.subject(document.original);
     let Some(Subject::Levels(levels)) = subject else { return };
     let (bounds, full) = (document.loaded.bounds, document.loaded.mesh.faces.len());
     let Some(cut) = &mut document.cut else { return };

@@ -2,20 +2,21 @@
 
 use egui::{Align, Layout, RichText, Ui};
 
-use super::{Action, choices};
-use crate::viewer::app::ViewerApp;
+use super::widgets::choices;
+use crate::viewer::action::Action;
 use crate::viewer::document::ShownSide;
 use crate::viewer::input::Command;
+use crate::viewer::state::ViewerState;
 use crate::viewer::theme;
 
-pub(super) fn show(app: &ViewerApp, ui: &mut Ui, out: &mut Vec<Action>) {
+pub(super) fn show(state: &ViewerState, ui: &mut Ui, out: &mut Vec<Action>) {
     ui.horizontal(|ui| {
-        if app.documents.is_empty() {
+        if state.documents.is_empty() {
             ui.label(RichText::new("meshlod").color(theme::WEAK));
         }
-        for (index, document) in app.documents.iter().enumerate() {
+        for (index, document) in state.documents.iter().enumerate() {
             let name = RichText::new(document.loaded.name());
-            let tab = ui.selectable_label(app.active == index, name);
+            let tab = ui.selectable_label(state.active == index, name);
             let tab = tab.on_hover_text(document.loaded.path.display().to_string());
             if tab.clicked() {
                 out.push(Action::Activate(index));
@@ -39,13 +40,13 @@ pub(super) fn show(app: &ViewerApp, ui: &mut Ui, out: &mut Vec<Action>) {
                     out.push(Action::Do(command));
                 }
             }
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| sides(app, ui, out));
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| sides(state, ui, out));
         });
     });
 }
 
-fn sides(app: &ViewerApp, ui: &mut Ui, out: &mut Vec<Action>) {
-    let Some(document) = app.document().filter(|document| document.has_sides()) else { return };
+fn sides(state: &ViewerState, ui: &mut Ui, out: &mut Vec<Action>) {
+    let Some(document) = state.document().filter(|document| document.has_sides()) else { return };
     ui.separator();
     let all = [
         (ShownSide::Original, "Original"),

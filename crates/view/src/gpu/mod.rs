@@ -1,4 +1,11 @@
-//! The GPU: a device and its queue.
+//! The GPU: a device and its queue, and helpers for buffers, bindings, shaders and textures, which
+//! know nothing of meshes.
+
+pub(crate) mod bindings;
+pub(crate) mod buffers;
+pub(crate) mod read;
+pub(crate) mod shaders;
+pub(crate) mod texture;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -24,8 +31,8 @@ pub struct Gpu {
 const WANTED: Features = Features::INDIRECT_FIRST_INSTANCE;
 
 impl Gpu {
-    /// Interfaces to the GPU that are used: Vulkan, Metal and Direct3D 12. OpenGL lacks what shaders
-    /// need here, such as storage buffers for vertices.
+    /// Interfaces to the GPU that are used: Vulkan, Metal and Direct3D 12. OpenGL lacks what
+    /// shaders need here, such as storage buffers for vertices.
     pub(crate) const BACKENDS: Backends = Backends::PRIMARY;
 
     /// Opens the fastest GPU without a window.
@@ -58,8 +65,8 @@ impl Gpu {
         }
     }
 
-    /// Returns a description of the device to open on an adapter: with all of its limits, and the
-    /// features that are used where they are there.
+    /// Returns a description of the device to open on an adapter: with all of its limits, and those
+    /// features that are used where available.
     pub fn descriptor(adapter: &Adapter) -> wgpu::DeviceDescriptor<'static> {
         wgpu::DeviceDescriptor {
             label: Some("meshlod"),
@@ -74,8 +81,8 @@ impl Gpu {
         &self.name
     }
 
-    /// Returns the flag that says that the device was lost, for the callback that notices: a GPU
-    /// without a window has one of its own.
+    /// Returns the flag for the loss of the device, which the window's callback sets; a GPU without
+    /// a window has its own callback.
     #[cfg(feature = "viewer")]
     pub(crate) fn loss(&self) -> Arc<AtomicBool> {
         Arc::clone(&self.is_lost)
@@ -86,7 +93,7 @@ impl Gpu {
         self.is_lost.load(Ordering::Relaxed)
     }
 
-    /// Waits until everything submitted so far is done.
+    /// Waits until all submitted work is done.
     ///
     /// # Errors
     /// The device was lost.

@@ -1,28 +1,26 @@
 //! Buffers of the GPU read back.
 
-use wgpu::{Buffer, BufferDescriptor, BufferUsages, MapMode};
+use wgpu::{Buffer, BufferUsages, MapMode};
 
-use crate::{Gpu, ViewError};
+use super::Gpu;
+use super::buffers::blank_buffer;
+use crate::ViewError;
 
-/// Reads the first bytes of a buffer, after everything submitted so far. It must be a source of
+/// Reads the first bytes of a buffer, after all work submitted before. It must be a source of
 /// copies, and the number of bytes a multiple of four.
 pub(crate) fn read_buffer(gpu: &Gpu, from: &Buffer, bytes: u64) -> Result<Vec<u8>, ViewError> {
     if bytes == 0 {
         return Ok(Vec::new());
     }
-    let copy = gpu.device.create_buffer(&BufferDescriptor {
-        label: Some("read back"),
-        size: bytes,
-        usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
+    let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
+    let copy = blank_buffer(gpu, "read back", bytes, usage);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     encoder.copy_buffer_to_buffer(from, 0, &copy, 0, bytes);
     gpu.queue.submit([encoder.finish()]);
     map(gpu, &copy)
 }
 
-/// Returns the bytes of a buffer that can be mapped, after everything submitted so far.
+/// Returns the bytes of a mappable buffer, after all work submitted before.
 pub(crate) fn map(gpu: &Gpu, buffer: &Buffer) -> Result<Vec<u8>, ViewError> {
     let (send, receive) = std::sync::mpsc::channel();
     buffer.map_async(MapMode::Read, .., move |done| {

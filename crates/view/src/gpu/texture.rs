@@ -1,9 +1,26 @@
 //! Textures on the GPU.
 
 use meshlod::picture::Texture as Image;
-use wgpu::{Extent3d, Texture, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
+use wgpu::{
+    AddressMode, Extent3d, FilterMode, MipmapFilterMode, Sampler, SamplerDescriptor, Texture,
+    TextureDescriptor, TextureDimension, TextureFormat, TextureUsages,
+};
 
-use crate::Gpu;
+use super::Gpu;
+
+/// Creates a sampler that filters between texels and between levels, with an address mode for both
+/// axes and an anisotropy from 1 (off) to 16.
+pub(crate) fn sampler(gpu: &Gpu, address: AddressMode, anisotropy: u16) -> Sampler {
+    gpu.device.create_sampler(&SamplerDescriptor {
+        address_mode_u: address,
+        address_mode_v: address,
+        mag_filter: FilterMode::Linear,
+        min_filter: FilterMode::Linear,
+        mipmap_filter: MipmapFilterMode::Linear,
+        anisotropy_clamp: anisotropy,
+        ..Default::default()
+    })
+}
 
 /// Creates a texture of one level.
 pub(crate) fn texture_2d(
@@ -34,8 +51,8 @@ pub(crate) fn upload(gpu: &Gpu, image: &Image) -> Texture {
     upload_levels(gpu, &levels)
 }
 
-/// Uploads an image as sRGB: width, height and texels of its levels, the finest first, of which there
-/// must be one.
+/// Uploads an image as sRGB: width, height and texels of its levels, at least one, the finest
+/// first.
 pub(crate) fn upload_levels(gpu: &Gpu, levels: &[(u32, u32, &[[u8; 4]])]) -> Texture {
     let (width, height, _) = levels[0];
     let texture = gpu.device.create_texture(&TextureDescriptor {

@@ -1,4 +1,4 @@
-//! Format of what is drawn into.
+//! Format of a target.
 
 use wgpu::{CompareFunction, DepthStencilState, MultisampleState, TextureFormat};
 

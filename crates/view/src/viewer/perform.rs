@@ -1,43 +1,24 @@
-//! Actions: the wishes of keys and panels, carried out.
+//! Actions and commands, carried out.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use egui::{CursorGrab, ViewportCommand};
-use meshlod::Target;
 use meshlod::picture::UpAxis;
 
-use super::app::ViewerApp;
-use super::document::{DocumentLevel, LevelGoal, ShownSide};
+use super::action::Action;
+use super::document::{Document, ShownSide};
 use super::input::{Command, OrbitStep, commands};
-use super::jobs::JobKind;
-use super::work;
-use crate::stage::{Coloring, Shading, Subject, SubjectId};
+use super::state::ViewerState;
+use crate::stage::Shading;
 
 /// Turn of the keys 2, 4, 6 and 8, in radians.
 const ORBIT_STEP: f64 = std::f64::consts::PI / 12.0;
 /// Speed of a flight at its start, in diagonals per second.
 const FLIGHT_SPEED: f64 = 0.4;
-/// Radius of what is shown around a finding, relative to the diagonal.
+/// Radius of the view of a finding, relative to the diagonal.
 const FINDING_RADIUS: f64 = 0.03;
 
-/// Wish of a panel.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Action {
-    Do(Command),
-    Activate(usize),
-    Close(usize),
-    Show(ShownSide),
-    Simplify,
-    Compare,
-    Check,
-    Cancel(JobKind),
-    SelectFinding(usize),
-    SetUp(UpAxis),
-    ToggleFrozen,
-}
-
-impl ViewerApp {
+impl ViewerState {
     /// Opens the files that were dropped on the window.
     pub fn take_dropped_files(&mut self, ctx: &egui::Context) {
         let dropped = ctx.input_mut(|input| std::mem::take(&mut input.raw.dropped_files));
@@ -46,15 +27,7 @@ impl ViewerApp {
         }
     }
 
-    /// Opens a file in the background.
-    pub fn open(&mut self, path: PathBuf) {
-        let (renderer, reading) = (self.renderer(), self.options.reading);
-        let label = format!("Opening {}", path.display());
-        let work = move |watch: &_| work::open(&path, &reading, &renderer, watch);
-        self.jobs.start(JobKind::Open, label, work);
-    }
-
-    /// Does what the keys of this frame ask for, unless a field has them.
+    /// Carries out the commands of the keys of this frame, unless a text field has the focus.
     pub fn take_keys(&mut self, ctx: &egui::Context) {
         if ctx.egui_wants_keyboard_input() {
             return;
@@ -142,7 +115,7 @@ impl ViewerApp {
         ctx.send_viewport_cmd(ViewportCommand::CursorVisible(!flies));
     }
 
-    /// Flies to where everything that is shown fills the picture.
+    /// Flies to where all shown subjects fill the picture.
     pub fn frame_all(&mut self) {
         let (bounds, aspect) = (self.stage.bounds(), self.stage.aspect(self.size));
         self.stage.rig.fly_to_bounds(&bounds, aspect);
@@ -198,7 +171,7 @@ impl ViewerApp {
 
     /// Shows the subjects of the active document.
     pub fn show_document(&mut self) {
-        let shown = self.document().map(super::document::Document::shown).unwrap_or_default();
+        let shown = self.document().map(Document::shown).unwrap_or_default();
         self.stage.show(&shown);
         self.changes += 1;
     }
@@ -217,102 +190,7 @@ impl ViewerApp {
         self.show_document();
     }
 
-    fn simplify(&mut self) {
-        self.jobs.cancel(JobKind::Simplify);
-        self.jobs.cancel(JobKind::Compare);
-        let pose = self.stage.rig.pose();
-        let height = f64::from(self.size[0].min(self.size[1]).max(1));
-        let pixel = 2.0 * pose.distance * (self.stage.rig.fov_rad() / 2.0).tan() / height;
-        let Some(document) = self.document() else { return };
-        let order = document.order;
-        let target = match order.goal {
-            LevelGoal::Faces => Target::Faces(order.faces),
-            LevelGoal::Error => {
-                Target::Error(order.error_percent / 100.0 * document.loaded.bounds.diagonal())
-            }
-            LevelGoal::Pixels => Target::Error(order.pixels * pixel),
-        };
-        let (id, loaded) = (document.id, Arc::clone(&document.loaded));
-        let (renderer, method) = (self.renderer(), order.method);
-        self.jobs.start(JobKind::Simplify, "Simplifying", move |watch| {
-            work::simplify(id, &loaded, method, target, &renderer, watch)
-        });
-    }
-
-    fn compare(&mut self) {
-        let Some(document) = self.document() else { return };
-        let Some(DocumentLevel { loaded, subject, .. }) = &document.level else { return };
-        let surface = |id: SubjectId, loaded: &Arc<_>| {
-            let mesh = |subject: &Subject| subject.as_mesh().cloned();
-            self.stage.subject(id).map(|subject| (id, Arc::clone(loaded), mesh(subject)))
-        };
-        let both = (surface(document.original, &document.loaded), surface(*subject, loaded));
-        let ((Some(a), Some(b)), id) = (both, document.id) else { return };
-        let renderer = self.renderer();
-        self.jobs.start(JobKind::Compare, "Measuring the distance", move |watch| {
-            work::compare(id, [a, b], &renderer, watch)
-        });
-    }
-
-    fn check(&mut self) {
-        let Some(document) = self.document() else { return };
-        let (id, loaded) = (document.id, Arc::clone(&document.loaded));
-        self.jobs.start(JobKind::Check, "Checking", move |watch| work::check(id, &loaded, watch));
-    }
-
-    /// Starts what the wanted colouring needs and the shown subjects lack.
-    pub fn ensure_colors(&mut self) {
-        let wanted = self.stage.display.coloring;
-        if self.tried.first().is_some_and(|&(_, coloring)| coloring != wanted) {
-            self.tried.clear();
-        }
-        // Each of these jobs gives back a whole subject: two at once would undo each other.
-        let jobs = [JobKind::Compare, JobKind::Color, JobKind::Refine, JobKind::Simplify];
-        if jobs.iter().any(|&kind| self.jobs.has(kind)) {
-            return;
-        }
-        let Some(document) = self.document() else { return };
-        if wanted == Coloring::Heat {
-            let level = document.level.as_ref().filter(|level| level.distance.is_none());
-            let Some(wish) = level.map(|level| (level.subject, wanted)) else { return };
-            if !self.tried.contains(&wish) {
-                self.tried.push(wish);
-                self.compare();
-            }
-            return;
-        }
-        if !wanted.is_by_mesh_face() {
-            return;
-        }
-        let level = document.level.as_ref().map(|level| (level.subject, Arc::clone(&level.loaded)));
-        let own = [Some((document.original, Arc::clone(&document.loaded))), level];
-        let shown: Vec<_> = self.stage.shown().collect();
-        let lacking = own.into_iter().flatten().find_map(|(id, loaded)| {
-            let subject = self.stage.subject(id).filter(|subject| !subject.has(wanted))?;
-            let is_new = shown.contains(&id) && !self.tried.contains(&(id, wanted));
-            let mesh = subject.as_mesh().filter(|_| is_new)?;
-            Some((id, mesh.clone(), loaded))
-        });
-        let Some((id, mesh, loaded)) = lacking else { return };
-        self.tried.push((id, wanted));
-        let renderer = self.renderer();
-        self.jobs.start(JobKind::Color, "Colouring", move |_| {
-            work::color(id, mesh, &loaded, wanted, &renderer)
-        });
-    }
-
-    /// Writes the picture to a file.
-    pub fn save_picture(&mut self, path: PathBuf) {
-        match self.pane.read() {
-            Ok(Some(picture)) => {
-                self.jobs.start(JobKind::Save, "Saving", move |_| work::save(&picture, path));
-            }
-            Ok(None) => {}
-            Err(error) => self.complain(error.to_string()),
-        }
-    }
-
-    /// Returns a path in the working directory that no file has yet.
+    /// Returns an unused path in the working directory.
     fn picture_path(&self) -> PathBuf {
         let name =
             self.document().map_or("meshlod".into(), |document| document.loaded.path.clone());

@@ -6,15 +6,17 @@ use meshlod::picture::PictureError;
 use meshlod::strip::Strips;
 use wgpu::{Buffer, BufferUsages, IndexFormat, RenderPass};
 
-use crate::mesh::{MaterialBinding, middle, smooth_attributes};
+use super::build::{middle, smooth_attributes};
+use super::pipelines::{MaterialBinding, MeshPipelines};
+use crate::gpu::buffers::buffer_of;
 use crate::placement::{CLAY, Placement, linear};
-use crate::renderer::{Renderer, buffer_of};
+use crate::renderer::Renderer;
 use crate::{Gpu, ViewError};
 
 /// Strips of a mesh on the GPU: one index for every entry, and a restart between strips.
 ///
-/// All levels of a skip strip use the vertices of the finest one, so that only indices are sent when
-/// the level changes.
+/// All levels of a skip strip use the vertices of the finest one, so that only indices are sent
+/// when the level changes.
 #[derive(Debug)]
 pub struct GpuStrips {
     gpu: Gpu,
@@ -27,7 +29,8 @@ pub struct GpuStrips {
 }
 
 impl GpuStrips {
-    /// Uploads the vertices of a mesh, with smooth normals, and strips of it or of one of its levels.
+    /// Uploads the vertices of a mesh, with smooth normals, and strips of it or of one of its
+    /// levels.
     ///
     /// # Errors
     /// An invalid mesh, or one beyond the limits of the GPU.
@@ -39,21 +42,12 @@ impl GpuStrips {
         let positions: Vec<[f32; 3]> = mesh.positions.iter().map(place).collect();
         let attributes = smooth_attributes(mesh);
         gpu.check_buffer("the attributes of strips", 20 * attributes.len() as u64)?;
+        let fetched = |label, bytes| buffer_of(gpu, label, bytes, BufferUsages::VERTEX);
         let mut this = Self {
             gpu: gpu.clone(),
             origin: origin.into(),
-            positions: buffer_of(
-                gpu,
-                "positions",
-                bytemuck::cast_slice(&positions),
-                BufferUsages::VERTEX,
-            ),
-            attributes: buffer_of(
-                gpu,
-                "attributes",
-                bytemuck::cast_slice(&attributes),
-                BufferUsages::VERTEX,
-            ),
+            positions: fetched("positions", bytemuck::cast_slice(&positions)),
+            attributes: fetched("attributes", bytemuck::cast_slice(&attributes)),
             indices: buffer_of(gpu, "strips", &[], BufferUsages::INDEX),
             entries: 0,
             material: MaterialBinding::plain(renderer, linear(CLAY)),
@@ -92,7 +86,7 @@ impl GpuStrips {
 
     /// Draws the strips.
     pub fn draw(&self, renderer: &Renderer, pass: &mut RenderPass<'_>, placement: &Placement) {
-        pass.set_pipeline(&renderer.meshes().strips);
+        pass.set_pipeline(&renderer.pipelines::<MeshPipelines>().strips);
         pass.set_bind_group(0, &placement.bind_group, &[]);
         pass.set_bind_group(1, &self.material.bind_group, &[]);
         pass.set_vertex_buffer(0, self.positions.slice(..));
