@@ -8,9 +8,9 @@ use std::time::Instant;
 use meshlod::Mesh;
 use meshlod::flock::draw::FlockPainter;
 use meshlod::flock::levels::{Impostor, ImpostorOptions, LevelTable};
-use meshlod::flock::scene::Film;
 use meshlod::flock::select::{Budget, InstanceLevel, PolicyName, Selector};
 use meshlod::io::write_file;
+use meshlod_school::scene::Film;
 
 use crate::flock::figures::{Figures, FrameFigures, switches};
 use crate::flock::model::FlockModel;

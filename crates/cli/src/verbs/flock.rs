@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use clap::Args;
-use meshlod::flock::scene::{Film, ScenarioName};
 use meshlod::flock::select::{Budget, PolicyName};
+use meshlod_school::scene::{Film, ScenarioName};
 
 use crate::flock::model::{FlockModel, ModelArgs};
 use crate::flock::scene::SceneSettings;

@@ -1,8 +1,8 @@
 //! Options of `view --flock`.
 
 use clap::Args;
-use meshlod::flock::scene::ScenarioName;
 use meshlod::flock::select::PolicyName;
+use meshlod_school::scene::ScenarioName;
 
 use crate::flock::names;
 use crate::options::parse;

@@ -141,7 +141,7 @@ impl LevelTable {
 
     /// Returns the radius of the ball around the origin that holds all vertices, and half of their
     /// extent along each axis.
-    pub(crate) fn extent_of(positions: &[[f32; 3]]) -> (f32, [f32; 3]) {
+    pub fn extent_of(positions: &[[f32; 3]]) -> (f32, [f32; 3]) {
         let length = |p: &[f32; 3]| glam::Vec3::from(*p).length();
         let most = |axis: usize| positions.iter().map(|p| p[axis].abs()).fold(0.0, f32::max);
         (positions.iter().map(length).fold(0.0, f32::max), [0, 1, 2].map(most))

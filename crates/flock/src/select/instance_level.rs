@@ -28,7 +28,7 @@ impl InstanceLevel {
     pub const IMPOSTOR_TRIANGLES: usize = 2;
 
     /// Most levels that a table can have.
-    pub(crate) const MOST: usize = u16::MAX as usize - 1;
+    pub const MOST: usize = u16::MAX as usize - 1;
 
     /// Returns the value for a level of the table, which must be below 65,534.
     #[inline]

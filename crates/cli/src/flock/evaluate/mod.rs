@@ -8,14 +8,13 @@ mod summary;
 use std::path::Path;
 use std::sync::Arc;
 
-use meshlod::flock::evaluate::{
-    Arm, Evaluation, EvaluationOptions, Footage, Track, evaluate, over_time,
-};
 use meshlod::flock::levels::LevelTable;
-use meshlod::flock::scene::ScenarioName;
 use meshlod::flock::select::policies::Factors;
 use meshlod::flock::select::{Budget, PolicyName};
 use meshlod::io::write_file;
+use meshlod_school::Footage;
+use meshlod_school::evaluate::{Arm, Evaluation, EvaluationOptions, Track, evaluate, over_time};
+use meshlod_school::scene::ScenarioName;
 
 use crate::flock::evaluate::pictures::Pictures;
 use crate::flock::model::FlockModel;

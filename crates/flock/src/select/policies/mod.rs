@@ -16,20 +16,16 @@ mod screen_error;
 mod speed;
 
 pub use budgeted::Budgeted;
-pub use direction::Direction;
+pub use direction::{Direction, SidedLevels};
 pub use distance::Distance;
 pub use eccentricity::Eccentricity;
 pub use full_detail::FullDetail;
-pub use layer::Layer;
+pub use layer::{Layer, SHELLS};
 pub use ours::Ours;
 pub use paper::{Factors, Paper};
-pub use relative_distance::{Along, RelativeDistance};
+pub use relative_distance::{Along, RelativeDistance, RelativeTo};
 pub use screen_error::ScreenError;
 pub use speed::Speed;
-
-pub(crate) use direction::SidedLevels;
-pub(crate) use layer::SHELLS;
-pub(crate) use relative_distance::RelativeTo;
 
 use crate::flock::School;
 use crate::levels::Chain;
@@ -44,8 +40,8 @@ fn fill_by_distance(levels: &mut ChainLevels, view: &View<'_>, chain: &Chain) {
     levels.fill_by_share(view.table, chain, |distance| near / distance);
 }
 
-/// Runs `choose` for every school. Members of no school get levels by their own distance.
-pub(crate) fn each_school(
+/// Runs `choose` for every school; members of no school get levels by their own distance.
+pub fn each_school(
     view: &View<'_>,
     levels: &mut [InstanceLevel],
     by_distance: &ChainLevels,

@@ -1,8 +1,8 @@
 //! Bars and panels around the picture of a school.
 
 use egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Slider, Ui};
-use meshlod::flock::scene::ScenarioName;
 use meshlod::flock::select::PolicyName;
+use meshlod_school::scene::ScenarioName;
 
 use super::app::SchoolApp;
 use super::{graphs, keys};
