@@ -48,7 +48,7 @@ pub fn shoot(
         painter.impostor = Some(Arc::new(impostor.map_err(Failure::new)?));
     }
     let levels_only = Budget { impostors_below_px: None, ..*budget };
-    let mut selector = Selector::new(options.policy, table.clone());
+    let mut selector = Selector::new(options.school.policy, table.clone());
     let mut everything = Selector::new(PolicyName::None, table.clone());
     let mut recorder = options
         .record

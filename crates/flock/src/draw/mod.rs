@@ -46,7 +46,7 @@ pub struct FrameMesh {
     pub mesh: Mesh,
     /// First face of every drawn member, with the member, in ascending order.
     pub members: Vec<(u32, u32)>,
-    /// Number of faces of members; those of obstacles follow.
+    /// Number of faces of members, which precede the faces of obstacles.
     pub member_faces: usize,
     impostors: FrameImpostors,
 }

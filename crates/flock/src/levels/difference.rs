@@ -14,7 +14,7 @@ use crate::levels::table::TableError;
 /// Differences between pictures of a model and of its levels, by direction and size.
 ///
 /// A difference is an area: pixels that are half as bright as they should be count half. Details
-/// below the size of a pixel blend with what is beside them, so a small picture shows less of a
+/// smaller than a pixel blend with their surroundings, so a small picture shows less of a
 /// difference than a large one of the same area.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Differences {

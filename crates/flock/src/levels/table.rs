@@ -12,7 +12,7 @@ use crate::levels::difference::Differences;
 use crate::levels::directions::DirectionGrid;
 use crate::levels::model::ModelAxes;
 
-/// Levels of one model: what a renderer binds once and draws thousands of times.
+/// Levels of one model, which a renderer binds once and draws thousands of times.
 ///
 /// Vertices are in the frame of a member: left +x, up +y, heading +z, one body length long and
 /// centred at the origin.
@@ -130,8 +130,8 @@ impl LevelTable {
         if levels.is_empty() { depth } else { levels.start + directions.cell(direction) }
     }
 
-    /// Returns what decides how a level looks: its chain and its depth. A facing level looks like
-    /// that of the whole chain.
+    /// Returns the chain and depth that decide how a level looks. A facing level looks like the level
+    /// of the whole chain at its depth.
     pub fn appearance(&self, level: usize) -> (ChainKind, usize) {
         match self.levels[level] {
             Level { chain: ChainKind::Facing(_), depth, .. } => (ChainKind::Whole, depth),
@@ -147,7 +147,7 @@ impl LevelTable {
         (positions.iter().map(length).fold(0.0, f32::max), [0, 1, 2].map(most))
     }
 
-    /// Returns a level as a mesh of its own, with all vertices of the table.
+    /// Returns a level as a separate mesh, with all vertices of the table.
     pub fn mesh(&self, level: usize) -> Mesh {
         let range = self.levels[level].triangles.clone();
         let triangles = &self.triangles[range.clone()];

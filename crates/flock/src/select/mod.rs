@@ -9,7 +9,6 @@ mod budget;
 mod chain_levels;
 mod impostor_tier;
 mod instance_level;
-mod name;
 pub mod policies;
 mod view;
 
@@ -18,7 +17,7 @@ use std::sync::Arc;
 pub use budget::Budget;
 pub use chain_levels::ChainLevels;
 pub use instance_level::{Appearance, InstanceLevel};
-pub use name::PolicyName;
+pub use policies::{Bias, PolicyName};
 pub use view::{LANES, Lanes, View};
 
 use crate::camera::FlockCamera;

@@ -1,4 +1,4 @@
-//! Arms of the comparison: policies, what engines do, and controls.
+//! Arms of the comparison: policies, the usual choice of engines, and controls.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,7 @@ use meshlod::flock::levels::LevelTable;
 use meshlod::flock::select::policies::{Along, Factors, Paper, RelativeDistance};
 use meshlod::flock::select::{Policy, PolicyName};
 
-/// Way to choose levels that takes part in an evaluation.
+/// One of the ways of choosing levels that an evaluation compares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Arm {
@@ -15,8 +15,7 @@ pub enum Arm {
     Policy(PolicyName),
     /// Policy by its name; members without a visible pixel in full detail are skipped.
     VisibleOnly(PolicyName),
-    /// Control: levels by their error in pixels, without the faces that members turn away, as
-    /// `ours` leaves them out.
+    /// Control: levels by their error in pixels, without back faces, which `ours` omits, too.
     ScreenErrorFacing,
     /// Paper's policy without one of its factors.
     Paper(Factors),
@@ -31,7 +30,7 @@ pub enum Arm {
 }
 
 impl Arm {
-    /// All arms in a fixed order. Full detail is not among them: it is the reference.
+    /// All arms in a fixed order, except full detail, the reference.
     pub fn all() -> Vec<Self> {
         let policies = PolicyName::ALL.into_iter().filter(|policy| *policy != PolicyName::None);
         let visible =
@@ -45,6 +44,18 @@ impl Arm {
             .chain([Self::ScreenErrorFacing])
             .chain([Self::RelativeDistanceAsPrinted, Self::Random, Self::ShuffledLayer])
             .collect()
+    }
+
+    /// Arms of the paper's figures 19 to 22 [CC05].
+    pub fn of_the_paper() -> [Self; 6] {
+        [
+            Self::Policy(PolicyName::None),
+            Self::Policy(PolicyName::Distance),
+            Self::Policy(PolicyName::Paper),
+            Self::Paper(Factors::WithoutDirection),
+            Self::Paper(Factors::WithoutLayer),
+            Self::Policy(PolicyName::RelativeDistance),
+        ]
     }
 
     /// Returns the name of the arm in tables.

@@ -1,4 +1,4 @@
-//! Policies that know nothing, against which the others are held.
+//! Control policies, the baseline of the evaluation.
 
 use meshlod::flock::levels::{LevelTable, NEAREST_FACING};
 use meshlod::flock::select::policies::{
@@ -11,7 +11,7 @@ pub(super) struct RandomLevels {
     levels: ChainLevels,
 }
 
-/// Paper's policy with the layer of another member in place of its own.
+/// Paper's policy, except that every member takes the layer of another one.
 pub(super) struct ShuffledLayer {
     chains: SidedLevels,
 }

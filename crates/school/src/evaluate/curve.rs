@@ -1,4 +1,4 @@
-//! Scores of an arm over its bias, and the triangles that it needs for an image error.
+//! Scores of an arm over its bias, and the triangles needed for an image error.
 
 use serde::Serialize;
 
@@ -11,7 +11,7 @@ pub struct Row {
     pub scene: String,
     /// Name of the arm.
     pub arm: String,
-    /// Share of the triangles of full detail that the bias was set for.
+    /// Share of the triangles of full detail for which the bias was set.
     pub share: f64,
     /// Triangles drawn in each scored frame.
     pub triangles: Vec<usize>,
@@ -66,8 +66,8 @@ const LEAST_ERROR: f64 = 1e-3;
 /// Returns the least number of triangles at which a curve reaches an error, interpolated between
 /// the logarithms of both; `None` if it does not.
 ///
-/// Points are triangles and errors, in ascending order of triangles. An arm whose coarsest point is
-/// better than the error already needs at most that.
+/// Points are triangles and errors, in ascending order of triangles. If the coarsest point is
+/// already below the error, its triangles are the answer.
 pub fn triangles_for(points: &[[f64; 2]], error: f64) -> Option<f64> {
     let first = points.iter().position(|point| point[1] <= error)?;
     let Some(before) = first.checked_sub(1) else { return Some(points[0][0]) };

@@ -31,7 +31,7 @@ struct CameraEntry {
     velocity: [f32; 3],
 }
 
-/// Greatest deviation of a vector from the one that it should be.
+/// Greatest deviation of a vector from the expected one.
 const SLACK: f32 = 1e-3;
 
 /// Returns the bytes of the file.

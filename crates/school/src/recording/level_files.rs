@@ -21,7 +21,7 @@ pub struct LevelsFile {
     pub version: u32,
     /// Simplified chains, one after the other.
     pub chains: Vec<ChainEntry>,
-    /// Facing levels at each depth of the whole chain, after those of the chains.
+    /// Facing levels at each depth of the whole chain; they follow the chains.
     pub facing: Vec<FacingEntry>,
     /// Levels of all chains, finest first in each, and then the facing ones, direction by direction.
     pub levels: Vec<LevelEntry>,
@@ -66,7 +66,7 @@ pub struct LevelEntry {
 #[derive(Serialize, Deserialize)]
 pub struct LayerEntry {
     pub kind: LayerWord,
-    /// Number of the layer among those of its kind.
+    /// Number of the layer among all of its kind.
     pub set: u8,
     pub name: String,
     pub file: String,
@@ -85,7 +85,7 @@ pub enum LayerWord {
     Label,
 }
 
-/// Axes of `differences.npy`, but for its second, the levels of the whole chain.
+/// First and third axis of `differences.npy`; the second is the levels of the whole chain.
 #[derive(Serialize, Deserialize)]
 pub struct DifferencesEntry {
     /// Unit vector from the member to the eye, in the member's frame.
@@ -155,8 +155,8 @@ fn facing_entry(facing: &FacingLevels) -> FacingEntry {
     }
 }
 
-/// Returns for each facing level the unit vector to the eyes that it is for, and the greatest angle
-/// between that and them.
+/// Returns the axis of each facing level, the unit vector towards the eye, and the greatest angle
+/// between the axis and an eye for which the level is meant.
 pub fn cells(facing: &FacingLevels) -> impl Iterator<Item = f32> {
     let grid = &facing.directions;
     (0..facing.levels.len()).flat_map(move |cell| {

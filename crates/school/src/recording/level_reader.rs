@@ -1,4 +1,4 @@
-//! Reading of a level table from files that anybody may have written.
+//! Reading of a level table from untrusted files.
 
 use std::ops::Range;
 
@@ -14,15 +14,14 @@ use meshlod::flock::levels::{
 };
 use meshlod::flock::select::InstanceLevel;
 
-/// Greatest deviation of a direction from that of its grid.
+/// Greatest deviation of a direction from its grid's.
 const SLACK: f32 = 1e-3;
 
 /// Reads the level table of a model.
 ///
 /// # Errors
-/// Files that are missing or damaged, do not fit together, name what is not there, or hold what is
-/// not finite; chains in another order than [`write_levels`](super::write_levels)
-/// gives them.
+/// Files that are missing, damaged or inconsistent, indices out of range, values that are not
+/// finite, and chains in another order than [`write_levels`](super::write_levels) writes.
 pub fn read_levels(source: &mut Source<'_>) -> Result<LevelTable, RecordingError> {
     let file: LevelsFile = source.json(FILE)?;
     let (chains, facing) = (chains(&file)?, facing(&file)?);
@@ -55,10 +54,10 @@ pub fn read_levels(source: &mut Source<'_>) -> Result<LevelTable, RecordingError
     })
 }
 
-/// Most levels of a chain: policies count them in a byte.
+/// Upper limit of the levels of a chain, which policies count in a byte.
 const MOST_DEPTHS: usize = 255;
 
-/// Returns the simplified chains, whose levels must be the first, without gaps.
+/// Returns the simplified chains; their levels must come first, without gaps.
 fn chains(file: &LevelsFile) -> Result<[Chain; 3], RecordingError> {
     let words = [ChainWord::Whole, ChainWord::LeftCoarsened, ChainWord::RightCoarsened];
     let kinds = [ChainKind::Whole, ChainKind::LeftCoarsened, ChainKind::RightCoarsened];
@@ -81,7 +80,7 @@ fn chains(file: &LevelsFile) -> Result<[Chain; 3], RecordingError> {
     }
 }
 
-/// Returns the facing levels of all depths, which must follow those of the chains.
+/// Returns the facing levels of all depths; they must follow the chains.
 fn facing(file: &LevelsFile) -> Result<Vec<FacingLevels>, RecordingError> {
     if file.facing.len() != file.chains[0].levels {
         let reason = "there must be an entry for each level of the whole chain";
@@ -110,7 +109,7 @@ fn facing(file: &LevelsFile) -> Result<Vec<FacingLevels>, RecordingError> {
     Ok(depths)
 }
 
-/// Checks that the directions of the facing levels are those of their grids.
+/// Checks the directions of the facing levels against their grids.
 fn check_directions(
     facing: &[FacingLevels],
     source: &mut Source<'_>,
@@ -217,7 +216,7 @@ fn differences(depth: usize, source: &mut Source<'_>) -> Result<Differences, Rec
     Ok(Differences::from_arrays(depth, areas, silhouettes))
 }
 
-/// Checks that all values are finite; `width` of them are an entry.
+/// Checks that all values are finite; an entry has `width` of them.
 fn check_finite(file: &str, values: &[f32], width: usize) -> Result<(), RecordingError> {
     let fits = |x: &f32| x.abs() <= FARTHEST;
     match values.iter().position(|x| !fits(x)) {

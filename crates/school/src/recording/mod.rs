@@ -16,7 +16,7 @@
 //! | `selection.npy` | `u2 [frames, members]`: levels chosen; 65535 is hidden, 65534 an impostor |
 //!
 //! The format is described in full in `docs/notes/flock-recordings.md`. This module touches no
-//! files: what writes gives bytes by file name to a closure, and what reads asks one for them.
+//! files: writers pass names and bytes to a closure, readers request bytes by name from one.
 //!
 //! ```
 //! use std::collections::BTreeMap;

@@ -13,7 +13,7 @@ use crate::simulation::SchoolOptions;
 /// Name of the file.
 pub const FILE: &str = "scene.json";
 
-/// Scene of a recording: all that does not change from frame to frame.
+/// Scene of a recording: everything that stays the same in all frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedScene {
     /// Name of the scenario.

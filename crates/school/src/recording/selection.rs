@@ -1,4 +1,4 @@
-//! Levels that somebody has chosen for every member in every frame, as `selection.npy`.
+//! Levels chosen for every member in every frame, as `selection.npy`.
 
 use crate::recording::{RecordingError, Source, npy};
 use meshlod::flock::select::InstanceLevel;
@@ -76,8 +76,8 @@ impl Selection {
     }
 }
 
-/// Value of a member that is drawn as an impostor.
+/// Stored value of an impostor.
 const IMPOSTOR: usize = u16::MAX as usize - 1;
 
-/// Value of a member that is not drawn.
+/// Stored value of a hidden member.
 const HIDDEN: usize = u16::MAX as usize;

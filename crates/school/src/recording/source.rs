@@ -23,7 +23,7 @@ impl<'a> Source<'a> {
     /// Returns the bytes of a file.
     pub(super) fn bytes(&mut self, file: &str) -> Result<Vec<u8>, RecordingError> {
         let missing = |reason| RecordingError::Missing { file: file.into(), reason };
-        // Names of mesh files come from `scene.json`, which anybody may have written.
+        // Names of mesh files come from `scene.json`, which is not trusted.
         if file.is_empty() || file.contains(['/', '\\', ':']) || file.starts_with('.') {
             return Err(missing("not a file name within the folder".into()));
         }
@@ -37,7 +37,7 @@ impl<'a> Source<'a> {
             file: file.into(),
             reason: error.to_string(),
         };
-        // The version comes first: what is wrong with a later version is no concern of ours.
+        // The version comes first: other errors of a later version mean nothing.
         let Versioned { version } = serde_json::from_slice(&bytes).map_err(broken)?;
         if version != VERSION {
             return Err(RecordingError::Version { file: file.into(), found: version });

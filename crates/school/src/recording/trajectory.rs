@@ -10,7 +10,7 @@ use crate::scene::{Scenario, SceneObstacle};
 use meshlod::flock::FlockCamera;
 use meshlod::flock::{Flock, School};
 
-/// Recorded flock and camera of every frame, with the scene that they belong to.
+/// Recorded flock and camera of every frame, with their scene.
 ///
 /// Takes 28 bytes a member and frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,7 +46,7 @@ impl Recording {
     /// Adds a frame.
     ///
     /// # Panics
-    /// If the flock has other numbers of members or schools than the scenario.
+    /// If the numbers of members and schools differ from the scenario's.
     pub fn push(&mut self, flock: &Flock, camera: &FlockCamera) {
         let counts = (flock.members.len(), flock.schools.len());
         assert_eq!(counts, (self.scene.members, self.scene.schools.len()), "members, schools");
@@ -62,7 +62,7 @@ impl Recording {
         self.cameras.push(*camera);
     }
 
-    /// Returns what the recording shows.
+    /// Returns the recorded scene.
     pub fn scene(&self) -> &RecordedScene {
         &self.scene
     }
@@ -134,7 +134,7 @@ impl Recording {
     /// Reads a recording.
     ///
     /// # Errors
-    /// Files that are missing or damaged, do not fit together, or hold what is not finite.
+    /// Files that are missing, damaged or inconsistent, and values that are not finite.
     pub fn read(source: &mut Source<'_>) -> Result<Self, RecordingError> {
         let (scene, frames) = RecordedScene::read(source)?;
         let (members, schools) = (scene.members, scene.schools.len());

@@ -15,7 +15,7 @@ pub enum SceneError {
     /// The number of schools is zero, more than there are members, or too large.
     #[error("{members} members can form 1 to {most} schools, not {schools}")]
     Schools {
-        /// Number of schools asked for.
+        /// Requested number of schools.
         schools: usize,
         /// Number of members.
         members: usize,

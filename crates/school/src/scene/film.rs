@@ -14,9 +14,9 @@ pub struct Film {
     scenario: Scenario,
     simulation: Simulation,
     flock: Flock,
-    /// Number of frames so far.
+    /// Number of frames returned.
     frames: u64,
-    /// Eye of the frame before.
+    /// Eye of the previous frame.
     eye: Vec3,
 }
 
@@ -27,7 +27,7 @@ impl Film {
     /// Starts a scenario and lets its schools take shape.
     ///
     /// # Errors
-    /// What the simulation refuses.
+    /// Options that the simulation refuses.
     pub fn new(scenario: Scenario) -> Result<Self, SceneError> {
         let mut simulation = Simulation::new(&scenario.simulation)?;
         simulation.advance(scenario.warm_up_s)?;
@@ -41,7 +41,7 @@ impl Film {
     /// Advances by the time of a frame and returns the flock and its camera.
     ///
     /// # Errors
-    /// What the simulation and the camera refuse.
+    /// A time from frame to frame or a camera outside its range.
     pub fn next_frame(&mut self) -> Result<(&Flock, FlockCamera), SceneError> {
         let frame_s = self.scenario.frame_s;
         self.simulation.advance(frame_s)?;
@@ -57,8 +57,8 @@ impl Film {
     /// Moves an obstacle of the scenario; members make room for it.
     ///
     /// # Errors
-    /// An obstacle that does not exist, or a place that is not finite or too far away; then nothing
-    /// has moved.
+    /// An index without an obstacle, and a position that is not finite or too far away; then
+    /// nothing has moved.
     pub fn move_obstacle(&mut self, index: usize, by: Vec3) -> Result<(), SceneError> {
         self.simulation.move_obstacle(index, by)?;
         let Scenario { simulation, obstacles, .. } = &mut self.scenario;
@@ -89,7 +89,7 @@ impl Scenario {
     /// Runs the scenario and keeps all frames. Takes 28 bytes a member and frame.
     ///
     /// # Errors
-    /// What the simulation and the camera refuse.
+    /// A time from frame to frame or a camera outside its range.
     pub fn footage(self, frames: usize) -> Result<Footage, SceneError> {
         let mut footage = Footage {
             name: self.name.name().into(),

@@ -63,14 +63,14 @@ pub(super) struct CircleHeights {
 }
 
 impl CircleHeights {
-    /// Returns a smooth curve that is nowhere below `least`, a height for every angle.
+    /// Returns a smooth curve that never falls below `least`, the lowest height at every angle.
     ///
     /// `window` is the angle over which heights are averaged.
     pub(super) fn above(least: impl Fn(f32) -> f32, window: f32) -> Self {
         let angle = |i: usize| i as f32 / STEPS as f32 * TAU;
         let values: Vec<f32> = (0..STEPS).map(|i| least(angle(i))).collect();
         let reach = ((window / TAU * STEPS as f32) as usize).clamp(1, STEPS / 8);
-        // Every mean is over values that are at least as high as what is in the middle.
+        // Every mean is over values at least as high as the middle one.
         let widened = around(&values, 2 * reach + 2, |near| near.fold(f32::MIN, f32::max));
         let mean = |near: &mut dyn Iterator<Item = f32>| near.sum::<f32>() / (2 * reach + 1) as f32;
         let once = around(&widened, reach, mean);

@@ -29,7 +29,7 @@ pub(super) struct Ring {
 }
 
 impl Ring {
-    /// Returns the ring for schools of this many members, as [`SchoolOptions::of`] has it.
+    /// Returns the ring for schools of this many members, sized by [`SchoolOptions::of`].
     pub(super) fn of(members: usize) -> Self {
         let radii = SchoolOptions::of(members).radii;
         Self { radii, radius: (4.0 * radii.z).max(24.0) }

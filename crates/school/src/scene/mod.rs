@@ -1,4 +1,4 @@
-//! Scenarios: schools, what they swim round, and the path of a camera.
+//! Scenarios: schools, obstacles, and the path of a camera.
 //!
 //! Five scenarios have names, see [`ScenarioName`]. Each one scales with the number of members, so
 //! that a school of ten and one of ten thousand fill the picture alike. A [`Film`] runs a scenario

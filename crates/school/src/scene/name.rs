@@ -12,7 +12,7 @@ pub enum ScenarioName {
     Inside,
     /// The camera circles the school at a great distance.
     Far,
-    /// The school parts round balls, pillars and bars; the camera keeps beside it.
+    /// The school parts round balls, pillars and bars; the camera keeps abreast.
     Obstacles,
     /// The school swims over a terrain; the camera looks down on it from behind.
     Terrain,

@@ -1,4 +1,4 @@
-//! Scenario: what is simulated, what stands in the way, and how it is filmed.
+//! Scenario: schools, obstacles and camera.
 
 use std::f32::consts::FRAC_PI_4;
 
@@ -44,7 +44,7 @@ impl Default for ScenarioOptions<'_> {
     }
 }
 
-/// Schools, what they swim round, and a camera that follows the first of them.
+/// Schools, obstacles, and a camera that follows the first school.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
     /// Name of the scenario.
@@ -67,7 +67,8 @@ pub struct Scenario {
 impl Scenario {
     /// Sets up one of the scenarios of this crate.
     ///
-    /// Everything scales with the half axes that [`SchoolOptions::of`](crate::simulation::SchoolOptions::of) gives the largest school.
+    /// Everything scales with the half axes of the largest school, as
+    /// [`SchoolOptions::of`](crate::simulation::SchoolOptions::of) sets them.
     /// The camera is outside all obstacles in every frame.
     ///
     /// # Errors

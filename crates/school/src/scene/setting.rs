@@ -1,4 +1,4 @@
-//! Setting of a scenario: the part that each scenario has its own way of.
+//! Setting of a scenario: its schools, obstacles and camera.
 
 use crate::scene::SceneObstacle;
 use crate::scene::shot::Shot;

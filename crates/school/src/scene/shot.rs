@@ -17,7 +17,7 @@ pub(super) enum Shot {
         /// Time for a circle.
         period_s: f64,
     },
-    /// Swims beside the leader within the school, and looks all round.
+    /// Swims near the leader within the school, and looks all round.
     Inside,
     /// Keeps abreast of a leader on a ring, outside of it.
     Beside {

@@ -1,11 +1,11 @@
-//! Obstacles as members meet them: swimming round ahead of time, and never being inside.
+//! Avoidance of obstacles: members steer round them ahead of time, and never enter them.
 
 use glam::Vec3;
 
 use super::obstacle::Obstacle;
 use super::options::Behaviour;
 
-/// Obstacles of a simulation with what members know about them.
+/// Obstacles of a simulation, and how members avoid them.
 pub struct Waters<'a> {
     obstacles: &'a [Obstacle],
     /// Centre and radius of a ball around each obstacle.
@@ -13,10 +13,10 @@ pub struct Waters<'a> {
     behaviour: &'a Behaviour,
 }
 
-/// Points on the way ahead at which members look for obstacles, as shares of the time that they
-/// look ahead, and how much of their velocity they give up for what they find there.
+/// Points on the way ahead at which members look for obstacles, as fractions of the look-ahead
+/// time, each with the fraction of the velocity given up for an obstacle there.
 const AHEAD: [(f32, f32); 4] = [(0.0, 1.0), (0.25, 0.9), (0.55, 0.7), (1.0, 0.5)];
-/// Speed away from an obstacle, over that along it, of a member that gives way to it entirely.
+/// Speed away from an obstacle over the speed along it, for a member that gives way entirely.
 const REPULSION: f32 = 0.3;
 /// Rounds in which a point is pushed out of overlapping obstacles.
 const ROUNDS: usize = 12;
@@ -44,7 +44,7 @@ impl<'a> Waters<'a> {
             .map(|(obstacle, _)| obstacle)
     }
 
-    /// Returns the place of a slot outside the obstacles: where it is, or the nearest free water.
+    /// Returns the slot itself if it is free, else the nearest free water.
     pub fn free_slot(&self, slot: Vec3) -> Vec3 {
         let keep = 0.5 * (self.behaviour.clearance + self.behaviour.berth);
         let mut free = slot;
@@ -75,10 +75,10 @@ impl<'a> Waters<'a> {
         wanted
     }
 
-    /// Returns the point at which a member that was at `from`, outside, and wants to be at `to` is:
-    /// `to`, or as near to it as the obstacles allow.
+    /// Moves a member from `from`, outside all obstacles, towards `to`: all the way, or as near as
+    /// the obstacles allow.
     ///
-    /// Both ends of the way have the clearance, and it is at most twice as long, so that all of it
+    /// Both ends of the way keep the clearance, and the way is at most twice as long, so all of it
     /// is outside.
     pub fn hold_out(&self, from: Vec3, to: Vec3) -> Vec3 {
         let clearance = self.behaviour.clearance;
@@ -87,7 +87,7 @@ impl<'a> Waters<'a> {
         if is_free { at } else { from }
     }
 
-    /// Returns a point outside the obstacles that is near `point`, for the beginning.
+    /// Returns a free point near `point`, where a member can start.
     pub fn find_free(&self, point: Vec3) -> Vec3 {
         let mut at = self.push_out(point);
         let mut rise = self.behaviour.clearance;

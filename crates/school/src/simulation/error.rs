@@ -32,15 +32,15 @@ pub enum SimulationError {
     /// An obstacle has a coordinate or radius outside its range, or not a number.
     #[error("obstacle {0}: coordinates must be within 1e6 of the origin, and the radius over 0")]
     Obstacle(usize),
-    /// An obstacle that is to be moved does not exist.
+    /// No obstacle has this index.
     #[error("the simulation has {count} obstacles, counted from 0; there is no obstacle {index}")]
     NoObstacle {
-        /// Index of the obstacle asked for.
+        /// Requested index.
         index: usize,
         /// Number of obstacles.
         count: usize,
     },
-    /// A step is so long that a member could pass through what it should swim round.
+    /// A step is so long that a member could pass through an obstacle.
     #[error(
         "a member at {max_speed} body lengths per second swims farther than its clearance of \
          {clearance} in a step of {step_s} s: shorten the step"

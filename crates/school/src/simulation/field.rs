@@ -14,10 +14,10 @@ use super::sides::Sides;
 
 /// Signed distances from a mesh, sampled on a regular grid and interpolated between its points.
 ///
-/// Negative is inside a closed mesh, or behind the faces of an open one such as a terrain: what is
-/// on the other side of the closest face. Beyond the grid, which is a little larger than the mesh,
+/// Distances are negative inside a closed mesh and behind the faces of an open one such as a
+/// terrain: on the back of the closest face. Beyond the grid, which is a little larger than the mesh,
 /// the distance from the grid is added, so that the solid under a terrain is a few cells thick.
-/// What is thinner than a cell may be missing.
+/// Solids thinner than a cell may vanish.
 #[derive(Clone, PartialEq)]
 pub struct DistanceField {
     origin: Vec3,
@@ -34,7 +34,7 @@ const MARGIN: f64 = 3.0;
 const LEAST_CELL: f64 = 1e-3;
 
 impl DistanceField {
-    /// Samples the signed distances from `mesh`, whose coordinates are body lengths.
+    /// Samples the signed distances from `mesh`, in body lengths.
     ///
     /// `resolution` is the number of cells along the mesh's longest side. Vertices at one position
     /// count as one. Cost: resolution³ closest points at most, in parallel.
@@ -78,7 +78,7 @@ impl DistanceField {
         distances
     }
 
-    /// Returns the interpolated signed distance from a point, and the direction in which it grows.
+    /// Returns the interpolated signed distance at a point, and its gradient.
     pub fn distance(&self, point: Vec3) -> ObstacleDistance {
         let extent = Vec3::from(self.size.map(|n| (n - 1) as f32)) * self.cell;
         let inside = point.clamp(self.origin, self.origin + extent);
@@ -113,7 +113,7 @@ impl DistanceField {
         (mix(along_xy[0], along_xy[1], z), gradient / self.cell)
     }
 
-    /// Moves the field, with the mesh that it is of.
+    /// Moves the field together with its mesh.
     pub(super) fn translate(&mut self, by: Vec3) {
         self.origin += by;
     }

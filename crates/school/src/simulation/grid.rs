@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// Grid of cells as wide as the neighbour radius, and a part of it along x, with members in the
+/// Grid of cells as wide as the neighbour radius (along x, a fraction of it), with members in the
 /// order of their cells.
 ///
 /// Cells that are too many for the members are folded: the grid repeats in space, and members far
@@ -87,13 +87,13 @@ impl Grid {
         self.starts[cells.start] as usize..self.starts[cells.end] as usize
     }
 
-    /// Returns the cell after the last whose members begin at or before `member`.
+    /// Returns the first cell that begins after `member`.
     pub fn cell_of(&self, cells: Range<usize>, member: usize) -> usize {
         let starts = &self.starts[cells.start..cells.end];
         cells.start + starts.partition_point(|&start| start as usize <= member)
     }
 
-    /// Finds the runs of sorted members that are in a cell or within the radius of it, each once.
+    /// Finds the runs of sorted members in a cell or within the radius of it, each once.
     #[inline]
     pub fn find_runs(&self, cell: usize, runs: &mut Runs) {
         let [nx, ny, nz] = self.size;

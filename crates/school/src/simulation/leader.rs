@@ -7,12 +7,12 @@ use glam::{DVec3, Vec3};
 use super::error::PathError;
 use super::options::{FARTHEST, is_near};
 
-/// Leader of a school, who knows the way and is not a member.
+/// Leader of a school; it knows the way and is not a member.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Leader {
-    /// Leader that swims round a closed path, from its first waypoint.
+    /// Round a closed path, from its first waypoint.
     Path(LeaderPath),
-    /// Leader that swims straight on for ever.
+    /// Straight on for ever.
     Line {
         /// Position at the beginning.
         from: Vec3,
@@ -71,8 +71,8 @@ impl LeaderPath {
 
     /// Creates a ring round `center` that starts at +x of it and turns left, towards -z.
     ///
-    /// It is tilted about the x axis by `tilt_rad`. The radius is at least a body length; what is
-    /// not finite becomes zero.
+    /// It is tilted about the x axis by `tilt_rad`. The radius is at least a body length; numbers
+    /// that are not finite become zero.
     pub fn ring(center: Vec3, radius: f32, tilt_rad: f32) -> Self {
         let finite = |x: f32| if x.is_finite() { x.clamp(-FARTHEST, FARTHEST) } else { 0.0 };
         let center = Vec3::from(center.to_array().map(finite)).as_dvec3();
@@ -123,7 +123,7 @@ impl LeaderPath {
         (point.as_vec3(), tangent.as_vec3().normalize_or(Vec3::Z))
     }
 
-    /// Returns position and derivative at `place`, whose whole part is a waypoint.
+    /// Returns position and derivative at `place`: a waypoint, and a fraction of the way to the next.
     fn at(&self, place: f64) -> (DVec3, DVec3) {
         let count = self.waypoints.len();
         let (whole, t) = (place.floor() as usize, place.fract());

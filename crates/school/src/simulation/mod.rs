@@ -63,9 +63,9 @@ pub struct Simulation {
     leads: Vec<Lead>,
     /// Place of each member, by id.
     places: Vec<u32>,
-    /// Number of steps so far.
+    /// Number of completed steps.
     step: u64,
-    /// Time that [`Self::advance`] has not yet made a step of.
+    /// Time left over from [`Self::advance`], shorter than a step.
     pending_s: f64,
     looks: Looks,
 }
@@ -125,8 +125,8 @@ impl Simulation {
         }
     }
 
-    /// Advances by a time in whole steps, and returns their number; the rest is kept for the next
-    /// call and told by [`Self::alpha`].
+    /// Advances by a time in whole steps, and returns their number. The rest is kept for the next
+    /// call; [`Self::alpha`] returns it.
     ///
     /// # Errors
     /// A time that is negative, not a number, or more than an hour.
@@ -137,7 +137,7 @@ impl Simulation {
         let step_s = f64::from(self.options.step_s);
         self.pending_s += seconds;
         let mut steps = 0;
-        // A step that lacks nothing but rounding is made.
+        // A step short of time by rounding alone is made.
         while self.pending_s >= step_s * (1.0 - 1e-4) {
             self.step();
             self.pending_s -= step_s;
@@ -146,8 +146,8 @@ impl Simulation {
         Ok(steps)
     }
 
-    /// Returns the share of a step for which there was time, but no step yet: what to interpolate
-    /// by in [`Self::snapshot`].
+    /// Returns the time left over by [`Self::advance`] as a fraction of a step, the parameter of
+    /// [`Self::snapshot`].
     pub fn alpha(&self) -> f32 {
         (self.pending_s / f64::from(self.options.step_s)).clamp(0.0, 1.0) as f32
     }
@@ -167,8 +167,7 @@ impl Simulation {
         self.swarm.len() == 0
     }
 
-    /// Returns how many members looked at their neighbours in the last step, and how many
-    /// neighbours they had.
+    /// Returns the counts of members that looked at their neighbours in the last step.
     pub fn looks(&self) -> Looks {
         self.looks
     }
@@ -178,7 +177,7 @@ impl Simulation {
         &self.options
     }
 
-    /// Moves the eye from which [`SteerEvery`] counts distances; one that is not finite is ignored.
+    /// Moves the eye from which [`SteerEvery`] measures distances; one that is not finite is ignored.
     pub fn set_eye(&mut self, eye: Vec3) {
         if let Some(steer_every) = &mut self.options.steer_every
             && eye.is_finite()
@@ -187,11 +186,11 @@ impl Simulation {
         }
     }
 
-    /// Moves an obstacle, and every member that it would hold to the nearest free water.
+    /// Moves an obstacle, and the members in its new place to the nearest free water.
     ///
     /// # Errors
-    /// An obstacle that does not exist, or a place that is not finite or too far away; then nothing
-    /// has moved.
+    /// An index without an obstacle, and a position that is not finite or too far away; then
+    /// nothing has moved.
     pub fn move_obstacle(&mut self, index: usize, by: Vec3) -> Result<(), SimulationError> {
         let count = self.options.obstacles.len();
         let found = self.options.obstacles.get_mut(index);
@@ -208,7 +207,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Moves the leaders to where they are at the end of this step.
+    /// Moves the leaders to the end of this step.
     fn move_leaders(&mut self) {
         let step_s = self.options.step_s;
         let time_s = self.time_s();

@@ -1,4 +1,4 @@
-//! How a member moves in one step: the velocity it wants, and what it can do of it.
+//! One step of a member: the velocity it wants and the one it can reach.
 
 use glam::{Mat3, Vec3};
 

@@ -25,11 +25,11 @@ pub enum Obstacle<S = Arc<DistanceField>> {
         /// Distance from the segment.
         radius: f32,
     },
-    /// Inside of a closed mesh, or what lies under an open terrain.
+    /// Inside of a closed mesh, or underside of an open terrain.
     Solid(S),
 }
 
-/// Signed distance from a point to an obstacle, negative inside, and the direction in which it grows.
+/// Signed distance from a point to an obstacle, negative inside, and its gradient.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObstacleDistance {
     /// Signed distance, exact for balls and capsules and interpolated in fields.
@@ -82,7 +82,7 @@ impl<S> Obstacle<S> {
 impl Obstacle {
     /// Returns the signed distance from a point to the obstacle.
     ///
-    /// Where no direction leads out more than others, as from the centre of a ball, it is up.
+    /// From points without a shortest way out, such as the centre of a ball, the direction is up.
     pub fn distance(&self, point: Vec3) -> ObstacleDistance {
         match self {
             Self::Sphere { center, radius } => from_core(point, *center, *radius),

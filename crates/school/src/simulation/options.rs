@@ -46,7 +46,7 @@ pub struct SchoolOptions {
     pub speed: f32,
 }
 
-/// How members swim: what they see, how strongly they respond, and what they cannot do.
+/// How members swim: the range of their senses, the strength of their responses, their limits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Behaviour {
     /// Distance within which others are neighbours.
@@ -55,17 +55,17 @@ pub struct Behaviour {
     pub separation_radius: f32,
     /// Speed per body length of overlap with which a member leaves neighbours that are too near.
     pub separation: f32,
-    /// Share of the difference from the neighbours' mean velocity that a member makes its own.
+    /// Fraction of the neighbours' mean relative velocity that a member adopts.
     pub alignment: f32,
     /// Speed per body length with which a member approaches its neighbours' centre.
     pub cohesion: f32,
     /// Speed per body length with which a member approaches its slot.
     pub keeping: f32,
-    /// Greatest speed, beyond that of its slot, with which a member approaches it.
+    /// Greatest speed relative to its slot with which a member approaches it.
     pub catch_up: f32,
-    /// Distance by which a slot drifts about its place, so that members do not seem to be fixed.
+    /// Distance by which a slot drifts, so that members do not seem fixed.
     pub drift: f32,
-    /// Time within which a member takes up the velocity it wants.
+    /// Time constant with which the velocity follows the wanted one.
     pub response_s: f32,
     /// Greatest change of velocity per second.
     pub max_acceleration: f32,
@@ -85,8 +85,7 @@ pub struct Behaviour {
 
 /// Distances from an eye beyond which members look at their neighbours less often.
 ///
-/// Between looks they keep the response to the last one; slots and obstacles are minded in every
-/// step.
+/// Between looks they keep their last response; slots and obstacles count in every step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SteerEvery {
     /// Position of the eye, at the beginning; see [`Simulation::set_eye`](super::Simulation::set_eye).

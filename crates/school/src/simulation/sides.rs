@@ -4,9 +4,9 @@ use glam::DVec3;
 use meshlod::mesh::{Mesh, first_near};
 use meshlod::spatial::ClosestPoint;
 
-/// Normals of faces, edges and vertices, by which a point's side is that of its closest point.
+/// Normals of faces, edges and vertices, which decide the side of a point at its closest point.
 ///
-/// The normal of an edge is the sum of its faces', that of a vertex the sum weighted by their
+/// The normal of an edge is the sum of its faces', the normal of a vertex the sum weighted by their
 /// angles: with these the sign is right wherever the closest point is [BA05]. Vertices at one
 /// position count as one.
 pub struct Sides<'m> {

@@ -1,4 +1,4 @@
-//! The members at the beginning: in their slots, heading the way of their leaders.
+//! Start of a simulation: members in their slots, with the headings of their leaders.
 
 use glam::Vec3;
 

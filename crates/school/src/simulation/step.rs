@@ -136,7 +136,7 @@ impl Still<'_> {
     }
 }
 
-/// Part of what a step changes.
+/// State of some members that a step changes.
 struct Moved<'a> {
     position: [&'a mut [f32]; 3],
     velocity: [&'a mut [f32]; 3],

@@ -1,7 +1,10 @@
-//! Policies, one a file.
+//! Policies, one a file, and the table of them: a new one is its file and a row here.
 //!
 //! Those of the paper share one scale: a member at a distance `d` gets the share `NEAR * detail / d`
 //! of its triangles, and a factor makes it count as farther away than it is.
+
+#[macro_use]
+mod table;
 
 mod budgeted;
 mod direction;
@@ -9,8 +12,8 @@ mod distance;
 mod eccentricity;
 mod full_detail;
 mod layer;
-mod ours;
 mod paper;
+mod picture_gain;
 mod relative_distance;
 mod screen_error;
 mod speed;
@@ -21,15 +24,42 @@ pub use distance::Distance;
 pub use eccentricity::Eccentricity;
 pub use full_detail::FullDetail;
 pub use layer::{Layer, SHELLS};
-pub use ours::Ours;
 pub use paper::{Factors, Paper};
+pub use picture_gain::PictureGain;
 pub use relative_distance::{Along, RelativeDistance, RelativeTo};
 pub use screen_error::ScreenError;
 pub use speed::Speed;
+pub use table::Bias;
 
 use crate::flock::School;
 use crate::levels::Chain;
 use crate::select::{ChainLevels, InstanceLevel, View};
+
+policies! {
+    /// Full detail.
+    None = "none", "Full detail", '1', Bias::Nothing, FullDetail::new;
+    /// By the distance of the member.
+    Distance = "distance", "Distance", '2', Bias::Detail, Distance::new;
+    /// By the error of the level in pixels.
+    ScreenError = "screen-error", "Screen error", '3', Bias::Detail, ScreenError::new;
+    /// By the size of the member on the screen, under a budget of triangles, with hysteresis.
+    Budget = "budget", "Budget", '4', Bias::Triangles, Budgeted::new;
+    /// By the distance of the leader and the member's place in the school [CC05].
+    RelativeDistance =
+        "relative-distance", "Relative distance", '5', Bias::Detail, RelativeDistance::new;
+    /// By distance, with the side coarsened that the whole school turns away [CC05].
+    Direction = "direction", "Direction", '6', Bias::Detail, Direction::new;
+    /// By distance and depth in the school [CC05].
+    Layer = "layer", "Layer", '7', Bias::Detail, Layer::new;
+    /// By distance and the member's speed over the screen.
+    Speed = "speed", "Speed", '8', Bias::Detail, Speed::new;
+    /// By distance and the angle from where the viewer looks.
+    Eccentricity = "eccentricity", "Eccentricity", '9', Bias::Detail, Eccentricity::new;
+    /// By relative distance, direction and layer together [CC05].
+    Paper = "paper", "Paper", '0', Bias::Detail, Paper::new;
+    /// By what each triangle adds to the picture, under a budget of triangles.
+    Ours = "ours", "Ours", '-', Bias::Triangles, PictureGain::new;
+}
 
 /// Distance up to which a member has all its triangles at a detail of 1, in body lengths.
 const NEAR: f32 = 4.0;

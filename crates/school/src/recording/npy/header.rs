@@ -16,7 +16,7 @@ const MAGIC: &[u8] = b"\x93NUMPY";
 /// The header ends at a multiple of this many bytes.
 const ALIGNMENT: usize = 64;
 
-/// Greatest number of axes that NumPy knows.
+/// Greatest number of axes in NumPy.
 const MOST_AXES: usize = 64;
 
 impl Header {

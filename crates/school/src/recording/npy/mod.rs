@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use header::Header;
 
-/// Array of any number of dimensions, the last of which varies fastest.
+/// Array of any number of dimensions; the last varies fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Array<T> {
     /// Length along each axis.
@@ -19,7 +19,7 @@ pub struct Array<T> {
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum NpyError {
-    /// The file does not begin as a `.npy` file does.
+    /// The file lacks the first bytes of a `.npy` file.
     #[error("not a .npy file")]
     NotNpy,
     /// The file has another version of the format.
@@ -28,7 +28,7 @@ pub enum NpyError {
     /// The file ends within its header.
     #[error("the file ends within its header")]
     Cut,
-    /// The header is not as the format has it.
+    /// The header breaks the format.
     #[error("header: {0}")]
     Header(&'static str),
     /// The values are of another type.
@@ -103,7 +103,7 @@ pub fn write<T: Element>(shape: &[usize], values: impl ExactSizeIterator<Item = 
 ///
 /// # Errors
 /// A file that is cut, of another type, order or version, or whose header announces another number
-/// of values than follow. Nothing is allocated for values that are not there.
+/// of values than follow. No allocation exceeds the bytes given.
 pub fn read<T: Element>(bytes: &[u8]) -> Result<Array<T>, NpyError> {
     let (header, values) = Header::read(bytes)?;
     if header.descr != T::NAME {

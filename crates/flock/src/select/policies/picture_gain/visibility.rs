@@ -11,7 +11,7 @@ use glam::{Mat2, Vec2, Vec3};
 
 use crate::cell_index::cell_index;
 use crate::levels::LevelTable;
-use crate::select::policies::ours::gains::{SIZES, pixels_of};
+use crate::select::policies::picture_gain::gains::{SIZES, pixels_of};
 use crate::select::{LANES, Lanes, View};
 
 /// Number of tiles across and down, and of slices.
@@ -21,13 +21,13 @@ const SLICES: usize = 64;
 /// Last tile across and down, and last slice.
 const LAST: [f32; 3] = [TILES[0] as f32 - 1.0, TILES[1] as f32 - 1.0, SLICES as f32 - 1.0];
 
-/// Number of visibilities that are told apart: two to the octave.
+/// Number of steps of visibility, two per octave.
 pub(super) const VISIBILITIES: usize = 16;
 
 /// Froxel of a member that is not drawn.
 pub(super) const NOWHERE: u32 = u32::MAX;
 
-/// Most that one member hides of a tile.
+/// Largest fraction of a tile that one member can hide.
 const MOST_HIDDEN: f32 = 0.95;
 
 /// Returns the logarithm to base 2 of a visibility.
@@ -159,8 +159,8 @@ impl VisibilityGrid {
         (self.octaves[froxel] - 0.5 * of_member).max(0.0)
     }
 
-    /// Averages what is left of the light over all tiles that a member covers, in the picture or
-    /// beside it.
+    /// Averages the remaining light over all tiles that a member covers, in the picture or
+    /// outside it.
     fn over_tiles(&self, view: &View<'_>, member: usize, froxel: u32) -> f32 {
         let ellipse = self.ellipse(view, member, froxel);
         let (mut light, mut count) = (0.0, 0.0f32);

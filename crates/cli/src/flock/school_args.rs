@@ -1,4 +1,4 @@
-//! Options of `view --flock`.
+//! Options that `flock` and `view --flock` share.
 
 use clap::Args;
 use meshlod::flock::select::PolicyName;
@@ -7,10 +7,8 @@ use meshlod_school::scene::ScenarioName;
 use crate::flock::names;
 use crate::options::parse;
 
-/// Options of the window of a school.
+/// Who swims, how they are filmed, and how their levels are chosen.
 #[derive(Args)]
-#[command(next_help_heading = "With --flock")]
-#[group(requires = "flock")]
 #[cfg_attr(not(feature = "view"), allow(dead_code))]
 pub struct SchoolArgs {
     /// Number of members
@@ -21,10 +19,11 @@ pub struct SchoolArgs {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = parse::positive,
         allow_negative_numbers = true)]
     pub schools: usize,
-    /// Scene of the start, with its path of the camera: ring, inside, far, obstacles or terrain
+    /// Scene and path of the camera: ring circles a school, inside swims in it, far keeps away from
+    /// it, obstacles and terrain follow it past solids and over hills
     #[arg(long, value_name = "NAME", default_value = "ring")]
     pub camera: ScenarioName,
-    /// Policy of the start
+    /// Policy that chooses the levels
     #[arg(long, value_name = "NAME", default_value = "ours",
         help = names::policies())]
     pub policy: PolicyName,

@@ -1,7 +1,7 @@
-//! Levels by what their triangles add to the picture, under one budget for the whole flock.
+//! Levels by the gain of their triangles for the picture, under one budget for the whole flock.
 //!
-//! Every member falls into a cell: from which direction it is seen, how large, and how much of it
-//! others leave visible. Members of a cell are alike, so the budget is shared out among cells, not
+//! Every member falls into a cell: the direction from which it is seen, its size on the screen, and
+//! its visible fraction. Members of a cell are alike, so the budget is shared out among cells, not
 //! members, and the best choice costs the same for a hundred members as for a million:
 //! 1. [`visibility`]: members are splatted into a grid of tiles and depths; what lies in front of a
 //!    member hides it.
@@ -22,18 +22,18 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use crate::levels::{DirectionGrid, LevelTable, NEAREST_FACING};
-use crate::select::policies::ours::allocation::Allocation;
-use crate::select::policies::ours::gains::{Gains, SIZES, size_of};
-use crate::select::policies::ours::visibility::{NOWHERE, VISIBILITIES, VisibilityGrid};
+use crate::select::policies::picture_gain::allocation::Allocation;
+use crate::select::policies::picture_gain::gains::{Gains, SIZES, size_of};
+use crate::select::policies::picture_gain::visibility::{NOWHERE, VISIBILITIES, VisibilityGrid};
 use crate::select::view::load;
 use crate::select::{InstanceLevel, LANES, Lanes, Policy, View};
 
 /// Shares a budget of triangles out so that the picture of the whole flock changes least.
-pub struct Ours {
+pub struct PictureGain {
     gains: Gains,
     grid: VisibilityGrid,
     allocation: Allocation,
-    /// Directions that are told apart, the cells of the finest grid of the facing chains.
+    /// Directions of cells, the finest grid of the facing chains.
     directions: DirectionGrid,
     /// Level for every depth and direction, direction by direction.
     facing: Vec<u16>,
@@ -69,7 +69,7 @@ const NO_CELL: u32 = u32::MAX;
 /// Bit of a cell's number for members that are too near for facing chains.
 const NEAR: u32 = 1 << 31;
 
-impl Ours {
+impl PictureGain {
     /// Creates the policy for a table of levels.
     pub fn new(table: &LevelTable) -> Self {
         let finest =
@@ -184,15 +184,15 @@ impl Ours {
 /// Levels that a member may keep.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Band {
-    /// Finer and coarser ones than that of its cell.
+    /// Levels finer and coarser than the cell's.
     Full,
     /// Only coarser ones.
     Coarser,
-    /// Only that of its cell.
+    /// Only the level of its cell.
     None,
 }
 
-impl Policy for Ours {
+impl Policy for PictureGain {
     fn select(&mut self, view: &View<'_>, levels: &mut [InstanceLevel]) {
         self.grid.start(view);
         self.look(view);
@@ -208,7 +208,7 @@ impl Policy for Ours {
             if spent <= budget {
                 return;
             }
-            // Cells know neither what their members keep nor the cost of each direction.
+            // Cells ignore the levels that members keep, and the cost of each direction.
             target = (target as f64 * 0.99 * budget as f64 / spent as f64) as usize;
         }
         self.allocation.share_out(&self.gains, 0);

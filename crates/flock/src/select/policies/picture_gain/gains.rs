@@ -13,7 +13,7 @@ const DROPPED_BITS: u32 = 22;
 /// Square of the least size, in pixels per body length.
 const LEAST: f32 = 1.0 / 16.0;
 
-/// Returns the number of the size whose square in pixels per body length this is.
+/// Returns the index of a size, given its square in pixels per body length.
 #[inline(always)]
 pub(super) fn size_of(square: f32) -> usize {
     let steps = (square.max(LEAST).to_bits() >> DROPPED_BITS) - (LEAST.to_bits() >> DROPPED_BITS);

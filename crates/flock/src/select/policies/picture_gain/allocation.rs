@@ -1,7 +1,7 @@
 //! Sharing out of a budget of triangles among cells of members that are alike.
 
-use crate::select::policies::ours::gains::{Gains, Step};
-use crate::select::policies::ours::visibility::{VISIBILITIES, log_visibility};
+use crate::select::policies::picture_gain::gains::{Gains, Step};
+use crate::select::policies::picture_gain::visibility::{VISIBILITIES, log_visibility};
 
 /// Number of members in each cell, and the levels chosen for them.
 pub(super) struct Allocation {
@@ -25,7 +25,7 @@ pub(super) struct CellLevels {
 /// Buckets of the logarithm of a gain to the octave.
 const BUCKETS: f32 = 32.0;
 
-/// Octaves of gain above and below one that are told apart.
+/// Octaves of gain above and below one that have buckets.
 const OCTAVES: f32 = 32.0;
 
 /// Octaves of gain by which a level may be off before a member leaves it.
