@@ -1,9 +1,8 @@
 //! Recorded frames of a flock and its camera.
 
-use meshlod::mesh::Mesh;
-
 use meshlod::flock::Flock;
 use meshlod::flock::FlockCamera;
+use meshlod::mesh::Mesh;
 
 /// Recorded flock and the camera that sees it, frame by frame.
 #[derive(Clone, Debug)]

@@ -112,6 +112,9 @@ pub enum TableError {
 }
 
 impl LevelTable {
+    /// Upper limit of the levels of a table, which instances count in two bytes.
+    pub const MAX_LEVELS: usize = u16::MAX as usize - 1;
+
     /// Returns the number of triangles of a level.
     #[inline]
     pub fn triangle_count(&self, level: usize) -> usize {

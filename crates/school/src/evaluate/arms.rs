@@ -1,11 +1,11 @@
 //! Arms of the comparison: policies, the usual choice of engines, and controls.
 
-use serde::{Deserialize, Serialize};
-
-use crate::evaluate::controls::{RandomLevels, ScreenErrorFacing, ShuffledLayer};
 use meshlod::flock::levels::LevelTable;
 use meshlod::flock::select::policies::{Along, Factors, Paper, RelativeDistance};
 use meshlod::flock::select::{Policy, PolicyName};
+use serde::{Deserialize, Serialize};
+
+use crate::evaluate::controls::{RandomLevels, ScreenErrorFacing, ShuffledLayer};
 
 /// One of the ways of choosing levels that an evaluation compares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]

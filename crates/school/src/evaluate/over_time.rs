@@ -2,15 +2,15 @@
 
 use std::sync::Arc;
 
+use meshlod::flock::draw::FlockPainter;
+use meshlod::flock::levels::{LevelTable, Look};
+use meshlod::flock::select::{Budget, Selector};
 use meshlod::picture::PictureError;
 use serde::Serialize;
 
 use crate::evaluate::arms::Arm;
 use crate::evaluate::score::Reference;
 use crate::footage::Footage;
-use meshlod::flock::draw::FlockPainter;
-use meshlod::flock::levels::{LevelTable, Look};
-use meshlod::flock::select::{Budget, Selector};
 
 /// Triangles of an arm in every frame of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -1,12 +1,11 @@
 //! Image error of a frame, on the pixels that show the flock.
 
-use meshlod::picture::{Picture, PictureError, flip, ssim, visibility};
-use serde::Serialize;
-
 use meshlod::flock::Flock;
 use meshlod::flock::FlockCamera;
 use meshlod::flock::draw::{FlockPainter, FrameMesh};
 use meshlod::flock::select::InstanceLevel;
+use meshlod::picture::{Picture, PictureError, flip, ssim, visibility};
+use serde::Serialize;
 
 /// Frame in full detail, with which others are compared.
 pub struct Reference {
@@ -42,23 +41,9 @@ impl Reference {
         flock: &Flock,
         camera: &FlockCamera,
     ) -> Result<Self, PictureError> {
-        let levels = vec![InstanceLevel::drawn(0); flock.members.len()];
-        let frame = painter.frame(flock, &levels);
-        let seen_by = camera.for_picture();
-        let picture = painter.render(&frame, camera, &seen_by)?;
-        // Four samples a pixel, as in the picture.
-        let [width, height] = camera.size();
-        let found = visibility(&frame.mesh, &seen_by, [2 * width, 2 * height])?;
-        let mut visible = vec![false; flock.members.len()];
-        let mut shows_member = vec![false; (width * height) as usize];
-        for (i, face) in found.faces().enumerate() {
-            let Some(member) = face.and_then(|face| frame.member_of(face.index())) else {
-                continue;
-            };
-            visible[member] = true;
-            let (x, y) = (i % (2 * width as usize) / 2, i / (2 * width as usize) / 2);
-            shows_member[y * width as usize + x] = true;
-        }
+        let frame = full_detail(painter, flock);
+        let picture = painter.render(&frame, camera, &camera.for_picture())?;
+        let (shows_member, visible) = seen(&frame, camera, flock.members.len())?;
         Ok(Self { picture, shows_member, visible })
     }
 

@@ -1,10 +1,11 @@
 //! Cameras of all frames, as `cameras.json`.
 
 use glam::Vec3;
+use meshlod::flock::FlockCamera;
 use serde::{Deserialize, Serialize};
 
+use crate::recording::limits::FARTHEST;
 use crate::recording::{RecordingError, Source, VERSION, json};
-use meshlod::flock::FlockCamera;
 
 /// Name of the file.
 const FILE: &str = "cameras.json";
@@ -74,7 +75,7 @@ impl CameraEntry {
         if !(forward.length() - 1.0).abs().le(&SLACK) {
             return Err("`forward` must be a unit vector".into());
         }
-        if eye.abs().max_element() > super::FARTHEST || !velocity.is_finite() {
+        if eye.abs().max_element() > FARTHEST || !velocity.is_finite() {
             return Err("`eye` and `velocity` must be finite, and within 1e7 body lengths".into());
         }
         let camera = FlockCamera::look_along(self.eye, self.forward, self.fov_rad, self.size)

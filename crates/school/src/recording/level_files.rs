@@ -1,10 +1,10 @@
 //! Level table of a model as files: `levels.json` and the arrays that it names.
 
+use meshlod::flock::levels::{Chain, ChainKind, Differences, FacingLevels, Level, LevelTable};
 use meshlod::mesh::LayerKind;
 use serde::{Deserialize, Serialize};
 
 use crate::recording::{VERSION, json, npy};
-use meshlod::flock::levels::{Chain, ChainKind, Differences, FacingLevels, Level, LevelTable};
 
 /// Names of the files with fixed names.
 pub const FILE: &str = "levels.json";

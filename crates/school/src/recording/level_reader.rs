@@ -2,17 +2,17 @@
 
 use std::ops::Range;
 
+use meshlod::flock::levels::{
+    Chain, ChainKind, Differences, DirectionGrid, FacingLevels, Level, LevelTable,
+};
 use meshlod::mesh::{Labels, Layer, LayerKind};
 
 use crate::recording::level_files::{
     ChainWord, DIFFERENCES, DIRECTIONS, FILE, LayerEntry, LevelEntry, LevelsFile, MATERIALS,
     SILHOUETTES, TRIANGLES, VERTICES, cells,
 };
-use crate::recording::{FARTHEST, RecordingError, Source};
-use meshlod::flock::levels::{
-    Chain, ChainKind, Differences, DirectionGrid, FacingLevels, Level, LevelTable,
-};
-use meshlod::flock::select::InstanceLevel;
+use crate::recording::limits::FARTHEST;
+use crate::recording::{RecordingError, Source};
 
 /// Greatest deviation of a direction from its grid's.
 const SLACK: f32 = 1e-3;
@@ -102,7 +102,7 @@ fn facing(file: &LevelsFile) -> Result<Vec<FacingLevels>, RecordingError> {
         }
         depths.push(FacingLevels { directions, levels });
     }
-    if next != file.levels.len() || next > InstanceLevel::MOST {
+    if next != file.levels.len() || next > LevelTable::MAX_LEVELS {
         let reason = "there must be at most 65534, each in a chain";
         return Err(RecordingError::value(FILE, "levels", reason));
     }

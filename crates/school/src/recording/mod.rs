@@ -47,6 +47,7 @@ mod error;
 mod json;
 mod level_files;
 mod level_reader;
+mod limits;
 pub mod npy;
 mod scene_file;
 mod selection;
@@ -58,13 +59,8 @@ mod trajectory;
 pub use error::RecordingError;
 pub use level_files::write_levels;
 pub use level_reader::read_levels;
+pub use limits::VERSION;
 pub use scene_file::RecordedScene;
 pub use selection::Selection;
 pub use source::Source;
 pub use trajectory::Recording;
-
-/// Version of the format, in `scene.json`, `cameras.json` and `levels.json`.
-pub const VERSION: u32 = 1;
-
-/// Greatest coordinate that a recording may hold, in body lengths.
-const FARTHEST: f32 = 1e7;

@@ -6,6 +6,7 @@ use glam::Vec3;
 use meshlod::mesh::{Mesh, VertexId};
 use serde::{Deserialize, Serialize};
 
+use crate::recording::limits::FARTHEST;
 use crate::recording::{RecordingError, Source, VERSION, json, npy};
 use crate::scene::{Scenario, SceneObstacle};
 use crate::simulation::SchoolOptions;
@@ -133,7 +134,7 @@ impl RecordedScene {
                 let reason = "its members must follow those of the school before, and be there";
                 return wrong(format!("school {i}"), reason);
             };
-            if !(radii.min_element() >= 0.0 && radii.max_element() <= super::FARTHEST) {
+            if !(radii.min_element() >= 0.0 && radii.max_element() <= FARTHEST) {
                 return wrong(format!("school {i}"), "its radii must be between 0 and 1e7");
             }
             next = end;
@@ -183,7 +184,7 @@ fn read_obstacle(
     number: usize,
     source: &mut Source<'_>,
 ) -> Result<SceneObstacle, RecordingError> {
-    let near = |point: Vec3| point.abs().max_element() <= super::FARTHEST;
+    let near = |point: Vec3| point.abs().max_element() <= FARTHEST;
     let obstacle = match entry {
         ObstacleEntry::Sphere { center, radius } => {
             SceneObstacle::Sphere { center: center.into(), radius }
@@ -212,7 +213,7 @@ fn read_obstacle(
 }
 
 fn is_wide(radius: f32) -> bool {
-    radius > 0.0 && radius <= super::FARTHEST
+    radius > 0.0 && radius <= FARTHEST
 }
 
 fn read_mesh(

@@ -1,7 +1,8 @@
 //! Levels chosen for every member in every frame, as `selection.npy`.
 
-use crate::recording::{RecordingError, Source, npy};
 use meshlod::flock::select::InstanceLevel;
+
+use crate::recording::{RecordingError, Source, npy};
 
 /// Name of the file.
 const FILE: &str = "selection.npy";

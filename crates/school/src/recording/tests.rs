@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use meshlod::flock::levels::{ChainOptions, LevelTable, Look, ModelAxes};
+use meshlod::flock::select::{Budget, PolicyName, Selector};
 use proptest::prelude::*;
 
 use super::*;
 use crate::scene::{Film, Scenario, ScenarioName, ScenarioOptions};
-use meshlod::flock::levels::{ChainOptions, LevelTable, Look, ModelAxes};
-use meshlod::flock::select::{Budget, PolicyName, Selector};
 
 type Folder = BTreeMap<String, Vec<u8>>;
 

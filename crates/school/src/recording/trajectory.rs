@@ -3,12 +3,13 @@
 use std::ops::Range;
 
 use glam::Vec3;
-
-use crate::footage::Footage;
-use crate::recording::{RecordedScene, RecordingError, Source, cameras, npy};
-use crate::scene::{Scenario, SceneObstacle};
 use meshlod::flock::FlockCamera;
 use meshlod::flock::{Flock, School};
+
+use crate::footage::Footage;
+use crate::recording::limits::FARTHEST;
+use crate::recording::{RecordedScene, RecordingError, Source, cameras, npy};
+use crate::scene::{Scenario, SceneObstacle};
 
 /// Recorded flock and camera of every frame, with their scene.
 ///
@@ -169,7 +170,7 @@ const SPEED: [&str; 2] = ["member", "a speed must be between 0 and 1e7"];
 const LEADER: [&str; 2] = ["leader", "it must have a finite position and a unit vector as heading"];
 
 fn is_near(position: [f32; 3]) -> bool {
-    position.iter().all(|x| x.abs() <= super::FARTHEST)
+    position.iter().all(|x| x.abs() <= FARTHEST)
 }
 
 fn is_unit(heading: [f32; 3]) -> bool {

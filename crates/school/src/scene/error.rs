@@ -1,9 +1,9 @@
 //! Errors of scenarios.
 
+use meshlod::flock::CameraError;
 use thiserror::Error;
 
 use crate::simulation::{FieldError, PathError, SimulationError};
-use meshlod::flock::CameraError;
 
 /// Reason why a scenario cannot be set up or filmed.
 #[derive(Clone, Debug, Error, PartialEq)]

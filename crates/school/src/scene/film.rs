@@ -1,12 +1,12 @@
 //! Film: a scenario that runs, frame by frame.
 
 use glam::Vec3;
+use meshlod::flock::Flock;
+use meshlod::flock::FlockCamera;
 
 use crate::footage::Footage;
 use crate::scene::{Scenario, SceneError};
 use crate::simulation::Simulation;
-use meshlod::flock::Flock;
-use meshlod::flock::FlockCamera;
 
 /// Scenario that runs; every frame is a flock and the camera that sees it.
 #[derive(Clone, Debug)]

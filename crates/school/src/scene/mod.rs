@@ -16,6 +16,10 @@
 //! }
 //! # Ok::<(), meshlod_school::scene::SceneError>(())
 //! ```
+//!
+//! To read: `scenario`, the recipe; `setting` with one file a scenario (`ring`, `obstacle_course`,
+//! `terrain`), which place schools on `lanes` above the `ground`; `shot`, the camera; `film`, the
+//! run; `obstacle` and `solid`, what stands in the way and its meshes.
 
 mod error;
 mod film;

@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use glam::Vec3;
+use meshlod::flock::School;
 
 use crate::scene::ground::CircleHeights;
-use meshlod::flock::School;
 
 /// How a camera moves; lengths are in body lengths.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
-use super::obstacle::Obstacle;
-use super::options::Behaviour;
+use crate::simulation::obstacle::Obstacle;
+use crate::simulation::options::Behaviour;
 
 /// Obstacles of a simulation, and how members avoid them.
 pub struct Waters<'a> {

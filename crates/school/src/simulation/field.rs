@@ -7,10 +7,10 @@ use meshlod::mesh::{FaceId, Mesh};
 use meshlod::spatial::Bvh;
 use rayon::prelude::*;
 
-use super::error::FieldError;
-use super::obstacle::ObstacleDistance;
-use super::options::FARTHEST;
-use super::sides::Sides;
+use crate::simulation::error::FieldError;
+use crate::simulation::obstacle::ObstacleDistance;
+use crate::simulation::range::FARTHEST;
+use crate::simulation::sides::Sides;
 
 /// Signed distances from a mesh, sampled on a regular grid and interpolated between its points.
 ///

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use glam::{DVec3, Vec3};
 
-use super::error::PathError;
-use super::options::{FARTHEST, is_near};
+use crate::simulation::error::PathError;
+use crate::simulation::range::{FARTHEST, is_near};
 
 /// Leader of a school; it knows the way and is not a member.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,9 +2,9 @@
 
 use glam::{Mat3, Vec3};
 
-use super::avoid::Waters;
-use super::neighbours::Neighbours;
-use super::options::Behaviour;
+use crate::simulation::avoid::Waters;
+use crate::simulation::neighbours::Neighbours;
+use crate::simulation::options::Behaviour;
 
 /// Leader of a school over one step.
 #[derive(Clone, Copy, Debug)]

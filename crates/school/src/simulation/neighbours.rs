@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use glam::{Vec3, Vec4};
 
-use super::options::Behaviour;
-use super::swarm::Motion;
+use crate::simulation::options::Behaviour;
+use crate::simulation::swarm::Motion;
 
 /// Candidates examined together: the registers of the baseline hold four numbers. With eight the
 /// sums would not fit into its sixteen registers.

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::field::DistanceField;
-use super::options::{FARTHEST, is_near};
+use crate::simulation::field::DistanceField;
+use crate::simulation::range::{FARTHEST, is_near};
 
 /// Obstacle, in body lengths; `S` is the form of its solids: a distance field for the simulation, a
 /// mesh for pictures ([`SceneObstacle`](crate::scene::SceneObstacle)).

@@ -4,17 +4,10 @@ use std::f32::consts::PI;
 
 use glam::Vec3;
 
-use super::error::SimulationError;
-use super::leader::{Leader, LeaderPath};
-use super::obstacle::Obstacle;
-
-/// Greatest coordinate and length, so that single precision resolves a tenth of a body length.
-pub(super) const FARTHEST: f32 = 1e6;
-
-/// Returns true if a point is finite and near enough to the origin.
-pub(super) fn is_near(point: Vec3) -> bool {
-    point.to_array().iter().all(|x| x.abs() <= FARTHEST)
-}
+use crate::simulation::error::SimulationError;
+use crate::simulation::leader::{Leader, LeaderPath};
+use crate::simulation::obstacle::Obstacle;
+use crate::simulation::range::{FARTHEST, is_near};
 
 /// Options of a simulation; lengths are in body lengths, times in seconds.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,10 +1,10 @@
 //! The flock between two steps, in the order of the members' ids.
 
+use meshlod::flock::{Flock, School};
 use rayon::prelude::*;
 
-use super::Simulation;
-use super::swarm::at;
-use meshlod::flock::{Flock, School};
+use crate::simulation::schools::Simulation;
+use crate::simulation::swarm::at;
 
 /// Members that a thread takes at once.
 const CHUNK: usize = 4096;

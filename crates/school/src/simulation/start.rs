@@ -1,12 +1,12 @@
 //! Start of a simulation: members in their slots, with the headings of their leaders.
 
 use glam::Vec3;
-
-use super::avoid::Waters;
-use super::options::SimulationOptions;
-use super::slots::{Slots, mix};
-use super::swarm::Swarm;
 use meshlod::flock::frame_of;
+
+use crate::simulation::avoid::Waters;
+use crate::simulation::options::SimulationOptions;
+use crate::simulation::slots::{Slots, mix};
+use crate::simulation::swarm::Swarm;
 
 /// Distance by which members are scattered about their slots, so that no two are at one point even
 /// in an ellipsoid without volume.

@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use glam::Vec3;
 
-use super::avoid::Waters;
-use super::grid::{Grid, Runs};
-use super::motion::{Lead, Member};
-use super::neighbours::{Candidates, Neighbours};
-use super::options::{Behaviour, SteerEvery};
-use super::swarm::{Axes, Kept, Motion, Swarm, at};
+use crate::simulation::avoid::Waters;
+use crate::simulation::grid::{Grid, Runs};
+use crate::simulation::motion::{Lead, Member};
+use crate::simulation::neighbours::{Candidates, Neighbours};
+use crate::simulation::options::{Behaviour, SteerEvery};
+use crate::simulation::swarm::{Axes, Kept, Motion, Swarm, at};
 
 /// State that all members share in a step.
 pub struct Moment<'a> {

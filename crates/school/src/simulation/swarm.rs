@@ -3,8 +3,8 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::avoid::Waters;
-use super::neighbours::LANES;
+use crate::simulation::avoid::Waters;
+use crate::simulation::neighbours::LANES;
 
 /// Arrays by axis.
 pub type Axes = [Vec<f32>; 3];

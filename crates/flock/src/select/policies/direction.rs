@@ -2,7 +2,7 @@
 
 use crate::flock::School;
 use crate::levels::LevelTable;
-use crate::select::policies::{each_school, fill_by_distance};
+use crate::select::policies::by_school::{each_school, fill_by_distance};
 use crate::select::{ChainLevels, InstanceLevel, Policy, View};
 
 /// Gives every member a share of its triangles by its distance, from the chain whose coarsened side

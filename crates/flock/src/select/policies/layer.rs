@@ -6,7 +6,7 @@ use glam::{Mat3, Vec3};
 
 use crate::flock::School;
 use crate::levels::LevelTable;
-use crate::select::policies::{each_school, fill_by_distance};
+use crate::select::policies::by_school::{each_school, fill_by_distance};
 use crate::select::{ChainLevels, InstanceLevel, LANES, Lanes, Policy, View};
 
 /// Gives every member a share of its triangles by its distance, and fewer the deeper it swims in the

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use crate::flock::School;
 use crate::levels::LevelTable;
-use crate::select::policies::{each_school, fill_by_distance};
+use crate::select::policies::by_school::{each_school, fill_by_distance};
 use crate::select::{ChainLevels, InstanceLevel, LANES, Lanes, Policy, View};
 
 /// Gives every member a share of its triangles by the leader's distance and its own place in the
