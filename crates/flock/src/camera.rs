@@ -186,8 +186,17 @@ impl FlockCamera {
         }
     }
 
-    /// Returns the camera of [`meshlod_picture`] at the same place that looks another way.
-    pub(crate) fn looking(&self, way: DVec3) -> meshlod_picture::Camera {
+    /// Returns the camera of [`meshlod_picture`] turned by a fraction of a pixel, to the right and
+    /// up: its samples lie between those of [`FlockCamera::for_picture`].
+    pub fn shifted(&self, pixels: [f64; 2]) -> meshlod_picture::Camera {
+        let [right, up, forward] = self.axes().map(|axis| axis.as_dvec3());
+        let pixel = 1.0 / f64::from(self.pixels_at_one());
+        let way = forward + (right * pixels[0] + up * pixels[1]) * pixel;
+        self.looking(way)
+    }
+
+    /// Returns the camera of [`meshlod_picture`] at the same place that looks along `way`.
+    fn looking(&self, way: DVec3) -> meshlod_picture::Camera {
         let (eye, up) = (self.eye.as_dvec3(), self.up.as_dvec3());
         let target = (eye + way).to_array();
         meshlod_picture::Camera::look_at(eye.into(), target, up.into(), self.fov_rad.into())

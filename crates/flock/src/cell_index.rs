@@ -6,7 +6,7 @@
 ///
 /// A number on the border of two cells may be given to the lower one. `last` must be a whole number
 /// below 2²². The compiler turns this into vector code without conversions, which it does not for a
-/// cast: beside 2²³ a float has no room for a fraction, so its bits are the rounded number.
+/// cast: near 2²³ a float has no room for a fraction, so its bits are the rounded number.
 #[inline(always)]
 pub(crate) fn cell_index(x: f32, last: f32) -> u32 {
     const ROUNDER: f32 = (1 << 23) as f32;

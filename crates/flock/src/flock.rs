@@ -6,7 +6,7 @@ use glam::{Mat3, Vec3};
 
 use crate::members::{Members, frame_of};
 
-/// Flock at one moment: what a level policy sees and a renderer draws.
+/// Flock at one moment, as policies see it and renderers draw it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Flock {
     /// Positions and headings of all members of all schools, in body lengths.
@@ -21,7 +21,7 @@ pub struct Flock {
 pub struct School {
     /// Members of the school.
     pub members: Range<usize>,
-    /// Position of the leader, who is not a member, in body lengths: the centre of the ellipsoid.
+    /// Position of the leader, not a member, in body lengths: the centre of the ellipsoid.
     pub leader: Vec3,
     /// Unit vector in which the leader swims.
     pub heading: Vec3,

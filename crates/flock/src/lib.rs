@@ -1,19 +1,20 @@
-//! Flocks of instanced meshes: a simulation, policies that choose a level for every member, and the
-//! evaluation of what they cost and show.
+//! Flocks of instanced meshes: levels of their model, policies that choose one for every member,
+//! and drawing.
+//!
+//! A [`Flock`] has the positions and headings of its [`Members`], wherever they come from;
+//! [`levels`] prepares the levels of the model, [`select`] chooses a level for each member as a
+//! [`FlockCamera`] sees it, [`nearest`] refines the nearest ones by cuts that follow the view, and
+//! [`draw`] makes pictures of a frame.
 #![forbid(unsafe_code)]
 
 mod camera;
 mod cell_index;
 pub mod draw;
-pub mod evaluate;
 mod flock;
 pub mod levels;
 mod members;
 pub mod nearest;
-pub mod recording;
-pub mod scene;
 pub mod select;
-pub mod simulation;
 
 pub use camera::{CameraError, FlockCamera};
 pub use flock::{Flock, School};

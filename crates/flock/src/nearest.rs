@@ -51,7 +51,7 @@ pub struct NearestCuts {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct NearestOptions {
-    /// Most members that get a cut.
+    /// Upper limit of the members that get a cut.
     pub members: usize,
     /// Number of pixels that the error of a cut may span in the middle of the picture.
     pub tolerance_px: f64,

@@ -184,15 +184,15 @@
 //! # Ok::<(), meshlod::SimplifyError>(())
 //! ```
 //!
-//! [`flock`] simulates schools of thousands of members and chooses a level for each, frame by
-//! frame, under a budget of triangles. [`flock::scene`] has scenes with a camera, and
-//! [`flock::draw`] draws them:
+//! [`flock`] chooses a level for each of thousands of members, frame by frame, under a budget of
+//! triangles, and [`flock::draw`] draws them. Members that swim, and scenes with a camera, are in
+//! the crate `meshlod-school`:
 //!
 //! ```
 //! use std::sync::Arc;
 //! use meshlod::flock::levels::{ChainOptions, LevelTable, Look, ModelAxes};
-//! use meshlod::flock::scene::{Film, Scenario, ScenarioName, ScenarioOptions};
 //! use meshlod::flock::select::{Budget, PolicyName, Selector};
+//! use meshlod::flock::{Flock, FlockCamera};
 //!
 //! let fish = meshlod::samples::fish(2_000);
 //! let options = ChainOptions { axes: ModelAxes::FISH, ..ChainOptions::default() };
@@ -200,9 +200,12 @@
 //! let mut selector = Selector::new(PolicyName::Ours, table);
 //! let budget = Budget { triangles: 10_000, ..Budget::default() };
 //!
-//! let mut film = Film::new(Scenario::named(ScenarioName::Ring, &ScenarioOptions::default())?)?;
-//! let (flock, camera) = film.next_frame()?;
-//! let levels = selector.select(flock, &camera, &budget);
+//! let mut flock = Flock::default();
+//! for member in 0..150 {
+//!     flock.members.push([0.0, 0.0, -2.0 * member as f32], [1.0, 0.0, 0.0]);
+//! }
+//! let camera = FlockCamera::look_at([0.0, 1.0, 5.0], [0.0; 3], 0.8, [1920, 1080])?;
+//! let levels = selector.select(&flock, &camera, &budget);
 //! assert_eq!(levels.len(), 150);
 //! assert!(selector.triangles() <= 10_000);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -235,11 +238,9 @@
 //! [`multires::Ground`] and [`codec::Lattice`], are given whole. What is not plain data stays in
 //! code:
 //! - [`ExtractOptions`] and [`multires::Query`], which may hold a function;
-//! - [`flock::simulation::SimulationOptions`], with its schools and obstacles: they hold paths and
-//!   distance fields that are prepared in advance;
 //! - [`picture::SeeThroughOptions`] and [`flock::levels::ImpostorOptions`], options of pictures;
-//! - what options borrow, a mesh or one value a face: [`strip::StripOptions::clusters`],
-//!   [`measure::BeyondOptions::faces`], [`flock::scene::ScenarioOptions::terrain`].
+//! - what options borrow, one value a face: [`strip::StripOptions::clusters`],
+//!   [`measure::BeyondOptions::faces`].
 //!
 //! # Features
 //! All of these but `serde` are on by default. With `default-features = false` there are [`mesh`], [`simplify`](mod@simplify),

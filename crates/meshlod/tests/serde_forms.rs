@@ -8,10 +8,8 @@ use meshlod::check::{
 use meshlod::codec::{
     CompressionTarget, Lattice, Reconstruction, Scheme, TransportOptions, TransportQuantization,
 };
-use meshlod::flock::evaluate::{Arm, EvaluationOptions};
 use meshlod::flock::levels::{ChainOptions, ModelAxes};
 use meshlod::flock::nearest::{CutFocus, NearestOptions};
-use meshlod::flock::scene::{ScenarioName, ScenarioOptions};
 use meshlod::flock::select::policies::Factors;
 use meshlod::flock::select::{Budget, PolicyName};
 use meshlod::io::{Precision, Weld};
@@ -159,16 +157,11 @@ fn options_of_flocks() {
         &json!({ "axes": to_value(ModelAxes::FISH).unwrap(), "locks": locks_json }),
     );
     options_as(&ModelAxes::FISH, &json!({ "forward": [-1.0, 0.0, 0.0] }));
-    options_as(&ScenarioOptions { members: 9, ..Default::default() }, &json!({ "members": 9 }));
     options_as(
         &NearestOptions { focus: CutFocus::Everything, ..Default::default() },
         &json!({ "focus": "everything" }),
     );
-    let arms = vec![Arm::VisibleOnly(PolicyName::Ours), Arm::Paper(Factors::All), Arm::Random];
-    options_as(
-        &EvaluationOptions { arms, ..Default::default() },
-        &json!({ "arms": [{ "visible-only": "ours" }, { "paper": "all" }, "random"], "pairs": 4 }),
-    );
+    form(Factors::WithoutLayer, &json!("without-layer"));
 }
 
 #[test]
@@ -223,7 +216,6 @@ fn names_are_those_that_print() {
     names(ContactPolicy::ALL, ContactPolicy::to_string);
     names(Precision::ALL, Precision::to_string);
     names(PolicyName::ALL, PolicyName::to_string);
-    names(ScenarioName::ALL, ScenarioName::to_string);
     names(Kind::ALL, |kind| kind.name().to_owned());
 }
 

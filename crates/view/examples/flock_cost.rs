@@ -10,10 +10,10 @@ mod school;
 use std::time::Instant;
 
 use meshlod::flock::draw::WATER;
-use meshlod::flock::scene::ScenarioName;
 use meshlod::flock::select::{Budget, PolicyName, Selector};
 use meshlod::flock::{Flock, FlockCamera};
 use meshlod::picture::{Lighting, Picture, flip};
+use meshlod_school::scene::ScenarioName;
 use meshlod_view::{
     Backdrop, Canvas, Gpu, GpuFlock, GpuSelection, HiZ, Placement, Renderer, Shade, TargetFormat,
     ViewError,

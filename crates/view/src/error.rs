@@ -1,7 +1,7 @@
 //! Errors of drawing on a GPU.
 
-use meshlod::flock::scene::SceneError;
 use meshlod::picture::PictureError;
+use meshlod_school::scene::SceneError;
 use thiserror::Error;
 
 use crate::CutError;

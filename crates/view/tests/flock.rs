@@ -11,10 +11,10 @@ use glam::Vec3;
 use meshlod::Mesh;
 use meshlod::flock::draw::{FlockPainter, WATER};
 use meshlod::flock::levels::{ChainOptions, LevelTable, Look};
-use meshlod::flock::scene::{ScenarioName, SceneObstacle};
 use meshlod::flock::select::{Budget, InstanceLevel, PolicyName, Selector};
 use meshlod::flock::{Flock, FlockCamera};
 use meshlod::picture::{Lighting, Materials, PaintMaterial, Picture};
+use meshlod_school::scene::{ScenarioName, SceneObstacle};
 use meshlod_view::{
     Canvas, Gpu, GpuFlock, GpuObstacles, GpuSelection, HiZ, Renderer, Shade, TargetFormat,
     ViewError,

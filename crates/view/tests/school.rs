@@ -6,9 +6,9 @@ mod school;
 
 use common::{difference, gpu};
 use glam::Vec3;
-use meshlod::flock::scene::{Scenario, ScenarioName, ScenarioOptions};
 use meshlod::flock::select::{Budget, PolicyName};
 use meshlod::picture::Picture;
+use meshlod_school::scene::{Scenario, ScenarioName, ScenarioOptions};
 use meshlod_view::{Canvas, Renderer, SchoolShow, TargetFormat};
 use school::SampleSchool;
 

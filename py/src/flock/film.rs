@@ -1,7 +1,7 @@
 //! Films: scenarios that run, frame by frame.
 
 use meshlod::flock::FlockCamera;
-use meshlod::flock::scene::{Film, Scenario, ScenarioName, ScenarioOptions};
+use meshlod_school::scene::{Film, Scenario, ScenarioName, ScenarioOptions};
 use meshlod::samples;
 use pyo3::prelude::*;
 

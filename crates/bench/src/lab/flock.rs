@@ -7,9 +7,9 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use meshlod::flock::levels::{ChainOptions, LevelTable, Look, ModelAxes};
 use meshlod::flock::select::{Budget, PolicyName, Selector};
-use meshlod::flock::simulation::{SchoolOptions, Simulation, SimulationOptions};
 use meshlod::flock::{Flock, FlockCamera};
 use meshlod::samples;
+use meshlod_school::simulation::{SchoolOptions, Simulation, SimulationOptions};
 use serde_json::Value;
 
 use super::command::Program;

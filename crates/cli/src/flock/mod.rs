@@ -12,6 +12,7 @@ pub mod names;
 pub mod record;
 mod sample_fish;
 pub mod scene;
+pub mod school_args;
 pub mod score;
 pub mod shoot;
 pub mod summary;

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use meshlod::IoError;
 use meshlod::flock::levels::LevelTable;
-use meshlod::flock::recording::{Recording, Selection, write_levels};
-use meshlod::flock::scene::Scenario;
 use meshlod::flock::select::InstanceLevel;
 use meshlod::flock::{Flock, FlockCamera};
 use meshlod::io::write_file;
+use meshlod_school::recording::{Recording, Selection, write_levels};
+use meshlod_school::scene::Scenario;
 
 use crate::session::Session;
 use crate::session::failure::Failure;

@@ -1,8 +1,8 @@
 //! Scenes by their names, for filming, evaluating and the window.
 
 use meshlod::Mesh;
-use meshlod::flock::scene::{Scenario, ScenarioName, ScenarioOptions, SceneError};
 use meshlod::samples;
+use meshlod_school::scene::{Scenario, ScenarioName, ScenarioOptions, SceneError};
 
 use crate::session::failure::Failure;
 

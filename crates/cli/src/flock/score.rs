@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use meshlod::flock::draw::FlockPainter;
-use meshlod::flock::evaluate::{FrameScore, Reference};
 use meshlod::flock::levels::{Impostor, ImpostorOptions, LevelTable};
-use meshlod::flock::recording::{Recording, Selection, Source, read_levels};
 use meshlod::flock::select::InstanceLevel;
 use meshlod::picture::Background;
+use meshlod_school::evaluate::{FrameScore, Reference};
+use meshlod_school::recording::{Recording, Selection, Source, read_levels};
 use serde_json::json;
 
 use crate::flock::evaluate::check_extent;

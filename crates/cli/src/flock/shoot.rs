@@ -8,9 +8,9 @@ use std::time::Instant;
 use meshlod::Mesh;
 use meshlod::flock::draw::FlockPainter;
 use meshlod::flock::levels::{Impostor, ImpostorOptions, LevelTable};
-use meshlod::flock::scene::Film;
 use meshlod::flock::select::{Budget, InstanceLevel, PolicyName, Selector};
 use meshlod::io::write_file;
+use meshlod_school::scene::Film;
 
 use crate::flock::figures::{Figures, FrameFigures, switches};
 use crate::flock::model::FlockModel;
@@ -48,7 +48,7 @@ pub fn shoot(
         painter.impostor = Some(Arc::new(impostor.map_err(Failure::new)?));
     }
     let levels_only = Budget { impostors_below_px: None, ..*budget };
-    let mut selector = Selector::new(options.policy, table.clone());
+    let mut selector = Selector::new(options.school.policy, table.clone());
     let mut everything = Selector::new(PolicyName::None, table.clone());
     let mut recorder = options
         .record

@@ -24,7 +24,7 @@ impl Summary<'_> {
     pub fn json(&self) -> Value {
         let Self { options, model, table, budget, .. } = self;
         let figures = &self.take.figures;
-        let has_budget = options.policy.has_budget();
+        let has_budget = options.school.policy.has_budget();
         let whole = table.chains[0].levels.clone();
         json!({
             "model": {
@@ -42,13 +42,13 @@ impl Summary<'_> {
                 "triangles": table.triangles.len(),
                 "build_seconds": self.build_seconds,
             },
-            "policy": options.policy.name(),
+            "policy": options.school.policy.name(),
             "triangles": has_budget.then_some(budget.triangles),
             "detail": (!has_budget).then_some(options.detail),
             "impostors_below_px": options.impostors,
-            "camera": options.camera.name(),
-            "members": options.members,
-            "schools": options.schools,
+            "camera": options.school.camera.name(),
+            "members": options.school.members,
+            "schools": options.school.schools,
             "seed": options.seed,
             "frames": figures.frames.len(),
             "fps": options.fps,
@@ -87,13 +87,13 @@ impl Summary<'_> {
             "{}: {frames} frame{} of {width} x {height}, camera {}, policy {}\n",
             files::name(&options.out),
             plural(frames),
-            options.camera.name(),
-            options.policy.name()
+            options.school.camera.name(),
+            options.school.policy.name()
         );
         text += &format!(
             "{} member{} of {}: {}, swims towards {}{guessed}\n",
-            count(options.members),
-            plural(options.members),
+            count(options.school.members),
+            plural(options.school.members),
             model.name,
             faces(model.faces),
             model.forward

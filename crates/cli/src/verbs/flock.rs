@@ -5,11 +5,12 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use clap::Args;
-use meshlod::flock::scene::{Film, ScenarioName};
-use meshlod::flock::select::{Budget, PolicyName};
+use meshlod::flock::select::Budget;
+use meshlod_school::scene::Film;
 
 use crate::flock::model::{FlockModel, ModelArgs};
 use crate::flock::scene::SceneSettings;
+use crate::flock::school_args::SchoolArgs;
 use crate::flock::summary::Summary;
 use crate::flock::{evaluate, names, record, score, shoot};
 use crate::options::args::ReadArgs;
@@ -29,23 +30,9 @@ pub struct Flock {
     pub model: ModelArgs,
     #[command(flatten)]
     pub reading: ReadArgs,
-    /// Number of members
-    #[arg(long, value_name = "N", default_value_t = 150, value_parser = names::members,
-        allow_negative_numbers = true)]
-    pub members: usize,
-    /// Number of schools that share the members
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = parse::positive,
-        allow_negative_numbers = true)]
-    pub schools: usize,
-    /// Scene and path of the camera: ring circles a school, inside swims in it, far keeps away from
-    /// it, obstacles and terrain follow it past solids and over hills
-    #[arg(long, value_name = "NAME", default_value = "ring")]
-    pub camera: ScenarioName,
-    /// Policy that chooses the levels
-    #[arg(long, value_name = "NAME", default_value = "ours",
-        help = names::policies())]
-    pub policy: PolicyName,
-    /// Most triangles a frame by the policies budget and ours [default: a tenth of those of all
+    #[command(flatten)]
+    pub school: SchoolArgs,
+    /// Triangles per frame, for the policies budget and ours [default: a tenth of those of all
     /// members at full detail]
     #[arg(long, value_name = "N", value_parser = parse::positive, allow_negative_numbers = true)]
     pub triangles: Option<usize>,
@@ -100,9 +87,9 @@ impl Flock {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         files::check_folder(&self.out)?;
         if let Some(folder) = &self.record {
-            record::check(folder, self.members, self.frames)?;
+            record::check(folder, self.school.members, self.frames)?;
         }
-        let scenario = self.scenes(self.size).scenario(self.camera)?;
+        let scenario = self.scenes(self.size).scenario(self.school.camera)?;
         let model = FlockModel::load(&self.model, &self.reading, session)?;
         if let Some(folder) = &self.score {
             return score::run(folder, &model, session);
@@ -118,7 +105,7 @@ impl Flock {
         let start = Instant::now();
         let table = Arc::new(model.table(self.model.method)?);
         let build_seconds = start.elapsed().as_secs_f64();
-        let full = self.members.saturating_mul(table.triangle_count(0));
+        let full = self.school.members.saturating_mul(table.triangle_count(0));
         let triangles = self.triangles.unwrap_or_else(|| (full / 10).max(1));
         let budget = Budget {
             triangles,
@@ -139,7 +126,8 @@ impl Flock {
 
     /// Returns what all scenes have in common, with pictures of a size in pixels.
     pub fn scenes(&self, size: [u32; 2]) -> SceneSettings {
-        let Self { members, schools, seed, fps, .. } = *self;
+        let Self { seed, fps, .. } = *self;
+        let SchoolArgs { members, schools, .. } = self.school;
         SceneSettings { members, schools, seed, size, fps }
     }
 }

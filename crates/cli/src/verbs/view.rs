@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::flock::model::ModelArgs;
+use crate::flock::school_args::SchoolArgs;
 use crate::options::args::ReadArgs;
 use crate::options::parse;
 use crate::session::Session;
 use crate::session::answer::Answer;
 use crate::session::failure::Failure;
-use crate::view::school_args::SchoolArgs;
 
 /// Open meshes or a school in a window
 ///
@@ -19,6 +19,7 @@ use crate::view::school_args::SchoolArgs;
 /// for the keys.
 #[derive(Args)]
 #[command(mut_group("ModelArgs", |group| group.requires("flock")))]
+#[command(mut_group("SchoolArgs", |group| group.requires("flock")))]
 #[cfg_attr(not(feature = "view"), allow(dead_code))]
 pub struct View {
     /// Files to open
@@ -42,7 +43,7 @@ pub struct View {
     pub flock: bool,
     #[command(flatten)]
     pub reading: ReadArgs,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "With --flock")]
     pub school: SchoolArgs,
     #[command(flatten)]
     pub model: ModelArgs,

@@ -7,7 +7,6 @@
 pub mod film;
 #[cfg(feature = "view")]
 pub mod school;
-pub mod school_args;
 #[cfg(feature = "view")]
 pub mod still;
 #[cfg(feature = "view")]

@@ -1,5 +1,6 @@
 //! `flock`: frames, figures and recordings.
 
+use meshlod::flock::select::PolicyName;
 use serde_json::Value;
 
 use crate::run::{Done, Run};
@@ -69,20 +70,7 @@ fn every_camera_and_policy_makes_a_film() {
         assert_eq!((&answer["camera"], &answer["schools"]), (&camera.into(), &2.into()));
         assert!(run.path(camera).join("frame_0001.png").exists());
     }
-    let policies = [
-        "none",
-        "distance",
-        "screen-error",
-        "budget",
-        "relative-distance",
-        "direction",
-        "layer",
-        "speed",
-        "eccentricity",
-        "paper",
-        "ours",
-    ];
-    for policy in policies {
+    for policy in PolicyName::ALL.map(PolicyName::name) {
         let answer = flock_json(&run, &["--policy", policy, "--no-pictures", "--out", policy]);
         let share = answer["triangles_share"].as_f64().unwrap();
         assert_eq!(share == 1.0, policy == "none", "{policy}: {share}");

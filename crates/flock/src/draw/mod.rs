@@ -46,7 +46,7 @@ pub struct FrameMesh {
     pub mesh: Mesh,
     /// First face of every drawn member, with the member, in ascending order.
     pub members: Vec<(u32, u32)>,
-    /// Number of faces of members; those of obstacles follow.
+    /// Number of faces of members, which precede the faces of obstacles.
     pub member_faces: usize,
     impostors: FrameImpostors,
 }
@@ -160,7 +160,10 @@ impl FrameMesh {
 
     /// Returns for every pixel of a camera's picture whether it shows a member: at its middle, or at
     /// least half covered by impostors.
-    pub(crate) fn shows_member(&self, camera: &FlockCamera) -> Result<Vec<bool>, PictureError> {
+    ///
+    /// # Errors
+    /// A size that pictures cannot have.
+    pub fn shows_member(&self, camera: &FlockCamera) -> Result<Vec<bool>, PictureError> {
         let seen_by = camera.for_picture();
         let found = visibility(&self.mesh, &seen_by, camera.size())?;
         let of_member = found.faces().map(|f| f.is_some_and(|f| f.index() < self.member_faces));

@@ -40,7 +40,7 @@ impl OwnedPaint {
     }
 }
 
-/// Adds the material of obstacles after those of the model.
+/// Appends the material of obstacles to the model's materials.
 fn with_stone(mut materials: Materials) -> Materials {
     // Linear from sRGB, roughly: a shade of grey need not be exact.
     let base_color = STONE.map(|x| x.powf(2.2));

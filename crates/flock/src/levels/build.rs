@@ -13,7 +13,6 @@ use crate::levels::look::Look;
 use crate::levels::model::{ModelAxes, in_member_frame};
 use crate::levels::pool::VertexPool;
 use crate::levels::table::{Chain, ChainKind, FacingLevels, Level, LevelTable, TableError};
-use crate::select::InstanceLevel;
 
 /// Options for building a [`LevelTable`].
 #[derive(Clone, Debug)]
@@ -99,7 +98,7 @@ impl LevelTable {
         ];
         let facing = table.facing(&whole, options.directions);
         let count = table.levels.len();
-        if count >= InstanceLevel::MOST {
+        if count >= LevelTable::MAX_LEVELS {
             let message =
                 format!("{count} levels are too many; use a larger step or fewer directions");
             return Err(TableError::Option(message));

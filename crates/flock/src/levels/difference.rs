@@ -14,7 +14,7 @@ use crate::levels::table::TableError;
 /// Differences between pictures of a model and of its levels, by direction and size.
 ///
 /// A difference is an area: pixels that are half as bright as they should be count half. Details
-/// below the size of a pixel blend with what is beside them, so a small picture shows less of a
+/// smaller than a pixel blend with their surroundings, so a small picture shows less of a
 /// difference than a large one of the same area.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Differences {
@@ -81,25 +81,25 @@ impl Differences {
     }
 
     /// Number of sizes at which levels are compared.
-    pub(crate) const SIZES: usize = OCTAVES;
+    pub const SIZES: usize = OCTAVES;
 
     /// Returns the sizes at which levels are compared, in pixels per body length.
-    pub(crate) fn pixels_per_body_length() -> [f32; OCTAVES] {
+    pub fn pixels_per_body_length() -> [f32; Self::SIZES] {
         std::array::from_fn(|octave| FINEST_PX / (1 << octave) as f32)
     }
 
     /// Returns the grid of the directions from which levels are compared.
-    pub(crate) fn grid() -> DirectionGrid {
+    pub fn grid() -> DirectionGrid {
         DirectionGrid::new(DIRECTIONS)
     }
 
     /// Returns the areas by direction, level and size, and the silhouettes by direction.
-    pub(crate) fn arrays(&self) -> (&[f32], &[f32]) {
+    pub fn arrays(&self) -> (&[f32], &[f32]) {
         (&self.areas, &self.silhouettes)
     }
 
     /// Creates differences from what [`Self::arrays`] has returned for `levels` levels.
-    pub(crate) fn from_arrays(levels: usize, areas: Vec<f32>, silhouettes: Vec<f32>) -> Self {
+    pub fn from_arrays(levels: usize, areas: Vec<f32>, silhouettes: Vec<f32>) -> Self {
         Self { directions: Self::grid(), levels, areas, silhouettes }
     }
 

@@ -1,4 +1,4 @@
-//! Grid of directions, for what depends on the side from which a member is seen.
+//! Grid of the directions from which a member is seen.
 // Loops over lanes become vector code, closures over arrays need not; and `clamp` keeps a NaN.
 #![allow(clippy::needless_range_loop, clippy::manual_clamp)]
 

@@ -21,8 +21,8 @@ pub(crate) struct HiddenFaces {
 }
 
 impl HiddenFaces {
-    /// Finds the faces of a level that may be hidden: those of components that are closed and face
-    /// outwards, whose backs are never seen.
+    /// Finds the faces of a level that may be hidden: all of closed components that face outwards.
+    /// Their backs are never seen.
     pub(crate) fn new(mesh: &Mesh) -> Self {
         let hides = closed_components(mesh);
         let plane = |(&face, hides): (&[VertexId; 3], bool)| {
@@ -75,7 +75,7 @@ fn closed_components(mesh: &Mesh) -> Vec<bool> {
 mod tests {
     use super::*;
 
-    /// True if a point beside the face is on the face's back for this eye.
+    /// True if this eye sees the back of the face.
     fn shows_its_back(mesh: &Mesh, face: usize, eye: DVec3) -> bool {
         let [a, b, c] = mesh.triangle(mesh.faces[face]);
         (b - a).cross(c - a).dot(eye - a) <= 1e-12

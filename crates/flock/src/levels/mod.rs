@@ -1,4 +1,4 @@
-//! Levels of a model for its thousands of instances: chains, and what they cost and show.
+//! Levels of a model for its thousands of instances: chains, their cost and their image errors.
 //!
 //! A [`LevelTable`] holds all levels of one model in one vertex and one index buffer, so that a
 //! renderer binds them once and draws every level as a range of indices. Its chains are

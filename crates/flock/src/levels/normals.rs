@@ -6,11 +6,11 @@ use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, WedgeId};
 /// Cosine of the angle between two faces above which the edge between them looks sharp: 45°.
 const CREASE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// Most faces around a vertex that are compared with each other; a hub gets the normals of its
+/// Upper limit of the faces compared around a vertex; a hub gets the normals of its
 /// faces.
 const MOST_AROUND: usize = 64;
 
-/// Adds normals to a mesh without any: smooth, but for edges that bend by more than 45°.
+/// Adds normals to a mesh without any: smooth, except at edges that bend by more than 45°.
 ///
 /// Levels are shaded by the normals of the model, so that a coarse one looks as round as a fine
 /// one. Cost: linear in the faces.

@@ -12,7 +12,7 @@ use crate::levels::difference::Differences;
 use crate::levels::directions::DirectionGrid;
 use crate::levels::model::ModelAxes;
 
-/// Levels of one model: what a renderer binds once and draws thousands of times.
+/// Levels of one model, which a renderer binds once and draws thousands of times.
 ///
 /// Vertices are in the frame of a member: left +x, up +y, heading +z, one body length long and
 /// centred at the origin.
@@ -112,6 +112,9 @@ pub enum TableError {
 }
 
 impl LevelTable {
+    /// Upper limit of the levels of a table, which instances count in two bytes.
+    pub const MAX_LEVELS: usize = u16::MAX as usize - 1;
+
     /// Returns the number of triangles of a level.
     #[inline]
     pub fn triangle_count(&self, level: usize) -> usize {
@@ -130,8 +133,8 @@ impl LevelTable {
         if levels.is_empty() { depth } else { levels.start + directions.cell(direction) }
     }
 
-    /// Returns what decides how a level looks: its chain and its depth. A facing level looks like
-    /// that of the whole chain.
+    /// Returns the chain and depth that decide how a level looks. A facing level looks like the level
+    /// of the whole chain at its depth.
     pub fn appearance(&self, level: usize) -> (ChainKind, usize) {
         match self.levels[level] {
             Level { chain: ChainKind::Facing(_), depth, .. } => (ChainKind::Whole, depth),
@@ -141,13 +144,13 @@ impl LevelTable {
 
     /// Returns the radius of the ball around the origin that holds all vertices, and half of their
     /// extent along each axis.
-    pub(crate) fn extent_of(positions: &[[f32; 3]]) -> (f32, [f32; 3]) {
+    pub fn extent_of(positions: &[[f32; 3]]) -> (f32, [f32; 3]) {
         let length = |p: &[f32; 3]| glam::Vec3::from(*p).length();
         let most = |axis: usize| positions.iter().map(|p| p[axis].abs()).fold(0.0, f32::max);
         (positions.iter().map(length).fold(0.0, f32::max), [0, 1, 2].map(most))
     }
 
-    /// Returns a level as a mesh of its own, with all vertices of the table.
+    /// Returns a level as a separate mesh, with all vertices of the table.
     pub fn mesh(&self, level: usize) -> Mesh {
         let range = self.levels[level].triangles.clone();
         let triangles = &self.triangles[range.clone()];

@@ -18,17 +18,17 @@ const DROPPED_BITS: u32 = ChainLevels::DROPPED_BITS;
 const LEAST: f32 = ChainLevels::LEAST;
 const MOST: f32 = ChainLevels::MOST;
 
-/// Number of entries before that of [`LEAST`].
+/// Number of entries before the one of [`LEAST`].
 const FIRST: u32 = LEAST.to_bits() >> DROPPED_BITS;
 
 impl ChainLevels {
     /// Bits of a float below those that choose an entry.
     pub const DROPPED_BITS: u32 = 19;
 
-    /// Least square of a distance that has an entry of its own; smaller ones take the first.
+    /// Least square of a distance with a separate entry; smaller ones take the first.
     pub const LEAST: f32 = 1.0 / (1 << 20) as f32;
 
-    /// Greatest square of a distance that has an entry of its own; larger ones take the last.
+    /// Greatest square of a distance with a separate entry; larger ones take the last.
     pub const MOST: f32 = (1u64 << 40) as f32;
 
     /// Creates a table of hidden members; [`ChainLevels::fill`] gives it levels.
@@ -45,7 +45,7 @@ impl ChainLevels {
     }
 
     /// Sets for every distance the finest level of a chain with at most as many triangles as
-    /// `share` gives, as a part of those of the model; the coarsest if none has so few.
+    /// `share` returns, as a fraction of the model's; the coarsest if none has so few.
     pub fn fill_by_share(&mut self, table: &LevelTable, chain: &Chain, share: impl Fn(f32) -> f32) {
         let all = table.triangle_count(0) as f32;
         self.fill(|distance| {

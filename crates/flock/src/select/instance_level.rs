@@ -27,13 +27,10 @@ impl InstanceLevel {
     /// Triangles of an impostor.
     pub const IMPOSTOR_TRIANGLES: usize = 2;
 
-    /// Most levels that a table can have.
-    pub(crate) const MOST: usize = u16::MAX as usize - 1;
-
     /// Returns the value for a level of the table, which must be below 65,534.
     #[inline]
     pub fn drawn(level: usize) -> Self {
-        debug_assert!(level < Self::MOST);
+        debug_assert!(level < LevelTable::MAX_LEVELS);
         Self(level as u16)
     }
 

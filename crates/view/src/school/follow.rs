@@ -1,8 +1,8 @@
 //! Cameras of a school: the one of the film, and one that moves along with the leader.
 
 use glam::Vec3;
-use meshlod::flock::scene::SceneError;
 use meshlod::flock::{Flock, FlockCamera};
+use meshlod_school::scene::SceneError;
 
 use crate::ViewError;
 use crate::stage::CameraRig;

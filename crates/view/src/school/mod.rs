@@ -10,10 +10,10 @@ use std::time::Instant;
 use glam::Vec3;
 use meshlod::flock::draw::WATER;
 use meshlod::flock::levels::{Impostor, LevelTable, Look};
-use meshlod::flock::scene::{Film, Scenario};
 use meshlod::flock::select::{Budget, InstanceLevel, PolicyName, Selector};
 use meshlod::flock::{Flock, FlockCamera};
 use meshlod::picture::Lighting;
+use meshlod_school::scene::{Film, Scenario};
 use wgpu::RenderPass;
 
 use self::clock::FilmClock;

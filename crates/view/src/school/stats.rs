@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use meshlod::flock::Flock;
-use meshlod::flock::simulation::SchoolOptions;
+use meshlod_school::simulation::SchoolOptions;
 
 /// Figures of one frame of a school.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

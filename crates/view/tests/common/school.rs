@@ -7,7 +7,6 @@ use std::sync::Arc;
 use meshlod::flock::levels::{
     ChainOptions, Impostor, ImpostorOptions, LevelTable, Look, ModelAxes,
 };
-use meshlod::flock::scene::{Film, Scenario, ScenarioName, ScenarioOptions};
 use meshlod::flock::{Flock, FlockCamera};
 use meshlod::mesh::{Attributes, LayerKind, VertexId, WedgeId};
 use meshlod::picture::{
@@ -15,6 +14,7 @@ use meshlod::picture::{
     render,
 };
 use meshlod::{Mesh, samples};
+use meshlod_school::scene::{Film, Scenario, ScenarioName, ScenarioOptions};
 
 /// Fish of a number of faces, its materials, and its levels.
 pub struct SampleSchool {

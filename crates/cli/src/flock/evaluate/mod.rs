@@ -8,14 +8,12 @@ mod summary;
 use std::path::Path;
 use std::sync::Arc;
 
-use meshlod::flock::evaluate::{
-    Arm, Evaluation, EvaluationOptions, Footage, Track, evaluate, over_time,
-};
 use meshlod::flock::levels::LevelTable;
-use meshlod::flock::scene::ScenarioName;
-use meshlod::flock::select::policies::Factors;
-use meshlod::flock::select::{Budget, PolicyName};
+use meshlod::flock::select::Budget;
 use meshlod::io::write_file;
+use meshlod_school::Footage;
+use meshlod_school::evaluate::{Arm, Evaluation, EvaluationOptions, Track, evaluate, over_time};
+use meshlod_school::scene::ScenarioName;
 
 use crate::flock::evaluate::pictures::Pictures;
 use crate::flock::model::FlockModel;
@@ -88,7 +86,7 @@ pub fn run(
     session: &Session,
 ) -> Result<Answer, Failure> {
     let extent = if options.quick { QUICK } else { FULL };
-    check_extent(options.members, table)?;
+    check_extent(options.school.members, table)?;
     let footage = footage(options, &extent, session)?;
     let settings = EvaluationOptions {
         shares: extent.shares.to_vec(),
@@ -104,14 +102,20 @@ pub fn run(
     let evaluation = evaluate(&footage, table, &model.look, &settings, &mut watch, &mut keep)
         .map_err(Failure::new)?;
     session.progress.stage("paper's experiment");
-    let tracks =
-        over_time(&footage[0], table, &model.look, &paper_arms(), &Budget::default(), extent.step)
-            .map_err(Failure::new)?;
+    let tracks = over_time(
+        &footage[0],
+        table,
+        &model.look,
+        &Arm::of_the_paper(),
+        &Budget::default(),
+        extent.step,
+    )
+    .map_err(Failure::new)?;
     session.progress.stage("strips of frames");
     pictures.strips(&footage, table, &model.look)?;
     let report = Report {
         model,
-        members: options.members,
+        members: options.school.members,
         size: extent.size,
         is_quick: options.quick,
         evaluation: &evaluation,
@@ -145,18 +149,6 @@ fn footage(options: &Flock, extent: &Extent, session: &Session) -> Result<Vec<Fo
         scenes.scenario(name)?.footage(extent.frames).map_err(Failure::new)
     };
     ScenarioName::ALL.into_iter().enumerate().map(record).collect()
-}
-
-/// Returns the arms of the paper's figures 19 to 22.
-fn paper_arms() -> Vec<Arm> {
-    vec![
-        Arm::Policy(PolicyName::None),
-        Arm::Policy(PolicyName::Distance),
-        Arm::Policy(PolicyName::Paper),
-        Arm::Paper(Factors::WithoutDirection),
-        Arm::Paper(Factors::WithoutLayer),
-        Arm::Policy(PolicyName::RelativeDistance),
-    ]
 }
 
 fn write(folder: &Path, report: &Report<'_>) -> Result<(), Failure> {

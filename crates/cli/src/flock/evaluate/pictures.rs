@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use meshlod::flock::draw::FlockPainter;
-use meshlod::flock::evaluate::{Footage, StillPicture};
 use meshlod::flock::levels::{LevelTable, Look};
 use meshlod::flock::select::{Budget, PolicyName, Selector};
 use meshlod::picture::{Picture, grid};
+use meshlod_school::Footage;
+use meshlod_school::evaluate::StillPicture;
 
 use crate::flock::evaluate::{BUDGET, OURS, SHOWN_SHARE};
 use crate::session::failure::Failure;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use meshlod::flock::evaluate::Interval;
+use meshlod_school::evaluate::Interval;
 use serde_json::{Value, json};
 
 use crate::flock::evaluate::{BUDGET, FLIPS, OURS, OURS_VISIBLE, Report, SCREEN_ERROR};
@@ -36,7 +36,7 @@ pub fn needed_share(report: &Report<'_>, arm: &str, flip: f64) -> Option<f64> {
     let full = &report.evaluation.full_triangles;
     let needed = report.evaluation.needed.iter();
     let of_arm = needed.filter(|needed| needed.arm == arm && needed.flip == flip);
-    let share = |needed: &meshlod::flock::evaluate::Needed| {
+    let share = |needed: &meshlod_school::evaluate::Needed| {
         let (_, full) = full.iter().find(|(scene, _)| *scene == needed.scene)?;
         Some(needed.triangles? / full)
     };

@@ -21,7 +21,7 @@ use crate::members::frame_of;
 #[derive(Clone, Debug)]
 pub struct Impostor {
     /// Views in the cells of the grid, row after row from the top: sRGB with straight alpha.
-    /// Transparent pixels have the colour of what is near, so that filters do not darken the rims.
+    /// Transparent pixels have the colour of their neighbours, so that filters do not darken rims.
     pub atlas: Picture,
     /// Directions in the frame of a member, from it to the eye; a view is taken along the axis of
     /// each cell.

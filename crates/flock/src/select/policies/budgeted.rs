@@ -1,4 +1,4 @@
-//! Levels by size on the screen under a budget, with hysteresis: what engines do today.
+//! Levels by size on the screen under a budget, with hysteresis, as in today's engines.
 
 use crate::levels::LevelTable;
 use crate::select::{ChainLevels, InstanceLevel, LANES, Policy, View};

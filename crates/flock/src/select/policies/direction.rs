@@ -2,7 +2,7 @@
 
 use crate::flock::School;
 use crate::levels::LevelTable;
-use crate::select::policies::{each_school, fill_by_distance};
+use crate::select::policies::by_school::{each_school, fill_by_distance};
 use crate::select::{ChainLevels, InstanceLevel, Policy, View};
 
 /// Gives every member a share of its triangles by its distance, from the chain whose coarsened side
@@ -32,22 +32,24 @@ impl Policy for Direction {
 
 /// Levels by distance of the whole, the left-coarsened and the right-coarsened chain.
 #[derive(Default)]
-pub(crate) struct SidedLevels([ChainLevels; 3]);
+pub struct SidedLevels([ChainLevels; 3]);
 
 impl SidedLevels {
-    pub(crate) fn fill(&mut self, view: &View<'_>) {
+    /// Fills the levels of all three chains for a frame.
+    pub fn fill(&mut self, view: &View<'_>) {
         for (levels, chain) in self.0.iter_mut().zip(&view.table.chains) {
             fill_by_distance(levels, view, chain);
         }
     }
 
-    pub(crate) fn whole(&self) -> &ChainLevels {
+    /// Returns the levels of the whole chain.
+    pub fn whole(&self) -> &ChainLevels {
         &self.0[0]
     }
 
     /// Returns the levels for a school: those coarsened on the left if the camera looks towards
     /// the leader's left, within 60°, on the right if it looks that way, else the whole ones.
-    pub(crate) fn of(&self, view: &View<'_>, school: &School) -> &ChainLevels {
+    pub fn of(&self, view: &View<'_>, school: &School) -> &ChainLevels {
         let [_, _, axis] = view.camera.axes();
         let towards = (school.leader - view.camera.eye()).try_normalize().unwrap_or(axis);
         let left = school.frame().x_axis.dot(towards);

@@ -1,7 +1,7 @@
 //! Levels by the distance of each member.
 
 use crate::levels::LevelTable;
-use crate::select::policies::fill_by_distance;
+use crate::select::policies::by_school::fill_by_distance;
 use crate::select::{ChainLevels, InstanceLevel, Policy, View};
 
 /// Gives every member a share of its triangles that falls with its distance from the eye, as the

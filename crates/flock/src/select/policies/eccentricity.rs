@@ -1,7 +1,7 @@
 //! Levels by the angle from where the viewer looks.
 
 use crate::levels::LevelTable;
-use crate::select::policies::fill_by_distance;
+use crate::select::policies::by_school::fill_by_distance;
 use crate::select::{ChainLevels, InstanceLevel, Policy, View};
 
 /// Gives every member a share of its triangles by its distance, and fewer the farther it is from

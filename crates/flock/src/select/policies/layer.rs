@@ -6,7 +6,7 @@ use glam::{Mat3, Vec3};
 
 use crate::flock::School;
 use crate::levels::LevelTable;
-use crate::select::policies::{each_school, fill_by_distance};
+use crate::select::policies::by_school::{each_school, fill_by_distance};
 use crate::select::{ChainLevels, InstanceLevel, LANES, Lanes, Policy, View};
 
 /// Gives every member a share of its triangles by its distance, and fewer the deeper it swims in the
@@ -17,7 +17,7 @@ pub struct Layer {
 
 /// Factors on the distance of members by shell, from the centre outwards, four shells of equal
 /// thickness, and those outside of the ellipsoid. The paper gives no numbers.
-pub(crate) const SHELLS: [f32; 5] = [4.0, 3.0, 2.0, 1.4, 1.0];
+pub const SHELLS: [f32; 5] = [4.0, 3.0, 2.0, 1.4, 1.0];
 
 impl Layer {
     /// Creates the policy for a table of levels.
@@ -49,14 +49,14 @@ pub(super) struct Shells {
 }
 
 impl Shells {
-    pub(crate) fn new(view: &View<'_>, school: &School) -> Self {
+    pub fn new(view: &View<'_>, school: &School) -> Self {
         let to_unit_ball = school.to_unit_ball();
         Self { to_unit_ball, leader: to_unit_ball * (school.leader - view.camera.eye()) }
     }
 
     /// Multiplies the squares of the distances of eight members by the squares of their factors.
     #[inline(always)]
-    pub(crate) fn scale(&self, lanes: &Lanes, squares: &mut [f32; LANES]) {
+    pub fn scale(&self, lanes: &Lanes, squares: &mut [f32; LANES]) {
         let [x, y, z] = &lanes.offset;
         let Mat3 { x_axis: a, y_axis: b, z_axis: c } = self.to_unit_ball;
         let leader = self.leader;

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::levels::LevelTable;
+use crate::select::policies::by_school::each_school;
 use crate::select::policies::direction::SidedLevels;
-use crate::select::policies::each_school;
 use crate::select::policies::layer::Shells;
 use crate::select::policies::relative_distance::{Along, RelativeTo};
 use crate::select::{InstanceLevel, Policy, View};

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use crate::flock::School;
 use crate::levels::LevelTable;
-use crate::select::policies::{each_school, fill_by_distance};
+use crate::select::policies::by_school::{each_school, fill_by_distance};
 use crate::select::{ChainLevels, InstanceLevel, LANES, Lanes, Policy, View};
 
 /// Gives every member a share of its triangles by the leader's distance and its own place in the
@@ -50,15 +50,16 @@ impl Policy for RelativeDistance {
     }
 }
 
-/// Distance of members from the eye, as a linear function of their places.
-pub(crate) struct RelativeTo {
+/// Distance of members from the eye, as a linear function of their positions.
+pub struct RelativeTo {
     direction: Vec3,
     /// Distance that the direction gives to the eye itself.
     offset: f32,
 }
 
 impl RelativeTo {
-    pub(crate) fn new(view: &View<'_>, school: &School, along: Along) -> Self {
+    /// Prepares the distances of a school's members in a frame.
+    pub fn new(view: &View<'_>, school: &School, along: Along) -> Self {
         let [_, _, axis] = view.camera.axes();
         let to_leader = school.leader - view.camera.eye();
         let direction = match along {
@@ -71,7 +72,7 @@ impl RelativeTo {
 
     /// Returns the squares of the distances of eight members; zero behind the eye.
     #[inline(always)]
-    pub(crate) fn squares(&self, lanes: &Lanes) -> [f32; LANES] {
+    pub fn squares(&self, lanes: &Lanes) -> [f32; LANES] {
         let [x, y, z] = &lanes.offset;
         let v = self.direction;
         let mut squares = [0.0; LANES];

@@ -1,7 +1,7 @@
 //! Levels by speed over the screen.
 
 use crate::levels::LevelTable;
-use crate::select::policies::fill_by_distance;
+use crate::select::policies::by_school::fill_by_distance;
 use crate::select::{ChainLevels, InstanceLevel, Policy, View};
 
 /// Gives every member a share of its triangles by its distance, and fewer the faster it crosses the

@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 use eframe::egui_wgpu::RenderState;
 use glam::Vec3;
 use meshlod::flock::FlockCamera;
-use meshlod::flock::scene::ScenarioName;
 use meshlod::picture::UpAxis;
+use meshlod_school::scene::ScenarioName;
 
 use super::controls::Controls;
 use super::drag::PickedObstacle;

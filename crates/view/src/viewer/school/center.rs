@@ -6,7 +6,6 @@ use egui::{
 
 use super::app::SchoolApp;
 use super::drag;
-use super::panel::title;
 use crate::viewer::central::{DRAG_ZOOM_PER_POINT, TURN_PER_POINT, ZOOM_PER_POINT, tag};
 use crate::viewer::input::{DragAction, drag_action};
 use crate::viewer::theme;
@@ -42,7 +41,7 @@ impl SchoolApp {
     /// Draws the line between both sides and names them.
     fn show_split(&self, ui: &Ui, rect: Rect) {
         let corner = rect.left_top() + vec2(12.0, 12.0);
-        tag(ui, corner, &title(self.controls.policy));
+        tag(ui, corner, self.controls.policy.title());
         if !self.controls.is_split {
             return;
         }

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use meshlod::flock::FlockCamera;
-use meshlod::flock::scene::SceneObstacle;
+use meshlod_school::scene::SceneObstacle;
 
 /// Obstacle under the pointer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +26,7 @@ pub(crate) fn pick(
         let (ends, radius) = match obstacle {
             SceneObstacle::Sphere { center, radius } => ([*center; 2], *radius),
             SceneObstacle::Capsule { ends, radius } => (*ends, *radius),
-            SceneObstacle::Mesh(_) => return None,
+            SceneObstacle::Solid(_) => return None,
         };
         let way = hit(eye, ray, ends, radius)?;
         Some((way, PickedObstacle { index, depth: way * ray.dot(camera.axes()[2]) }))
@@ -118,7 +118,7 @@ mod tests {
 
     #[test]
     fn the_ground_stays() {
-        let ground = SceneObstacle::Mesh(meshlod::samples::terrain(200));
+        let ground = SceneObstacle::Solid(meshlod::samples::terrain(200));
         assert_eq!(pick(&camera(), [0.0; 2], &[ground]), None);
     }
 }

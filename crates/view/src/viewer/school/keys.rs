@@ -5,25 +5,9 @@ use meshlod::flock::select::PolicyName;
 
 use super::app::SchoolApp;
 
-/// Keys of the policies, in the order of [`PolicyName::ALL`].
-const POLICY_KEYS: [(Key, &str); 11] = [
-    (Key::Num1, "1"),
-    (Key::Num2, "2"),
-    (Key::Num3, "3"),
-    (Key::Num4, "4"),
-    (Key::Num5, "5"),
-    (Key::Num6, "6"),
-    (Key::Num7, "7"),
-    (Key::Num8, "8"),
-    (Key::Num9, "9"),
-    (Key::Num0, "0"),
-    (Key::Minus, "-"),
-];
-
-/// Keys and mouse, as the help lists them.
-pub(crate) const HELP: [[&str; 2]; 12] = [
+/// Keys and mouse, without the keys of the policies.
+const HELP: [[&str; 2]; 11] = [
     ["Space", "Pause"],
-    ["1 to 9, 0, -", "Policies, in the order of the list"],
     ["S", "Split screen: levels on the left, full detail on the right"],
     ["C", "Camera: path of the film, or orbit"],
     ["I", "Impostors"],
@@ -36,10 +20,33 @@ pub(crate) const HELP: [[&str; 2]; 12] = [
     ["Esc", "Close this help"],
 ];
 
-/// Returns the name of the key of a policy.
-pub(crate) fn key_of(policy: PolicyName) -> &'static str {
-    let all = PolicyName::ALL.iter().zip(POLICY_KEYS);
-    all.into_iter().find(|(name, _)| **name == policy).map_or("", |(_, (_, text))| text)
+/// Returns keys and mouse, as the help lists them.
+pub(crate) fn help() -> Vec<[String; 2]> {
+    let mut lines = HELP.map(|line| line.map(String::from)).to_vec();
+    lines.insert(1, [policy_keys(), "Policies, in the order of the list".into()]);
+    lines
+}
+
+/// Returns the keys of the policies, as the help lists them: runs of characters by their ends.
+fn policy_keys() -> String {
+    let mut runs: Vec<[char; 2]> = Vec::new();
+    for key in PolicyName::ALL.map(PolicyName::key) {
+        match runs.last_mut() {
+            Some([_, last]) if u32::from(*last) + 1 == u32::from(key) => *last = key,
+            _ => runs.push([key; 2]),
+        }
+    }
+    let text = |[first, last]: [char; 2]| match first == last {
+        true => first.to_string(),
+        false => format!("{first} to {last}"),
+    };
+    runs.into_iter().map(text).collect::<Vec<_>>().join(", ")
+}
+
+/// Returns the policy that a key chooses.
+fn policy_of(key: Key) -> Option<PolicyName> {
+    let chooses = |policy: &PolicyName| Key::from_name(&policy.key().to_string()) == Some(key);
+    PolicyName::ALL.into_iter().find(chooses)
 }
 
 impl SchoolApp {
@@ -68,12 +75,7 @@ impl SchoolApp {
             Key::F1 | Key::Questionmark => controls.has_help = !controls.has_help,
             Key::Slash if modifiers.shift => controls.has_help = !controls.has_help,
             Key::Escape => controls.has_help = false,
-            _ => {
-                let keys = POLICY_KEYS.iter().zip(PolicyName::ALL);
-                if let Some((_, policy)) = keys.into_iter().find(|((known, _), _)| *known == key) {
-                    controls.policy = policy;
-                }
-            }
+            _ => controls.policy = policy_of(key).unwrap_or(controls.policy),
         }
     }
 }
@@ -96,11 +98,15 @@ mod tests {
 
     #[test]
     fn every_policy_has_a_key_of_its_own() {
-        let keys = PolicyName::ALL.map(key_of);
-        assert!(keys.iter().all(|key| !key.is_empty()));
-        for (i, key) in keys.iter().enumerate() {
-            assert!(!keys[i + 1..].contains(key), "{key}");
+        for policy in PolicyName::ALL {
+            let key = Key::from_name(&policy.key().to_string());
+            assert_eq!(key.and_then(policy_of), Some(policy), "{policy}");
         }
-        assert_eq!((key_of(PolicyName::None), key_of(PolicyName::Ours)), ("1", "-"));
+        assert_eq!(
+            (policy_of(Key::Num1), policy_of(Key::Minus)),
+            (Some(PolicyName::None), Some(PolicyName::Ours),)
+        );
+        assert_eq!(policy_of(Key::Q), None);
+        assert_eq!(policy_keys(), "1 to 9, 0, -");
     }
 }

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use meshlod::flock::levels::{Impostor, LevelTable, Look};
-use meshlod::flock::scene::{Scenario, ScenarioName};
 use meshlod::flock::select::PolicyName;
+use meshlod_school::scene::{Scenario, ScenarioName};
 
 /// Sets up a scenario by its name, on another thread; the error is a line for people.
 pub type SchoolScenes = Arc<dyn Fn(ScenarioName) -> Result<Scenario, String> + Send + Sync>;

@@ -1,8 +1,8 @@
 //! Bars and panels around the picture of a school.
 
 use egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Slider, Ui};
-use meshlod::flock::scene::ScenarioName;
-use meshlod::flock::select::PolicyName;
+use meshlod::flock::select::{Bias, PolicyName};
+use meshlod_school::scene::ScenarioName;
 
 use super::app::SchoolApp;
 use super::{graphs, keys};
@@ -60,12 +60,12 @@ fn scenes(app: &mut SchoolApp, ui: &mut Ui) {
 fn policies(app: &mut SchoolApp, ui: &mut Ui) {
     let controls = &mut app.controls;
     ui.spacing_mut().item_spacing.y = 2.0;
-    let [first, second] = [&PolicyName::ALL[..6], &PolicyName::ALL[6..]];
+    let each = PolicyName::ALL.len().div_ceil(2);
     ui.columns(2, |columns| {
-        for (ui, policies) in columns.iter_mut().zip([first, second]) {
+        for (ui, policies) in columns.iter_mut().zip(PolicyName::ALL.chunks(each)) {
             for &policy in policies {
-                let label = ui.selectable_label(controls.policy == policy, title(policy));
-                let hint = format!("Key {}", keys::key_of(policy));
+                let label = ui.selectable_label(controls.policy == policy, policy.title());
+                let hint = format!("Key {}", policy.key());
                 if label.on_hover_text(hint).clicked() {
                     controls.policy = policy;
                 }
@@ -75,14 +75,18 @@ fn policies(app: &mut SchoolApp, ui: &mut Ui) {
     ui.add_space(6.0);
     let text = |text: &str| RichText::new(text).color(theme::WEAK);
     ui.spacing_mut().slider_width = 118.0;
-    if controls.policy.has_budget() {
-        ui.label(text("Faces a frame, at most"));
-        let most = app.full_faces.max(1_000);
-        ui.add(Slider::new(&mut controls.triangles, 100..=most).logarithmic(true));
-    } else if controls.policy != PolicyName::None {
-        ui.label(text("Fineness"));
-        ui.add(Slider::new(&mut controls.detail, 0.02..=50.0).logarithmic(true))
-            .on_hover_text("2 keeps detail to twice the distance");
+    match controls.policy.bias() {
+        Bias::Nothing => {}
+        Bias::Detail => {
+            ui.label(text("Fineness"));
+            ui.add(Slider::new(&mut controls.detail, 0.02..=50.0).logarithmic(true))
+                .on_hover_text("2 keeps detail to twice the distance");
+        }
+        Bias::Triangles => {
+            ui.label(text("Faces a frame, at most"));
+            let most = app.full_faces.max(1_000);
+            ui.add(Slider::new(&mut controls.triangles, 100..=most).logarithmic(true));
+        }
     }
     ui.add_space(4.0);
     ui.checkbox(&mut controls.has_impostors, "Impostors if smaller than").on_hover_text("I");
@@ -141,7 +145,7 @@ pub(crate) fn help(app: &mut SchoolApp, ctx: &egui::Context) {
         .resizable(false)
         .show(ctx, |ui| {
             egui::Grid::new("help").num_columns(2).spacing([28.0, 7.0]).show(ui, |ui| {
-                for [keys, help] in keys::HELP {
+                for [keys, help] in keys::help() {
                     ui.label(RichText::new(keys).strong().color(theme::STRONG));
                     ui.label(help);
                     ui.end_row();
@@ -150,26 +154,7 @@ pub(crate) fn help(app: &mut SchoolApp, ctx: &egui::Context) {
         });
 }
 
-/// Returns the name of a policy as people write it.
-pub(crate) fn title(policy: PolicyName) -> String {
-    match policy {
-        PolicyName::None => "Full detail".into(),
-        policy => capital(&policy.name().replace('-', " ")),
-    }
-}
-
 fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn policies_are_named_for_people() {
-        let all = [PolicyName::None, PolicyName::ScreenError, PolicyName::Ours].map(title);
-        assert_eq!(all, ["Full detail", "Screen error", "Ours"]);
-    }
 }

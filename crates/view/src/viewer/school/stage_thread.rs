@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
-use meshlod::flock::scene::{Scenario, ScenarioName};
+use meshlod_school::scene::{Scenario, ScenarioName};
 
 use super::SchoolWindowOptions;
 use crate::{Renderer, SchoolShow};
