@@ -319,6 +319,9 @@ mod levels;
 mod locks;
 #[cfg(feature = "picture")]
 mod materials;
+#[cfg(feature = "io")]
+#[doc(hidden)]
+pub mod numbers;
 #[cfg(feature = "multires")]
 mod model_scene;
 #[cfg(feature = "io")]
@@ -391,7 +394,7 @@ pub use files::{AnyFile, AnyFileError, FileBytes};
 #[cfg(feature = "io")]
 pub use files::{FileKind, Output};
 #[cfg(feature = "check")]
-pub use fuse::fuse_scene;
+pub use fuse::{FuseReport, fuse_scene};
 #[cfg(feature = "multires")]
 pub use levels::{BuildOptions, BuildReport, LevelsError, build, build_bytes};
 #[cfg(feature = "io")]
