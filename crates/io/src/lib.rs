@@ -58,5 +58,5 @@ pub use material::{Material, MtlMap, MtlStatement, Shading};
 pub use meshlod_mesh::{merge_equal_wedges, weld};
 pub use notes::{Note, NoteKind};
 pub use precision::Precision;
-pub use replace::{abandon_files, remove_abandoned, write_file};
+pub use replace::{abandon_files, check_place, remove_abandoned, write_file};
 pub use scene::{Image, Node, Scene, SceneMesh};

@@ -18,6 +18,24 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), IoError> {
     replace(path, |out| out.write_all(bytes)).map_err(|error| IoError::system(path, error))
 }
 
+/// Fails if no file can be at a path: if it is a folder, or one of its folders is a file.
+///
+/// Folders may be missing: they are made when the file is written.
+///
+/// # Errors
+/// An error of the system that says what is there.
+pub fn check_place(path: &Path) -> Result<(), IoError> {
+    let fault = |reason: &str| Err(IoError::system(path, io::Error::other(reason)));
+    if path.is_dir() {
+        return fault("is a folder; name a file to write");
+    }
+    let exists = |folder: &&Path| !folder.as_os_str().is_empty() && folder.exists();
+    match path.ancestors().skip(1).find(exists) {
+        Some(folder) if !folder.is_dir() => fault("its folder is a file"),
+        _ => Ok(()),
+    }
+}
+
 /// Deletes the unfinished temporary files of this process, for programs about to exit early, as on
 /// Ctrl-C.
 ///

@@ -5,12 +5,11 @@ use std::fs;
 use std::path::{Component, Path, PathBuf};
 
 use glob::{MatchOptions, Pattern, glob_with};
-use meshlod::Format;
+use meshlod::{FileKind, Format};
 
 use crate::options::parse::Suffix;
 use crate::session::failure::Failure;
 use crate::session::files;
-use crate::session::own_files::OwnFormat;
 
 /// One file of a batch.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,7 +113,7 @@ impl Found {
             if !path.is_file() || made_before.as_deref().is_some_and(|out| is_below(&path, out)) {
                 continue;
             }
-            match Format::of_path(&path).is_ok() || OwnFormat::of_path(&path).is_some() {
+            match FileKind::of_path(&path).is_ok() {
                 true => found.files.push(path),
                 false => found.others += 1,
             }

@@ -4,13 +4,12 @@ use std::fs;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
-use meshlod::io::{IoError, read_bytes, write_file};
-use meshlod::{Format, Scene};
+use meshlod::io::{IoError, write_file};
+use meshlod::{AnyFile, AnyFileError, FileKind, Format, Scene};
 
 use crate::options::args::ReadArgs;
 use crate::session::Session;
 use crate::session::failure::Failure;
-use crate::session::own_files::{self, OwnFormat};
 
 /// Returns true if a path is `-`, which stands for standard input or output.
 pub fn is_pipe(path: &Path) -> bool {
@@ -29,24 +28,21 @@ pub fn stem(path: &Path) -> String {
 
 /// Reads a scene from a file or standard input; of our own formats, the finest level.
 pub fn read(path: &Path, reading: &ReadArgs, session: &Session) -> Result<Scene, Failure> {
-    session.progress.stage(&format!("reading {}", name(path)));
-    if let Some(format) = OwnFormat::of_path(path) {
-        return own_files::read(path, format, &reading.options(), session);
-    }
-    let scene = match is_pipe(path) {
-        false => {
-            Format::of_path(path).map_err(|error| unknown_input(path, &error))?;
-            meshlod::read(path, &reading.options())?
-        }
-        true => {
-            let format = pipe_format(session)?;
-            // Files referenced by a piped mesh are not available.
-            read_bytes(&read_all(path)?, format, &mut |_| None, &reading.options())
-                .map_err(|error| Failure::at(path, error))?
-        }
-    };
+    let scene = open(path, reading, session)?.into_scene()?;
     session.note(path, &scene.notes)?;
     Ok(scene)
+}
+
+/// Opens a file of any kind, or standard input.
+pub fn open(path: &Path, reading: &ReadArgs, session: &Session) -> Result<AnyFile, Failure> {
+    session.progress.stage(&format!("reading {}", name(path)));
+    let options = reading.options();
+    if !is_pipe(path) {
+        return Ok(AnyFile::open(path, &options)?);
+    }
+    // Files referenced by a piped mesh are not available.
+    let (kind, bytes) = (FileKind::Mesh(pipe_format(session)?), read_all(path)?);
+    Ok(AnyFile::from_bytes(path, kind, bytes, &mut |_| None, &options)?)
 }
 
 /// Reads a scene like [`read`], for verbs that need faces.
@@ -93,12 +89,26 @@ fn unknown_input(path: &Path, error: &IoError) -> Failure {
     }
 }
 
+impl From<AnyFileError> for Failure {
+    fn from(error: AnyFileError) -> Self {
+        let path = error.path().to_owned();
+        match error {
+            AnyFileError::Io(error @ IoError::UnknownFormat { .. }) => unknown_input(&path, &error),
+            AnyFileError::Io(error) => error.into(),
+            error @ AnyFileError::Weld(_) => {
+                Self::new(error.to_string().replace(": weld:", ": --weld:")).about(&path)
+            }
+            error => Self::new(error).about(&path),
+        }
+    }
+}
+
 /// Makes the failure of an output whose suffix is not that of a mesh: says which verb writes it.
 fn unknown_output(path: &Path, error: &IoError) -> Failure {
-    let verb = match OwnFormat::of_path(path) {
+    let verb = match FileKind::own_of_path(path) {
         _ if path.is_dir() => return Failure::at(path, "is a folder; name a file to write"),
-        Some(OwnFormat::Levels) => "build",
-        Some(OwnFormat::Resident | OwnFormat::Sent) => "compress",
+        Some(FileKind::Levels) => "build",
+        Some(_) => "compress",
         None => return Failure::usage(error).about(path),
     };
     Failure::usage(format_args!("{}: only `meshlod {verb}` writes such files", name(path)))
@@ -116,17 +126,12 @@ pub fn check_picture(path: &Path, session: &Session) -> Result<(), Failure> {
     }
 }
 
-/// Fails if the parent folder of an output path is missing, or if the path is a folder.
+/// Fails if no file can be at an output path; its folders may be missing.
 pub fn check_place(path: &Path) -> Result<(), Failure> {
-    if path.is_dir() {
-        return Err(Failure::at(path, "is a folder; name a file to write"));
-    }
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    match folder.map(fs::metadata).transpose() {
-        Ok(Some(found)) if !found.is_dir() => Err(Failure::at(path, "its folder is a file")),
-        Ok(_) => Ok(()),
-        Err(error) => Err(Failure::at(path, format_args!("its folder: {error}"))),
-    }
+    meshlod::io::check_place(path).map_err(|error| match error {
+        IoError::System { source, .. } => Failure::at(path, source),
+        error => error.into(),
+    })
 }
 
 /// Fails if an output path is that of another file of the same run, which would be overwritten.

@@ -1,67 +1,13 @@
-//! Meshes and facts of the program's own files: `.mlod`, `.mlq` and `.mlz`.
-
-use std::path::Path;
+//! How the program's own files, `.mlod`, `.mlq` and `.mlz`, store their meshes.
 
 use meshlod::codec::{Compressed, TransportFile};
-use meshlod::io::Weld;
-use meshlod::multires::{ModelFile, Query};
-use meshlod::{ReadOptions, Scene, decompress_model};
+use meshlod::multires::ModelFile;
+use meshlod::{AnyFile, FileBytes, FileKind};
 use serde_json::{Value, json};
 
-use crate::session::Session;
 use crate::session::failure::Failure;
-use crate::session::files;
 use crate::session::model_file;
-use crate::text::model_scene;
 use crate::text::numbers::{count, value};
-
-/// A file format of our own.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum OwnFormat {
-    /// All levels of a mesh, `.mlod`.
-    Levels,
-    /// A mesh in few bytes that is ready for random access, `.mlq`.
-    Resident,
-    /// A mesh in few bytes that is sent, `.mlz`.
-    Sent,
-}
-
-impl OwnFormat {
-    /// Returns the format of a path by its suffix; `None` for the formats of other programs.
-    pub fn of_path(path: &Path) -> Option<Self> {
-        let suffix = path.extension()?.to_str()?;
-        let all = [("mlod", Self::Levels), ("mlq", Self::Resident), ("mlz", Self::Sent)];
-        let found = all.into_iter().find(|(own, _)| suffix.eq_ignore_ascii_case(own));
-        found.map(|(_, format)| format)
-    }
-}
-
-/// Reads the scene of a file of our own; of all levels, the finest one that it holds.
-pub fn read(
-    path: &Path,
-    format: OwnFormat,
-    options: &ReadOptions,
-    session: &Session,
-) -> Result<Scene, Failure> {
-    if matches!(options.weld, Weld::Within(_)) {
-        let reason = "--weld: vertices of this file were joined when it was made; weld the mesh \
-            that it was made from";
-        return Err(Failure::at(path, reason));
-    }
-    let (mesh, model) = match format {
-        OwnFormat::Resident | OwnFormat::Sent => {
-            let decoded = decompress_model(&files::read_all(path)?);
-            decoded.map_err(|error| Failure::at(path, error))?
-        }
-        OwnFormat::Levels => {
-            let file = model_file::open(path, session)?;
-            let taken = file.extract(&Query::finest());
-            let taken = taken.map_err(|error| Failure::at(path, error))?;
-            (taken.level.mesh(), model_scene::read(path, &file, session)?)
-        }
-    };
-    model.into_scene(files::stem(path), mesh).map_err(|error| Failure::at(path, error))
-}
 
 /// Facts about how a file of our own stores its mesh: for programs, and as lines for people.
 pub struct StoredForm {
@@ -69,28 +15,21 @@ pub struct StoredForm {
     pub rows: Vec<[String; 2]>,
 }
 
-/// Reads how a file of our own, of which the mesh has been read, stores it.
-pub fn stored(path: &Path, format: OwnFormat, session: &Session) -> Result<StoredForm, Failure> {
-    let wrong = |error| Failure::at(path, error);
-    match format {
-        OwnFormat::Levels => {
-            stored_levels(&model_file::open_again(path, session)?).map_err(|e| Failure::at(path, e))
-        }
-        OwnFormat::Resident | OwnFormat::Sent => {
-            let bytes = files::read_all(path)?;
-            // As in reading, the content decides, not the suffix.
-            match bytes.starts_with(&TransportFile::MAGIC) {
-                true => TransportFile::open(&bytes).map(|file| stored_sent(&file)).map_err(wrong),
-                false => Compressed::from_bytes(&bytes).map(|c| stored_resident(&c)).map_err(wrong),
-            }
-        }
+/// Returns how a file of our own stores its mesh; `None` for a file of other programs.
+pub fn stored(file: &AnyFile) -> Option<Result<StoredForm, Failure>> {
+    if let Some(levels) = file.levels() {
+        return Some(Ok(stored_levels(levels)));
     }
+    let wrong = |error| Failure::at(file.path(), error);
+    let bytes = file.compressed()?;
+    Some(match file.kind() {
+        FileKind::Sent => TransportFile::open(bytes).map(|sent| stored_sent(&sent)).map_err(wrong),
+        _ => Compressed::from_bytes(bytes).map(|all| stored_resident(&all)).map_err(wrong),
+    })
 }
 
-fn stored_levels(
-    file: &ModelFile<std::fs::File>,
-) -> Result<StoredForm, meshlod::multires::FileError> {
-    Ok(match file {
+fn stored_levels(file: &ModelFile<FileBytes>) -> StoredForm {
+    match file {
         ModelFile::Contractions(archive) => {
             let kind = model_file::error_kind(archive);
             let rounding = model_file::rounding(archive);
@@ -133,7 +72,7 @@ fn stored_levels(
                 ],
             }
         }
-    })
+    }
 }
 
 fn stored_resident(file: &Compressed) -> StoredForm {

@@ -16,7 +16,7 @@ use crate::session::Session;
 use crate::session::answer::Answer;
 use crate::session::failure::Failure;
 use crate::session::files;
-use crate::session::own_files::{self, OwnFormat};
+use crate::session::own_files;
 use crate::text::numbers::{coordinate, count, faces, value};
 use crate::text::table::aligned;
 use crate::verbs::info::contents::Contents;
@@ -34,14 +34,15 @@ pub struct Info {
 
 impl Info {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
-        let scene = files::read(&self.input, &self.reading, session)?;
+        let file = files::open(&self.input, &self.reading, session)?;
+        let stored = own_files::stored(&file).transpose()?;
+        let scene = file.into_scene()?;
+        session.note(&self.input, &scene.notes)?;
         session.progress.stage("inspecting");
         let meshes = scene.meshes.len();
         let file = (!files::is_pipe(&self.input)).then(|| std::fs::metadata(&self.input));
         let file_bytes = file.and_then(Result::ok).map(|file| file.len());
-        let own = OwnFormat::of_path(&self.input);
-        let stored = own.map(|own| own_files::stored(&self.input, own, session)).transpose()?;
-        let contents = Contents::of(&scene, file_bytes, own.is_some());
+        let contents = Contents::of(&scene, file_bytes, stored.is_some());
         let faces_once = faces_of_meshes(&scene);
         let mesh = scene.into_mesh();
         let facts = Facts::of(&mesh);

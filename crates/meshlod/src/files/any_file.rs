@@ -151,6 +151,11 @@ impl AnyFile {
         Ok(Self { path: path.to_owned(), content })
     }
 
+    /// Returns the path of the file, or what was given in its place.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Returns what the file is: of compressed files the content decides, not the suffix.
     pub fn kind(&self) -> FileKind {
         match &self.content {

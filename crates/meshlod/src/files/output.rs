@@ -1,12 +1,12 @@
 //! Where a result goes, and in which format.
 
-use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use meshlod_io::gltf::{Level, LodLayout, StripMesh};
 use meshlod_io::{
-    Format, IoError, Note, Scene, WriteOptions, write, write_file, write_lods, write_strips,
+    Format, IoError, Note, Scene, WriteOptions, check_place, write, write_file, write_lods,
+    write_strips,
 };
 
 use crate::files::FileKind;
@@ -107,21 +107,6 @@ fn remedied(scene: &Scene, limits: Vec<Note>) -> Vec<Note> {
         None => note.remedied(keeps.clone()),
     };
     limits.into_iter().map(remedy).collect()
-}
-
-/// Fails if no file can be at a path: if it is a folder, or one of its folders is a file.
-///
-/// Folders may be missing: they are made when the file is written.
-fn check_place(path: &Path) -> Result<(), IoError> {
-    let fault = |reason: &str| Err(IoError::system(path, io::Error::other(reason)));
-    if path.is_dir() {
-        return fault("is a folder; name a file to write");
-    }
-    let exists = |folder: &&Path| !folder.as_os_str().is_empty() && folder.exists();
-    match path.ancestors().skip(1).find(exists) {
-        Some(folder) if !folder.is_dir() => fault("its folder is a file"),
-        _ => Ok(()),
-    }
 }
 
 /// Has one thread at a time write scenes: an image gets a name that is free, and takes it only once
