@@ -5,9 +5,7 @@ use std::fmt::Debug;
 use meshlod::check::{
     CheckOptions, ContactPolicy, HoleLimits, Kind, Kinds, LockOptions, RepairOptions, Stitch,
 };
-use meshlod::codec::{
-    CompressionTarget, Lattice, Reconstruction, Scheme, TransportOptions, TransportQuantization,
-};
+use meshlod::codec::{Lattice, TransportOptions, TransportQuantization};
 use meshlod::flock::evaluate::{Arm, EvaluationOptions};
 use meshlod::flock::levels::{ChainOptions, ModelAxes};
 use meshlod::flock::nearest::{CutFocus, NearestOptions};
@@ -15,14 +13,15 @@ use meshlod::flock::scene::{ScenarioName, ScenarioOptions};
 use meshlod::flock::select::policies::Factors;
 use meshlod::flock::select::{Budget, PolicyName};
 use meshlod::io::{Precision, Weld};
+use meshlod::jobs::{CompressRequest, CompressTarget, Packing, PositionScheme};
 use meshlod::measure::{BeyondOptions, CertifiedOptions, DistanceOptions};
 use meshlod::mesh::{AttributeBounds, ConditionOptions, Lock, Locks, Search, VertexId};
 use meshlod::multires::{ErrorKind, Focus, Ground, GroundShape, Storage, UpdateLimits};
 use meshlod::simplify::AttributeWeights;
 use meshlod::strip::{CacheAware, Prices, StripOptions, StripQuality};
 use meshlod::{
-    BuildOptions, CompressOptions, Constraints, Method, Options, ReadOptions, Target, Topology,
-    VertexLocking, WriteOptions, check_report, samples, simplify,
+    BuildOptions, Constraints, Method, Options, ReadOptions, Target, Topology, VertexLocking,
+    WriteOptions, check_report, samples, simplify,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -124,14 +123,20 @@ fn options_of_files_levels_and_bytes() {
     );
     options_as(&UpdateLimits { changes: Some(9), ..Default::default() }, &json!({ "changes": 9 }));
     options_as(
-        &CompressOptions {
-            target: CompressionTarget::Reduction(0.5),
-            scheme: Some(Scheme::Parts(Reconstruction::Truncated)),
-            strips: Some(StripQuality::Fast),
+        &CompressRequest {
+            target: CompressTarget::Reduction(0.5),
+            packing: Packing::Resident {
+                scheme: Some(PositionScheme::Parts { strips: Some(StripQuality::Fast) }),
+                attributes: AttributeBounds::default(),
+            },
             ..Default::default()
         },
         &json!({
-            "target": { "reduction": 0.5 }, "scheme": { "parts": "truncated" }, "strips": "fast",
+            "target": { "reduction": 0.5 },
+            "packing": { "resident": {
+                "scheme": { "parts": { "strips": "fast" } },
+                "attributes": to_value(AttributeBounds::default()).unwrap(),
+            } },
         }),
     );
     let quantization = TransportQuantization::Lattice(Lattice::new(-9).unwrap());

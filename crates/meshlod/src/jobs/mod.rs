@@ -9,9 +9,25 @@
 //! A job reads no file and writes none. [`AnyFile`](crate::AnyFile) opens what it works on,
 //! [`Output`](crate::Output) says where the result goes and in which format.
 
+#[cfg(feature = "codec")]
+mod compress;
+mod convert;
 mod error;
+#[cfg(feature = "strip")]
+mod strip;
 mod watch;
 
+#[cfg(feature = "codec")]
+pub use compress::{
+    CompressReport, CompressRequest, CompressTarget, GltfPacking, Packing, PieceCount,
+    PositionScheme, StripCounts, compress,
+};
+pub use convert::{ConvertReport, ConvertRequest, convert};
 pub use error::JobError;
+#[cfg(feature = "strip")]
+pub use strip::{
+    FollowReport, FollowRequest, FollowedCut, StripFilter, StripReport, StripRequest, Stripped,
+    StrippedLevelReport, follow_strips, strip,
+};
 pub use watch::{About, Remark, Watch};
-pub(crate) use watch::{Contractions, cancellable};
+pub(crate) use watch::{Contractions, begin, cancellable};
