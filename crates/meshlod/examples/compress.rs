@@ -4,26 +4,31 @@
 
 use std::error::Error;
 
-use meshlod::codec::CompressionTarget;
+use meshlod::jobs::{CompressRequest, CompressTarget, Packing, compress};
 use meshlod::measure::{DistanceOptions, distance};
-use meshlod::{CompressOptions, compress, decompress, samples};
+use meshlod::{AnyFile, FileKind, ReadOptions, Scene, samples};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let folder = tempfile::tempdir()?;
     let mesh = samples::gyroid(20_000);
-    let options = DistanceOptions { samples: 50_000, ..DistanceOptions::default() };
+    let (options, read) =
+        (DistanceOptions { samples: 50_000, ..DistanceOptions::default() }, ReadOptions::default());
     println!("file  bits    bytes  bits a triangle  mean error");
-    for suffix in ["mlz", "mlq"] {
+    for (suffix, kind) in [("mlz", FileKind::Sent), ("mlq", FileKind::Resident)] {
         for bits in [8, 11, 14] {
-            let path = folder.path().join(format!("gyroid.{suffix}"));
-            let target = CompressionTarget::Bits(bits);
-            let report = compress(&mesh, &path, &CompressOptions { target, ..Default::default() })?;
-            let apart = distance(&mesh, &decompress(&path)?, &options)?;
-            let a_triangle = 8.0 * report.bytes as f64 / report.faces as f64;
+            let request = CompressRequest {
+                packing: Packing::of(kind).unwrap_or_default(),
+                target: CompressTarget::Bits(bits),
+                ..CompressRequest::default()
+            };
+            let scene = Scene::from_mesh("gyroid", mesh.clone());
+            let (bytes, report) = compress(scene, &request, &())?;
+            let file = AnyFile::from_bytes("gyroid", kind, bytes, &mut |_| None, &read)?;
+            let apart = distance(&mesh, &file.into_scene()?.into_mesh(), &options)?;
+            let a_triangle = 8.0 * report.bytes_per_triangle;
             let percent = apart.percent(apart.mean());
             println!(
                 ".{suffix}  {bits:>4}  {:>7}  {a_triangle:>15.2}  {percent:.5}%",
-                report.bytes
+                report.bytes_total
             );
         }
     }

@@ -131,18 +131,24 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`compress`] writes a mesh in a few bytes: `.mlq` to draw from directly, `.mlz` to send.
+//! [`jobs::compress`] packs a scene in a few bytes: `.mlq` to draw from directly, `.mlz` to send.
 //! [`codec`] has the schemes:
 //!
 //! ```
 //! # let knot = meshlod::samples::knot(4_000);
 //! # let folder = tempfile::tempdir()?;
 //! # let path = folder.path().join("knot.mlz");
-//! use meshlod::{CompressOptions, compress, decompress};
+//! use meshlod::jobs::{CompressRequest, Packing, compress};
+//! use meshlod::{AnyFile, Output, ReadOptions, Scene};
 //!
-//! let report = compress(&knot, &path, &CompressOptions::default())?;
-//! assert!(report.bytes < 4 * knot.faces.len());
-//! assert_eq!(decompress(&path)?.faces.len(), knot.faces.len());
+//! let output = Output::new(&path)?;
+//! let packing = Packing::of(output.kind()).expect(".mlz is compressed");
+//! let request = CompressRequest { packing, ..CompressRequest::default() };
+//! let (bytes, report) = compress(Scene::from_mesh("knot", knot), &request, &())?;
+//! output.write_bytes(&bytes)?;
+//! assert!(report.bytes_total < 4 * report.faces);
+//! let back = AnyFile::open(&path, &ReadOptions::default())?.into_scene()?;
+//! assert_eq!(back.meshes[0].mesh.faces.len(), report.faces);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -253,7 +259,7 @@
 //! | `picture` | [`picture`]: a rasteriser, the materials of scenes | `io` |
 //! | `multires` | [`multires`]: all levels in a file, [`build`], [`extract`]; compiles zstd, which is C | `check`, `picture` |
 //! | `strip` | [`strip`]: triangle strips for any level | `multires` |
-//! | `codec` | [`codec`]: meshes in few bytes, [`compress`] | `strip` |
+//! | `codec` | [`codec`]: meshes in few bytes, [`jobs::compress`] | `strip` |
 //! | `flock` | [`flock`]: a level for each of thousands of members | `multires` |
 //! | `samples` | [`samples`]: procedural meshes | |
 //! | `draco` | glTF compressed by Draco is read | `io` |
@@ -290,10 +296,6 @@ mod conditioned;
 
 #[cfg(feature = "picture")]
 mod appearance;
-#[cfg(feature = "codec")]
-mod compressed;
-#[cfg(feature = "codec")]
-mod compressed_strips;
 #[cfg(feature = "io")]
 mod conditioned_scene;
 #[cfg(feature = "check")]
@@ -302,8 +304,6 @@ mod constraints;
 mod contacts;
 #[cfg(feature = "multires")]
 mod cut_volume;
-#[cfg(feature = "codec")]
-mod decompressed;
 #[cfg(feature = "io")]
 mod exact_volume;
 #[cfg(feature = "multires")]
@@ -323,6 +323,9 @@ mod materials;
 #[cfg(feature = "multires")]
 mod model_scene;
 #[cfg(feature = "io")]
+#[doc(hidden)]
+pub mod numbers;
+#[cfg(feature = "io")]
 mod place;
 #[cfg(feature = "multires")]
 mod posed;
@@ -330,8 +333,6 @@ mod posed;
 mod repair;
 #[cfg(feature = "io")]
 mod scene;
-#[cfg(feature = "strip")]
-mod strips;
 #[cfg(feature = "multires")]
 mod verified;
 
@@ -365,12 +366,6 @@ pub use meshlod_simplify::{Method, Options, Report, SimplifyError, Target, Topol
 
 #[cfg(feature = "picture")]
 pub use appearance::{OwnedPaint, normals_of};
-#[cfg(feature = "codec")]
-pub use compressed::{
-    CompressOptions, CompressReport, CompressedFileError, compress, compress_bytes, compress_scene,
-};
-#[cfg(feature = "codec")]
-pub use compressed_strips::compressed_strips;
 #[cfg(feature = "io")]
 pub use conditioned_scene::ConditionedScene;
 #[cfg(feature = "check")]
@@ -379,8 +374,6 @@ pub use constraints::{Constraints, VertexLocking};
 pub use contacts::scene_locks;
 #[cfg(feature = "multires")]
 pub use cut_volume::{CutVolumeError, conserve_cut_volume};
-#[cfg(feature = "codec")]
-pub use decompressed::{decompress, decompress_bytes, decompress_model, decompress_scene};
 #[cfg(feature = "io")]
 pub use exact_volume::{closed_volume, conserve_volumes, digits_of};
 #[cfg(feature = "multires")]
@@ -390,7 +383,7 @@ pub use files::{AnyFile, AnyFileError, FileBytes};
 #[cfg(feature = "io")]
 pub use files::{FileKind, Output};
 #[cfg(feature = "check")]
-pub use fuse::fuse_scene;
+pub use fuse::{FuseReport, fuse_scene};
 #[cfg(feature = "multires")]
 pub use levels::{BuildOptions, BuildReport, LevelsError, build, build_bytes};
 #[cfg(feature = "io")]
@@ -412,7 +405,5 @@ pub use posed::{PoseCounts, ScenePoses, posed_mesh};
 pub use repair::repair_scene;
 #[cfg(feature = "io")]
 pub use scene::{SceneError, SceneSimplifier, simplify_scene};
-#[cfg(feature = "strip")]
-pub use strips::scene_strips;
 #[cfg(feature = "multires")]
 pub use verified::{Verification, VerifiedExtract, extract_verified, measure_extract};

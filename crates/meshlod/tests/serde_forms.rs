@@ -5,23 +5,21 @@ use std::fmt::Debug;
 use meshlod::check::{
     CheckOptions, ContactPolicy, HoleLimits, Kind, Kinds, LockOptions, RepairOptions, Stitch,
 };
-use meshlod::codec::{
-    CompressionTarget, Lattice, Reconstruction, Scheme, TransportOptions, TransportQuantization,
-};
+use meshlod::codec::{Lattice, TransportOptions, TransportQuantization};
 use meshlod::flock::levels::{ChainOptions, ModelAxes};
 use meshlod::flock::nearest::{CutFocus, NearestOptions};
 use meshlod::flock::select::policies::Factors;
 use meshlod::flock::select::{Budget, PolicyName};
 use meshlod::io::{Precision, Weld};
-use meshlod::jobs::{CheckRequest, check};
+use meshlod::jobs::{CheckRequest, CompressRequest, CompressTarget, Packing, PositionScheme, check};
 use meshlod::measure::{BeyondOptions, CertifiedOptions, DistanceOptions};
 use meshlod::mesh::{AttributeBounds, ConditionOptions, Lock, Locks, Search, VertexId};
 use meshlod::multires::{ErrorKind, Focus, Ground, GroundShape, Storage, UpdateLimits};
 use meshlod::simplify::AttributeWeights;
 use meshlod::strip::{CacheAware, Prices, StripOptions, StripQuality};
 use meshlod::{
-    BuildOptions, CompressOptions, Constraints, Method, Options, ReadOptions, Target, Topology,
-    VertexLocking, WriteOptions, samples, simplify,
+    BuildOptions, Constraints, Method, Options, ReadOptions, Target, Topology, VertexLocking,
+    WriteOptions, samples, simplify,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -123,14 +121,20 @@ fn options_of_files_levels_and_bytes() {
     );
     options_as(&UpdateLimits { changes: Some(9), ..Default::default() }, &json!({ "changes": 9 }));
     options_as(
-        &CompressOptions {
-            target: CompressionTarget::Reduction(0.5),
-            scheme: Some(Scheme::Parts(Reconstruction::Truncated)),
-            strips: Some(StripQuality::Fast),
+        &CompressRequest {
+            target: CompressTarget::Reduction(0.5),
+            packing: Packing::Resident {
+                scheme: Some(PositionScheme::Parts { strips: Some(StripQuality::Fast) }),
+                attributes: AttributeBounds::default(),
+            },
             ..Default::default()
         },
         &json!({
-            "target": { "reduction": 0.5 }, "scheme": { "parts": "truncated" }, "strips": "fast",
+            "target": { "reduction": 0.5 },
+            "packing": { "resident": {
+                "scheme": { "parts": { "strips": "fast" } },
+                "attributes": to_value(AttributeBounds::default()).unwrap(),
+            } },
         }),
     );
     let quantization = TransportQuantization::Lattice(Lattice::new(-9).unwrap());

@@ -5,11 +5,11 @@ mod common;
 use std::path::Path;
 use std::sync::Arc;
 
+use meshlod::jobs::{CompressRequest, Packing, compress};
 use meshlod::mesh::{Bounds, Labels};
 use meshlod::multires::{Focus, HeightField, HeightPrecision, Hierarchy};
 use meshlod::{
-    BuildOptions, CompressOptions, OwnedPaint, ReadOptions, Scene, WriteOptions, build, compress,
-    samples, write,
+    BuildOptions, FileKind, OwnedPaint, ReadOptions, Scene, WriteOptions, build, samples, write,
 };
 use meshlod_view::stage::{Coloring, Display, Loaded, LoadedContent, Stage, Subject, SubjectId};
 use meshlod_view::{Canvas, CutQuery, CutTolerance, Gpu, Renderer, TargetFormat};
@@ -51,8 +51,12 @@ fn files_of_every_kind_are_shown() {
     let scene = Scene::from_mesh("knot", knot.clone());
     write(&path("a.ply"), &scene, &WriteOptions::default()).unwrap();
     build(&knot, &path("b.mlod"), &BuildOptions::default()).unwrap();
-    compress(&knot, &path("c.mlq"), &CompressOptions::default()).unwrap();
-    compress(&knot, &path("d.mlz"), &CompressOptions::default()).unwrap();
+    for (name, kind) in [("c.mlq", FileKind::Resident), ("d.mlz", FileKind::Sent)] {
+        let packing = Packing::of(kind).unwrap();
+        let request = CompressRequest { packing, ..CompressRequest::default() };
+        let (bytes, _) = compress(scene.clone(), &request, &()).unwrap();
+        std::fs::write(path(name), bytes).unwrap();
+    }
     let loaded: Vec<_> = ["a.ply", "b.mlod", "c.mlq", "d.mlz"].map(|name| read(&path(name))).into();
     for loaded in &loaded {
         assert_eq!(loaded.mesh.faces.len(), knot.faces.len(), "{}", loaded.name());

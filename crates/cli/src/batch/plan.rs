@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Component, Path, PathBuf};
 
 use glob::{MatchOptions, Pattern, glob_with};
-use meshlod::{FileKind, Format};
+use meshlod::FileKind;
 
 use crate::options::parse::Suffix;
 use crate::session::failure::Failure;

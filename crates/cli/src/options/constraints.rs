@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use clap::Args;
-use meshlod::{Constraints, Mesh, Options, PlacedScene, Scene, Target, VertexLocking, place_scene};
+use meshlod::{Constraints, Mesh, Options, PlacedScene, Scene, VertexLocking, place_scene};
 
 use crate::options::args::ReadArgs;
 use crate::options::fuse::{FuseArgs, FuseReport};
@@ -28,7 +28,6 @@ pub struct ConstraintArgs {
 pub struct FlatInput {
     pub mesh: Mesh,
     pub options: Options,
-    pub fused: Option<FuseReport>,
 }
 
 impl ConstraintArgs {
@@ -59,7 +58,7 @@ impl ConstraintArgs {
     /// Merges a scene read from a path into one mesh, with the constraints added to the options.
     pub fn flatten(
         &self,
-        (scene, fused): (Scene, Option<FuseReport>),
+        scene: Scene,
         (path, reading): (&Path, &ReadArgs),
         options: Options,
         session: &Session,
@@ -67,7 +66,7 @@ impl ConstraintArgs {
         let constraints = self.constraints(&InputScene { scene: &scene, path, reading })?;
         note_search(&constraints, session);
         let (mesh, options) = constraints.flatten(scene, options).map_err(Failure::new)?;
-        Ok(FlatInput { mesh, options, fused })
+        Ok(FlatInput { mesh, options })
     }
 
     /// Merges a scene read from a path into one mesh that has each of its meshes once, with the
@@ -91,7 +90,7 @@ impl ConstraintArgs {
     }
 
     /// Returns the constraints on a scene that is already fused.
-    fn constraints(&self, input: &InputScene<'_>) -> Result<Constraints, Failure> {
+    pub fn constraints(&self, input: &InputScene<'_>) -> Result<Constraints, Failure> {
         Ok(Constraints {
             topology: self.topology.kind(),
             borders: self.topology.borders(),
@@ -100,18 +99,6 @@ impl ConstraintArgs {
             lock_boundary: self.locks.lock_boundary,
             locks: self.locks.locking(input)?,
         })
-    }
-}
-
-impl FlatInput {
-    /// Returns a target for the faces before fusing as a target for the mesh.
-    pub fn target(&self, target: Target) -> Target {
-        self.fused.as_ref().map_or(target, |fused| fused.target(target))
-    }
-
-    /// Returns the number of faces before fusing.
-    pub fn input_faces(&self) -> usize {
-        self.fused.as_ref().map_or(self.mesh.faces.len(), |fused| fused.input_faces)
     }
 }
 

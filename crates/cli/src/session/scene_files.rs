@@ -7,6 +7,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use meshlod::io::gltf::{Level, LodLayout, StripMesh};
 use meshlod::io::{Note, read_bytes, write_file, write_lods, write_strips, write_to};
+use meshlod::jobs::{self, ConvertReport, ConvertRequest};
 use meshlod::{Format, Mesh, ReadOptions, Scene, WriteOptions};
 
 use crate::options::args::WriteArgs;
@@ -21,14 +22,25 @@ pub fn write(
     writing: &WriteArgs,
     session: &Session,
 ) -> Result<(), Failure> {
-    let format = check_output(path, session)?;
-    let mut notes = remedied(scene, scene.limits_of(format));
-    if is_pipe(path) {
-        notes.extend(scene.lone_file_limits(format));
-    }
-    notes.extend(scene.precision_limits(format, writing.options().precision));
-    session.note(path, &notes)?;
-    write_noted(path, scene, writing, session)
+    write_counted(path, scene, writing, session).map(|_| ())
+}
+
+/// Writes a scene to a file or standard output, and returns what was written.
+pub fn write_counted(
+    path: &Path,
+    scene: &Scene,
+    writing: &WriteArgs,
+    session: &Session,
+) -> Result<ConvertReport, Failure> {
+    let request = ConvertRequest {
+        format: check_output(path, session)?,
+        precision: writing.options().precision,
+        alone: is_pipe(path),
+    };
+    let report = jobs::convert(scene, &request);
+    session.note(path, &report.notes)?;
+    write_noted(path, scene, writing, session)?;
+    Ok(report)
 }
 
 /// Adds to what a format lacks of a scene the name of another that holds all of it, if there is one

@@ -252,7 +252,7 @@ impl Build {
         let notes = scene.limits_of(Format::Stl);
         let path = (self.input.as_path(), &self.reading);
         let FlatInput { mesh, options, .. } =
-            self.constraints.flatten((scene, None), path, options, session)?;
+            self.constraints.flatten(scene, path, options, session)?;
         let counts = SceneCounts::default();
         Ok((PlacedScene { mesh, options, rest: None, counts }, notes))
     }

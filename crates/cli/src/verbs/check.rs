@@ -42,7 +42,7 @@ pub struct Check {
         allow_negative_numbers = true)]
     limit: usize,
     /// How to find pairs of faces that may intersect; the findings are the same
-    #[arg(long, alias = "net", value_name = "METHOD", default_value = "tree")]
+    #[arg(long, alias = "net", value_name = "METHOD", default_value = "tree", hide = true)]
     broad_phase: PairSearch,
     /// Skip the search for faces that intersect, which --locks needs
     #[arg(long, conflicts_with = "locks")]

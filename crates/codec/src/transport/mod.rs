@@ -55,6 +55,10 @@ use crate::lattice::Lattice;
 pub struct Transport {
     /// Contents of the `.mlz` file.
     pub bytes: Vec<u8>,
+    /// Number of vertices in the file.
+    pub vertices: usize,
+    /// Number of faces in the file.
+    pub faces: usize,
     /// Number of independently decodable blocks in the file.
     pub blocks: usize,
     /// Size of the `.mlz` file by content, in bytes.

@@ -121,13 +121,14 @@ fn write(
     let reports = bits.reports(&format);
     let is_bare = format.is_empty() && resources.is_empty();
     let layers = (!is_bare).then_some((format, attributes.codes));
-    let faces = walks.iter().map(|walk| walk.faces.len()).sum();
+    let faces: usize = walks.iter().map(|walk| walk.faces.len()).sum();
     let resources = resources.len();
     let header = Header { grid, first_bits, faces, vertices, codes, layers, resources, entries };
     let mut bytes = header.store(&payload);
     bytes.extend(payload);
     let sizes = bits.sizes(bytes.len(), resources);
-    Transport { bytes, blocks: walks.len(), sizes, layers: reports, unused_vertices: 0 }
+    let blocks = walks.len();
+    Transport { bytes, vertices, faces, blocks, sizes, layers: reports, unused_vertices: 0 }
 }
 
 /// Fits the models of positions and faces, and returns the residuals of each block, too.

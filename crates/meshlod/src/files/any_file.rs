@@ -8,8 +8,9 @@ use meshlod_io::{Format, IoError, Note, ReadOptions, Resolve, Scene, Weld, read,
 use meshlod_multires::{FileError, ModelFile, Query};
 use thiserror::Error;
 
+use crate::files::compressed::decode;
 use crate::files::{FileBytes, FileKind};
-use crate::{ModelScene, ModelSceneError, decompress_model};
+use crate::{ModelScene, ModelSceneError};
 
 /// A file of any kind that we read, opened: the suffix decides whether it is one of ours.
 ///
@@ -205,7 +206,7 @@ impl AnyFile {
         let Self { path, content } = self;
         let (mesh, model) = match content {
             Content::Scene(scene) => return Ok(*scene),
-            Content::Compressed(bytes) => match decompress_model(&bytes) {
+            Content::Compressed(bytes) => match decode(&bytes) {
                 Ok(decoded) => decoded,
                 Err(source) => return Err(AnyFileError::Compressed { path, source }),
             },

@@ -2,6 +2,8 @@
 
 #[cfg(feature = "codec")]
 mod any_file;
+#[cfg(feature = "codec")]
+mod compressed;
 mod kind;
 mod output;
 #[cfg(feature = "codec")]
@@ -11,5 +13,6 @@ mod source;
 pub use any_file::{AnyFile, AnyFileError};
 pub use kind::FileKind;
 pub use output::Output;
+pub(crate) use output::limits;
 #[cfg(feature = "codec")]
 pub use source::FileBytes;

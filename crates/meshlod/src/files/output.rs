@@ -10,6 +10,7 @@ use meshlod_io::{
 };
 
 use crate::files::FileKind;
+use crate::jobs::ConvertRequest;
 
 /// A file to be written: its path, and what its suffix says that it is.
 ///
@@ -46,9 +47,10 @@ impl Output {
     /// the remedy, where there is one.
     pub fn limits(&self, scene: &Scene, options: &WriteOptions) -> Vec<Note> {
         let FileKind::Mesh(format) = self.kind else { return Vec::new() };
-        let mut notes = remedied(scene, scene.limits_of(format));
-        notes.extend(scene.precision_limits(format, options.precision));
-        notes
+        limits(
+            scene,
+            &ConvertRequest { precision: options.precision, ..ConvertRequest::new(format) },
+        )
     }
 
     /// Writes a scene, with the files that belong to it.
@@ -91,6 +93,17 @@ impl Output {
     pub fn write_bytes(&self, bytes: &[u8]) -> Result<(), IoError> {
         write_file(&self.path, bytes)
     }
+}
+
+/// Returns notes on what a file of a format will lack of a scene.
+pub(crate) fn limits(scene: &Scene, request: &ConvertRequest) -> Vec<Note> {
+    let ConvertRequest { format, precision, alone } = *request;
+    let mut notes = remedied(scene, scene.limits_of(format));
+    if alone {
+        notes.extend(scene.lone_file_limits(format));
+    }
+    notes.extend(scene.precision_limits(format, precision));
+    notes
 }
 
 /// Adds to what a format lacks of a scene the name of another that holds all of it, if there is one

@@ -11,7 +11,12 @@
 
 #[cfg(feature = "check")]
 mod check;
+#[cfg(feature = "codec")]
+mod compress;
+mod convert;
 mod error;
+#[cfg(feature = "strip")]
+mod strip;
 mod watch;
 
 #[cfg(feature = "check")]
@@ -19,6 +24,17 @@ pub use check::{
     CONTACT_KINDS, CheckReport, CheckRequest, Contacts, Grade, Group, ObjectPair, Ownership, check,
     check_each, is_touch,
 };
+#[cfg(feature = "codec")]
+pub use compress::{
+    CompressReport, CompressRequest, CompressTarget, GltfPacking, Packing, PieceCount,
+    PositionScheme, StripCounts, compress,
+};
+pub use convert::{ConvertReport, ConvertRequest, convert};
 pub use error::JobError;
+#[cfg(feature = "strip")]
+pub use strip::{
+    FollowReport, FollowRequest, FollowedCut, StripFilter, StripReport, StripRequest, Stripped,
+    StrippedLevelReport, follow_strips, strip,
+};
 pub use watch::{About, Remark, Watch};
-pub(crate) use watch::{Contractions, cancellable};
+pub(crate) use watch::{Contractions, begin, cancellable};

@@ -58,20 +58,25 @@ pub(super) fn strips(stored: &StoredMesh<'_>) -> Option<(Vec<StripRun>, Vec<u16>
 
 #[cfg(test)]
 mod tests {
-    use meshlod::codec::{CompressionTarget, Reconstruction, Scheme, compress};
+    use meshlod::codec::Compressed;
+    use meshlod::jobs::{CompressRequest, CompressTarget, Packing, PositionScheme, compress};
     use meshlod::mesh::{AttributeBounds, strip_triangles};
     use meshlod::strip::StripQuality;
-    use meshlod::{compressed_strips, samples};
+    use meshlod::{Scene, samples};
 
     use super::*;
 
     #[test]
     fn runs_draw_the_faces_of_all_parts() {
         let mesh = samples::gyroid(300_000);
-        let scheme = Scheme::Parts(Reconstruction::Centred);
-        let done =
-            compress(&mesh, scheme, CompressionTarget::Reduction(0.6), &AttributeBounds::default());
-        let stripped = compressed_strips(done.unwrap().compressed, StripQuality::Fast).unwrap();
+        let packing = Packing::Resident {
+            scheme: Some(PositionScheme::Parts { strips: Some(StripQuality::Fast) }),
+            attributes: AttributeBounds::default(),
+        };
+        let target = CompressTarget::Reduction(0.6);
+        let request = CompressRequest { packing, target, ..CompressRequest::default() };
+        let (bytes, _) = compress(Scene::from_mesh("", mesh.clone()), &request, &()).unwrap();
+        let stripped = Compressed::from_bytes(&bytes).unwrap();
         let stored = stripped.stored().unwrap();
         let (runs, indices) = strips(&stored).unwrap();
         assert!(stored.patches.len() > RUN && runs.len() > stored.patches.len() / RUN);

@@ -10,8 +10,8 @@ use meshlod::mesh::Bounds;
 use meshlod::multires::{FileError, Hierarchy, ModelFile, Query, UpdateLimits};
 use meshlod::picture::Normals;
 use meshlod::{
-    IoError, Mesh, MissingParts, ModelScene, ModelSceneError, OwnedPaint, ReadOptions, Scene,
-    decompress_scene, materials_of, normals_of, single_sided_materials,
+    AnyFile, AnyFileError, IoError, Mesh, MissingParts, ModelScene, ModelSceneError, OwnedPaint,
+    ReadOptions, Scene, materials_of, normals_of, single_sided_materials,
 };
 use thiserror::Error;
 
@@ -62,6 +62,9 @@ pub enum LoadError {
     /// The file cannot be read.
     #[error(transparent)]
     Read(#[from] IoError),
+    /// A compressed file cannot be read, or is damaged.
+    #[error(transparent)]
+    File(#[from] AnyFileError),
     /// A compressed file is damaged.
     #[error("{}: {source}", path.display())]
     Compressed {
@@ -174,12 +177,12 @@ const SHOWN_ONCE: &str = "each mesh is shown once, as the largest of its instanc
 
 fn compressed(path: &Path) -> Result<Loaded, LoadError> {
     let damaged = |source| LoadError::Compressed { path: path.to_owned(), source };
-    let bytes = std::fs::read(path).map_err(|error| IoError::system(path, error))?;
-    if !bytes.starts_with(&Compressed::MAGIC) {
-        let scene = decompress_scene(&bytes, "").map_err(damaged)?;
-        return Ok(of_scene(path, scene, LoadedContent::Transport));
-    }
-    let compressed = Compressed::from_bytes(&bytes).map_err(damaged)?;
+    let file = AnyFile::open(path, &ReadOptions::default())?;
+    let resident = file.compressed().filter(|bytes| bytes.starts_with(&Compressed::MAGIC));
+    let Some(bytes) = resident else {
+        return Ok(of_scene(path, file.into_scene()?, LoadedContent::Transport));
+    };
+    let compressed = Compressed::from_bytes(bytes).map_err(damaged)?;
     let mesh = compressed.decode().map_err(damaged)?;
     let warnings = match ModelScene::unpack(compressed.resources()) {
         Ok(model) if model.is_flat() => Vec::new(),

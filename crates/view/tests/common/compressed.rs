@@ -1,10 +1,11 @@
 //! Compressed meshes, and how tests draw them.
 
 use meshlod::codec::{Compressed, CompressionTarget, Reconstruction, Scheme, compress};
+use meshlod::jobs::{self, CompressRequest, CompressTarget, Packing, PositionScheme};
 use meshlod::mesh::AttributeBounds;
 use meshlod::picture::{Camera, Normals, Paint, Picture};
 use meshlod::strip::StripQuality;
-use meshlod::{Mesh, compressed_strips};
+use meshlod::{Mesh, Scene};
 use meshlod_view::{
     Canvas, CompressedOptions, Gpu, GpuCompressed, GpuMesh, Renderer, Shade, TargetFormat,
 };
@@ -19,14 +20,25 @@ pub fn by_schemes(mesh: &Mesh, bits: u32) -> Vec<(&'static str, Compressed)> {
         compress(mesh, scheme, target, &AttributeBounds::default()).unwrap().compressed
     };
     let parts = by(Scheme::Parts(Reconstruction::Centred));
-    let stripped = compressed_strips(parts.clone(), StripQuality::Fast).unwrap();
     vec![
-        ("strips of parts", stripped),
+        ("strips of parts", in_strips(mesh, bits)),
         ("parts", parts),
         ("truncated parts", by(Scheme::Parts(Reconstruction::Truncated))),
         ("blocks", by(Scheme::Blocks)),
         ("lattice", by(Scheme::Lattice)),
     ]
+}
+
+/// Returns a mesh in parts, with strips for faces.
+fn in_strips(mesh: &Mesh, bits: u32) -> Compressed {
+    let packing = Packing::Resident {
+        scheme: Some(PositionScheme::Parts { strips: Some(StripQuality::Fast) }),
+        attributes: AttributeBounds::default(),
+    };
+    let target = CompressTarget::Bits(bits);
+    let request = CompressRequest { packing, target, ..CompressRequest::default() };
+    let (bytes, _) = jobs::compress(Scene::from_mesh("", mesh.clone()), &request, &()).unwrap();
+    Compressed::from_bytes(&bytes).unwrap()
 }
 
 /// How a test draws.

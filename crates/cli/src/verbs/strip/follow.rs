@@ -1,50 +1,38 @@
 //! `strip --follow`: strips and index buffers that follow a cut from one error to the next.
 
-use std::time::{Duration, Instant};
-
-use meshlod::multires::{Cut, Implicit, ModelFile, SlotMesh, UpdateLimits};
-use meshlod::strip::{CutStrips, Difference, StripIndices, StripStatistics};
+use meshlod::jobs::{FollowReport, FollowRequest, FollowedCut, follow_strips};
+use meshlod::multires::ModelFile;
+use meshlod::strip::StripEffort;
 use serde::Serialize;
 
-use super::{Strip, report};
+use super::Strip;
 use crate::options::query_args::ErrorLimit;
 use crate::session::Session;
 use crate::session::answer::{Answer, Outcome};
 use crate::session::failure::Failure;
 use crate::session::files;
+use crate::session::hearing::Hearing;
 use crate::session::model_file;
 use crate::text::model_scene;
 use crate::text::numbers::count;
 use crate::text::table::aligned;
 
-/// Strips of a cut, and what it took to get there from the one before, under the keys of JSON.
-#[derive(Serialize)]
-struct FollowedCut {
-    error: String,
-    triangles: usize,
-    /// Triangles that were added, removed or changed; all of the first cut.
-    changed: usize,
-    vertices_sent: usize,
-    indices_with_restart: usize,
-    /// Entries of the index buffers, with restarts and unused places.
-    entries: usize,
-    entries_per_triangle: f64,
-    entries_written: usize,
-    strips: usize,
-    seconds: f64,
-    /// Triangles by which the strips differ from the cut, if they were compared.
-    missing: Option<usize>,
-    extra: Option<usize>,
-}
-
 /// Figures of the strips of all cuts for programs.
 #[derive(Serialize)]
-struct FollowFigures<'c> {
+struct FollowFigures {
     file: String,
-    effort: Option<String>,
+    effort: StripEffort,
     each_mesh_once: bool,
-    cuts: &'c [FollowedCut],
+    cuts: Vec<CutFigures>,
     verified: Option<bool>,
+}
+
+/// Strips of a cut, and the error that was asked for.
+#[derive(Serialize)]
+struct CutFigures {
+    error: String,
+    #[serde(flatten)]
+    cut: FollowedCut,
 }
 
 impl Strip {
@@ -59,140 +47,80 @@ impl Strip {
         };
         let scene = model_scene::read(&self.input, &file, session)?;
         let (model, _) = archive.read().map_err(|error| model_file::failure(&self.input, error))?;
-        let mut cut = Cut::new(&model);
-        let mut strips = None;
-        let mut followed = Vec::new();
-        for &error in &self.follow {
-            session.progress.stage("following");
+        let query = |&error: &ErrorLimit| {
             let query = self.query.query_for(error, &file)?;
-            let (query, _) = model_scene::query(&self.input, (&file, &scene), &query, None)?;
-            let start = Instant::now();
-            cut.update(&query, &UpdateLimits::default()).map_err(Failure::usage)?;
-            let changed = self.update(&model, &cut, &mut strips);
-            let time = start.elapsed();
-            if let Some((strips, indices)) = &strips {
-                let difference = self.verify.then(|| strips.difference(&model, &cut));
-                let all = (strips, indices);
-                followed.push(FollowedCut::of((error, changed), &cut, all, difference, time));
-            }
-        }
-        let wrong = followed.iter().any(FollowedCut::is_wrong);
-        if wrong {
+            let of_levels = model_scene::query(&self.input, (&file, &scene), &query, None)?;
+            Ok(of_levels.0)
+        };
+        let queries = self.follow.iter().map(query).collect::<Result<Vec<_>, Failure>>()?;
+        let (quality, effort) = (self.strip_quality(), self.effort.into());
+        let request = FollowRequest { quality, effort, verify: self.verify };
+        let hearing = Hearing::new(session, &self.input, &self.input);
+        let done = follow_strips(&model, &queries, &request, &hearing);
+        let FollowReport { effort, cuts, verified } = done.map_err(|e| hearing.failure(e))?;
+        if verified == Some(false) {
             session.warn(Failure::at(
                 &self.input,
                 "the strips do not draw the faces of the cut, which is a defect of this program",
             ));
         }
-        let figures = FollowFigures {
-            file: files::name(&self.input),
-            effort: report::name(&self.effort),
-            each_mesh_once: !scene.is_flat(),
-            cuts: &followed,
-            verified: self.verify.then_some(!wrong),
-        };
-        let mut text = self.follow_text(&followed);
-        if !scene.is_flat() {
-            text += "counts are of each mesh once, however many nodes show it\n";
-        }
-        let outcome = Outcome::Found.when(wrong);
+        let cuts = self.follow.iter().zip(cuts);
+        let cuts = cuts.map(|(error, cut)| CutFigures { error: error.to_string(), cut }).collect();
+        let (file, each_mesh_once) = (files::name(&self.input), !scene.is_flat());
+        let figures = FollowFigures { file, effort, each_mesh_once, cuts, verified };
+        let text = text(&figures);
+        let outcome = Outcome::Found.when(verified == Some(false));
         Ok(Answer { outcome, ..Answer::new(figures, text) })
-    }
-
-    /// Brings strips and index buffers up to date, and returns how many triangles have changed.
-    fn update(
-        &self,
-        model: &Implicit,
-        cut: &Cut<'_>,
-        state: &mut Option<(CutStrips, StripIndices)>,
-    ) -> usize {
-        let Some((strips, indices)) = state else {
-            let mut strips = CutStrips::new(model, cut, &self.options(), self.effort.into());
-            let indices = strips.indices(model);
-            *state = Some((strips, indices));
-            return cut.face_count();
-        };
-        let changed = strips.update(cut);
-        strips.update_indices(model, indices);
-        changed
-    }
-
-    fn follow_text(&self, followed: &[FollowedCut]) -> String {
-        let headings = [
-            "error",
-            "triangles",
-            "changed",
-            "vertices",
-            "per triangle",
-            "indices",
-            "entries",
-            "per triangle",
-            "written",
-            "strips",
-            "ms",
-        ];
-        let mut rows = vec![headings.map(String::from)];
-        rows.extend(followed.iter().map(FollowedCut::row));
-        let mut text = aligned(&rows);
-        text += "error: as the file has it; changed: triangles that the last cut did not have, or has no more;\n";
-        text +=
-            "entries: index buffers with restarts and free places; written: those that changed\n";
-        for cut in followed.iter().filter(|cut| cut.is_wrong()) {
-            let [missing, extra] = [cut.missing, cut.extra].map(Option::unwrap_or_default);
-            text += &format!("{}: {missing} missing and {extra} extra triangles\n", cut.error);
-        }
-        if self.verify && !followed.iter().any(FollowedCut::is_wrong) {
-            text += "verified: the strips draw exactly the faces of each cut\n";
-        }
-        text
     }
 }
 
-impl FollowedCut {
-    fn of(
-        (error, changed): (ErrorLimit, usize),
-        cut: &Cut<'_>,
-        (strips, indices): (&CutStrips, &StripIndices),
-        difference: Option<Difference>,
-        time: Duration,
-    ) -> Self {
-        let sets = 0..indices.sets();
-        let written = sets.clone().flat_map(|set| indices.changed(set));
-        let entries = sets.map(|set| indices.indices(set).len()).sum();
-        let triangles = cut.face_count();
-        let sent = StripStatistics::new(&strips.strips());
-        Self {
-            error: error.to_string(),
-            triangles,
-            changed,
-            vertices_sent: sent.vertices_sent,
-            indices_with_restart: sent.indices_with_restart,
-            entries,
-            entries_per_triangle: entries as f64 / triangles.max(1) as f64,
-            entries_written: written.map(ExactSizeIterator::len).sum(),
-            strips: sent.strips,
-            seconds: time.as_secs_f64(),
-            missing: difference.map(|difference| difference.missing),
-            extra: difference.map(|difference| difference.extra),
-        }
+fn text(figures: &FollowFigures) -> String {
+    let headings = [
+        "error",
+        "triangles",
+        "changed",
+        "vertices",
+        "per triangle",
+        "indices",
+        "entries",
+        "per triangle",
+        "written",
+        "strips",
+        "ms",
+    ];
+    let mut rows = vec![headings.map(String::from)];
+    rows.extend(figures.cuts.iter().map(CutFigures::row));
+    let mut text = aligned(&rows);
+    text += "error: as the file has it; changed: triangles that the last cut did not have, or has no more;\n";
+    text += "entries: index buffers with restarts and free places; written: those that changed\n";
+    for CutFigures { error, cut } in figures.cuts.iter().filter(|of| of.cut.is_wrong()) {
+        let [missing, extra] = [cut.missing, cut.extra].map(Option::unwrap_or_default);
+        text += &format!("{error}: {missing} missing and {extra} extra triangles\n");
     }
-
-    fn is_wrong(&self) -> bool {
-        [self.missing, self.extra].into_iter().flatten().any(|number| number > 0)
+    if figures.verified == Some(true) {
+        text += "verified: the strips draw exactly the faces of each cut\n";
     }
+    if figures.each_mesh_once {
+        text += "counts are of each mesh once, however many nodes show it\n";
+    }
+    text
+}
 
+impl CutFigures {
     fn row(&self) -> [String; 11] {
+        let Self { error, cut } = self;
         [
-            self.error.clone(),
-            count(self.triangles),
-            count(self.changed),
-            count(self.vertices_sent),
-            format!("{:.3}", self.vertices_sent as f64 / self.triangles.max(1) as f64),
-            count(self.indices_with_restart),
-            count(self.entries),
-            format!("{:.3}", self.entries_per_triangle),
-            count(self.entries_written),
-            count(self.strips),
-            format!("{:.1}", self.seconds * 1e3),
+            error.clone(),
+            count(cut.triangles),
+            count(cut.changed),
+            count(cut.vertices_sent),
+            format!("{:.3}", cut.vertices_sent as f64 / cut.triangles.max(1) as f64),
+            count(cut.indices_with_restart),
+            count(cut.entries),
+            format!("{:.3}", cut.entries_per_triangle),
+            count(cut.entries_written),
+            count(cut.strips),
+            format!("{:.1}", cut.seconds * 1e3),
         ]
     }
 }

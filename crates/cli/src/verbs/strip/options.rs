@@ -1,6 +1,7 @@
 //! Choices of how strips are made and shortened.
 
 use clap::ValueEnum;
+use meshlod::jobs::StripFilter;
 use meshlod::strip::StripEffort;
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -36,6 +37,17 @@ impl From<EffortArg> for StripEffort {
         match tried {
             EffortArg::Quick => Self::Quick,
             EffortArg::Thorough => Self::Thorough,
+        }
+    }
+}
+
+impl From<FilterArg> for StripFilter {
+    fn from(filter: FilterArg) -> Self {
+        match filter {
+            FilterArg::None => Self::None,
+            FilterArg::Stss => Self::Stss,
+            FilterArg::Dtff => Self::Dtff,
+            FilterArg::Repair => Self::Repair,
         }
     }
 }

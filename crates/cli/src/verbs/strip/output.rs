@@ -1,26 +1,16 @@
 //! Writes triangle strips to files: glTF, or lists of vertices in JSON.
 
-use std::cmp::Reverse;
 use std::path::Path;
 
 use meshlod::io::write_file;
-use meshlod::strip::{MergeTree, StripWedge, Strips};
-use meshlod::{Scene, scene_strips};
+use meshlod::jobs::{StripReport, Stripped, StrippedLevelReport};
+use meshlod::strip::{StripWedge, Strips};
 use serde_json::{Value, json};
 
-use super::StrippedLevel;
-use crate::options::constraints::FlatInput;
 use crate::session::Session;
 use crate::session::failure::Failure;
 use crate::session::files;
 use crate::session::scene_files;
-
-/// File of strips to write, with what it needs of the input.
-pub(super) struct StripOutput<'o> {
-    path: &'o Path,
-    /// Scene that the strips are written with; `None` for lists of vertices.
-    scene: Option<Scene>,
-}
 
 /// Fails if the triangle strips cannot be written to the output path.
 pub(super) fn check(out: &Path, input: &Path) -> Result<(), Failure> {
@@ -46,47 +36,41 @@ fn has_suffix(path: &Path, suffix: &str) -> bool {
     path.extension().is_some_and(|found| found.eq_ignore_ascii_case(suffix))
 }
 
-impl<'o> StripOutput<'o> {
-    pub(super) fn new(path: &'o Path, scene: &Scene) -> Self {
-        Self { path, scene: holds_scene(path).then(|| scene.clone()) }
-    }
-
-    /// Writes the strips of all levels of a flattened scene.
-    pub(super) fn write(
-        &self,
-        flat: &FlatInput,
-        tree: &MergeTree,
-        levels: &[StrippedLevel],
-        session: &Session,
-    ) -> Result<(), Failure> {
-        session.progress.stage(&format!("writing {}", files::name(self.path)));
-        let Some(scene) = &self.scene else {
-            let text = format!("{:#}\n", lists(flat, tree, levels));
-            return Ok(write_file(self.path, text.as_bytes())?);
-        };
-        let mut drawn: Vec<_> = levels.iter().filter(|level| !level.strips.is_empty()).collect();
-        drawn.sort_by_key(|level| Reverse(level.triangles));
-        let strips: Vec<&Strips> = drawn.iter().map(|level| &level.strips).collect();
-        let strips = scene_strips(scene, &flat.mesh, tree, &strips);
-        scene_files::write_stripped(self.path, scene, &strips, session)
+/// Writes the strips of all levels of a scene.
+pub(super) fn write(
+    out: &Path,
+    stripped: &Stripped,
+    report: &StripReport,
+    session: &Session,
+) -> Result<(), Failure> {
+    session.progress.stage(&format!("writing {}", files::name(out)));
+    match holds_scene(out) {
+        true => {
+            let strips = stripped.strip_meshes();
+            scene_files::write_stripped(out, &stripped.scene, &strips, session)
+        }
+        false => {
+            let text = format!("{:#}\n", lists(stripped, report));
+            Ok(write_file(out, text.as_bytes())?)
+        }
     }
 }
 
 /// Builds JSON lists of the vertices of each strip. They are numbered as in the input, or as in the
 /// fused mesh, whose positions are then listed; in a mesh with attributes or several objects or
 /// materials they are wedges, each with where its values are.
-fn lists(input: &FlatInput, tree: &MergeTree, levels: &[StrippedLevel]) -> Value {
-    let strips = |level: &StrippedLevel| {
-        let lists = level.strips.iter().map(|strip| strip.iter().map(|v| v.0).collect::<Vec<_>>());
+fn lists(Stripped { mesh, tree, levels, .. }: &Stripped, report: &StripReport) -> Value {
+    let strips = |(strips, level): (&Strips, &StrippedLevelReport)| {
+        let lists = strips.iter().map(|strip| strip.iter().map(|v| v.0).collect::<Vec<_>>());
         json!({
-            "size": level.size.to_string(),
+            "size": level.size,
             "triangles": level.triangles,
             "strips": lists.collect::<Vec<_>>(),
         })
     };
-    let mut lists = json!({ "levels": levels.iter().map(strips).collect::<Vec<_>>() });
-    let mesh = &input.mesh;
-    if input.fused.is_some() {
+    let of_levels = levels.iter().zip(&report.levels).map(strips);
+    let mut lists = json!({ "levels": of_levels.collect::<Vec<_>>() });
+    if report.fused.is_some() {
         lists["positions"] = json!(mesh.positions);
     }
     if tree.has_wedges() {

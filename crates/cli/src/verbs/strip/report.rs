@@ -1,105 +1,86 @@
-//! Figures of strips for programs.
+//! Figures of strips for programs, and the table for people.
 
-use clap::ValueEnum;
-use meshlod::mesh::Connectivity;
-use meshlod::strip::StripStatistics;
+use std::time::Duration;
+
+use meshlod::jobs::{StripReport, StrippedLevelReport};
 use serde::Serialize;
 
-use super::{Strip, StripSource, StrippedLevel};
-use crate::options::fuse::FuseReport;
+use super::Strip;
 use crate::session::files;
 use crate::text::kept_error::{KeptError, KeptFigures};
+use crate::text::numbers::{count, faces};
+use crate::text::simplify_report;
+use crate::text::table::aligned;
 
 /// Figures of the strips of all levels.
 #[derive(Serialize)]
 pub(super) struct StripFigures {
     file: String,
-    input_faces: usize,
-    fused: Option<FuseReport>,
-    degenerate_faces: usize,
-    duplicate_faces: usize,
-    non_manifold_edges: usize,
-    inconsistent_edges: usize,
-    filter: Option<String>,
-    quality: Option<String>,
-    effort: Option<String>,
-    levels: Vec<StrippedFigures>,
-    simplify_seconds: f64,
-    strip_seconds: Option<f64>,
-    verified: Option<bool>,
+    #[serde(flatten)]
+    report: StripReport,
     out: Option<String>,
     error: Option<KeptFigures>,
 }
 
-#[derive(Serialize)]
-struct StrippedFigures {
-    size: String,
-    reached: bool,
-    triangles: usize,
-    vertices_sent: usize,
-    indices_with_restart: usize,
-    strips: usize,
-    swaps: usize,
-    acmr16: f64,
-    acmr32: f64,
-    seconds: f64,
-    missing: Option<usize>,
-    extra: Option<usize>,
-}
-
 impl Strip {
-    pub(super) fn figures(
-        &self,
-        source: &StripSource,
-        levels: &[StrippedLevel],
-        error: Option<KeptError>,
-    ) -> StripFigures {
-        let mesh = &source.input.mesh;
-        let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
-        let degenerate_faces = connectivity.degenerate_faces();
-        let left_out = mesh.faces.len() - source.tree.faces().len();
+    pub(super) fn figures(&self, report: StripReport, error: Option<KeptError>) -> StripFigures {
         StripFigures {
             file: files::name(&self.input),
-            input_faces: source.input.input_faces(),
-            fused: source.input.fused,
-            degenerate_faces,
-            duplicate_faces: left_out - degenerate_faces,
-            non_manifold_edges: connectivity.non_manifold_edges(),
-            inconsistent_edges: connectivity.inconsistent_edges(),
-            filter: self.filter.as_ref().and_then(name),
-            quality: name(&self.quality),
-            effort: name(&self.effort),
-            levels: levels.iter().map(StrippedFigures::from).collect(),
-            simplify_seconds: source.simplify_time.as_secs_f64(),
-            strip_seconds: source.skip.as_ref().map(|_| source.strip_time.as_secs_f64()),
-            verified: self.verify.then(|| !levels.iter().any(StrippedLevel::is_wrong)),
+            report,
             out: self.out.as_deref().map(files::name),
             error: error.map(KeptError::figures),
         }
     }
 }
 
-impl From<&StrippedLevel> for StrippedFigures {
-    fn from(level: &StrippedLevel) -> Self {
-        let StripStatistics { vertices_sent, indices_with_restart, strips, swaps, .. } = level.sent;
-        Self {
-            size: level.size.to_string(),
-            reached: level.reached,
-            triangles: level.triangles,
-            vertices_sent,
-            indices_with_restart,
-            strips,
-            swaps,
-            acmr16: level.sent.acmr16,
-            acmr32: level.sent.acmr32,
-            seconds: level.time.as_secs_f64(),
-            missing: level.difference.map(|difference| difference.missing),
-            extra: level.difference.map(|difference| difference.extra),
-        }
+pub(super) fn text(report: &StripReport) -> String {
+    let headings = [
+        "level",
+        "triangles",
+        "vertices",
+        "per triangle",
+        "indices",
+        "strips",
+        "swaps",
+        "ACMR16",
+        "ACMR32",
+        "ms",
+    ];
+    let mut rows = vec![headings.map(String::from)];
+    rows.extend(report.levels.iter().map(row));
+    let mut text = aligned(&rows);
+    text += "vertices: sent when each strip is drawn by itself; indices: sent with restarts between strips;\n";
+    text += "ACMR: vertices fetched per triangle with a FIFO cache of 16 or 32\n";
+    for level in report.levels.iter().filter(|level| level.is_wrong()) {
+        let [missing, extra] = [level.missing, level.extra].map(Option::unwrap_or_default);
+        text += &format!("{}: {missing} missing and {extra} extra triangles\n", level.size);
     }
+    if report.verified == Some(true) {
+        text += "verified: the strips draw exactly the faces of each level\n";
+    }
+    let left_out = report.degenerate_faces + report.duplicate_faces;
+    if left_out > 0 {
+        text += &format!("left out: {}, degenerate or duplicate\n", faces(left_out));
+    }
+    if report.simplify_seconds > 0.0 {
+        let time = Duration::from_secs_f64(report.simplify_seconds);
+        text += &simplify_report::seconds_line(time);
+    }
+    text
 }
 
-/// Returns the name of an argument's value on the command line.
-pub(super) fn name(argument: &impl ValueEnum) -> Option<String> {
-    argument.to_possible_value().map(|value| value.get_name().to_owned())
+fn row(level: &StrippedLevelReport) -> [String; 10] {
+    let each = level.vertices_sent as f64 / level.triangles.max(1) as f64;
+    [
+        level.size.clone(),
+        count(level.triangles),
+        count(level.vertices_sent),
+        format!("{each:.3}"),
+        count(level.indices_with_restart),
+        count(level.strips),
+        count(level.swaps),
+        format!("{:.3}", level.acmr16),
+        format!("{:.3}", level.acmr32),
+        format!("{:.1}", level.seconds * 1e3),
+    ]
 }

@@ -3,40 +3,39 @@
 use std::cmp::Reverse;
 use std::collections::{HashMap, HashSet};
 
-use meshlod::mesh::{FaceId, Layer, LayerKind, Mesh, VertexId, WedgeId};
-use meshlod::simplify::Simplifier;
-use meshlod::strip::{MergeTree, Strips, difference};
-use meshlod::{SimplifyError, Target};
+use meshlod_mesh::{FaceId, Layer, LayerKind, Mesh, VertexId, WedgeId};
+use meshlod_simplify::{Simplifier, SimplifyError, Target};
+use meshlod_strip::{MergeTree, Strips, difference};
 
-use super::StrippedLevel;
-use crate::options::constraints::FlatInput;
+use super::{FlatScene, StrippedLevelReport};
 
 /// Compares the triangles drawn at each level with the faces left by simplifying to it, and at full
 /// size with the cleaned faces of the mesh: their vertices, attributes and materials.
 pub(super) fn compare(
-    input: &FlatInput,
+    input: &FlatScene,
     tree: &MergeTree,
-    levels: &mut [StrippedLevel],
+    levels: &[Strips],
+    reports: &mut [StrippedLevelReport],
 ) -> Result<(), SimplifyError> {
-    let mut levels: Vec<&mut StrippedLevel> = levels.iter_mut().collect();
-    levels.sort_by_key(|level| Reverse(level.triangles));
-    let finest = levels.partition_point(|level| level.triangles == tree.faces().len());
+    let mut levels: Vec<_> = levels.iter().zip(reports).collect();
+    levels.sort_by_key(|(_, report)| Reverse(report.triangles));
+    let finest = levels.partition_point(|(_, report)| report.triangles == tree.faces().len());
     let (finest, coarser) = levels.split_at_mut(finest);
     let mesh = &input.mesh;
-    for level in finest {
+    for (strips, report) in finest {
         let mut names = CornerNames::default();
         let faces = names.faces(mesh, &mesh.faces);
         let whole =
             whole_faces(&mesh.faces).into_iter().map(|face| faces[face]).collect::<Vec<_>>();
-        level.difference = Some(difference(&names.strips(mesh, tree, &level.strips), &whole));
+        report.compared(difference(&names.strips(mesh, tree, strips), &whole));
     }
     if coarser.is_empty() {
         return Ok(());
     }
     let options = MergeTree::options(&input.options);
     let mut simplifier = Simplifier::new(mesh, &options)?;
-    for level in coarser {
-        simplifier.run(Target::Faces(level.triangles), &mut ())?;
+    for (strips, report) in coarser {
+        simplifier.run(Target::Faces(report.triangles), &mut ())?;
         let surface = simplifier.surface();
         let ids = (0..surface.face_count()).map(FaceId::new);
         let alive = ids.filter(|&face| surface.is_alive(face));
@@ -44,7 +43,7 @@ pub(super) fn compare(
         let mut names = CornerNames::default();
         // The level has its faces in the order of the surface.
         let faces = names.faces(&simplifier.level(), &vertices);
-        level.difference = Some(difference(&names.strips(mesh, tree, &level.strips), &faces));
+        report.compared(difference(&names.strips(mesh, tree, strips), &faces));
     }
     Ok(())
 }

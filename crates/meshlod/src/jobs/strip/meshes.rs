@@ -13,7 +13,7 @@ use meshlod_strip::{MergeTree, StripWedge, Strips};
 /// the attributes of its mesh; only what the strips use is copied.
 ///
 /// Cost: linear.
-pub fn scene_strips(
+pub(super) fn scene_strips(
     scene: &Scene,
     flat: &Mesh,
     tree: &MergeTree,

@@ -1,35 +1,24 @@
-//! A compressed file to a mesh or a scene in one call.
-
-use std::path::Path;
+//! Meshes and scenes in compressed files of our own.
 
 use meshlod_codec::{Compressed, Malformed, TransportFile};
-use meshlod_io::{IoError, Scene};
 use meshlod_mesh::Mesh;
 
-use crate::compressed::CompressedFileError;
 use crate::{ModelScene, ModelSceneError};
 
-/// Reads a mesh from a compressed file. The format, `.mlq` or `.mlz`, is recognised by the content.
-///
-/// # Errors
-/// A file that cannot be read, is damaged or has another format.
-pub fn decompress(path: &Path) -> Result<Mesh, CompressedFileError> {
-    let bytes = std::fs::read(path).map_err(|error| IoError::system(path, error))?;
-    decompress_bytes(&bytes)
-        .map_err(|source| CompressedFileError::Malformed { path: path.to_owned(), source })
-}
-
-/// Decodes a mesh from the bytes of a compressed file. The format, `.mlq` or `.mlz`, is recognised
-/// by the content.
+/// Decodes the mesh of a compressed file from its bytes, and the scene that [`ModelScene`] makes of
+/// it. Of several instances of a mesh, the one mesh has the largest.
 ///
 /// # Errors
 /// Bytes that are damaged or have another format.
-pub fn decompress_bytes(bytes: &[u8]) -> Result<Mesh, Malformed> {
-    decode(bytes).map(|(mesh, _)| mesh)
+pub(super) fn decode(bytes: &[u8]) -> Result<(Mesh, ModelScene), Malformed> {
+    let (mesh, resources) = mesh_and_resources(bytes)?;
+    let model = ModelScene::unpack(&resources);
+    let model = model.map_err(|error| damaged_scene(bytes, &resources, error))?;
+    Ok((mesh, model))
 }
 
 /// Decodes the mesh and the resources of a compressed file.
-fn decode(bytes: &[u8]) -> Result<(Mesh, Vec<u8>), Malformed> {
+fn mesh_and_resources(bytes: &[u8]) -> Result<(Mesh, Vec<u8>), Malformed> {
     if bytes.starts_with(&TransportFile::MAGIC) {
         let file = TransportFile::open(bytes)?;
         return Ok((file.decode()?, file.resources()?.to_vec()));
@@ -41,30 +30,6 @@ fn decode(bytes: &[u8]) -> Result<(Mesh, Vec<u8>), Malformed> {
     Ok((compressed.decode()?, compressed.resources().to_vec()))
 }
 
-/// Decodes a scene from the bytes of a compressed file: that which
-/// [`compress_scene`](crate::compress_scene) stored, or a mesh called `name`, with white materials
-/// by the names of its labels.
-///
-/// # Errors
-/// Bytes that are damaged or have another format.
-pub fn decompress_scene(bytes: &[u8], name: impl Into<String>) -> Result<Scene, Malformed> {
-    let (mesh, resources) = decode(bytes)?;
-    let scene = ModelScene::unpack(&resources).and_then(|model| model.into_scene(name, mesh));
-    scene.map_err(|error| damaged_scene(bytes, &resources, error))
-}
-
-/// Decodes the mesh of a compressed file from its bytes, and the scene that [`ModelScene`] makes of
-/// it. Of several instances of a mesh, the one mesh has the largest.
-///
-/// # Errors
-/// Bytes that are damaged or have another format.
-pub fn decompress_model(bytes: &[u8]) -> Result<(Mesh, ModelScene), Malformed> {
-    let (mesh, resources) = decode(bytes)?;
-    let model = ModelScene::unpack(&resources);
-    let model = model.map_err(|error| damaged_scene(bytes, &resources, error))?;
-    Ok((mesh, model))
-}
-
 /// Describes a damaged scene in the resources, which end the file.
 fn damaged_scene(bytes: &[u8], resources: &[u8], error: ModelSceneError) -> Malformed {
     Malformed { at: bytes.len() - resources.len(), reason: error.to_string() }
@@ -72,11 +37,27 @@ fn damaged_scene(bytes: &[u8], resources: &[u8], error: ModelSceneError) -> Malf
 
 #[cfg(test)]
 mod tests {
-    use meshlod_io::Image;
+    use meshlod_io::{Image, ReadOptions, Scene};
     use meshlod_mesh::Labels;
 
-    use super::*;
-    use crate::{CompressOptions, compress, compress_scene};
+    use crate::jobs::{CompressRequest, Packing, compress};
+    use crate::{AnyFile, FileKind};
+
+    const KINDS: [FileKind; 2] = [FileKind::Resident, FileKind::Sent];
+
+    /// Returns a compressed scene.
+    fn packed(scene: Scene, kind: FileKind) -> Vec<u8> {
+        let packing = Packing::of(kind).unwrap();
+        let request = CompressRequest { packing, ..CompressRequest::default() };
+        compress(scene, &request, &()).unwrap().0
+    }
+
+    /// Returns the scene in a compressed file; `None` if it is damaged.
+    fn unpacked(bytes: Vec<u8>, kind: FileKind) -> Option<Scene> {
+        let read = ReadOptions::default();
+        let file = AnyFile::from_bytes("strip", kind, bytes, &mut |_| None, &read).unwrap();
+        file.into_scene().ok()
+    }
 
     /// A scene of a strip with seams whose faces have two materials, one of them with an image.
     fn scene() -> Scene {
@@ -103,15 +84,12 @@ mod tests {
 
     #[test]
     fn scenes_come_back_with_their_materials() {
-        let folder = tempfile::tempdir().unwrap();
-        for name in ["a.mlq", "a.mlz"] {
-            let path = folder.path().join(name);
-            let report = compress_scene(scene(), &path, &CompressOptions::default()).unwrap();
-            assert!((100_000..101_500).contains(&report.bytes), "{}", report.bytes);
-            let bytes = std::fs::read(&path).unwrap();
-            let is = decompress_scene(&bytes, "strip").unwrap();
+        for kind in KINDS {
+            let bytes = packed(scene(), kind);
+            assert!((100_000..101_500).contains(&bytes.len()), "{}", bytes.len());
+            let is = unpacked(bytes.clone(), kind).unwrap();
             let was = scene();
-            assert_eq!((&is.materials, &is.images), (&was.materials, &was.images), "{name}");
+            assert_eq!((&is.materials, &is.images), (&was.materials, &was.images), "{kind:?}");
             assert_eq!(is.meshes[0].materials, was.meshes[0].materials);
             let count = |scene: &Scene, label| {
                 let materials = scene.meshes[0].mesh.materials.as_ref().unwrap();
@@ -120,26 +98,34 @@ mod tests {
             assert_eq!([count(&is, 0), count(&is, 1)], [count(&was, 0), count(&was, 1)]);
             let names = |scene: &Scene| scene.meshes[0].mesh.objects.clone().unwrap().names;
             assert_eq!(names(&is), names(&was));
-            assert_eq!(decompress(&path).unwrap().faces.len(), was.meshes[0].mesh.faces.len());
             for at in [bytes.len() - 1, bytes.len() - 50_000] {
                 let mut damaged = bytes.clone();
                 damaged[at] ^= 1;
-                assert!(decompress_scene(&damaged, "strip").is_err());
+                assert!(unpacked(damaged, kind).is_none());
             }
         }
     }
 
     #[test]
     fn a_mesh_alone_has_white_materials_by_name() {
-        let folder = tempfile::tempdir().unwrap();
-        for name in ["a.mlq", "a.mlz"] {
-            let path = folder.path().join(name);
-            let mesh = scene().into_mesh();
-            compress(&mesh, &path, &CompressOptions::default()).unwrap();
-            let is = decompress_scene(&std::fs::read(&path).unwrap(), "strip").unwrap();
+        for kind in KINDS {
+            let mut mesh = scene().into_mesh();
+            let names = mesh.materials.take();
+            let mut bare = Scene::from_mesh("strip", mesh);
+            bare.meshes[0].mesh.materials = names;
+            let is = unpacked(packed(bare, kind), kind).unwrap();
             let names: Vec<_> = is.materials.iter().map(|material| &material.name[..]).collect();
             assert_eq!(names, ["red", "wood"]);
             assert!(is.images.is_empty());
         }
+    }
+
+    #[test]
+    fn another_file_is_refused_by_its_name() {
+        let read = ReadOptions::default();
+        let bytes = b"something else".to_vec();
+        let file = AnyFile::from_bytes("b.mlq", FileKind::Sent, bytes, &mut |_| None, &read);
+        let error = file.unwrap().into_scene().unwrap_err().to_string();
+        assert_eq!(error, "b.mlq: byte 0: not an .mlq or .mlz file");
     }
 }

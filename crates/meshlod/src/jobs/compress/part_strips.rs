@@ -4,8 +4,8 @@ use meshlod_codec::{Compressed, StripsError};
 use meshlod_mesh::VertexId;
 use meshlod_strip::{Prices, StripOptions, StripQuality, stripify};
 
-/// Stores the faces of a mesh compressed by [`Scheme::Parts`](crate::codec::Scheme::Parts) as
-/// triangle strips, so that faces, too, are drawn without decoding them first.
+/// Stores the faces of a mesh that is compressed in parts as triangle strips, so that faces, too,
+/// are drawn without decoding them first.
 ///
 /// The strips have the fewest indices found, restarts counted. None runs from one part or one
 /// material to another, and those of a part come material by material.
@@ -13,19 +13,7 @@ use meshlod_strip::{Prices, StripOptions, StripQuality, stripify};
 /// Cost: one [`stripify`].
 /// # Errors
 /// Positions in another scheme, or damaged data that the checksums did not catch.
-///
-/// ```
-/// use meshlod::codec::{CompressionTarget, Reconstruction, Scheme, compress};
-/// use meshlod::strip::StripQuality;
-/// use meshlod::{compressed_strips, mesh::AttributeBounds, samples};
-///
-/// let (scheme, bits) = (Scheme::Parts(Reconstruction::Centred), CompressionTarget::Bits(10));
-/// let done = compress(&samples::knot(4_000), scheme, bits, &AttributeBounds::default())?;
-/// let stripped = compressed_strips(done.compressed, StripQuality::Fast)?;
-/// assert!(stripped.sizes().connectivity < 2 * stripped.faces(), "less than two bytes a face");
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn compressed_strips(
+pub(super) fn with_strips(
     compressed: Compressed,
     quality: StripQuality,
 ) -> Result<Compressed, StripsError> {
@@ -64,7 +52,7 @@ mod tests {
         let mut mesh = samples::gyroid(4_000);
         let of_face = (0..mesh.faces.len() as u32).map(|face| face / 11 % 3).collect();
         mesh.materials = Some(Labels { names: ["a", "b", "c"].map(String::from).into(), of_face });
-        let stripped = compressed_strips(in_parts(&mesh), StripQuality::Fast).unwrap();
+        let stripped = with_strips(in_parts(&mesh), StripQuality::Fast).unwrap();
         let materials = stripped.materials().unwrap().of_face;
         let stored = stripped.stored().unwrap();
         assert!(stored.patches.len() > 3);
@@ -85,7 +73,7 @@ mod tests {
             CompressionTarget::Bits(9),
             &AttributeBounds::default(),
         );
-        let refused = compressed_strips(done.unwrap().compressed, StripQuality::Fast);
+        let refused = with_strips(done.unwrap().compressed, StripQuality::Fast);
         assert_eq!(refused, Err(StripsError::NoParts));
     }
 }
