@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use clap::Args;
-use meshlod::{Constraints, Mesh, Options, PlacedScene, Scene, Target, VertexLocking, place_scene};
+use meshlod::{Constraints, Mesh, Options, Scene, Target, VertexLocking};
 
 use crate::options::args::ReadArgs;
 use crate::options::fuse::{FuseArgs, FuseReport};
@@ -70,20 +70,6 @@ impl ConstraintArgs {
         Ok(FlatInput { mesh, options, fused })
     }
 
-    /// Merges a scene read from a path into one mesh that has each of its meshes once, with the
-    /// constraints added to the options.
-    pub fn place(
-        &self,
-        scene: Scene,
-        (path, reading): (&Path, &ReadArgs),
-        options: Options,
-        session: &Session,
-    ) -> Result<PlacedScene, Failure> {
-        let constraints = self.constraints(&InputScene { scene: &scene, path, reading })?;
-        note_search(&constraints, session);
-        place_scene(scene, &constraints, options).map_err(|error| Failure::at(path, error))
-    }
-
     /// Returns true if vertices are to be held or objects to be fused.
     pub fn holds_or_fuses(&self) -> bool {
         let LockArgs { lock_boundary, lock_contacts, locks } = &self.locks;
@@ -91,7 +77,7 @@ impl ConstraintArgs {
     }
 
     /// Returns the constraints on a scene that is already fused.
-    fn constraints(&self, input: &InputScene<'_>) -> Result<Constraints, Failure> {
+    pub fn constraints(&self, input: &InputScene<'_>) -> Result<Constraints, Failure> {
         Ok(Constraints {
             topology: self.topology.kind(),
             borders: self.topology.borders(),

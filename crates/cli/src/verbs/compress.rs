@@ -13,6 +13,7 @@ use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 use meshlod::codec::{CompressionTarget, Reconstruction, Scheme};
+use meshlod::jobs::ErrorPoses;
 use meshlod::{Mesh, Scene, SceneCounts, model_limits};
 use serde_json::json;
 
@@ -25,7 +26,7 @@ use crate::session::answer::{Answer, Outcome};
 use crate::session::failure::Failure;
 use crate::session::files;
 use crate::session::scene_files;
-use crate::text::model_scene::{self, ErrorPoses};
+use crate::text::model_scene;
 use crate::text::numbers::percent;
 
 use self::place::Placed;

@@ -26,7 +26,7 @@ use crate::options::query_args::{self, ErrorLimit};
 use crate::session::Session;
 use crate::session::answer::{Answer, Outcome};
 use crate::session::failure::Failure;
-use crate::text::kept_error::KeptError;
+use crate::text::kept_error;
 use crate::text::model_scene;
 use crate::text::numbers;
 use options::{EffortArg, FilterArg, QualityArg};
@@ -155,7 +155,7 @@ impl Strip {
         }
         let figures = self.figures(&source, &levels, error);
         let mut text = self.text(&source, &levels);
-        text += &error.map(KeptError::to_text).unwrap_or_default();
+        text += &error.as_ref().map(kept_error::to_text).unwrap_or_default();
         let outcome = match is_wrong {
             true => Outcome::Found,
             false => Outcome::Missed.when(session.strict && missed),

@@ -9,9 +9,20 @@
 //! A job reads no file and writes none. [`AnyFile`](crate::AnyFile) opens what it works on,
 //! [`Output`](crate::Output) says where the result goes and in which format.
 
+#[cfg(feature = "multires")]
+mod build;
 mod error;
+#[cfg(feature = "multires")]
+mod extract;
 mod watch;
 
+#[cfg(feature = "multires")]
+pub use build::{BuildReport, BuildRequest, BuiltLevels, ErrorPoses, LevelModel, build};
 pub use error::JobError;
+#[cfg(feature = "multires")]
+pub use extract::{
+    AskedError, ErrorLimit, ExtractReport, ExtractRequest, FocusRequest, KeptError, KnownError,
+    PosedError, QueryRequest, QueryTarget, extract,
+};
 pub use watch::{About, Remark, Watch};
-pub(crate) use watch::{Contractions, cancellable};
+pub(crate) use watch::{Contractions, begin, cancellable, check};

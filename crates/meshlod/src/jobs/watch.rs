@@ -115,6 +115,12 @@ impl Observe for Contractions<'_> {
     }
 }
 
+/// Begins a stage of a job, unless the job is cancelled.
+pub(crate) fn begin(watch: &dyn Watch, stage: &str) -> Result<(), JobError> {
+    watch.stage(stage);
+    if watch.is_cancelled() { Err(JobError::Cancelled) } else { Ok(()) }
+}
+
 /// Payload with which a cancelled job unwinds.
 struct Unwound;
 

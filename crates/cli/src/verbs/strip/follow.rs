@@ -12,6 +12,7 @@ use crate::session::Session;
 use crate::session::answer::{Answer, Outcome};
 use crate::session::failure::Failure;
 use crate::session::files;
+use crate::session::hearing::Hearing;
 use crate::session::model_file;
 use crate::text::model_scene;
 use crate::text::numbers::count;
@@ -51,21 +52,24 @@ impl Strip {
     /// Follows cuts of a multiresolution file, and repairs the strips where each differs from the
     /// last.
     pub(super) fn run_follow(&self, session: &Session) -> Result<Answer, Failure> {
-        let file = model_file::open(&self.input, session)?;
-        let ModelFile::Contractions(archive) = &file else {
+        let opened = model_file::open(&self.input, session)?;
+        let file = model_file::levels(&opened)?;
+        let ModelFile::Contractions(archive) = file else {
             return Err(Failure::usage(
                 "--follow: strips do not follow the right triangles of a height field; use --error",
             ));
         };
-        let scene = model_scene::read(&self.input, &file, session)?;
+        let scene = model_scene::read(&self.input, file, session)?;
         let (model, _) = archive.read().map_err(|error| model_file::failure(&self.input, error))?;
+        let hearing = Hearing::new(session, &self.input, &self.input);
         let mut cut = Cut::new(&model);
         let mut strips = None;
         let mut followed = Vec::new();
         for &error in &self.follow {
             session.progress.stage("following");
-            let query = self.query.query_for(error, &file)?;
-            let (query, _) = model_scene::query(&self.input, (&file, &scene), &query, None)?;
+            let asked = self.query.request_for(error).query(file);
+            let asked = asked.map_err(|error| hearing.failure(error))?;
+            let (query, _) = model_scene::query(&self.input, (file, &scene), &asked, None)?;
             let start = Instant::now();
             cut.update(&query, &UpdateLimits::default()).map_err(Failure::usage)?;
             let changed = self.update(&model, &cut, &mut strips);

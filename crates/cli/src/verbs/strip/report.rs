@@ -1,6 +1,7 @@
 //! Figures of strips for programs.
 
 use clap::ValueEnum;
+use meshlod::jobs::KeptError;
 use meshlod::mesh::Connectivity;
 use meshlod::strip::StripStatistics;
 use serde::Serialize;
@@ -8,7 +9,6 @@ use serde::Serialize;
 use super::{Strip, StripSource, StrippedLevel};
 use crate::options::fuse::FuseReport;
 use crate::session::files;
-use crate::text::kept_error::{KeptError, KeptFigures};
 
 /// Figures of the strips of all levels.
 #[derive(Serialize)]
@@ -28,7 +28,7 @@ pub(super) struct StripFigures {
     strip_seconds: Option<f64>,
     verified: Option<bool>,
     out: Option<String>,
-    error: Option<KeptFigures>,
+    error: Option<KeptError>,
 }
 
 #[derive(Serialize)]
@@ -74,7 +74,7 @@ impl Strip {
             strip_seconds: source.skip.as_ref().map(|_| source.strip_time.as_secs_f64()),
             verified: self.verify.then(|| !levels.iter().any(StrippedLevel::is_wrong)),
             out: self.out.as_deref().map(files::name),
-            error: error.map(KeptError::figures),
+            error,
         }
     }
 }
