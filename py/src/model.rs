@@ -1,21 +1,21 @@
 //! Multiresolution files: building them, and meshes extracted from them.
 
 use std::fs::File;
-use std::path::{PathBuf, absolute};
+use std::path::{Path, PathBuf, absolute};
 
 use meshlod::io::write_file;
+use meshlod::jobs::{self, BuildRequest, ExtractReport, ExtractRequest, JobError, KnownError};
 use meshlod::multires::{ErrorKind, FileError, ModelFile};
-use meshlod::{
-    BuildOptions, ExtractOptions, ExtractReport, IoError, LevelsError, build_bytes,
-    extract_reported,
-};
+use meshlod::{IoError, Scene};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::cut::NativeCut;
 use crate::errors::{raised, raised_by_file};
+use crate::files::texts;
 use crate::mesh::NativeMesh;
 use crate::query::{CameraArguments, SentQuery};
+use crate::scene::NativeScene;
 use crate::work::{Watch, run};
 
 /// A `.mlod` file, of which every extraction reads what it needs.
@@ -24,18 +24,18 @@ pub struct NativeModel {
     path: PathBuf,
 }
 
-/// Writes all levels of a mesh to a `.mlod` file.
+/// Writes all levels of a scene to a `.mlod` file, and returns notes on what it lacks.
 ///
 /// # Errors
-/// A mesh that cannot be simplified, and errors of the file system.
+/// A scene that cannot be simplified, and errors of the file system.
 #[pyfunction]
 pub fn build(
     py: Python<'_>,
-    mesh: &NativeMesh,
+    scene: &NativeScene,
     path: PathBuf,
     lossless: bool,
     errors: &str,
-) -> PyResult<()> {
+) -> PyResult<Vec<String>> {
     let errors = match errors {
         "estimate" => ErrorKind::Estimate,
         "measured" => ErrorKind::Measured,
@@ -45,20 +45,17 @@ pub fn build(
             return Err(raised(format_args!("errors must be {names}, not {errors}")));
         }
     };
-    let options = BuildOptions { lossless, errors, ..BuildOptions::default() };
-    let mesh = mesh.shared();
+    let request = BuildRequest { lossless, errors, ..BuildRequest::default() };
+    let scene = scene.shared();
     // The folder of the process may change while the work runs.
     let target = absolute(&path)?;
-    let work = move |watch: &mut Watch| -> Result<(), LevelsError> {
-        let built = build_bytes(&mesh, &options);
-        let (bytes, _) = built.map_err(|source| LevelsError::File { path, source })?;
+    let work = move |watch: &mut Watch| -> Result<_, JobError> {
+        let (bytes, report) = jobs::build(Scene::clone(&scene), &request, watch)?;
         watch.commit();
-        Ok(write_file(&target, &bytes)?)
+        Ok(write_file(&target, &bytes).map(|()| report.notes))
     };
-    run(py, None, work)?.map_err(|error| match error {
-        LevelsError::Io(error) => raised_by_file(error),
-        other => raised(other),
-    })
+    let written = run(py, None, work)?.map_err(|error| raised_at(&path, &error))?;
+    Ok(texts(&written.map_err(raised_by_file)?))
 }
 
 #[pymethods]
@@ -87,13 +84,18 @@ impl NativeModel {
         crop: bool,
     ) -> PyResult<(NativeMesh, Bound<'py, PyDict>)> {
         let query = SentQuery::new(error, camera, sphere, corners)?;
-        let options = ExtractOptions { max_faces: faces, verify, crop, ..Default::default() };
-        let path = self.path.clone();
-        let found = run(py, None, move |_| {
-            extract_reported(&path, &ExtractOptions { query: query.query(), ..options })
-        })?;
-        let (mesh, report) = found.map_err(raised)?;
-        Ok((NativeMesh::new(mesh)?, extracted(py, &report)?))
+        let query = query.request(faces);
+        // The error of a number of faces is not measured, which takes longer than the rest.
+        let verify = verify && faces.is_none();
+        let request = ExtractRequest { query, verify, crop, ..ExtractRequest::default() };
+        let file = self.open()?;
+        let (pieces, piece_name) = (file.pieces(), file.piece_name());
+        let found = run(py, None, move |watch| jobs::extract(&file, &request, watch))?;
+        let (scene, report) = found.map_err(|error| raised_at(&self.path, &error))?;
+        let dict = extracted(py, &report)?;
+        dict.set_item("pieces", (pieces[0], pieces[1]))?;
+        dict.set_item("piece_name", piece_name)?;
+        Ok((NativeMesh::new(scene.into_mesh())?, dict))
     }
 
     /// Reads all levels and returns a cut of them at the coarsest, with the numbers of pieces that
@@ -117,14 +119,23 @@ impl NativeModel {
     }
 }
 
-/// Returns the report of an extraction as a dictionary.
+/// Makes an exception of a job that was not done, with the name of the file.
+fn raised_at(path: &Path, error: &JobError) -> PyErr {
+    raised(format_args!("{}: {error}", path.display()))
+}
+
+/// Returns the report of an extraction as a dictionary, under the keys of the command's JSON and
+/// those of this package.
 fn extracted<'py>(py: Python<'py>, report: &ExtractReport) -> PyResult<Bound<'py, PyDict>> {
-    let dict = PyDict::new(py);
+    let text = serde_json::to_string(report).map_err(raised)?;
+    let dict = py.import("json")?.call_method1("loads", (text,))?.cast_into::<PyDict>()?;
+    let proof = match report.error.known {
+        KnownError::Verified(proof) => Some(proof),
+        KnownError::Stored | KnownError::Measured(_) => None,
+    };
     dict.set_item("level_faces", report.level_faces)?;
-    dict.set_item("holds", report.verification.map(|proof| proof.holds))?;
-    dict.set_item("rounding", report.verification.map(|proof| proof.rounding))?;
-    dict.set_item("pieces", (report.pieces[0], report.pieces[1]))?;
-    dict.set_item("piece_name", report.piece_name)?;
+    dict.set_item("holds", proof.map(|proof| proof.holds))?;
+    dict.set_item("rounding", proof.map(|proof| proof.rounding))?;
     dict.set_item("meets_focus", report.meets_focus)?;
     Ok(dict)
 }

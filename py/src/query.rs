@@ -1,5 +1,7 @@
 //! Queries: a focus, and an error in model units or in the pixels of a camera.
 
+use meshlod::Bound;
+use meshlod::jobs::{ErrorLimit, FocusRequest, QueryRequest, QueryTarget};
 use meshlod::multires::{Focus, Query, Tolerance, ViewCamera};
 use pyo3::prelude::*;
 
@@ -44,6 +46,20 @@ impl SentQuery {
         let this = Self { focus, error, camera };
         this.query().validate().map_err(raised)?;
         Ok(this)
+    }
+
+    /// Returns the query as data, for the best mesh of at most `faces` faces if they are given.
+    pub fn request(&self, faces: Option<usize>) -> QueryRequest {
+        let limit = match self.camera {
+            Some(_) => ErrorLimit::Pixels(self.error),
+            None => ErrorLimit::Length(Bound::Length(self.error)),
+        };
+        QueryRequest {
+            target: faces.map_or(QueryTarget::Error(limit), QueryTarget::Faces),
+            focus: FocusRequest::Region(self.focus.clone()),
+            camera: self.camera,
+            up: None,
+        }
     }
 
     /// Returns the query.

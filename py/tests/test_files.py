@@ -119,6 +119,12 @@ def test_models_have_all_levels(tmp_path):
     assert not (tmp_path / "other.mlod").exists()
 
 
+def test_scenes_are_built_with_all_they_hold(tmp_path):
+    scene = meshlod.Scene(meshlod.Mesh(*torus()), "torus")
+    model = scene.build(tmp_path / "scene.mlod", errors="estimate")
+    assert len(model.extract().faces) == scene.face_count
+
+
 def test_models_say_what_cannot_be_met(tmp_path):
     mesh = meshlod.Mesh(*torus(120, 60))
     path = tmp_path / "torus.mlod"

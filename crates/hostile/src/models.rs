@@ -62,7 +62,7 @@ pub(crate) fn seeds() -> Vec<Vec<u8>> {
     let precisions = [HeightPrecision::Exact, HeightPrecision::Within(0.01)];
     let fields = fields.iter().filter_map(|mesh| HeightField::from_mesh(mesh).ok());
     let fields = fields.flat_map(|field| {
-        precisions.map(|precision| plain_field(&field.to_file(precision).expect("a precision")))
+        precisions.map(|precision| plain_field(&field.to_file(precision).expect("a precision").0))
     });
     files.into_iter().chain([attached]).chain(fields).collect()
 }
@@ -70,7 +70,7 @@ pub(crate) fn seeds() -> Vec<Vec<u8>> {
 /// Builds a file with chunks small enough that there are several.
 fn contractions(forest: Result<Forest, BuildError>) -> Vec<u8> {
     let storage = Storage { updates_per_chunk: 8, ..Storage::default() };
-    plain(&Archive::write(&forest.expect("a mesh"), &storage).expect("a proof").0)
+    plain(&Archive::write(&forest.expect("a mesh"), &storage).expect("a proof").0.into_source())
 }
 
 /// Attaches resources to a file, before its chunks and after them.

@@ -4,17 +4,16 @@
 //! `cargo run --release -p meshlod --example follow`
 
 use std::error::Error;
-use std::fs::File;
 
+use meshlod::jobs::{BuildRequest, build};
 use meshlod::multires::{ModelFile, Query, SlotMesh, UpdateLimits, ViewCamera};
-use meshlod::{BuildOptions, build, samples};
+use meshlod::{Scene, samples};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let folder = tempfile::tempdir()?;
-    let path = folder.path().join("knot.mlod");
     let knot = samples::knot(40_000);
-    build(&knot, &path, &BuildOptions::default())?;
-    let model = ModelFile::open(File::open(&path)?)?.read()?;
+    let scene = Scene::from_mesh("knot", knot.clone());
+    let (file, _) = build(scene, &BuildRequest::default(), &())?;
+    let model = ModelFile::open(file)?.read()?;
 
     let diagonal = knot.bounds().diagonal();
     let mut cut = model.cut();

@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut forest = Forest::new(&placed.mesh, &options)?;
     forest.smooth_errors();
     let storage = Storage { errors: StoredErrors::Measured, ..Storage::default() };
-    let archive = Archive::open(Archive::write(&forest, &storage)?.0)?;
+    let archive = Archive::write(&forest, &storage)?.0;
     let rest = placed.rest.ok_or("the model is only a mesh")?;
     let resources = rest.resources(&archive.chunk_lengths());
     let bytes = archive.with_resources(&resources)?.into_source();

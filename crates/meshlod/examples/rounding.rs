@@ -74,7 +74,7 @@ fn measure(name: &str) -> Result<(), Box<dyn Error>> {
             attributes: AttributeBounds { uv, direction_rad, ..AttributeBounds::default() },
             ..Storage::default()
         };
-        let bytes = Archive::write(&forest, &storage)?.0;
+        let bytes = Archive::write(&forest, &storage)?.0.into_source();
         let size = bytes.len();
         let mut archive = Archive::open(bytes)?;
         if let Some(rest) = &placed.rest {

@@ -22,9 +22,6 @@ pub enum CutVolumeError {
         /// Number of chunks of the whole file.
         all: usize,
     },
-    /// The cut is only a part of its surface.
-    #[error("a cropped cut encloses no volume: extract the whole one")]
-    Cropped,
     /// The finest cut has no volume, or the cut cannot get it.
     #[error(transparent)]
     Volume(#[from] ExactVolumeError),

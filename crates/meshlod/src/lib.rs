@@ -110,24 +110,33 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`build`] writes *all* levels of a mesh to one `.mlod` file, and [`extract`] reads from it the
-//! mesh that a query asks for: fine in one region, within an error in pixels of a camera, or of at
-//! most so many faces. No level has a crack, and the file proves it. [`multires`] has the model
-//! behind it, with cuts that follow a camera:
+//! [`build`](jobs::build) makes one `.mlod` file of *all* levels of a scene, and
+//! [`extract`](jobs::extract) takes from it the scene that a query asks for: fine in one region,
+//! within an error in pixels of a camera, or of at most so many faces. No level has a crack, and the
+//! file proves it. Both are [`jobs`], which any program asks for: plain data in, a report out, and
+//! progress on the way. [`multires`] has the model behind them, with cuts that follow a camera:
 //!
 //! ```
-//! # let knot = meshlod::samples::knot(4_000);
 //! # let folder = tempfile::tempdir()?;
 //! # let path = folder.path().join("knot.mlod");
-//! use meshlod::{BuildOptions, ExtractOptions, build, extract};
-//! use meshlod::multires::{Query, ViewCamera};
+//! use meshlod::jobs::{
+//!     BuildRequest, ErrorLimit, ExtractRequest, QueryRequest, QueryTarget, build, extract,
+//! };
+//! use meshlod::multires::ViewCamera;
+//! use meshlod::{AnyFile, Output, ReadOptions, Scene, samples};
 //!
-//! build(&knot, &path, &BuildOptions::default())?;
+//! let knot = Scene::from_mesh("knot", samples::knot(4_000));
+//! let (bytes, _) = build(knot, &BuildRequest::default(), &())?;
+//! Output::new(&path)?.write_bytes(&bytes)?;
+//!
 //! let (eye, look, up) = ([0.0, 0.0, 20.0], [0.0; 3], [0.0, 1.0, 0.0]);
-//! let camera = ViewCamera { eye, look, up, fov_rad: 0.8, viewport: [640, 480] };
-//! let query = Query::pixels(camera, 1.0);
-//! let far_away = extract(&path, &ExtractOptions { query, ..Default::default() })?;
-//! assert!(far_away.faces.len() < 2_000, "as many faces as one pixel needs");
+//! let camera = Some(ViewCamera { eye, look, up, fov_rad: 0.8, viewport: [640, 480] });
+//! let target = QueryTarget::Error(ErrorLimit::Pixels(1.0));
+//! let query = QueryRequest { target, camera, ..QueryRequest::default() };
+//! let request = ExtractRequest { query, ..ExtractRequest::default() };
+//! let file = AnyFile::open(&path, &ReadOptions::default())?;
+//! let (_, far_away) = extract(file.levels().unwrap(), &request, &())?;
+//! assert!(far_away.faces < 2_000, "as many faces as one pixel needs");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -243,7 +252,8 @@
 //! Parts of options that have no default of their own, [`multires::ViewCamera`],
 //! [`multires::Ground`] and [`codec::Lattice`], are given whole. What is not plain data stays in
 //! code:
-//! - [`ExtractOptions`] and [`multires::Query`], which may hold a function;
+//! - [`multires::Query`], which may hold a function: [`jobs::QueryRequest`] is its form as data;
+//! - the format in [`jobs::ExtractRequest::written_as`];
 //! - [`picture::SeeThroughOptions`] and [`flock::levels::ImpostorOptions`], options of pictures;
 //! - what options borrow, one value a face: [`strip::StripOptions::clusters`],
 //!   [`measure::BeyondOptions::faces`].
@@ -257,7 +267,7 @@
 //! | `io` | [`io`]: files and scenes, [`simplify_scene`] | |
 //! | `check` | [`check`]: findings, repair, locks, [`Constraints`] | `io` |
 //! | `picture` | [`picture`]: a rasteriser, the materials of scenes | `io` |
-//! | `multires` | [`multires`]: all levels in a file, [`build`], [`extract`]; compiles zstd, which is C | `check`, `picture` |
+//! | `multires` | [`multires`]: all levels in a file, [`jobs::build`], [`jobs::extract`]; compiles zstd, which is C | `check`, `picture` |
 //! | `strip` | [`strip`]: triangle strips for any level | `multires` |
 //! | `codec` | [`codec`]: meshes in few bytes, [`jobs::compress`] | `strip` |
 //! | `flock` | [`flock`]: a level for each of thousands of members | `multires` |
@@ -306,16 +316,12 @@ mod contacts;
 mod cut_volume;
 #[cfg(feature = "io")]
 mod exact_volume;
-#[cfg(feature = "multires")]
-mod extract;
 #[cfg(feature = "io")]
 mod files;
 #[cfg(feature = "check")]
 mod fuse;
 #[cfg(feature = "io")]
 pub mod jobs;
-#[cfg(feature = "multires")]
-mod levels;
 #[cfg(feature = "io")]
 mod locks;
 #[cfg(feature = "picture")]
@@ -372,20 +378,14 @@ pub use conditioned_scene::ConditionedScene;
 pub use constraints::{Constraints, VertexLocking};
 #[cfg(feature = "check")]
 pub use contacts::scene_locks;
-#[cfg(feature = "multires")]
-pub use cut_volume::{CutVolumeError, conserve_cut_volume};
 #[cfg(feature = "io")]
 pub use exact_volume::{closed_volume, conserve_volumes, digits_of};
-#[cfg(feature = "multires")]
-pub use extract::{ExtractOptions, ExtractReport, extract, extract_reported};
 #[cfg(feature = "codec")]
 pub use files::{AnyFile, AnyFileError, FileBytes};
 #[cfg(feature = "io")]
 pub use files::{FileKind, Output};
 #[cfg(feature = "check")]
 pub use fuse::{FuseReport, fuse_scene};
-#[cfg(feature = "multires")]
-pub use levels::{BuildOptions, BuildReport, LevelsError, build, build_bytes};
 #[cfg(feature = "io")]
 pub use locks::join_locks;
 #[cfg(feature = "picture")]
@@ -406,4 +406,4 @@ pub use repair::repair_scene;
 #[cfg(feature = "io")]
 pub use scene::{SceneError, SceneSimplifier, simplify_scene};
 #[cfg(feature = "multires")]
-pub use verified::{Verification, VerifiedExtract, extract_verified, measure_extract};
+pub use verified::Verification;

@@ -11,14 +11,17 @@ use meshlod::flock::nearest::{CutFocus, NearestOptions};
 use meshlod::flock::select::policies::Factors;
 use meshlod::flock::select::{Budget, PolicyName};
 use meshlod::io::{Precision, Weld};
-use meshlod::jobs::{CheckRequest, CompressRequest, CompressTarget, Packing, PositionScheme, check};
+use meshlod::jobs::{
+    BuildRequest, CheckRequest, CompressRequest, CompressTarget, ErrorLimit, ExtractRequest,
+    FocusRequest, LevelModel, Packing, PositionScheme, QueryRequest, QueryTarget, check,
+};
 use meshlod::measure::{BeyondOptions, CertifiedOptions, DistanceOptions};
 use meshlod::mesh::{AttributeBounds, ConditionOptions, Lock, Locks, Search, VertexId};
 use meshlod::multires::{ErrorKind, Focus, Ground, GroundShape, Storage, UpdateLimits};
 use meshlod::simplify::AttributeWeights;
 use meshlod::strip::{CacheAware, Prices, StripOptions, StripQuality};
 use meshlod::{
-    BuildOptions, Constraints, Method, Options, ReadOptions, Target, Topology, VertexLocking,
+    Bound, Constraints, Method, Options, ReadOptions, Target, Topology, VertexLocking,
     WriteOptions, samples, simplify,
 };
 use serde::Serialize;
@@ -114,11 +117,21 @@ fn options_of_checks_and_repair() {
 fn options_of_files_levels_and_bytes() {
     options_as(&ReadOptions { weld: Weld::Within(0.5) }, &json!({ "weld": { "within": 0.5 } }));
     options_as(&WriteOptions { precision: Precision::F64 }, &json!({ "precision": "f64" }));
-    let storage = Storage { rounding: Some(0.5), ..Storage::default() };
+    let model = LevelModel::RightTriangles;
     options_as(
-        &BuildOptions { errors: ErrorKind::Bound, storage, ..Default::default() },
-        &json!({ "errors": "bound", "storage": to_value(storage).unwrap() }),
+        &BuildRequest { errors: ErrorKind::Bound, model, ..Default::default() },
+        &json!({ "errors": "bound", "model": "right-triangles", "rounding": "0.005%" }),
     );
+    let target = QueryTarget::Error(ErrorLimit::Length(Bound::OfDiagonal(0.01)));
+    let query = QueryRequest { target, focus: FocusRequest::Frustum, ..Default::default() };
+    options_as(
+        &ExtractRequest { query, crop: true, ..Default::default() },
+        &json!({
+            "query": { "target": { "error": { "length": "1%" } }, "focus": "frustum" },
+            "crop": true,
+        }),
+    );
+    options_as(&Storage { rounding: Some(0.5), ..Default::default() }, &json!({ "rounding": 0.5 }));
     options_as(&UpdateLimits { changes: Some(9), ..Default::default() }, &json!({ "changes": 9 }));
     options_as(
         &CompressRequest {

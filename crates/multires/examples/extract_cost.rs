@@ -55,7 +55,7 @@ fn main() -> Result<(), Failure> {
 
 fn model(mesh: &Mesh) -> Result<Model, Failure> {
     let forest = Forest::new(mesh, &Options::default())?;
-    let (file, _) = Archive::write(&forest, &Storage::default())?;
+    let file = Archive::write(&forest, &Storage::default())?.0.into_source();
     let read: Implicit = Archive::open(file)?.read()?.0;
     let mut model = Model::from_implicit(&read)?;
     if !model.compact() {

@@ -200,6 +200,6 @@ fn normals(mesh: &Mesh) -> Vec<[f32; 3]> {
 
 fn read_back(mesh: &Mesh) -> Result<Implicit, Failure> {
     let forest = Forest::new(mesh, &Options::default())?;
-    let (file, _) = Archive::write(&forest, &Storage::default())?;
+    let file = Archive::write(&forest, &Storage::default())?.0.into_source();
     Ok(Archive::open(file)?.read()?.0)
 }

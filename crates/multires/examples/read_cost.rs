@@ -52,7 +52,9 @@ fn row(path: &Path) -> Result<(), Failure> {
 /// Returns the milliseconds in which the file of a mesh is read and certified, and in which its finest
 /// level is.
 fn times(mesh: &Mesh) -> Result<[f64; 2], Failure> {
-    let (file, _) = Archive::write(&Forest::new(mesh, &Options::default())?, &Storage::default())?;
+    let file = Archive::write(&Forest::new(mesh, &Options::default())?, &Storage::default())?
+        .0
+        .into_source();
     let read = || {
         Archive::open(file.clone())?.read()?;
         Ok(())

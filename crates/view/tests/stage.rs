@@ -5,11 +5,11 @@ mod common;
 use std::path::Path;
 use std::sync::Arc;
 
-use meshlod::jobs::{CompressRequest, Packing, compress};
+use meshlod::jobs::{BuildRequest, CompressRequest, Packing, build, compress};
 use meshlod::mesh::{Bounds, Labels};
 use meshlod::multires::{Focus, HeightField, HeightPrecision, Hierarchy};
 use meshlod::{
-    BuildOptions, FileKind, OwnedPaint, ReadOptions, Scene, WriteOptions, build, samples, write,
+    FileKind, OwnedPaint, ReadOptions, Scene, WriteOptions, samples, write,
 };
 use meshlod_view::stage::{Coloring, Display, Loaded, LoadedContent, Stage, Subject, SubjectId};
 use meshlod_view::{Canvas, CutQuery, CutTolerance, Gpu, Renderer, TargetFormat};
@@ -50,7 +50,8 @@ fn files_of_every_kind_are_shown() {
     let knot = samples::knot(2_000);
     let scene = Scene::from_mesh("knot", knot.clone());
     write(&path("a.ply"), &scene, &WriteOptions::default()).unwrap();
-    build(&knot, &path("b.mlod"), &BuildOptions::default()).unwrap();
+    let (levels, _) = build(scene.clone(), &BuildRequest::default(), &()).unwrap();
+    std::fs::write(path("b.mlod"), levels).unwrap();
     for (name, kind) in [("c.mlq", FileKind::Resident), ("d.mlz", FileKind::Sent)] {
         let packing = Packing::of(kind).unwrap();
         let request = CompressRequest { packing, ..CompressRequest::default() };
@@ -79,7 +80,7 @@ fn a_height_field_is_shown_by_levels() {
     let path = folder.path().join("terrain.mlod");
     let terrain = samples::terrain(2_000);
     let field = HeightField::from_mesh(&terrain).unwrap();
-    std::fs::write(&path, field.to_file(HeightPrecision::Exact).unwrap()).unwrap();
+    std::fs::write(&path, field.to_file(HeightPrecision::Exact).unwrap().0).unwrap();
     let loaded = read(&path);
     assert!(loaded.mesh.faces.len() <= terrain.faces.len());
     let LoadedContent::Levels(levels) = &loaded.content else { panic!("{loaded:?}") };

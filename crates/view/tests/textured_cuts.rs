@@ -47,7 +47,7 @@ fn levels_of(scene: &Scene) -> Vec<u8> {
     let placed = place_scene(scene, &Constraints::default(), Default::default()).unwrap();
     let options = Forest::options(&placed.mesh, &placed.options);
     let forest = Forest::lossless(&placed.mesh, &options).unwrap();
-    let archive = Archive::write(&forest, &Storage::default()).unwrap().0;
+    let archive = Archive::write(&forest, &Storage::default()).unwrap().0.into_source();
     let archive = Archive::open(archive).unwrap();
     let Some(rest) = placed.rest else { return archive.into_source() };
     let resources = rest.resources(&archive.chunk_lengths());

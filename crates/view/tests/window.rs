@@ -6,7 +6,8 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Output};
 
-use meshlod::{BuildOptions, Scene, WriteOptions, build, samples, write};
+use meshlod::jobs::{BuildRequest, build};
+use meshlod::{Scene, WriteOptions, samples, write};
 use meshlod_view::viewer::{ViewerOptions, run};
 
 /// Files to open, for the program that is the viewer.
@@ -63,7 +64,8 @@ fn test() {
     let levels = folder.path().join("knot.mlod");
     let scene = Scene::from_mesh("knot", samples::knot(3_000));
     write(&knot, &scene, &WriteOptions::default()).unwrap();
-    build(&scene.meshes[0].mesh, &levels, &BuildOptions::default()).unwrap();
+    let (built, _) = build(scene.clone(), &BuildRequest::default(), &()).unwrap();
+    std::fs::write(&levels, built).unwrap();
 
     takes_a_picture_and_quits(folder.path(), &knot, scene.meshes[0].mesh.faces.len());
     survives_pointer_keys_and_sizes(folder.path(), &[&knot, &levels], has("xdotool"));

@@ -242,7 +242,8 @@ class Mesh(Immutable):
         from ._model import Model
 
         name = _asked.path_name(path)
-        _native.build(self._native, name, bool(lossless), _asked.word("errors", errors))
+        scene = _native.NativeScene.of("", self._native)
+        _native.build(scene, name, bool(lossless), _asked.word("errors", errors))
         return Model(name)
 
     def render(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,9 @@ from ._immutable import Immutable
 from ._mesh import Mesh, Path
 from ._progress import ProgressLike, callback
 from ._reports import Report
+
+if TYPE_CHECKING:
+    from ._model import Model
 
 
 class Scene(Immutable):
@@ -107,6 +110,21 @@ class Scene(Immutable):
         name = _asked.path_name(path)
         for note in _native.save(self._native, name):
             warn(f"{name}: {note}")
+
+    def build(self, path: Path, *, lossless: bool = False, errors: str = "measured") -> Model:
+        """Writes all levels to a ``.mlod`` file, with the rest of the scene, and opens it.
+
+        ``errors`` are ``"estimate"``, ``"measured"``, or ``"bound"``, which are proved. Measured
+        errors also hold in up to 64 poses of the scene's animations. A
+        :class:`MeshlodWarning` says what the file lacks.
+        """
+        from ._model import Model
+
+        name = _asked.path_name(path)
+        word = _asked.word("errors", errors)
+        for note in _native.build(self._native, name, bool(lossless), word):
+            warn(f"{name}: {note}")
+        return Model(name)
 
     def __repr__(self) -> str:
         meshes = self._native.mesh_count()

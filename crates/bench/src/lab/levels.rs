@@ -152,10 +152,10 @@ fn sizes(file: &str, mesh: &Mesh, forest: &Forest) -> Result<Vec<String>> {
     ];
     for updates_per_chunk in CHUNKS {
         let storage = Storage { updates_per_chunk, ..Storage::default() };
-        let size = Archive::write(forest, &storage)?.0.len();
+        let size = Archive::write(forest, &storage)?.0.into_source().len();
         row.push(format!("{:.2}", size as f64 / vertices));
     }
-    let archive = Archive::open(Archive::write(forest, &Storage::default())?.0)?;
+    let archive = Archive::write(forest, &Storage::default())?.0;
     row.push(format!("{:.4}", 100.0 * archive.rounding() / archive.diagonal()));
     let first = archive.chunk_ends().nth(1).unwrap_or(0);
     let coarse = archive.read_chunks(1)?.0;
@@ -205,7 +205,7 @@ fn extraction_rates(file: &str, bounds: &Bounds, forest: &Forest) -> Result<Vec<
 
 /// Reads the model back from a file in its compact form, half the memory.
 fn compacted_model(forest: &Forest) -> Result<Option<Implicit>> {
-    let bytes = Archive::write(forest, &Storage::default())?.0;
+    let bytes = Archive::write(forest, &Storage::default())?.0.into_source();
     Ok(Archive::open(bytes)?.read()?.0.compacted())
 }
 

@@ -104,7 +104,7 @@ fn cut(scene: &Scene, faces: usize) -> Result<Mesh> {
     let mut forest = Forest::new(&placed.mesh, &placed.options)?;
     forest.smooth_errors();
     let storage = Storage { errors: StoredErrors::Measured, ..Storage::default() };
-    let mut archive = Archive::open(Archive::write(&forest, &storage)?.0)?;
+    let mut archive = Archive::write(&forest, &storage)?.0;
     if let Some(rest) = &placed.rest {
         let resources = rest.resources(&archive.chunk_lengths());
         archive = archive.with_resources(&resources)?;

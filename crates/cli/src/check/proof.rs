@@ -1,10 +1,9 @@
 //! Proof that a multiresolution file has no cracks.
 
-use std::fs::File;
 use std::path::Path;
 
-use meshlod::measured_poses;
 use meshlod::multires::{Archive, FileError, HeightField, ModelFile, Rtin};
+use meshlod::{FileBytes, measured_poses};
 use serde_json::json;
 
 use crate::session::Session;
@@ -17,17 +16,18 @@ use crate::text::numbers::{count, faces, plural};
 
 /// Proves that no mesh extracted from a multiresolution file has a crack, or fails with the reason.
 pub fn prove(path: &Path, session: &Session) -> Result<Answer, Failure> {
-    let file = model_file::open(path, session)?;
-    match &file {
-        ModelFile::Contractions(archive) => prove_contractions(path, &file, archive, session),
-        ModelFile::HeightField(field, _) => prove_field(path, &file, field, session),
+    let opened = model_file::open(path, session)?;
+    let file = model_file::levels(&opened)?;
+    match file {
+        ModelFile::Contractions(archive) => prove_contractions(path, file, archive, session),
+        ModelFile::HeightField(field, _) => prove_field(path, file, field, session),
     }
 }
 
 fn prove_contractions(
     path: &Path,
-    file: &ModelFile<File>,
-    archive: &Archive<File>,
+    file: &ModelFile<FileBytes>,
+    archive: &Archive<FileBytes>,
     session: &Session,
 ) -> Result<Answer, Failure> {
     session.progress.stage("proving");
@@ -37,7 +37,7 @@ fn prove_contractions(
         error => Failure::at(path, error),
     })?;
     let [there, chunks] = [archive.complete_chunks(), archive.chunk_count()];
-    let kind = model_file::error_kind(archive);
+    let kind = archive.error_kind();
     let poses = measured_poses(archive).map_err(|error| Failure::at(path, error))?;
     let scene = model_scene::read(path, file, session)?;
     // Also what the scene does not need, such as a small image beside the whole one, is to be sound.
@@ -66,7 +66,7 @@ fn prove_contractions(
         faces(model.full_faces()),
         plural(chunks),
         model_file::errors_text(kind, poses),
-        model_file::rounding_text(archive),
+        model_file::rounding_text(archive.rounding(), archive.diagonal(), archive.is_lossless()),
         model_file::certificate_text(&certificate),
         unproved_text(file),
     );
@@ -75,7 +75,7 @@ fn prove_contractions(
 
 fn prove_field(
     path: &Path,
-    file: &ModelFile<File>,
+    file: &ModelFile<FileBytes>,
     field: &HeightField,
     session: &Session,
 ) -> Result<Answer, Failure> {
@@ -108,7 +108,7 @@ fn prove_field(
 }
 
 /// Describes the unproved part of a truncated file; empty if the file is whole.
-fn unproved_text(file: &ModelFile<File>) -> String {
+fn unproved_text(file: &ModelFile<FileBytes>) -> String {
     let [there, all] = file.pieces();
     let piece = file.piece_name();
     match all - there {

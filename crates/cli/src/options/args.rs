@@ -95,6 +95,11 @@ impl WriteArgs {
         WriteOptions { precision: self.precision }
     }
 
+    /// Returns the options for another precision.
+    pub fn in_precision(self, precision: Precision) -> Self {
+        Self { precision }
+    }
+
     /// Chooses 64-bit coordinates, unless `--precision` chooses, if 32 bits would move one by more
     /// than `most`, in model units.
     pub fn within(self, most: f64, scene: &Scene, format: Format) -> Self {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use clap::Args;
-use meshlod::{Constraints, Mesh, Options, PlacedScene, Scene, VertexLocking, place_scene};
+use meshlod::{Constraints, Mesh, Options, Scene, VertexLocking};
 
 use crate::options::args::ReadArgs;
 use crate::options::fuse::{FuseArgs, FuseReport};
@@ -67,20 +67,6 @@ impl ConstraintArgs {
         note_search(&constraints, session);
         let (mesh, options) = constraints.flatten(scene, options).map_err(Failure::new)?;
         Ok(FlatInput { mesh, options })
-    }
-
-    /// Merges a scene read from a path into one mesh that has each of its meshes once, with the
-    /// constraints added to the options.
-    pub fn place(
-        &self,
-        scene: Scene,
-        (path, reading): (&Path, &ReadArgs),
-        options: Options,
-        session: &Session,
-    ) -> Result<PlacedScene, Failure> {
-        let constraints = self.constraints(&InputScene { scene: &scene, path, reading })?;
-        note_search(&constraints, session);
-        place_scene(scene, &constraints, options).map_err(|error| Failure::at(path, error))
     }
 
     /// Returns true if vertices are to be held or objects to be fused.

@@ -1,73 +1,10 @@
-//! Arguments of a multiresolution query: error limit, focus and camera.
+//! Parsers of the values of a multiresolution query: error limit, focus and camera.
 
-use std::fmt;
+pub use meshlod::jobs::ErrorLimit;
+use meshlod::jobs::FocusRequest;
+use meshlod::multires::{Focus, GroundShape, ViewCamera};
 
-use meshlod::multires::{Focus, Ground, GroundShape, Query, Tolerance, ViewCamera};
-
-use crate::options::parse::{self, Bound};
-use crate::session::failure::Failure;
-use crate::text::numbers::percent;
-
-/// Largest error allowed in the focus region of a multiresolution query.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ErrorLimit {
-    Length(Bound),
-    /// Error in pixels, projected by the camera.
-    Pixels(f64),
-}
-
-impl fmt::Display for ErrorLimit {
-    /// Writes the limit as it is given on the command line.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::Length(Bound::Length(length)) => write!(f, "{length}"),
-            Self::Length(Bound::OfDiagonal(part)) => f.write_str(&percent(100.0 * part)),
-            Self::Pixels(pixels) => write!(f, "{pixels}px"),
-        }
-    }
-}
-
-/// Focus region of a multiresolution query, in which the error is limited.
-#[derive(Clone, Debug)]
-pub enum FocusArg {
-    Region(Focus),
-    /// The view frustum of the camera.
-    Frustum,
-    /// A shape on the ground.
-    Ground(GroundShape),
-}
-
-/// A multiresolution query as given on the command line.
-#[derive(Clone, Debug)]
-pub struct QueryRequest {
-    pub error: ErrorLimit,
-    pub focus: Option<FocusArg>,
-    pub camera: Option<ViewCamera>,
-    /// Vertical axis of shapes on the ground.
-    pub up: usize,
-}
-
-impl QueryRequest {
-    /// Converts the arguments to a multiresolution query, given the diagonal of the model.
-    pub fn query(&self, diagonal: f64) -> Result<Query<'static>, Failure> {
-        let camera = || {
-            self.camera.ok_or_else(|| {
-                Failure::usage("errors in pixels and the focus frustum need --camera")
-            })
-        };
-        let focus = match &self.focus {
-            None => Focus::Everything,
-            Some(FocusArg::Region(focus)) => focus.clone(),
-            Some(FocusArg::Frustum) => Focus::Frustum(camera()?),
-            Some(FocusArg::Ground(shape)) => Focus::Ground(Ground { up: self.up, shape: *shape }),
-        };
-        let tolerance = match self.error {
-            ErrorLimit::Length(bound) => Tolerance::Uniform(bound.length(diagonal)),
-            ErrorLimit::Pixels(pixels) => Tolerance::Pixels { camera: camera()?, pixels },
-        };
-        Ok(Query { focus, tolerance })
-    }
-}
+use crate::options::parse;
 
 /// Parses an error limit: `1px`, `0.1%` or `0.5`.
 pub fn error_limit(text: &str) -> Result<ErrorLimit, String> {
@@ -78,18 +15,18 @@ pub fn error_limit(text: &str) -> Result<ErrorLimit, String> {
 }
 
 /// Parses a focus region such as `box=x0,y0,z0,x1,y1,z1`.
-pub fn focus(text: &str) -> Result<FocusArg, String> {
+pub fn focus(text: &str) -> Result<FocusRequest, String> {
     let (name, rest) = text.split_once('=').unwrap_or((text, ""));
     let numbers = || rest.split(',').map(parse::number).collect::<Result<Vec<_>, _>>();
     let focus = match (name, numbers().as_deref()) {
-        ("frustum", _) if rest.is_empty() => return Ok(FocusArg::Frustum),
+        ("frustum", _) if rest.is_empty() => return Ok(FocusRequest::Frustum),
         ("point", Ok(&[x, y, z])) => Focus::Point([x, y, z]),
         ("segment", Ok(&[a, b, c, x, y, z])) => Focus::Segment([[a, b, c], [x, y, z]]),
         ("ground-line", Ok(&[a, b, x, y])) => {
-            return Ok(FocusArg::Ground(GroundShape::Line([[a, b], [x, y]])));
+            return Ok(FocusRequest::Ground(GroundShape::Line([[a, b], [x, y]])));
         }
         ("ground-box", Ok(&[a, b, x, y])) => {
-            return Ok(FocusArg::Ground(GroundShape::Box([[a, b], [x, y]])));
+            return Ok(FocusRequest::Ground(GroundShape::Box([[a, b], [x, y]])));
         }
         ("box", Ok(&[a, b, c, x, y, z])) => Focus::Box([[a, b, c], [x, y, z]]),
         ("sphere", Ok(&[x, y, z, radius])) => Focus::Sphere { center: [x, y, z], radius },
@@ -100,7 +37,7 @@ pub fn focus(text: &str) -> Result<FocusArg, String> {
                 .into());
         }
     };
-    Ok(FocusArg::Region(focus))
+    Ok(FocusRequest::Region(focus))
 }
 
 /// Parses a camera: `eye=x,y,z look=x,y,z fov=45 1920x1080`, with an optional `up=x,y,z`.
@@ -134,6 +71,7 @@ fn triple(text: &str) -> Result<[f64; 3], String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::options::parse::Bound;
 
     #[test]
     fn cameras_are_written_in_words() {
@@ -150,15 +88,15 @@ mod tests {
 
     #[test]
     fn a_focus_has_a_shape() {
-        assert!(matches!(focus("frustum"), Ok(FocusArg::Frustum)));
+        assert!(matches!(focus("frustum"), Ok(FocusRequest::Frustum)));
         assert!(matches!(
             focus("point=1,2,3"),
-            Ok(FocusArg::Region(Focus::Point([1.0, 2.0, 3.0])))
+            Ok(FocusRequest::Region(Focus::Point([1.0, 2.0, 3.0])))
         ));
-        assert!(matches!(focus("sphere=1,2,3,4"), Ok(FocusArg::Region(Focus::Sphere { .. }))));
+        assert!(matches!(focus("sphere=1,2,3,4"), Ok(FocusRequest::Region(Focus::Sphere { .. }))));
         assert!(matches!(
             focus("ground-box=1,2,3,4"),
-            Ok(FocusArg::Ground(GroundShape::Box([[1.0, 2.0], [3.0, 4.0]])))
+            Ok(FocusRequest::Ground(GroundShape::Box([[1.0, 2.0], [3.0, 4.0]])))
         ));
         for bad in
             ["box=1,2,3", "ground-line=1,2,3", "ball=1,2,3,4", "", "point=1,2,x", "frustum=1"]

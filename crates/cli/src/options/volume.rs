@@ -1,7 +1,6 @@
 //! Volume of simplified meshes: its exact restoration, and its change as JSON and text.
 
 use clap::Args;
-use meshlod::mesh::closed_faces;
 use meshlod::simplify::{Digits, ExactVolumeError, Unconserved, VolumeLoss, VolumeResidual};
 use meshlod::{
     ConditionedScene, Mesh, Method, Scene, closed_volume, conserve_volumes, world_bounds,
@@ -39,13 +38,6 @@ impl ExactVolumeArgs {
             return None;
         }
         worst_residual(conserve_volumes(scene, level, digits), session)
-    }
-}
-
-/// Warns of a mesh whose levels cannot get its volume because no part of it is closed.
-pub fn warn_if_open(mesh: &Mesh, session: &Session) {
-    if !closed_faces(&mesh.faces, mesh.positions.len()).contains(&true) {
-        session.warn(format_args!("--exact-volume: {}", ExactVolumeError::OpenMesh));
     }
 }
 

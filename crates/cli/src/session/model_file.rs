@@ -1,11 +1,9 @@
 //! Multiresolution files: opening them and describing their contents.
 
-use std::fs::File;
 use std::path::Path;
 
-use meshlod::PoseCounts;
-use meshlod::io::Note;
 use meshlod::multires::{Archive, Certificate, ErrorKind, FileError, Fit, ModelFile, Source};
+use meshlod::{AnyFile, FileBytes, PoseCounts, ReadOptions};
 
 use crate::session::Session;
 use crate::session::failure::Failure;
@@ -31,33 +29,24 @@ pub fn check_output(path: &Path) -> Result<(), Failure> {
 }
 
 /// Opens a multiresolution file, with a note of how far it goes if it is truncated.
-pub fn open(path: &Path, session: &Session) -> Result<ModelFile<File>, Failure> {
-    let model = open_again(path, session)?;
-    let [there, all] = model.pieces();
-    if there < all {
-        let one = model.piece_name();
-        let many = format!("{one}s");
-        let goes = format!(": the file is truncated, and {there} of its {all} {many} are present");
-        let note = Note::left_out(all - there, one, &many).detailed(&goes);
-        session.note(path, &[note.remedied("fetch the rest for the finest levels")])?;
-    }
-    Ok(model)
-}
-
-/// Opens a multiresolution file, without a note, since it has been opened before.
-pub fn open_again(path: &Path, session: &Session) -> Result<ModelFile<File>, Failure> {
+pub fn open(path: &Path, session: &Session) -> Result<AnyFile, Failure> {
     if files::is_pipe(path) {
         return Err(Failure::usage(
             "-: a multiresolution file is read in parts and cannot be a pipe; name a file",
         ));
     }
     session.progress.stage(&format!("reading {}", files::name(path)));
-    let file = File::open(path).map_err(|error| Failure::at(path, error))?;
-    ModelFile::open(file).map_err(|error| match error {
-        FileError::Magic => {
-            Failure::at(path, format_args!("{error}; meshlod build makes such a file of a mesh"))
-        }
-        error => Failure::at(path, error),
+    let file = AnyFile::open(path, &ReadOptions::default())?;
+    session.note(path, &file.notes())?;
+    Ok(file)
+}
+
+/// Returns the levels in a file, or says how such a file is made.
+pub fn levels(file: &AnyFile) -> Result<&ModelFile<FileBytes>, Failure> {
+    file.levels().ok_or_else(|| {
+        let reason =
+            format_args!("{}; meshlod build makes such a file of a mesh", FileError::Magic);
+        Failure::at(file.path(), reason)
     })
 }
 
@@ -81,12 +70,6 @@ pub fn fit_text(fit: &Fit) -> String {
     )
 }
 
-/// Returns true unless the file is truncated.
-pub fn is_whole(file: &ModelFile<File>) -> bool {
-    let [there, all] = file.pieces();
-    there == all
-}
-
 /// Returns the failure of a query: of its own values, or of the file.
 pub fn failure(path: &Path, error: FileError) -> Failure {
     match error {
@@ -95,9 +78,9 @@ pub fn failure(path: &Path, error: FileError) -> Failure {
     }
 }
 
-/// Returns the word for the errors stored in a file: estimates or bounds.
-pub fn error_kind<S: Source>(archive: &Archive<S>) -> &'static str {
-    match archive.error_kind() {
+/// Returns the word for the errors stored in a file.
+pub fn kind_name(kind: ErrorKind) -> &'static str {
+    match kind {
         ErrorKind::Estimate => "estimate",
         ErrorKind::Measured => "measured",
         ErrorKind::Bound => "bound",
@@ -109,23 +92,25 @@ pub fn rounding<S: Source>(archive: &Archive<S>) -> f64 {
     if archive.is_lossless() { 0.0 } else { archive.rounding() }
 }
 
-/// Describes in words the displacement of vertices by rounding.
-pub fn rounding_text<S: Source>(archive: &Archive<S>) -> String {
-    let part = percent(100.0 * archive.rounding() / archive.diagonal());
-    let moved = format!("moved by up to {} ({part})", value(archive.rounding()));
-    match archive.is_lossless() {
+/// Describes in words the displacement of vertices by rounding, in model units.
+pub fn rounding_text(moved: f64, diagonal: f64, lossless: bool) -> String {
+    let part = percent(100.0 * moved / diagonal);
+    let moved = format!("moved by up to {} ({part})", value(moved));
+    match lossless {
         true => format!("lossless; vertices of coarser levels {moved}"),
         false => format!("vertices {moved}"),
     }
 }
 
 /// Returns the kind of a model's errors in words, and the poses in which they were measured.
-pub fn errors_text(kind: &str, poses: Option<PoseCounts>) -> String {
+pub fn errors_text(kind: ErrorKind, poses: Option<PoseCounts>) -> String {
     match (kind, poses) {
-        ("measured", Some(poses)) => format!("errors measured over {}", poses_text(poses)),
-        ("measured", None) => "measured errors".to_owned(),
-        ("bound", _) => "error bounds".to_owned(),
-        _ => "error estimates".to_owned(),
+        (ErrorKind::Measured, Some(poses)) => {
+            format!("errors measured over {}", poses_text(poses))
+        }
+        (ErrorKind::Measured, None) => "measured errors".to_owned(),
+        (ErrorKind::Bound, _) => "error bounds".to_owned(),
+        (ErrorKind::Estimate, _) => "error estimates".to_owned(),
     }
 }
 

@@ -31,7 +31,7 @@ pub fn stored(file: &AnyFile) -> Option<Result<StoredForm, Failure>> {
 fn stored_levels(file: &ModelFile<FileBytes>) -> StoredForm {
     match file {
         ModelFile::Contractions(archive) => {
-            let kind = model_file::error_kind(archive);
+            let kind = model_file::kind_name(archive.error_kind());
             let rounding = model_file::rounding(archive);
             let chunk_bytes: u64 = archive.chunk_lengths().iter().sum();
             StoredForm {

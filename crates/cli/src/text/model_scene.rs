@@ -1,37 +1,16 @@
 //! Scenes of multiresolution files: what they have, what they lack, and how they come out.
 
-use std::fs::File;
 use std::path::Path;
 
-use meshlod::io::{Note, merged_instances};
+use meshlod::io::merged_instances;
+use meshlod::jobs::ErrorPoses;
 use meshlod::multires::{ModelFile, Query};
-use meshlod::{Format, MissingParts, ModelScene, PoseCounts, Scene, SceneCounts, SceneQueryError};
+use meshlod::{FileBytes, Format, ModelScene, Scene, SceneCounts, SceneQueryError};
 
 use crate::session::Session;
 use crate::session::failure::Failure;
 use crate::session::model_file;
 use crate::text::numbers::count;
-
-/// Poses other than that of the file for which errors hold.
-#[derive(Clone, Copy)]
-pub enum ErrorPoses {
-    /// None.
-    Unknown,
-    /// All, since animations move meshes as they are.
-    Unbent,
-    /// Those in which they were measured.
-    Measured(PoseCounts),
-}
-
-impl ErrorPoses {
-    /// Returns the poses in which errors were measured.
-    pub fn measured(self) -> Option<PoseCounts> {
-        match self {
-            Self::Measured(counts) => Some(counts),
-            Self::Unknown | Self::Unbent => None,
-        }
-    }
-}
 
 /// Describes what a scene has beside its surface, and the poses for which errors hold.
 pub fn counts_text(counts: &SceneCounts, poses: ErrorPoses) -> String {
@@ -71,7 +50,11 @@ pub fn counts_text(counts: &SceneCounts, poses: ErrorPoses) -> String {
 }
 
 /// Reads the scene of a multiresolution file, with notes of what a truncated file lacks.
-pub fn read(path: &Path, file: &ModelFile<File>, session: &Session) -> Result<ModelScene, Failure> {
+pub fn read(
+    path: &Path,
+    file: &ModelFile<FileBytes>,
+    session: &Session,
+) -> Result<ModelScene, Failure> {
     let ModelFile::Contractions(archive) = file else { return Ok(ModelScene::default()) };
     if archive.has_old_resources() {
         session.warn(Failure::at(
@@ -80,17 +63,7 @@ pub fn read(path: &Path, file: &ModelFile<File>, session: &Session) -> Result<Mo
         ));
     }
     let model = ModelScene::read(archive).map_err(|error| Failure::at(path, error))?;
-    let MissingParts { scene, previews, images, animations } = model.missing;
-    let note = |count, one, many| {
-        Note::left_out(count, one, many).detailed(", which the truncated file lacks")
-    };
-    let notes = [
-        note(scene.into(), "set of nodes and materials", ""),
-        note(previews, "image but for a smaller version", "images but for smaller versions"),
-        note(images, "image", "images"),
-        note(animations.into(), "set of animations", ""),
-    ];
-    session.note(path, &notes)?;
+    session.note(path, &model.missing.notes())?;
     Ok(model)
 }
 
@@ -128,7 +101,7 @@ pub fn note_merged(
 /// where the levels have the closest one that is shown.
 pub fn query<'f>(
     path: &Path,
-    (file, model): (&ModelFile<File>, &ModelScene),
+    (file, model): (&ModelFile<FileBytes>, &ModelScene),
     query: &Query<'f>,
     max_faces: Option<usize>,
 ) -> Result<(Query<'f>, Option<[f64; 3]>), Failure> {

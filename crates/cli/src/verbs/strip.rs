@@ -24,7 +24,7 @@ use crate::session::answer::{Answer, Outcome};
 use crate::session::failure::Failure;
 use crate::session::files;
 use crate::session::hearing::Hearing;
-use crate::text::kept_error::KeptError;
+use crate::text::kept_error;
 use crate::text::numbers;
 use options::{EffortArg, FilterArg, QualityArg};
 
@@ -117,7 +117,7 @@ impl Strip {
             _ => Outcome::Missed.when(session.strict && missed),
         };
         let mut text = report::text(&report);
-        text += &error.map(KeptError::to_text).unwrap_or_default();
+        text += &error.as_ref().map(kept_error::to_text).unwrap_or_default();
         Ok(Answer { outcome, ..Answer::new(self.figures(report, error), text) })
     }
 

@@ -49,11 +49,7 @@ pub struct ConvertReport {
 /// assert!(lost.iter().any(|note| note.to_string().contains("texture coordinates")));
 /// ```
 pub fn convert(scene: &Scene, request: &ConvertRequest) -> ConvertReport {
-    let keeps_unused = match request.format {
-        Format::Stl => false,
-        Format::Gltf | Format::Glb => scene.source.is_some(),
-        _ => true,
-    };
+    let keeps_unused = scene.keeps_unused_vertices(request.format);
     let is_written = |&&is_used: &&bool| is_used || keeps_unused;
     let written = |mesh: &Mesh| mesh.used_vertices().iter().filter(is_written).count();
     ConvertReport {

@@ -9,16 +9,22 @@
 //! A job reads no file and writes none. [`AnyFile`](crate::AnyFile) opens what it works on,
 //! [`Output`](crate::Output) says where the result goes and in which format.
 
+#[cfg(feature = "multires")]
+mod build;
 #[cfg(feature = "check")]
 mod check;
 #[cfg(feature = "codec")]
 mod compress;
 mod convert;
 mod error;
+#[cfg(feature = "multires")]
+mod extract;
 #[cfg(feature = "strip")]
 mod strip;
 mod watch;
 
+#[cfg(feature = "multires")]
+pub use build::{BuildReport, BuildRequest, BuiltLevels, ErrorPoses, LevelModel, build};
 #[cfg(feature = "check")]
 pub use check::{
     CONTACT_KINDS, CheckReport, CheckRequest, Contacts, Grade, Group, ObjectPair, Ownership, check,
@@ -31,10 +37,15 @@ pub use compress::{
 };
 pub use convert::{ConvertReport, ConvertRequest, convert};
 pub use error::JobError;
+#[cfg(feature = "multires")]
+pub use extract::{
+    AskedError, ErrorLimit, ExtractReport, ExtractRequest, FocusRequest, KeptError, KnownError,
+    PosedError, QueryRequest, QueryTarget, extract,
+};
 #[cfg(feature = "strip")]
 pub use strip::{
     FollowReport, FollowRequest, FollowedCut, StripFilter, StripReport, StripRequest, Stripped,
     StrippedLevelReport, follow_strips, strip,
 };
 pub use watch::{About, Remark, Watch};
-pub(crate) use watch::{Contractions, begin, cancellable};
+pub(crate) use watch::{Contractions, begin, cancellable, check as check_watch};

@@ -128,7 +128,7 @@ fn file(scene: Scene, is_lossless: bool) -> Vec<u8> {
         forest.measure_bounds();
     }
     let storage = Storage { updates_per_chunk: 40, ..Storage::default() };
-    let archive = Archive::open(Archive::write(&forest, &storage).unwrap().0).unwrap();
+    let archive = Archive::write(&forest, &storage).unwrap().0;
     let resources = placed.rest.unwrap().resources(&archive.chunk_lengths());
     archive.with_resources(&resources).unwrap().into_source()
 }

@@ -5,9 +5,8 @@ use meshlod_multires::{Archive, Forest, ModelFile, Query, Storage, StoredErrors}
 use meshlod_simplify::Options;
 
 use super::*;
-use crate::{
-    Constraints, ModelScene, PlacedScene, extract_verified, measured_poses, place_scene, read,
-};
+use crate::verified::extract_verified;
+use crate::{Constraints, ModelScene, PlacedScene, measured_poses, place_scene, read};
 
 /// Levels of a scene as bytes, with errors measured in its poses or without.
 fn levels(scene: &Scene, posed: bool) -> (Archive<Vec<u8>>, PoseCounts) {
@@ -24,7 +23,7 @@ fn levels(scene: &Scene, posed: bool) -> (Archive<Vec<u8>>, PoseCounts) {
         forest.pose_by(std::sync::Arc::new(poses));
     }
     let storage = Storage { errors: StoredErrors::Measured, ..Storage::default() };
-    let archive = Archive::open(Archive::write(&forest, &storage).unwrap().0).unwrap();
+    let archive = Archive::write(&forest, &storage).unwrap().0;
     let resources = rest.resources(&archive.chunk_lengths());
     (archive.with_resources(&resources).unwrap(), counts)
 }

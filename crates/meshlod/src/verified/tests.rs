@@ -21,7 +21,7 @@ fn file(mesh: &Mesh) -> ModelFile<Vec<u8>> {
 }
 
 fn written(forest: &Forest, storage: &Storage) -> ModelFile<Vec<u8>> {
-    ModelFile::open(Archive::write(forest, storage).unwrap().0).unwrap()
+    ModelFile::Contractions(Archive::write(forest, storage).unwrap().0)
 }
 
 fn extract(file: &ModelFile<Vec<u8>>, query: &Query<'_>) -> (Mesh, Verification) {
@@ -67,7 +67,7 @@ fn proven_errors_hold_where_rounding_allows_it_and_only_there() {
     let bounds = written(&forest, &Storage { rounding: coarse, ..Storage::default() });
     let terrain = samples::terrain(3000);
     let field = HeightField::from_mesh(&terrain).unwrap();
-    let field_within = |precision| ModelFile::open(field.to_file(precision).unwrap()).unwrap();
+    let field_within = |precision| ModelFile::open(field.to_file(precision).unwrap().0).unwrap();
     let rounded = field_within(HeightPrecision::Within(1e-3 * terrain.bounds().diagonal()));
     // The grid has diagonals of its own.
     let (grid, _) = extract(&field_within(HeightPrecision::Exact), &Query::uniform(0.0));

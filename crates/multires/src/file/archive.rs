@@ -40,8 +40,8 @@ pub struct Extract {
 }
 
 impl Archive<Vec<u8>> {
-    /// Encodes recorded contractions as the bytes of a `.mlod` file, and certifies that no cut of
-    /// the model has a crack.
+    /// Encodes recorded contractions as a `.mlod` file in memory, open, and certifies that no cut of
+    /// the model has a crack. [`into_source`](Self::into_source) gives the bytes.
     ///
     /// Vertices are rounded to a lattice as fine as `storage` demands. If the forest is
     /// [lossless](Forest::lossless), the input's vertices keep their exact positions. Errors are
@@ -49,8 +49,15 @@ impl Archive<Vec<u8>> {
     /// # Errors
     /// Too many vertices, or a rounding that is negative or larger than the diagonal. A model that
     /// cannot be certified is not written.
-    pub fn write(forest: &Forest, storage: &Storage) -> Result<(Vec<u8>, Certificate), FileError> {
-        write::write(forest, storage)
+    pub fn write(forest: &Forest, storage: &Storage) -> Result<(Self, Certificate), FileError> {
+        let (header, source, certificate) = write::write(forest, storage)?;
+        let (layout, complete) = (Layout::new(&header), header.chunks.len());
+        Ok((Self { source, header, layout, complete }, certificate))
+    }
+
+    /// Returns the bytes of the file.
+    pub fn bytes(&self) -> &[u8] {
+        &self.source
     }
 
     /// Recomputes all checksums of a modified `.mlod` file, for tests of [`Archive::read`].

@@ -6,7 +6,7 @@ use super::{FileError, VERSION};
 use crate::hierarchy::Hierarchy;
 use crate::level::Level;
 use crate::query::{Focus, Query, Tolerance};
-use crate::rtin::{FieldBytesError, HeightField, HeightPrecision, Rtin, RtinExtractor};
+use crate::rtin::{FieldBytesError, Fit, HeightField, HeightPrecision, Rtin, RtinExtractor};
 
 /// Open multiresolution file, which stores either the contractions of a mesh or a height field.
 #[derive(Debug)]
@@ -198,13 +198,14 @@ fn of_field(parts: &FieldParts, field: &HeightField, level: Level) -> Extract {
 }
 
 impl HeightField {
-    /// Encodes the height field as the bytes of a `.mlod` file.
+    /// Encodes the height field as the bytes of a `.mlod` file, and says how far its finest level is
+    /// from the mesh, with the rounding of heights.
     /// # Errors
     /// A precision with an invalid error bound.
-    pub fn to_file(&self, precision: HeightPrecision) -> Result<Vec<u8>, FileError> {
-        let body = self.to_bytes(precision)?;
+    pub fn to_file(&self, precision: HeightPrecision) -> Result<(Vec<u8>, Fit), FileError> {
+        let (body, fit) = self.encoded(precision)?;
         let rest = [&(body.len() as u64).to_le_bytes()[..], &body].concat();
         let checksum = crc32fast::hash(&rest).to_le_bytes();
-        Ok([&FIELD_MAGIC[..], &VERSION.to_le_bytes(), &checksum, &rest].concat())
+        Ok(([&FIELD_MAGIC[..], &VERSION.to_le_bytes(), &checksum, &rest].concat(), fit))
     }
 }

@@ -73,11 +73,12 @@ const ROUNDING: f64 = 5e-5;
 /// `ROUNDING`, 11.6 at this, 12.4 at a quarter of it and 14.0 in single precision.
 const LOSSLESS_ROUNDING: f64 = 2e-5;
 
-/// Encodes a forest; see [`Archive::write`](super::Archive::write).
+/// Encodes a forest, and returns the header with the bytes of the whole file; see
+/// [`Archive::write`](super::Archive::write).
 pub(super) fn write(
     forest: &Forest,
     storage: &Storage,
-) -> Result<(Vec<u8>, Certificate), FileError> {
+) -> Result<(Header, Vec<u8>, Certificate), FileError> {
     let diagonal = diagonal(forest);
     if let Some(rounding) = storage.rounding.filter(|&most| !(0.0..=diagonal).contains(&most)) {
         return Err(FileError::Rounding(rounding));
@@ -118,7 +119,7 @@ pub(super) fn write(
         has_old_resources: false,
     };
     let bytes = [header.to_bytes(), sections.base, sections.bodies.concat()].concat();
-    Ok((bytes, certificate))
+    Ok((header, bytes, certificate))
 }
 
 /// Encoded sections, with the index of the chunks.

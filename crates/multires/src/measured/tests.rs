@@ -40,7 +40,7 @@ fn a_file_is_measured_as_it_is_rounded() {
     let rounding = 5e-4 * mesh.bounds().diagonal();
     let storage =
         Storage { rounding: Some(rounding), errors: StoredErrors::Measured, ..Storage::default() };
-    let archive = Archive::open(Archive::write(&forest, &storage).unwrap().0).unwrap();
+    let archive = Archive::write(&forest, &storage).unwrap().0;
     assert_eq!(archive.error_kind(), ErrorKind::Measured);
     holds(&mesh, |tolerance| archive.extract(&Query::uniform(tolerance)).unwrap().level.mesh());
 }

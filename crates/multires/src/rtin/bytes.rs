@@ -89,6 +89,15 @@ impl HeightField {
     /// # Errors
     /// The bound on rounding is not a positive length.
     pub fn to_bytes(&self, precision: HeightPrecision) -> Result<Vec<u8>, FieldBytesError> {
+        Ok(self.encoded(precision)?.0)
+    }
+
+    /// Encodes the height field like [`to_bytes`](Self::to_bytes), and returns the fit of what is
+    /// decoded.
+    pub(crate) fn encoded(
+        &self,
+        precision: HeightPrecision,
+    ) -> Result<(Vec<u8>, Fit), FieldBytesError> {
         let scale = Scale::for_heights(&self.heights, precision)?;
         let codes: Vec<i64> = self.heights.iter().map(|&height| scale.code(height)).collect();
         let rounded =
@@ -105,7 +114,7 @@ impl HeightField {
                 .map_err(|e| FieldBytesError::Heights { part, why: e.to_string() })?;
         }
         bytes.resize(bytes.len().max(self.grid.count().div_ceil(MAX_PER_BYTE)), 0);
-        Ok(bytes)
+        Ok((bytes, fit))
     }
 
     /// Decodes a height field that [`HeightField::to_bytes`] wrote.

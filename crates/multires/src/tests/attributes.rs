@@ -137,7 +137,7 @@ fn textures_do_not_tear() {
 fn a_file_keeps_wedges_and_values_within_bounds() {
     forests(|name, mesh, forest| {
         let storage = Storage { updates_per_chunk: 100, ..Storage::default() };
-        let (bytes, _) = Archive::write(&forest, &storage).unwrap();
+        let bytes = Archive::write(&forest, &storage).unwrap().0.into_source();
         let archive = Archive::open(bytes).unwrap();
         let (mt, _) = archive.read().unwrap();
         let plain = Implicit::new(&forest).unwrap();
@@ -168,7 +168,7 @@ fn a_file_keeps_wedges_and_values_within_bounds() {
 fn a_lossless_file_keeps_attributes_to_the_bit() {
     for (name, mesh) in meshes() {
         let forest = Forest::lossless(&mesh, &Options::default()).unwrap();
-        let bytes = Archive::write(&forest, &Storage::default()).unwrap().0;
+        let bytes = Archive::write(&forest, &Storage::default()).unwrap().0.into_source();
         let found = Archive::open(bytes).unwrap().extract(&Query::uniform(0.0)).unwrap();
         assert_eq!(corner_values(&found.level.mesh()), corner_values(&mesh), "{name}");
     }
@@ -178,7 +178,7 @@ fn a_lossless_file_keeps_attributes_to_the_bit() {
 fn damaged_wedges_are_errors_or_sound_models() {
     let mesh = fixtures::charted(&samples::torus(150));
     let forest = Forest::new(&mesh, &Options::default()).unwrap();
-    let bytes = Archive::write(&forest, &Storage::default()).unwrap().0;
+    let bytes = Archive::write(&forest, &Storage::default()).unwrap().0.into_source();
     let mut dice = Dice(8);
     for _ in 0..1500 {
         let mut damaged = bytes.clone();

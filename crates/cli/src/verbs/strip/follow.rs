@@ -39,23 +39,25 @@ impl Strip {
     /// Follows cuts of a multiresolution file, and repairs the strips where each differs from the
     /// last.
     pub(super) fn run_follow(&self, session: &Session) -> Result<Answer, Failure> {
-        let file = model_file::open(&self.input, session)?;
-        let ModelFile::Contractions(archive) = &file else {
+        let opened = model_file::open(&self.input, session)?;
+        let file = model_file::levels(&opened)?;
+        let ModelFile::Contractions(archive) = file else {
             return Err(Failure::usage(
                 "--follow: strips do not follow the right triangles of a height field; use --error",
             ));
         };
-        let scene = model_scene::read(&self.input, &file, session)?;
+        let scene = model_scene::read(&self.input, file, session)?;
         let (model, _) = archive.read().map_err(|error| model_file::failure(&self.input, error))?;
+        let hearing = Hearing::new(session, &self.input, &self.input);
         let query = |&error: &ErrorLimit| {
-            let query = self.query.query_for(error, &file)?;
-            let of_levels = model_scene::query(&self.input, (&file, &scene), &query, None)?;
+            let query = self.query.request_for(error).query(file);
+            let query = query.map_err(|error| hearing.failure(error))?;
+            let of_levels = model_scene::query(&self.input, (file, &scene), &query, None)?;
             Ok(of_levels.0)
         };
         let queries = self.follow.iter().map(query).collect::<Result<Vec<_>, Failure>>()?;
         let (quality, effort) = (self.strip_quality(), self.effort.into());
         let request = FollowRequest { quality, effort, verify: self.verify };
-        let hearing = Hearing::new(session, &self.input, &self.input);
         let done = follow_strips(&model, &queries, &request, &hearing);
         let FollowReport { effort, cuts, verified } = done.map_err(|e| hearing.failure(e))?;
         if verified == Some(false) {

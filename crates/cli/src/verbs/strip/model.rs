@@ -1,16 +1,16 @@
 //! `strip` of multiresolution files: the scene of one cut.
 
 use meshlod::io::Precision;
-use meshlod::multires::FileError;
-use meshlod::{Format, Scene, shown_rounding};
+use meshlod::jobs::{self, ExtractReport, ExtractRequest, KeptError};
+use meshlod::{Format, Scene};
 
 use super::{Strip, output};
 use crate::session::Session;
 use crate::session::failure::Failure;
 use crate::session::files;
+use crate::session::hearing::Hearing;
 use crate::session::model_file;
-use crate::text::kept_error::KeptError;
-use crate::text::model_scene;
+use crate::text::kept_error;
 
 /// Scene of a cut.
 pub(super) struct CutScene {
@@ -48,24 +48,27 @@ impl Strip {
     pub(super) fn read_cut(&self, session: &Session) -> Result<CutScene, Failure> {
         self.query.check_target()?;
         let file = model_file::open(&self.input, session)?;
-        let failed = |error: FileError| model_file::failure(&self.input, error);
-        let model = model_scene::read(&self.input, &file, session)?;
-        let asked = self.query.query(&file)?;
-        let most = self.query.target.faces;
-        let (query, _) = model_scene::query(&self.input, (&file, &model), &asked, most)?;
-        // The distance of the best mesh of some number of faces is a question for `extract`.
-        let answer = self.query.answer(&file, &query, most.is_some(), session);
-        let (taken, known) = answer.map_err(failed)?;
-        let mut error = self.query.kept_error(&file, &asked, known);
-        error.warning().into_iter().for_each(|text| session.miss(&Failure::at(&self.input, text)));
-        let found = taken.level.faces.len();
-        let reached = self.query.reaches(&self.input, found, "stripped", session);
-        let flat = model.flat_scene(files::stem(&self.input), taken.level.mesh());
-        let scene = model_scene::restored(&self.input, model, flat, Format::Glb)?;
-        if self.out.as_deref().is_some_and(output::holds_scene) {
-            error.note_rounding(shown_rounding(&scene, Format::Glb, Precision::F32));
-        }
-        let reached = reached && error.is_kept() != Some(false);
+        let hearing = Hearing::new(session, &self.input, &self.input);
+        let done = jobs::extract(model_file::levels(&file)?, &self.cut_request(), &hearing);
+        let (scene, report) = done.map_err(|error| hearing.failure(error))?;
+        session.note(&self.input, &scene.notes)?;
+        let ExtractReport { error, reached, level_faces, .. } = report;
+        let warning = kept_error::warning(&error);
+        warning.into_iter().for_each(|text| session.miss(&Failure::at(&self.input, text)));
+        self.query.warn_of_faces(&self.input, level_faces, "stripped", session);
         Ok(CutScene { scene, error, reached })
+    }
+
+    fn cut_request(&self) -> ExtractRequest {
+        let query = self.query.request();
+        let is_written = self.out.as_deref().is_some_and(output::holds_scene);
+        ExtractRequest {
+            // The distance of the best mesh of some number of faces is a question for `extract`.
+            verify: query.most_faces().is_none(),
+            query,
+            written_as: is_written.then_some((Format::Glb, Precision::F32)),
+            name: files::stem(&self.input),
+            ..ExtractRequest::default()
+        }
     }
 }

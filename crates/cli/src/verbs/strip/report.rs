@@ -2,12 +2,11 @@
 
 use std::time::Duration;
 
-use meshlod::jobs::{StripReport, StrippedLevelReport};
+use meshlod::jobs::{KeptError, StripReport, StrippedLevelReport};
 use serde::Serialize;
 
 use super::Strip;
 use crate::session::files;
-use crate::text::kept_error::{KeptError, KeptFigures};
 use crate::text::numbers::{count, faces};
 use crate::text::simplify_report;
 use crate::text::table::aligned;
@@ -19,7 +18,7 @@ pub(super) struct StripFigures {
     #[serde(flatten)]
     report: StripReport,
     out: Option<String>,
-    error: Option<KeptFigures>,
+    error: Option<KeptError>,
 }
 
 impl Strip {
@@ -28,7 +27,7 @@ impl Strip {
             file: files::name(&self.input),
             report,
             out: self.out.as_deref().map(files::name),
-            error: error.map(KeptError::figures),
+            error,
         }
     }
 }

@@ -56,7 +56,7 @@ fn size(forest: &Forest, layers: Option<usize>, has_order: bool) -> usize {
     if !has_order {
         forest.updates.iter_mut().for_each(|update| update.stage = Stage::default());
     }
-    Archive::write(&forest, &Storage::default()).unwrap().0.len()
+    Archive::write(&forest, &Storage::default()).unwrap().0.into_source().len()
 }
 
 /// `cargo test --release -p meshlod-multires --lib attributes_take -- --nocapture` prints the figures:
@@ -129,7 +129,7 @@ fn with_values(kind: LayerKind, value: impl FnMut(usize) -> f32) -> (Mesh, Vec<f
         wedge_count,
         layers: vec![Layer { kind, name: "it".into(), width: 1, values }],
     });
-    let file = Archive::write(&forest(&mesh), &Storage::default()).unwrap().0;
+    let file = Archive::write(&forest(&mesh), &Storage::default()).unwrap().0.into_source();
     let is = Archive::open(file).unwrap().read().unwrap().0;
     let mut values = Vec::new();
     (0..is.wedge_count() as u32).for_each(|wedge| is.append_values(wedge, &mut values));
@@ -167,7 +167,7 @@ fn values_of_vertices_that_are_split_are_off_by_a_few_bounds_more() {
         let forest = forest(&meshes[0]);
         let storage = Storage::default();
         let was = rounded(&forest, &storage);
-        let file = Archive::write(&forest, &storage).unwrap().0;
+        let file = Archive::write(&forest, &storage).unwrap().0.into_source();
         let is = Archive::open(file).unwrap().read().unwrap().0;
         let (mut was_values, mut values) = (Vec::new(), Vec::new());
         let mut end = 0;
@@ -236,7 +236,7 @@ fn directions_across_folds_come_back_from_any_part_of_a_file() {
         let mesh = with_directions(is_smooth);
         let forest = forest(&mesh);
         let storage = Storage { updates_per_chunk: 60, ..Storage::default() };
-        let archive = Archive::open(Archive::write(&forest, &storage).unwrap().0).unwrap();
+        let archive = Archive::write(&forest, &storage).unwrap().0;
         let mt = archive.read().unwrap().0;
         let is = rounded(&forest, &storage);
         let uvs: usize = is.layers().take_while(|layer| layer.width < 3).map(|all| all.width).sum();

@@ -9,7 +9,7 @@ use crate::tests::attributes;
 use crate::{Forest, Implicit, Query};
 
 fn read_back(forest: &Forest) -> Implicit {
-    let file = Archive::write(forest, &Storage::default()).unwrap().0;
+    let file = Archive::write(forest, &Storage::default()).unwrap().0.into_source();
     Archive::open(file).unwrap().read().unwrap().0
 }
 
@@ -84,9 +84,8 @@ fn values_of_the_finest_cut_are_those_of_the_file_to_the_bit() {
     for (name, mesh) in attributes::meshes() {
         let expected = corner_bits(&rounded(&mesh));
         assert_ne!(expected, corner_bits(&mesh), "{name} is rounded");
-        let file =
-            Archive::write(&Forest::new(&mesh, &Default::default()).unwrap(), &Storage::default());
-        let archive = Archive::open(file.unwrap().0).unwrap();
+        let forest = Forest::new(&mesh, &Default::default()).unwrap();
+        let archive = Archive::write(&forest, &Storage::default()).unwrap().0;
         let level = archive.extract(&Query::uniform(0.0)).unwrap().level.mesh();
         assert_eq!(corner_bits(&level), expected, "{name}");
         // Also after the tables for fast extraction are made of it, which go by a forest.

@@ -16,7 +16,7 @@ const INDEX: usize = 88;
 const ENTRY_LEN: usize = 44;
 
 fn written(forest: &Forest) -> Vec<u8> {
-    Archive::write(forest, &small()).unwrap().0
+    Archive::write(forest, &small()).unwrap().0.into_source()
 }
 
 fn lossless(mesh: &Mesh) -> Forest {

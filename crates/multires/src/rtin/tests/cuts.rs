@@ -207,10 +207,10 @@ fn spatial_queries_find_what_a_search_over_all_triangles_finds() {
 #[test]
 fn cuts_of_any_file_whole_or_truncated_answer_as_the_file_does() {
     let terrain = Sample::new([40, 23]);
-    let field = terrain.field().to_file(HeightPrecision::Exact).unwrap();
+    let field = terrain.field().to_file(HeightPrecision::Exact).unwrap().0;
     let torus = samples::torus(2000);
     let storage = Storage { updates_per_chunk: 64, ..Storage::default() };
-    let archive = Archive::write(&forest(&torus, Method::Qem), &storage).unwrap().0;
+    let archive = Archive::write(&forest(&torus, Method::Qem), &storage).unwrap().0.into_source();
     for (mesh, bytes) in [(&terrain.mesh(), &field), (&torus, &archive)] {
         for part in [1.0, 0.8, 0.6] {
             let there = &bytes[..(part * bytes.len() as f64) as usize];

@@ -1,0 +1,188 @@
+//! Levels by the contractions of a mesh, with the rest of its scene.
+
+use std::sync::Arc;
+
+use meshlod_io::Scene;
+use meshlod_io::gltf::SourceDocument;
+use meshlod_mesh::{AttributeBounds, Mesh, closed_faces};
+use meshlod_multires::{
+    Archive, BuildError, Certificate, ErrorKind, Forest, Recorder, Storage, StoredErrors,
+};
+use meshlod_simplify::{ExactVolumeError, Held, Options, Simplifier, Target};
+
+use super::{BuildReport, BuildRequest, BuiltLevels, ErrorPoses, LevelModel};
+use crate::jobs::{About, Contractions, JobError, Remark, Watch, check};
+use crate::{PackedScene, PlacedScene, PoseCounts, model_limits, place_scene};
+
+/// Recorded contractions with their errors, ready to be written.
+struct Recorded {
+    forest: Forest,
+    held: Held,
+    poses: ErrorPoses,
+}
+
+/// Builds the levels of a scene whose constraints have been applied to it.
+pub(super) fn build(
+    scene: Scene,
+    request: &BuildRequest,
+    watch: &dyn Watch,
+) -> Result<(Vec<u8>, BuildReport), JobError> {
+    let mut notes = model_limits(&scene);
+    let attributes = refined(request.attributes, &scene);
+    let options = Options { method: request.method, ..Options::default() };
+    let placed = place_scene(scene, &request.constraints, options);
+    let PlacedScene { mesh, options, mut rest, counts } = placed.map_err(JobError::input)?;
+    if request.exact_volume {
+        remark_if_open(&mesh, watch);
+    }
+    let lossless = request.lossless || request.exact_volume;
+    let recorded = record(&mesh, (&options, lossless), rest.as_mut(), request, watch)?;
+    let scene = rest.is_some().then_some(counts);
+    let storage = Storage {
+        rounding: (!lossless).then(|| request.rounding_of(&mesh)),
+        updates_per_chunk: request.in_chunk,
+        errors: match request.errors {
+            ErrorKind::Measured => StoredErrors::Measured,
+            ErrorKind::Bound | ErrorKind::Estimate => StoredErrors::AsRecorded,
+        },
+        attributes,
+    };
+    let (archive, certificate, surface_bytes) = pack(&recorded.forest, &storage, rest, watch)?;
+    let faces = recorded.forest.full_faces();
+    notes.extend(super::unused_parts(&mesh, faces));
+    let input_vertices = super::used_vertices(&mesh);
+    let mut report = BuildReport {
+        input_vertices,
+        input_faces: mesh.faces.len(),
+        bytes: 0,
+        scene_bytes: 0,
+        bytes_per_vertex: surface_bytes as f64 / input_vertices as f64,
+        rounding: if lossless { 0.0 } else { archive.rounding() },
+        levels: levels(&archive, &recorded, certificate, request),
+        scene,
+        faces,
+        moved: archive.rounding(),
+        diagonal: archive.diagonal(),
+        error_poses: recorded.poses,
+        notes,
+    };
+    let bytes = archive.into_source();
+    (report.bytes, report.scene_bytes) = (bytes.len(), bytes.len() - surface_bytes);
+    Ok((bytes, report))
+}
+
+/// Makes the bound of texture coordinates hold for textures that a material repeats by scaling the
+/// coordinates.
+fn refined(bounds: AttributeBounds, scene: &Scene) -> AttributeBounds {
+    let scale = scene.source.as_ref().map_or(1.0, SourceDocument::largest_texture_scale);
+    if scale > 1.0 { AttributeBounds { uv: bounds.uv / scale, ..bounds } } else { bounds }
+}
+
+/// Remarks that levels cannot get the volume of a mesh of which no part is closed.
+fn remark_if_open(mesh: &Mesh, watch: &dyn Watch) {
+    if !closed_faces(&mesh.faces, mesh.positions.len()).contains(&true) {
+        watch.remark(&Remark::field("exact_volume", ExactVolumeError::OpenMesh));
+    }
+}
+
+/// Contracts a mesh to nothing, and gives every contraction its error.
+fn record(
+    mesh: &Mesh,
+    (options, lossless): (&Options, bool),
+    rest: Option<&mut PackedScene>,
+    request: &BuildRequest,
+    watch: &dyn Watch,
+) -> Result<Recorded, JobError> {
+    let failed = |error: BuildError| JobError::input(error);
+    let options = Forest::options(mesh, options);
+    let mut simplifier = Simplifier::new(mesh, &options).map_err(|error| failed(error.into()))?;
+    watch.stage("contracting");
+    let recorder = if lossless { Recorder::lossless } else { Recorder::new };
+    let mut both = (recorder(&simplifier), Contractions::new(watch, Some(mesh.faces.len())));
+    let report = simplifier.run(Target::Faces(0), &mut both);
+    let held = report.map_err(|error| failed(error.into()))?.held;
+    let mut forest = both.0.into_forest().map_err(failed)?;
+    watch.stage("measuring errors");
+    check(watch);
+    let poses = pose(&mut forest, mesh, rest, request, watch);
+    match request.errors {
+        ErrorKind::Bound => forest.measure_bounds(),
+        ErrorKind::Estimate | ErrorKind::Measured => forest.smooth_errors(),
+    }
+    Ok(Recorded { forest, held, poses })
+}
+
+/// Has errors measured in the poses of the scene's animations, where they are measured and the
+/// scene has such poses. Returns the poses for which errors will hold.
+fn pose(
+    forest: &mut Forest,
+    mesh: &Mesh,
+    rest: Option<&mut PackedScene>,
+    request: &BuildRequest,
+    watch: &dyn Watch,
+) -> ErrorPoses {
+    let Some(rest) = rest else { return ErrorPoses::Unknown };
+    let Some(poses) = rest.poses(mesh) else { return ErrorPoses::Unknown };
+    for note in &poses.notes {
+        watch.remark(&Remark::new(About::Input, format_args!("poses: {note}")));
+    }
+    match poses.counts {
+        PoseCounts { measured: 0, .. } if poses.notes.is_empty() => ErrorPoses::Unbent,
+        PoseCounts { measured: 0, .. } => ErrorPoses::Unknown,
+        _ if request.errors != ErrorKind::Measured => ErrorPoses::Unknown,
+        counts => {
+            rest.note_poses(counts);
+            forest.pose_by(Arc::new(poses));
+            ErrorPoses::Measured(counts)
+        }
+    }
+}
+
+/// Writes recorded contractions and the rest of their scene; also returns the proof that no cut has
+/// a crack, and the number of bytes without that rest.
+fn pack(
+    forest: &Forest,
+    storage: &Storage,
+    rest: Option<PackedScene>,
+    watch: &dyn Watch,
+) -> Result<(Archive<Vec<u8>>, Certificate, usize), JobError> {
+    watch.stage("proving and packing");
+    check(watch);
+    let (archive, certificate) = Archive::write(forest, storage).map_err(JobError::input)?;
+    let surface_bytes = archive.bytes().len();
+    let Some(rest) = rest else { return Ok((archive, certificate, surface_bytes)) };
+    watch.stage("packing images");
+    check(watch);
+    let resources = rest.resources(&archive.chunk_lengths());
+    let archive = archive.with_resources(&resources).map_err(JobError::output)?;
+    Ok((archive, certificate, surface_bytes))
+}
+
+fn levels(
+    archive: &Archive<Vec<u8>>,
+    recorded: &Recorded,
+    certificate: Certificate,
+    request: &BuildRequest,
+) -> BuiltLevels {
+    BuiltLevels::Contractions {
+        held: recorded.held,
+        error_kind: archive.error_kind(),
+        poses: recorded.poses.measured(),
+        model: LevelModel::Contractions,
+        method: request.method,
+        lossless: archive.is_lossless(),
+        updates: archive.update_count(),
+        base_faces: archive.base_faces(),
+        certificate,
+    }
+}
+
+impl ErrorPoses {
+    /// Returns the poses in which errors were measured.
+    pub fn measured(self) -> Option<PoseCounts> {
+        match self {
+            Self::Measured(counts) => Some(counts),
+            Self::Unknown | Self::Unbent => None,
+        }
+    }
+}
