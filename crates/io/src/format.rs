@@ -5,11 +5,13 @@ use std::path::Path;
 use std::str::FromStr;
 
 use meshlod_mesh::UnknownName;
+use serde::{Deserialize, Serialize};
 
 use crate::IoError;
 
 /// File format of a mesh or scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Format {
     /// Polygon File Format (PLY, the Stanford format), text or binary.
     Ply,

@@ -3,6 +3,9 @@
 use meshlod_check::{Fused, fuse};
 use meshlod_io::Scene;
 use meshlod_mesh::FaceId;
+use meshlod_simplify::Target;
+
+use crate::place::shown_faces;
 
 /// Merges intersecting closed components within each mesh of a scene; see [`fuse`]. Different
 /// meshes are not merged.
@@ -24,6 +27,56 @@ pub fn fuse_scene(scene: &mut Scene) -> Fused {
         all.add(&fused);
     }
     all
+}
+
+/// Numbers of what fusing has changed in a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct FuseReport {
+    /// Number of faces shown before, over all instances of meshes.
+    pub input_faces: usize,
+    /// Number of faces shown afterwards, over all instances of meshes.
+    pub output_faces: usize,
+    /// Number of faces that were cut where they met others.
+    pub cut_faces: usize,
+    /// Number of vertices created where faces met.
+    pub new_vertices: usize,
+    /// Number of faces removed because they were inside.
+    pub buried_faces: usize,
+    /// Number of pairs of edges that were joined.
+    pub joined_edges: usize,
+    /// Number of components that could not be fused, as they are open or inside out.
+    pub components_not_fused: usize,
+    /// True if anything intersected that could be fused. Not part of what serde writes.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub is_change: bool,
+}
+
+impl FuseReport {
+    /// Fuses a scene by [`fuse_scene`], and counts the changes.
+    pub fn of(scene: &mut Scene) -> Self {
+        let input_faces = shown_faces(scene);
+        let fused = fuse_scene(scene);
+        let Fused { imprint, buried, joined, left } = fused;
+        Self {
+            input_faces,
+            output_faces: shown_faces(scene),
+            cut_faces: imprint.faces,
+            new_vertices: imprint.vertices,
+            buried_faces: buried,
+            joined_edges: joined,
+            components_not_fused: left,
+            is_change: fused != Fused { left, ..Fused::default() },
+        }
+    }
+
+    /// Converts a target ratio to a number of faces, based on the faces before fusing.
+    pub fn target(self, target: Target) -> Target {
+        match target {
+            Target::Ratio(ratio) => Target::Faces((self.input_faces as f64 * ratio) as usize),
+            target => target,
+        }
+    }
 }
 
 #[cfg(test)]

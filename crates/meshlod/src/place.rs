@@ -25,6 +25,11 @@ pub fn world_bounds(scene: &Scene) -> Bounds {
     bounds
 }
 
+/// Returns the number of faces that a scene shows, over all instances of its meshes.
+pub(crate) fn shown_faces(scene: &Scene) -> usize {
+    scene.instances().iter().map(|instance| scene.meshes[instance.mesh].mesh.faces.len()).sum()
+}
+
 /// Returns how far writing a level of a scene with these digits may move a point, at most, in world
 /// units: by half a unit in the last place of its largest coordinate along each axis.
 ///

@@ -91,7 +91,7 @@ impl ConstraintArgs {
     }
 
     /// Returns the constraints on a scene that is already fused.
-    fn constraints(&self, input: &InputScene<'_>) -> Result<Constraints, Failure> {
+    pub fn constraints(&self, input: &InputScene<'_>) -> Result<Constraints, Failure> {
         Ok(Constraints {
             topology: self.topology.kind(),
             borders: self.topology.borders(),

@@ -10,8 +10,26 @@
 //! [`Output`](crate::Output) says where the result goes and in which format.
 
 mod error;
+#[cfg(feature = "serde")]
+pub mod figures;
+#[cfg(feature = "check")]
+mod lods;
+#[cfg(feature = "check")]
+mod scene_run;
+#[cfg(feature = "check")]
+mod simplify;
+#[cfg(feature = "check")]
+mod switching;
 mod watch;
 
 pub use error::JobError;
+#[cfg(feature = "check")]
+pub use lods::{LodChain, LodReport, LodsReport, LodsRequest, chain_samples, lods};
+#[cfg(feature = "check")]
+pub use simplify::{
+    Aim, LostVolume, ProvedError, SimplifyReport, SimplifyRequest, WrittenAs, simplify,
+};
+#[cfg(feature = "check")]
+pub use switching::{Switch, SwitchCamera};
 pub use watch::{About, Remark, Watch};
 pub(crate) use watch::{Contractions, cancellable};

@@ -86,17 +86,23 @@ pub(crate) struct Contractions<'w> {
     gone: usize,
     /// Number of removed faces when the watch was last called.
     said: usize,
+    /// Number of faces removed between two calls.
+    pace: usize,
     /// Number of faces to remove, where it is known.
     of: Option<usize>,
 }
 
-/// Faces removed between two calls of the watch, each of which costs more than a contraction.
+/// Most faces removed between two calls of the watch, each of which costs more than a contraction.
 const FACES_A_STEP: usize = 8192;
+
+/// Number of calls of the watch in a short run.
+const STEPS: usize = 100;
 
 impl<'w> Contractions<'w> {
     pub(crate) fn new(watch: &'w dyn Watch, of: Option<usize>) -> Self {
         watch.step(0, of);
-        Self { watch, gone: 0, said: 0, of }
+        let pace = of.map_or(FACES_A_STEP, |of| (of / STEPS).clamp(1, FACES_A_STEP));
+        Self { watch, gone: 0, said: 0, pace, of }
     }
 }
 
@@ -107,11 +113,11 @@ impl Observe for Contractions<'_> {
 
     fn gone(&mut self, faces: usize) {
         self.gone += faces;
-        if self.gone >= self.said + FACES_A_STEP {
+        if self.gone >= self.said + self.pace {
             self.said = self.gone;
             self.watch.step(self.gone, self.of);
-            check(self.watch);
         }
+        check(self.watch);
     }
 }
 

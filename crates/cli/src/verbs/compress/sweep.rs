@@ -2,6 +2,7 @@
 
 use meshlod::Mesh;
 use meshlod::codec::{Partitioner, Parts};
+use meshlod::jobs::chain_samples;
 use meshlod::measure::{Distance, surface_distance};
 use serde_json::{Value, json};
 
@@ -25,7 +26,7 @@ impl Compress {
     /// [LCL10, figure 5]. Returns JSON and text.
     pub(super) fn sweep(&self, mesh: &Mesh, session: &Session) -> Result<(Value, String), Failure> {
         let surface = distance::ready(mesh, &self.input)?;
-        let options = distance::for_chain(&surface);
+        let options = chain_samples(&surface);
         let partitioner = Partitioner::new(mesh).map_err(|error| self.failed(error))?;
         let mut rows = Vec::new();
         for &parts in &self.sweep {
