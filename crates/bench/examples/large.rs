@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result};
 use meshlod::mesh::{Mesh, VertexId};
-use meshlod::simplify::{Method, Options, Target, simplify};
+use meshlod::simplify::{Method, Options, Target, contract_to};
 use meshlod_bench::read;
 
 fn main() -> Result<()> {
@@ -30,7 +30,7 @@ fn main() -> Result<()> {
 fn line(mesh: &Mesh) -> Result<()> {
     let options = Options { method: Method::LindstromTurk, ..Options::default() };
     let start = Instant::now();
-    let (level, _) = simplify(mesh, Target::Ratio(0.1), &options)?;
+    let (level, _) = contract_to(mesh, Target::Ratio(0.1), &options)?;
     let seconds = start.elapsed().as_secs_f64();
     let millions = mesh.faces.len() as f64 * 1e-6;
     println!(

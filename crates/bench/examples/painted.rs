@@ -11,7 +11,7 @@
 use anyhow::{Context, Result};
 use meshlod::mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId};
 use meshlod::picture::{ReferenceImages, Style};
-use meshlod::simplify::{Method, Options, Target, simplify};
+use meshlod::simplify::{Method, Options, Target, contract_to};
 use meshlod::{materials_of, single_sided_materials};
 use meshlod_bench::peer::{GpuMesh, Settings, SimplifyOptions, Update, simplify_with_attributes};
 use meshlod_bench::{alternate, one_core, read_scene};
@@ -66,7 +66,7 @@ fn speed(mesh: &Mesh, ratio: f64, rounds: usize) {
     let faces = (mesh.faces.len() as f64 * ratio) as usize;
     let options = options(Method::LindstromTurk);
     let ours =
-        || simplify(mesh, Target::Faces(faces), &options).expect("the mesh can be simplified");
+        || contract_to(mesh, Target::Faces(faces), &options).expect("the mesh can be simplified");
     let theirs = || torn.faces_left(faces, &PEER);
     print!(" {} {} of {} |", ours().1.output_faces, theirs(), mesh.faces.len());
     let took = one_core(|| alternate(rounds, ours, theirs));
@@ -78,9 +78,9 @@ fn looks(mesh: &Mesh, ratio: f64, portrait: &ReferenceImages<'_>) -> Result<()> 
     let faces = (mesh.faces.len() as f64 * ratio) as usize;
     let theirs = simplify_with_attributes(mesh, faces, &PEER);
     let target = Target::Faces(theirs.faces.len());
-    let (ours, report) = simplify(mesh, target, &options(Method::LindstromTurk))?;
+    let (ours, report) = contract_to(mesh, target, &options(Method::LindstromTurk))?;
     ours.validate()?;
-    let qem = simplify(mesh, target, &options(Method::Qem))?.0;
+    let qem = contract_to(mesh, target, &options(Method::Qem))?.0;
     print!(" {} {} {} |", theirs.faces.len(), ours.faces.len(), qem.faces.len());
     for level in [&ours, &theirs, &qem] {
         print!(" {:.4}", portrait.error_of(level)?.flip);

@@ -11,7 +11,7 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use meshlod::measure::{DistanceOptions, PreparedSurface, surface_distance};
 use meshlod::mesh::{Mesh, VertexId};
-use meshlod::simplify::{Method, Options, Target, simplify};
+use meshlod::simplify::{Method, Options, Target, contract_to};
 use meshlod_bench::read;
 
 fn main() -> Result<()> {
@@ -64,7 +64,7 @@ fn timed(mesh: &Mesh, ratio: f64) -> (f64, Mesh) {
     let options = Options { method: Method::LindstromTurk, ..Options::default() };
     let start = Instant::now();
     let (level, _) =
-        simplify(mesh, Target::Ratio(ratio), &options).expect("the mesh can be simplified");
+        contract_to(mesh, Target::Ratio(ratio), &options).expect("the mesh can be simplified");
     (start.elapsed().as_secs_f64(), level)
 }
 

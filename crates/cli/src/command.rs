@@ -11,7 +11,7 @@ use crate::session::answer::Answer;
 use crate::session::failure::Failure;
 use crate::verbs::{
     batch, build, check, completions, compress, convert, decompress, extract, flock, info, lods,
-    man, measure, render, repair, replay, run, sample, simplify, strip, view,
+    man, measure, render, repair, run, sample, simplify, strip, view,
 };
 
 /// Level of detail for triangle meshes.
@@ -61,7 +61,6 @@ pub enum Verb {
     Repair(repair::Repair),
     Simplify(simplify::Simplify),
     Convert(convert::Convert),
-    Replay(replay::Replay),
     Lods(lods::Lods),
     Build(build::Build),
     Extract(extract::Extract),
@@ -87,7 +86,6 @@ impl Verb {
             Self::Repair(verb) => verb.run(session),
             Self::Simplify(verb) => verb.run(session),
             Self::Convert(verb) => verb.run(session),
-            Self::Replay(verb) => verb.run(session),
             Self::Lods(verb) => verb.run(session),
             Self::Build(verb) => verb.run(session),
             Self::Extract(verb) => verb.run(session),

@@ -10,13 +10,14 @@
 
 use std::error::Error;
 
+use meshlod::jobs::{Aim, SimplifyRequest, simplify};
 use meshlod::mesh::{AttributeBounds, Mesh};
 use meshlod::multires::{Archive, Forest, Query, Storage, StoredErrors};
 use meshlod::picture::{ReferenceImages, Style};
 use meshlod::simplify::Target;
 use meshlod::{
     Constraints, ModelScene, Options, ReadOptions, Topology, materials_of, place_scene, read,
-    simplify_scene, single_sided_materials,
+    single_sided_materials,
 };
 use meshlod_fixtures::shared_mesh;
 
@@ -55,10 +56,10 @@ fn measure(name: &str) -> Result<(), Box<dyn Error>> {
     };
 
     let level = |faces: usize| -> Result<Mesh, Box<dyn Error>> {
-        let mut scene = scene.clone();
-        let options = Options { topology: Topology::Keep, ..Options::default() };
-        simplify_scene(&mut scene, Target::Faces(faces), &options)?;
-        Ok(scene.flatten())
+        let constraints = Constraints { topology: Topology::Keep, ..Constraints::default() };
+        let target = Aim::Faces(faces);
+        let request = SimplifyRequest { target, constraints, ..SimplifyRequest::default() };
+        Ok(simplify(scene.clone(), &request, &())?.0.flatten())
     };
     println!("| {name} | | | | | {} |", flips([level(counts[0])?, level(counts[1])?])?);
 

@@ -7,9 +7,8 @@ use std::error::Error;
 use std::path::PathBuf;
 
 use meshlod::io::{Node, SceneMesh};
-use meshlod::{
-    Options, ReadOptions, Scene, Target, WriteOptions, read, samples, simplify_scene, write,
-};
+use meshlod::jobs::{Aim, SimplifyRequest, simplify};
+use meshlod::{ReadOptions, Scene, WriteOptions, read, samples, write};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1).map(PathBuf::from);
@@ -20,16 +19,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let output = arguments.next().unwrap_or_else(|| folder.path().join("small.glb"));
 
-    let mut scene = read(&input, &ReadOptions::default())?;
+    let scene = read(&input, &ReadOptions::default())?;
     let before = faces(&scene);
-    let report = simplify_scene(&mut scene, Target::Ratio(0.1), &Options::default())?;
+    let request = SimplifyRequest { target: Aim::Ratio(0.1), ..SimplifyRequest::default() };
+    let (scene, report) = simplify(scene, &request, &())?;
     write(&output, &scene, &WriteOptions::default())?;
 
     for (mesh, (before, after)) in scene.meshes.iter().zip(before.iter().zip(faces(&scene))) {
         println!("{}: {before} faces, now {after}", mesh.name);
     }
     let bytes = [&input, &output].map(|path| std::fs::metadata(path).map_or(0, |file| file.len()));
-    println!("{} faces shown, now {}", report.input_faces, report.output_faces);
+    println!("{} faces shown, now {}", report.run.input_faces, report.run.output_faces);
     println!("{} bytes, now {}", bytes[0], bytes[1]);
     Ok(())
 }

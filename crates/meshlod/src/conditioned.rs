@@ -5,9 +5,7 @@ use std::sync::OnceLock;
 use meshlod_mesh::{
     Borders, ConditionOptions, Conditioned, Conditioning, Locks, Mesh, Search, condition,
 };
-use meshlod_simplify::{
-    Observe, Options, Report, Simplifier, SimplifyError, Target, Topology, VolumeLoss,
-};
+use meshlod_simplify::{Options, Report, Simplifier, SimplifyError, Target, Topology, VolumeLoss};
 
 use crate::bounded::run_within;
 
@@ -103,11 +101,6 @@ impl ConditionedMesh<'_> {
     pub(crate) fn locks(&self) -> &Locks {
         self.conditioned().map_or(&self.options.locks, |found| &found.locks)
     }
-
-    /// Returns true if the mesh is not simplified as it is.
-    pub(crate) fn is_changed(&self) -> bool {
-        self.conditioned().is_some()
-    }
 }
 
 /// Simplifies a mesh to a target number of faces or error, and returns the result with a report.
@@ -119,7 +112,7 @@ impl ConditionedMesh<'_> {
 ///
 /// A [`Target::Error`] is proved: no point of the result is farther from the mesh, and no point of
 /// the mesh farther from the result, in exact arithmetic on the positions in memory. Writing them
-/// as 32-bit floats rounds them. The [proof](Report::proof) in the report says so, or what holds
+/// as 32-bit floats rounds them; `jobs::simplify` proves what is written. The [proof](Report::proof) in the report says so, or what holds
 /// instead where an error as small as the rounding of positions is out of reach.
 ///
 /// # Errors
@@ -128,22 +121,6 @@ pub fn simplify(
     mesh: &Mesh,
     target: Target,
     options: &Options,
-) -> Result<(Mesh, Report), SimplifyError> {
-    simplify_observed(mesh, target, options, &mut ())
-}
-
-/// Simplifies a mesh as [`simplify`] does, watched by an observer.
-///
-/// Observers see the ids of the conditioned mesh. With an observer that
-/// [wants to see contractions](Observe::needs_surface) an error is not proved.
-///
-/// # Errors
-/// The mesh, the target or an option is invalid, see [`SimplifyError`].
-pub fn simplify_observed(
-    mesh: &Mesh,
-    target: Target,
-    options: &Options,
-    observer: &mut dyn Observe,
 ) -> Result<(Mesh, Report), SimplifyError> {
     let ready = ConditionedMesh::new(mesh, options.clone(), Some(Borders::Stitch));
     let own = match target.valid()? {
@@ -154,9 +131,9 @@ pub fn simplify_observed(
     let report = match own {
         Target::Error(error) => {
             let again = Some((&ready, options.vanish_below));
-            run_within(again, &mut simplifier, error, observer)?
+            run_within(again, &mut simplifier, error, &mut ())?
         }
-        own => simplifier.run(own, observer)?,
+        own => simplifier.run(own, &mut ())?,
     };
     let duplicate_faces = report.duplicate_faces + ready.counts().duplicate_faces;
     let mut report = Report { input_faces: mesh.faces.len(), duplicate_faces, ..report };

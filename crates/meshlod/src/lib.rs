@@ -71,42 +71,42 @@
 //! ```
 //!
 //! Files hold more than a mesh. [`read`] returns a [`Scene`]: nodes, meshes, materials, images, and
-//! everything else of a glTF file. [`simplify_scene`] shares one target among its meshes, so that
-//! detail stays where the scene shows it. [`write()`] replaces the geometry and keeps the rest:
+//! everything else of a glTF file. [`jobs`] has what a program does with it: [`jobs::simplify()`]
+//! shares one target among its meshes, so that detail stays where the scene shows it, and proves an
+//! error as it will be written. [`write()`] replaces the geometry and keeps the rest:
 //!
 //! ```
-//! use meshlod::{Options, ReadOptions, Target, WriteOptions, read, simplify_scene, write};
+//! use meshlod::jobs::{Aim, SimplifyRequest, simplify};
+//! use meshlod::{ReadOptions, WriteOptions, read, write};
 //! # use meshlod::{Scene, samples};
 //! # let folder = tempfile::tempdir()?;
 //! # let [path, out] = ["fish.ply", "fish.glb"].map(|name| folder.path().join(name));
 //! # write(&path, &Scene::from_mesh("fish", samples::fish(4_000)), &WriteOptions::default())?;
 //!
-//! let mut scene = read(&path, &ReadOptions::default())?;
-//! simplify_scene(&mut scene, Target::Ratio(0.25), &Options::default())?;
+//! let scene = read(&path, &ReadOptions::default())?;
+//! let request = SimplifyRequest { target: Aim::Ratio(0.25), ..SimplifyRequest::default() };
+//! let (scene, _) = simplify(scene, &request, &())?;
 //! write(&out, &scene, &WriteOptions::default())?;
 //! assert!(read(&out, &ReadOptions::default())?.flatten().faces.len() <= 1_000);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A chain of levels comes from one run, each level from the previous one. A GLB file holds all of
-//! them:
+//! A chain of levels comes from one run, each level from the previous one, with the distance from
+//! which it is fine enough. A GLB file holds all of them:
 //!
 //! ```
-//! use meshlod::io::gltf::{Level, LodLayout};
+//! use meshlod::io::gltf::LodLayout;
 //! use meshlod::io::write_lods;
-//! use meshlod::{Borders, ConditionedScene, Options, Scene, SceneSimplifier, Target, samples};
+//! use meshlod::jobs::{LodsRequest, lods};
+//! use meshlod::{Scene, Target, samples};
 //! # let folder = tempfile::tempdir()?;
 //! # let out = folder.path().join("torus.glb");
 //!
 //! let scene = Scene::from_mesh("torus", samples::torus(4_000));
-//! let conditioned = ConditionedScene::new(&scene, &Options::default(), Borders::Stitch)?;
-//! let mut simplifier = SceneSimplifier::new(&conditioned)?;
-//! let mut levels = Vec::new();
-//! for (ratio, screen_coverage) in [(0.5, 0.4), (0.1, 0.1)] {
-//!     simplifier.run(Target::Ratio(ratio), &mut ())?;
-//!     levels.push(Level { meshes: simplifier.level(), screen_coverage });
-//! }
-//! write_lods(&out, &scene, &levels, LodLayout::default())?;
+//! let levels = [0.5, 0.1].map(Target::Ratio).to_vec();
+//! let (chain, report) = lods(scene, &LodsRequest { levels, ..LodsRequest::default() }, &())?;
+//! assert!(report.levels[1].screen_coverage < report.levels[0].screen_coverage);
+//! write_lods(&out, &chain.scene, &chain.levels, LodLayout::default())?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -264,7 +264,7 @@
 //!
 //! | feature | adds | and needs |
 //! |---|---|---|
-//! | `io` | [`io`]: files and scenes, [`simplify_scene`] | |
+//! | `io` | [`io`]: files and scenes, [`SceneSimplifier`] | |
 //! | `check` | [`check`]: findings, repair, locks, [`Constraints`] | `io` |
 //! | `picture` | [`picture`]: a rasteriser, the materials of scenes | `io` |
 //! | `multires` | [`multires`]: all levels in a file, [`jobs::build`], [`jobs::extract`]; compiles zstd, which is C | `check`, `picture` |
@@ -366,7 +366,7 @@ pub use meshlod_samples as samples;
 pub use meshlod_strip as strip;
 
 pub use bound::Bound;
-pub use conditioned::{simplify, simplify_observed};
+pub use conditioned::simplify;
 pub use meshlod_mesh::{Borders, Mesh};
 pub use meshlod_simplify::{Method, Options, Report, SimplifyError, Target, Topology};
 
@@ -404,6 +404,6 @@ pub use posed::{PoseCounts, ScenePoses, posed_mesh};
 #[cfg(feature = "check")]
 pub use repair::repair_scene;
 #[cfg(feature = "io")]
-pub use scene::{SceneError, SceneSimplifier, simplify_scene};
+pub use scene::{SceneError, SceneSimplifier};
 #[cfg(feature = "multires")]
 pub use verified::Verification;

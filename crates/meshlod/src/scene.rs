@@ -1,10 +1,10 @@
 //! Simplification of a scene: all its meshes share one target number of faces or error bound.
 
 use meshlod_io::Scene;
-use meshlod_mesh::{Borders, Mesh};
+use meshlod_mesh::Mesh;
 use meshlod_simplify::{
-    Contractions, ErrorProof, Held, Method, Observe, Options, Refusals, Report, Simplifier,
-    SimplifyError, Target, VolumeLoss,
+    Contractions, ErrorProof, Held, Method, Observe, Refusals, Report, Simplifier, SimplifyError,
+    Target, VolumeLoss,
 };
 use thiserror::Error;
 
@@ -68,27 +68,6 @@ pub enum SceneError {
         /// Reason why the mesh cannot be simplified.
         source: SimplifyError,
     },
-}
-
-/// Simplifies all meshes of a scene in place, to one common target; see [`ConditionedScene`] and
-/// [`SceneSimplifier`].
-///
-/// # Errors
-/// As for these two, and an invalid target; the scene then is unchanged.
-pub fn simplify_scene(
-    scene: &mut Scene,
-    target: Target,
-    options: &Options,
-) -> Result<Report, SceneError> {
-    let conditioned = ConditionedScene::new(scene, options, Borders::Stitch)?;
-    let mut simplifier = SceneSimplifier::new(&conditioned)?;
-    let mut report = simplifier.run(target, &mut ())?;
-    let level = simplifier.settled_level(&mut report.volume);
-    drop(simplifier);
-    for (mesh, level) in scene.meshes.iter_mut().zip(level) {
-        mesh.mesh = level;
-    }
-    Ok(report)
 }
 
 impl<'s> SceneSimplifier<'s> {
@@ -215,14 +194,6 @@ impl<'s> SceneSimplifier<'s> {
             level
         });
         settled.collect()
-    }
-
-    /// Returns the simplifier of the scene's only mesh, in its current state; `None` if there are
-    /// several meshes, or if conditioning has changed the mesh.
-    pub fn into_only(mut self) -> Option<Simplifier<'s>> {
-        let only = self.parts.pop().filter(|_| self.parts.is_empty());
-        let is_only = self.scene.meshes.len() == 1 && !self.conditioned.meshes[0].is_changed();
-        only.filter(|_| is_only).map(|part| part.simplifier)
     }
 
     fn run_within(

@@ -1,9 +1,10 @@
 //! An error that is asked for is kept: checked against the bounds of `certified_distance`.
 
+use meshlod::jobs::{self, Aim, SimplifyRequest};
 use meshlod::measure::{CertifiedOptions, certified_distance};
 use meshlod::mesh::{Lock, Locks, VertexId};
 use meshlod::simplify::Simplifier;
-use meshlod::{Mesh, Method, Options, Report, Scene, Target, samples, simplify, simplify_scene};
+use meshlod::{Bound, Mesh, Method, Options, Report, Scene, Target, samples, simplify};
 use meshlod_fixtures as fixtures;
 
 /// The bounds of the distance between two meshes, relative to `error`.
@@ -112,9 +113,11 @@ fn an_error_is_kept_in_the_world() {
     }
     let before = scene.flatten();
     let error = 0.002 * before.bounds().diagonal();
-    let report = simplify_scene(&mut scene, Target::Error(error), &Options::default()).unwrap();
-    let proof = report.proof.unwrap();
-    assert!(report.reached && proof.asked == error && proof.proved == error);
+    let target = Aim::Error(Bound::Length(error));
+    let request = SimplifyRequest { target, ..SimplifyRequest::default() };
+    let (scene, report) = jobs::simplify(scene, &request, &()).unwrap();
+    let proof = report.run.proof.unwrap();
+    assert!(report.run.reached && proof.asked == error && proof.proved == error);
     let [lower, _] = apart(&before, &scene.flatten(), error);
     assert!(lower <= 1.0 && lower > 0.3, "{lower}");
 }

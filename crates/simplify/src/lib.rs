@@ -2,10 +2,10 @@
 //!
 //! ```
 //! use meshlod_samples as samples;
-//! use meshlod_simplify::{Options, Target, simplify};
+//! use meshlod_simplify::{Options, Target, contract_to};
 //!
 //! let mesh = samples::sphere(1000);
-//! let (level, report) = simplify(&mesh, Target::Ratio(0.1), &Options::default())?;
+//! let (level, report) = contract_to(&mesh, Target::Ratio(0.1), &Options::default())?;
 //! assert!(report.reached && level.faces.len() <= 100);
 //! # Ok::<(), meshlod_simplify::SimplifyError>(())
 //! ```
@@ -50,14 +50,15 @@ pub use surface::contracted::{Contracted, Freedom};
 pub use surface::neighbourhood::{Neighbourhood, RemovedFace, RingVertex, Spoke};
 pub use surface::{Placed, Surface};
 
-/// Simplifies a mesh to a target number of faces or error, and returns the result with a report.
+/// Contracts a mesh to a target number of faces or error, and returns the result with a report.
 ///
-/// The result holds only what its faces use. If the target is out of reach, the mesh is reduced as
+/// The mesh is not conditioned before, and an error is what the method makes of it: the facade
+/// `meshlod` has a `simplify` that does the one and proves the other. The result holds only what its faces use. If the target is out of reach, the mesh is reduced as
 /// far as the rules allow, and the report says so and counts the reasons.
 ///
 /// # Errors
 /// The mesh, the target or an option is invalid, see [`SimplifyError`].
-pub fn simplify(
+pub fn contract_to(
     mesh: &Mesh,
     target: Target,
     options: &Options,

@@ -2,7 +2,7 @@
 
 use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId};
 use meshlod_samples as samples;
-use meshlod_simplify::{Method, Options, Simplifier, SimplifyError, Target, simplify};
+use meshlod_simplify::{Method, Options, Simplifier, SimplifyError, Target, contract_to};
 use meshlod_spatial::Bvh;
 
 fn options(method: Method, boundary_weight: Option<f64>) -> Options {
@@ -66,8 +66,9 @@ fn the_default_weight_is_that_of_the_method() {
     for (method, weight) in
         [(Method::LindstromTurk, 9.0), (Method::LindstromTurkFaces, 9.0), (Method::Qem, 2.0)]
     {
-        let [given, own] = [Some(weight), None]
-            .map(|weight| simplify(&mesh, Target::Ratio(0.2), &options(method, weight)).unwrap());
+        let [given, own] = [Some(weight), None].map(|weight| {
+            contract_to(&mesh, Target::Ratio(0.2), &options(method, weight)).unwrap()
+        });
         assert_eq!(given, own, "{method:?}");
     }
 }
@@ -78,7 +79,7 @@ fn zero_and_huge_weights_are_accepted() {
     for method in [Method::LindstromTurk, Method::Qem] {
         for weight in [0.0, 1e300] {
             let (level, report) =
-                simplify(&mesh, Target::Ratio(0.2), &options(method, Some(weight))).unwrap();
+                contract_to(&mesh, Target::Ratio(0.2), &options(method, Some(weight))).unwrap();
             assert!(report.reached, "{method:?} {weight}: {report:?}");
             level.validate().unwrap();
         }
@@ -88,8 +89,11 @@ fn zero_and_huge_weights_are_accepted() {
 #[test]
 fn invalid_weights_are_refused() {
     for weight in [-1.0, f64::NAN, f64::INFINITY] {
-        let refused =
-            simplify(&hills(), Target::Ratio(0.5), &options(Method::LindstromTurk, Some(weight)));
+        let refused = contract_to(
+            &hills(),
+            Target::Ratio(0.5),
+            &options(Method::LindstromTurk, Some(weight)),
+        );
         assert!(matches!(refused, Err(SimplifyError::BadWeight(_))), "{weight}");
     }
 }

@@ -4,10 +4,10 @@
 use meshlod_fixtures as fixtures;
 use meshlod_mesh::{Attributes, Connectivity, Layer, LayerKind, Mesh, VertexId, WedgeId};
 use meshlod_samples as samples;
-use meshlod_simplify::{Method, Options, Refusal, SimplifyError, Target, simplify};
+use meshlod_simplify::{Method, Options, Refusal, SimplifyError, Target, contract_to};
 
 fn run(mesh: &Mesh, target: Target) -> (Mesh, meshlod_simplify::Report) {
-    simplify(mesh, target, &Options::default()).unwrap()
+    contract_to(mesh, target, &Options::default()).unwrap()
 }
 
 #[test]
@@ -26,7 +26,7 @@ fn a_hub_shrinks_with_its_rim() {
     for method in Method::ALL {
         let options = Options { method, ..Options::default() };
         let (level, report) =
-            simplify(&fixtures::cone(20_000), Target::Faces(100), &options).unwrap();
+            contract_to(&fixtures::cone(20_000), Target::Faces(100), &options).unwrap();
         assert!(report.reached, "{}: {}", method.name(), report.refusals);
         assert!((level.bounds().max[2] - 0.5).abs() < 0.05, "{}: the tip is gone", method.name());
     }
@@ -57,7 +57,7 @@ fn scale_changes_nothing_until_it_is_refused_by_name() {
     let scaled = |factor: f64, method| {
         let mut mesh = samples::torus(1000);
         mesh.positions.iter_mut().flatten().for_each(|x| *x *= factor);
-        simplify(&mesh, Target::Ratio(0.1), &Options { method, ..Options::default() })
+        contract_to(&mesh, Target::Ratio(0.1), &Options { method, ..Options::default() })
     };
     for method in Method::ALL {
         let faces = |factor| scaled(factor, method).unwrap().0.faces;
@@ -118,7 +118,7 @@ fn joints_are_never_blended() {
 fn a_wedge_at_two_vertices_is_refused() {
     let mut mesh = with_layer(LayerKind::Other, |_| [0.0; 4]);
     mesh.attributes.as_mut().unwrap().corners[0].swap(0, 1);
-    let error = simplify(&mesh, Target::Ratio(0.5), &Options::default()).unwrap_err();
+    let error = contract_to(&mesh, Target::Ratio(0.5), &Options::default()).unwrap_err();
     assert!(matches!(error, SimplifyError::Mesh(_)), "{error}");
 }
 
@@ -135,7 +135,7 @@ fn no_vertex_leaves_the_box_of_a_fold() {
     let bounds = mesh.bounds();
     for method in Method::ALL {
         let options = Options { method, ..Options::default() };
-        let (level, _) = simplify(&mesh, Target::Ratio(0.05), &options).unwrap();
+        let (level, _) = contract_to(&mesh, Target::Ratio(0.05), &options).unwrap();
         for axis in 0..3 {
             let room = 0.1 * bounds.diagonal();
             let (least, most) = (bounds.min[axis] - room, bounds.max[axis] + room);
@@ -157,7 +157,7 @@ fn a_hub_that_shares_its_vertex_with_a_surface_in_parts_is_simplified() {
     mesh.faces.extend(cone.faces.iter().map(|face| face.map(joined)));
     for method in [Method::LindstromTurk, Method::Qem] {
         let options = Options { method, ..Options::default() };
-        let (level, report) = simplify(&mesh, Target::Faces(200), &options).unwrap();
+        let (level, report) = contract_to(&mesh, Target::Faces(200), &options).unwrap();
         assert!(report.reached && report.non_manifold_vertices == 1);
         assert_eq!(level.faces.len(), report.output_faces);
     }

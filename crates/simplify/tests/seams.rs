@@ -9,7 +9,7 @@ use meshlod_fixtures::{charted, in_materials};
 use meshlod_mesh::{Attributes, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId};
 use meshlod_samples as samples;
 use meshlod_simplify::{
-    History, Method, Options, Progressive, Simplifier, Target, Topology, simplify,
+    History, Method, Options, Progressive, Simplifier, Target, Topology, contract_to,
 };
 
 use crate::common::kernel_methods;
@@ -150,7 +150,7 @@ fn a_box_with_a_texture_a_side_goes_down_to_its_twelve_faces_where_topology_is_k
     let mesh = boxes(5, 1).finish(false, false);
     for method in Method::ALL {
         let (level, _) =
-            simplify(&mesh, Target::Faces(0), &options(method, Topology::Keep)).unwrap();
+            contract_to(&mesh, Target::Faces(0), &options(method, Topology::Keep)).unwrap();
         assert_eq!(level.faces.len(), 12, "{}", method.name());
         let all = level.attributes.unwrap();
         let mut used = all.corners.iter().flatten();
@@ -163,7 +163,8 @@ fn seams_hold_as_long_as_anything_else_can_go() {
     for method in kernel_methods() {
         for mesh in [boxes(5, 1).finish(false, false), boxes(5, 3).finish(true, false)] {
             let target = Target::Faces(mesh.faces.len() / 25);
-            let level = |topology| simplify(&mesh, target, &options(method, topology)).unwrap().0;
+            let level =
+                |topology| contract_to(&mesh, target, &options(method, topology)).unwrap().0;
             assert_eq!(level(Topology::Free), level(Topology::Keep));
         }
     }
@@ -178,7 +179,7 @@ fn charts_give_way_where_nothing_else_can_go() {
             for faces in [mesh.faces.len() / 4, 6 * components, few].map(|faces| faces.max(few)) {
                 let target = Target::Faces(faces);
                 let (level, report) =
-                    simplify(&mesh, target, &options(method, Topology::Free)).unwrap();
+                    contract_to(&mesh, target, &options(method, Topology::Free)).unwrap();
                 assert!(report.reached, "{name} by {}: {report:?}", method.name());
                 level.validate().unwrap();
                 let all = level.attributes.as_ref().unwrap();
@@ -186,7 +187,7 @@ fn charts_give_way_where_nothing_else_can_go() {
                 // An error bound does not see charts: they stay.
                 let options =
                     Options { vanish_below: Some(0.0), ..options(method, Topology::Free) };
-                let (kept, _) = simplify(&mesh, Target::Error(1e9), &options).unwrap();
+                let (kept, _) = contract_to(&mesh, Target::Error(1e9), &options).unwrap();
                 assert!(kept.faces.len() >= 2 * few, "{name}: {}", kept.faces.len());
             }
         }
@@ -198,7 +199,7 @@ fn every_face_keeps_its_material_and_its_own_texture() {
     for method in kernel_methods() {
         let mesh = boxes(6, 1).finish(true, true);
         let (level, _) =
-            simplify(&mesh, Target::Faces(8), &options(method, Topology::Free)).unwrap();
+            contract_to(&mesh, Target::Faces(8), &options(method, Topology::Free)).unwrap();
         let (all, materials) = (level.attributes.unwrap(), level.materials.unwrap());
         let mut areas = BTreeMap::new();
         for (corners, &material) in all.corners.iter().zip(&materials.of_face) {
@@ -272,7 +273,7 @@ fn volume_is_conserved_across_seams() {
             let rounding = if method.runs_in_kernel() { 1e-6 } else { 1e-12 };
             for ratio in [0.5, 0.1, 0.02] {
                 let options = options(method, Topology::Keep);
-                let (level, report) = simplify(&mesh, Target::Ratio(ratio), &options).unwrap();
+                let (level, report) = contract_to(&mesh, Target::Ratio(ratio), &options).unwrap();
                 let change = volume(&level) / volume(&mesh) - 1.0;
                 let loss = report.volume;
                 assert!(

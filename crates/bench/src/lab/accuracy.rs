@@ -3,7 +3,7 @@
 use anyhow::Result;
 use meshlod::measure::{Distance, DistanceOptions, PreparedSurface, surface_distance};
 use meshlod::mesh::Mesh;
-use meshlod::simplify::{Method, Options, Target, simplify};
+use meshlod::simplify::{Method, Options, Target, contract_to};
 
 use crate::lab::table::Table;
 use crate::peer::{Indexed, simplify_with_update};
@@ -79,7 +79,7 @@ fn add_rows(
             continue;
         }
         let options = Options { method, ..Options::default() };
-        let (level, _) = simplify(mesh, Target::Ratio(ratio), &options)?;
+        let (level, _) = contract_to(mesh, Target::Ratio(ratio), &options)?;
         table.row(row(&what(method.name()), &level, surface)?);
     }
     let target = (mesh.faces.len() as f64 * ratio) as usize;

@@ -7,7 +7,7 @@
 use anyhow::{Context, Result, bail, ensure};
 use meshlod::measure::{DistanceOptions, PreparedSurface, surface_distance, volume};
 use meshlod::mesh::{Connectivity, Mesh};
-use meshlod::simplify::{Method, Options, Target, simplify};
+use meshlod::simplify::{Method, Options, Target, contract_to};
 use serde_json::{Value, json};
 
 use crate::lab::table::Table;
@@ -121,7 +121,7 @@ fn row(name: &str, mesh: &Mesh, ratio: f64, rounds: usize) -> Result<Comparison>
     let options = Options { method: Method::LindstromTurk, ..Options::default() };
     let (indexed, target) = (Indexed::from(mesh), Target::Ratio(ratio));
     let faces = target.faces_of(mesh.faces.len());
-    let ours = || simplify(mesh, target, &options).expect("the mesh can be simplified").0;
+    let ours = || contract_to(mesh, target, &options).expect("the mesh can be simplified").0;
     let theirs = || simplify_with_update(&indexed, faces);
     let original = PreparedSurface::new(mesh)?;
     Ok(Comparison {

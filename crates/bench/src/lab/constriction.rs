@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use meshlod::mesh::Mesh;
-use meshlod::simplify::{Method, Options, Report, Target, simplify};
+use meshlod::simplify::{Method, Options, Report, Target, contract_to};
 
 use crate::lab::table::Table;
 use crate::{Ratio, alternate, one_core};
@@ -80,5 +80,5 @@ fn times(mesh: &Mesh) -> Result<Table> {
 
 fn run(mesh: &Mesh, method: Method, faces: usize) -> Result<Report> {
     let options = Options { method, ..Options::default() };
-    Ok(simplify(mesh, Target::Faces(faces), &options)?.1)
+    Ok(contract_to(mesh, Target::Faces(faces), &options)?.1)
 }

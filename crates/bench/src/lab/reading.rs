@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result};
 use meshlod::measure::{DistanceOptions, PreparedSurface, surface_distance};
-use meshlod::simplify::{Options, Target, simplify};
+use meshlod::simplify::{Options, Target, contract_to};
 
 use crate::lab::table::Table;
 use crate::{alternate, one_core};
@@ -32,7 +32,7 @@ pub fn section() -> Result<String> {
             table.row([what, format!("{:.2}", ratio.ratio)]);
         }
         if let Some(mesh) = crate::read("dragon.ply")? {
-            let (level, _) = simplify(&mesh, Target::Ratio(0.1), &Options::default())?;
+            let (level, _) = contract_to(&mesh, Target::Ratio(0.1), &Options::default())?;
             let (fine, coarse) = (PreparedSurface::new(&mesh)?, PreparedSurface::new(&level)?);
             let options = DistanceOptions { samples: 500_000, seed: 1 };
             let start = Instant::now();

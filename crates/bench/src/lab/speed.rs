@@ -1,7 +1,7 @@
 //! Measures the speed of simplification against meshoptimizer, in alternating rounds on one core.
 
 use anyhow::Result;
-use meshlod::simplify::{Method, Options, Target, simplify};
+use meshlod::simplify::{Method, Options, Target, contract_to};
 
 use crate::lab::table::Table;
 use crate::peer::{Indexed, simplify_with_update};
@@ -35,7 +35,7 @@ pub fn section() -> Result<String> {
             let Ratio { ours, theirs, ratio } = one_core(|| {
                 alternate(
                     ROUNDS,
-                    || simplify(&mesh, Target::Ratio(0.1), &options),
+                    || contract_to(&mesh, Target::Ratio(0.1), &options),
                     || simplify_with_update(&indexed, mesh.faces.len() / 10),
                 )
             });

@@ -7,8 +7,7 @@ use meshlod::multires::{Archive, Forest, Query, Storage, StoredErrors};
 use meshlod::picture::{ImageError, ReferenceImages, Style};
 use meshlod::simplify::{Method, Options, Target};
 use meshlod::{
-    Constraints, ModelScene, Scene, Topology, materials_of, place_scene, simplify_scene,
-    single_sided_materials,
+    Constraints, ModelScene, Scene, Topology, materials_of, place_scene, single_sided_materials,
 };
 
 use crate::lab::table::Table;
@@ -85,10 +84,10 @@ fn levels(scene: &Scene, mesh: &Mesh, ratio: f64) -> Result<Vec<(&'static str, M
     let updated = Settings { update: Update::All, ..PEER };
     let mut levels = Vec::new();
     for method in METHODS {
-        let mut scene = scene.clone();
-        let options = Options { method, ..Options::default() };
-        simplify_scene(&mut scene, Target::Faces(peer.faces.len()), &options)?;
-        levels.push((method.name(), scene.flatten()));
+        let target = Aim::Faces(peer.faces.len());
+        let request = SimplifyRequest { target, method, ..Default::default() };
+        let (level, _) = simplify(scene.clone(), &request, &())?;
+        levels.push((method.name(), level.flatten()));
     }
     levels.push(("cut of a multiresolution file", cut(scene, peer.faces.len())?));
     levels.push(("meshoptimizer with attributes", peer));

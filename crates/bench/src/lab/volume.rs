@@ -7,7 +7,7 @@ use meshlod::io::Precision;
 use meshlod::measure::volume;
 use meshlod::mesh::{Connectivity, Mesh};
 use meshlod::samples;
-use meshlod::simplify::{Method, Options, Target, simplify};
+use meshlod::simplify::{Method, Options, Target, contract_to};
 use meshlod::{ReadOptions, Scene, WriteOptions, read, write};
 
 use crate::lab::table::Table;
@@ -36,7 +36,7 @@ pub fn section() -> Result<String> {
             let mut row = vec![format!("{name}, {:.0} %", ratio * 100.0)];
             for method in METHODS {
                 let options = Options { method, ..Options::default() };
-                let (level, _) = simplify(&mesh, Target::Ratio(ratio), &options)?;
+                let (level, _) = contract_to(&mesh, Target::Ratio(ratio), &options)?;
                 let level = through_file(level, &folder.path().join("level.ply"))?;
                 row.push(format!("{:.1e}", (volume(&level) - before).abs() / before.abs()));
             }

@@ -35,9 +35,6 @@ use crate::session::files;
 use crate::text::numbers::{count, plural, value};
 use crate::verbs::batch::Batch;
 
-/// Options that name one file to write, which many runs would overwrite in turn.
-const ONE_FILE: [&str; 1] = ["sequence"];
-
 /// Does what the verb `batch` asks for.
 ///
 /// # Errors
@@ -99,12 +96,6 @@ fn check(recipe: &Recipe) -> Result<VerbLine, Failure> {
     if !recipe.reads_and_writes() {
         let reason = "batch takes verbs with IN and OUT, such as simplify";
         return Err(Failure::new(format_args!("{}: {reason}", recipe.name())));
-    }
-    if let Some(option) = recipe.options.iter().find(|option| ONE_FILE.contains(&&*option.name)) {
-        return Err(Failure::usage(format_args!(
-            "--{}: all files would write the same one",
-            option.name
-        )));
     }
     recipe.line(&["in".into(), "out".into()])
 }

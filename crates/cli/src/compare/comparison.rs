@@ -1,7 +1,5 @@
 //! Comparison of simplification methods on one mesh, each run independently.
 
-use std::path::Path;
-
 use meshlod::measure::{DistanceOptions, PreparedSurface};
 use meshlod::picture::{ReferenceImages, Style};
 use meshlod::{Method, Options, Topology};
@@ -11,12 +9,11 @@ use crate::options::constraints::ConstraintArgs;
 use crate::options::fuse::FuseReport;
 use crate::options::parse::LevelSize;
 use crate::options::topology;
-use crate::page::chain::{Chain, ChainBuilder, ChainSetup, Level};
+use crate::page::chain::{Chain, ChainBuilder, ChainSetup, Level, ReadyScene};
 use crate::page::renderer::{LARGE, LevelPictures, SubjectRenderer};
 use crate::page::subject::Subject;
 use crate::session::Session;
 use crate::session::failure::Failure;
-use crate::simplify_run::{self, ReadyScene};
 use crate::text::simplify_report;
 
 /// A mesh, and the sizes and methods for which to compare simplifications of it.
@@ -77,7 +74,9 @@ impl Comparison<'_> {
     pub fn run(&self, output: &Output, session: &Session) -> Result<ComparisonResult, Failure> {
         let tools = self.pictures.then(|| self.picture_tools()).transpose()?;
         let context = RunContext { tools, output, session };
-        topology::warn(&self.ready(Method::default(), session)?.scene, session);
+        let ready = self.ready(Method::default(), session)?;
+        topology::warn(ready.scene.near_borders(), session);
+        drop(ready);
         let mut entries = Vec::new();
         for (i, &method) in self.methods.iter().enumerate() {
             let what = format!("{} ({} of {})", method.name(), i + 1, self.methods.len());
@@ -99,8 +98,7 @@ impl Comparison<'_> {
     fn ready(&self, method: Method, session: &Session) -> Result<ReadyScene<'_>, Failure> {
         let Self { subject, constraints, base, .. } = self;
         let options = Options { method, ..(*base).clone() };
-        let (path, borders) = (Path::new(&subject.name), constraints.topology.borders());
-        ReadyScene::new(&subject.scene, &options, borders, path, session)
+        ReadyScene::new(subject, &options, constraints.topology.borders(), session)
     }
 
     fn picture_tools(&self) -> Result<PictureTools<'_>, Failure> {
@@ -151,9 +149,7 @@ impl Comparison<'_> {
                 made.level.flip = Some(seen.flip);
             }
             session.progress.stage(&format!("{what}: writing"));
-            let mut scene = subject.scene.clone();
-            simplify_run::replace(&mut scene, made.meshes);
-            output.write(&made.level.file, &scene)?;
+            output.write(&made.level.file, &subject.scene_with(made.meshes))?;
             entry.chain.levels.push(made.level);
         }
         Ok(())

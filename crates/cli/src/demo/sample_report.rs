@@ -3,19 +3,18 @@
 use std::path::Path;
 
 use meshlod::io::{gltf, write_lods};
+use meshlod::jobs::SwitchCamera;
 use meshlod::measure::DistanceOptions;
 use meshlod::{Borders, Mesh, Method, Options, Scene, WriteOptions, write};
 
 use crate::demo::samples::DemoSample;
 use crate::demo::{METHODS, main_method};
 use crate::options::parse::LevelSize;
-use crate::page::chain::{Chain, ChainBuilder, ChainSetup, Level, LevelMesh};
+use crate::page::chain::{Chain, ChainBuilder, ChainSetup, Level, LevelMesh, ReadyScene};
 use crate::page::renderer::{LevelPictures, SIZE, SubjectRenderer};
 use crate::page::subject::Subject;
 use crate::session::Session;
 use crate::session::failure::Failure;
-use crate::simplify_run::{self, ReadyScene};
-use crate::verbs::lods::switching::Camera;
 
 /// Levels of a chain, as ratios of the input's faces.
 const RATIOS: [f64; 4] = [0.5, 0.25, 0.1, 0.03];
@@ -106,16 +105,13 @@ impl SampleFiles<'_> {
         let what = format!("{}: {}", self.sample.name, method.name());
         let options = Options { method, ..Options::default() };
         let (subject, session) = (setup.subject, setup.session);
-        let path = Path::new(&subject.name);
-        let ready = ReadyScene::new(&subject.scene, &options, Borders::Stitch, path, session)?;
+        let ready = ReadyScene::new(subject, &options, Borders::Stitch, session)?;
         let mut builder = ChainBuilder::start(setup, &ready, what)?;
         let level = |ratio| {
             let file = self.sample.level_file(method, LevelSize::Ratio(ratio));
             let size = LevelSize::Ratio(ratio);
             let made = builder.next_level(size, size.target(), file)?;
-            let mut scene = setup.subject.scene.clone();
-            simplify_run::replace(&mut scene, made.meshes.clone());
-            self.write(&made.level.file, &scene)?;
+            self.write(&made.level.file, &subject.scene_with(made.meshes.clone()))?;
             Ok(made)
         };
         RATIOS.into_iter().map(level).collect()
@@ -126,7 +122,7 @@ impl SampleFiles<'_> {
     }
 
     fn write_lods(&self, scene: &Scene, levels: &[LevelMesh]) -> Result<(), Failure> {
-        let camera = Camera::default();
+        let camera = SwitchCamera::default();
         let coverage = |level: &Level| {
             level.measured.as_ref().map_or(1.0, |measured| camera.screen_coverage(measured))
         };

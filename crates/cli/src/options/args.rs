@@ -3,6 +3,7 @@
 use clap::{Args, ValueEnum};
 use meshlod::io::gltf::SourceDocument;
 use meshlod::io::{Precision, Weld};
+use meshlod::jobs::WrittenAs;
 use meshlod::mesh::AttributeBounds;
 use meshlod::picture::{UpAxis, View};
 use meshlod::{Format, ReadOptions, Scene, WriteOptions};
@@ -106,8 +107,18 @@ impl WriteArgs {
         if scene.rounding(format, self.precision) > most { self.precise() } else { self }
     }
 
+    /// Returns what a job has to know about a file of a format.
+    pub fn in_format(self, format: Format) -> WrittenAs {
+        WrittenAs { format, precision: self.precision }
+    }
+
+    /// Chooses the precision in which the result of a job has to be written.
+    pub fn written_as(self, as_: Option<WrittenAs>) -> Self {
+        as_.map_or(self, |as_| Self { precision: as_.precision })
+    }
+
     /// Chooses 64-bit coordinates unless `--precision` chooses.
-    pub fn precise(self) -> Self {
+    fn precise(self) -> Self {
         match self.precision {
             Precision::Auto => Self { precision: Precision::F64 },
             _ => self,

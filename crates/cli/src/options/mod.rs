@@ -4,6 +4,7 @@ pub mod args;
 pub mod constraints;
 pub mod fuse;
 pub mod locks;
+pub mod method;
 pub mod model_query;
 pub mod parse;
 pub mod query_args;

@@ -1,9 +1,8 @@
 //! Options for what may happen to the topology of a mesh.
 
 use clap::{Args, ValueEnum};
-use meshlod::mesh::Conditioning;
-use meshlod::{Borders, ConditionedScene, Topology};
-use serde::Serialize;
+use meshlod::mesh::{Conditioning, NearBorders};
+use meshlod::{Borders, Topology};
 
 use crate::options::parse::{self, Bound};
 use crate::session::Session;
@@ -76,24 +75,8 @@ impl TopologyArgs {
     }
 }
 
-/// Numbers of edges and vertices that conditioning has changed in a scene.
-#[derive(Serialize)]
-pub struct ConditioningFigures {
-    stitched_edges: usize,
-    stitched_vertices: usize,
-    split_vertices: usize,
-}
-
-impl ConditioningFigures {
-    pub fn of(scene: &ConditionedScene<'_>) -> Self {
-        let Conditioning { stitched_edges, stitched_vertices, split_vertices, .. } = scene.counts();
-        Self { stitched_edges, stitched_vertices, split_vertices }
-    }
-}
-
 /// Formats lines about what conditioning has changed in a scene; empty if that is nothing.
-pub fn to_text(scene: &ConditionedScene<'_>) -> String {
-    let counts = scene.counts();
+pub fn to_text(counts: &Conditioning) -> String {
     let mut text = String::new();
     if counts.stitched_edges > 0 {
         let noun = if counts.stitched_edges == 1 { "pair" } else { "pairs" };
@@ -108,8 +91,8 @@ pub fn to_text(scene: &ConditionedScene<'_>) -> String {
 }
 
 /// Warns of many boundary edges that lie near each other, and names what would join them.
-pub fn warn(scene: &ConditionedScene<'_>, session: &Session) {
-    if let Some(near) = scene.near_borders() {
+pub fn warn(near: Option<NearBorders>, session: &Session) {
+    if let Some(near) = near {
         let distance = value(near.distance);
         session.warn(format_args!(
             "{} of {} boundary edges lie within {distance} of others: --weld {distance} would join them",

@@ -1,25 +1,48 @@
 //! Levels of one mesh made by one method, with their measurements.
 
-use std::time::Duration;
+use std::path::Path;
+use std::time::{Duration, Instant};
 
 use meshlod::measure::{
     Distance, DistanceOptions, PreparedSurface, Quality, quality, surface_distance,
 };
-use meshlod::{Mesh, Method, Report, Target};
+use meshlod::{Borders, ConditionedScene, Mesh, Method, Options, Report, SceneSimplifier, Target};
 
 use crate::options::parse::LevelSize;
 use crate::page::counts::Counts;
 use crate::page::subject::Subject;
 use crate::session::Session;
 use crate::session::failure::Failure;
-use crate::simplify_run::{ReadyScene, SimplifyRun};
+
+/// A scene ready to be simplified, with the time that its conditioning took.
+pub struct ReadyScene<'s> {
+    pub scene: ConditionedScene<'s>,
+    time: Duration,
+}
+
+impl<'s> ReadyScene<'s> {
+    /// Conditions the scene of a page.
+    pub fn new(
+        subject: &'s Subject,
+        options: &Options,
+        borders: Borders,
+        session: &Session,
+    ) -> Result<Self, Failure> {
+        session.progress.stage("building connectivity");
+        let start = Instant::now();
+        let scene = ConditionedScene::new(&subject.scene, options, borders);
+        let scene = scene.map_err(|error| Failure::at(Path::new(&subject.name), error))?;
+        Ok(Self { scene, time: start.elapsed() })
+    }
+}
 
 /// Builder of successive levels of one mesh by one method.
 pub struct ChainBuilder<'s> {
     subject: &'s Subject,
     original: &'s PreparedSurface<'s>,
     options: DistanceOptions,
-    run: SimplifyRun<'s>,
+    simplifier: SceneSimplifier<'s>,
+    time: Duration,
     session: &'s Session,
     /// Label shown on the terminal.
     what: String,
@@ -77,8 +100,12 @@ impl<'s> ChainBuilder<'s> {
     ) -> Result<Self, Failure> {
         let ChainSetup { subject, original, options, session } = setup;
         session.progress.stage(&format!("{what}: building connectivity"));
-        let run = SimplifyRun::start(ready, session)?;
-        Ok(Self { subject, original, options, run, session, what })
+        let start = Instant::now();
+        let simplifier = SceneSimplifier::new(&ready.scene);
+        let simplifier =
+            simplifier.map_err(|error| Failure::at(Path::new(&subject.name), error))?;
+        let time = ready.time + start.elapsed();
+        Ok(Self { subject, original, options, simplifier, time, session, what })
     }
 
     /// Simplifies to the next size, that of `target` for the mesh at hand, and measures the result;
@@ -89,9 +116,8 @@ impl<'s> ChainBuilder<'s> {
         target: Target,
         file: String,
     ) -> Result<LevelMesh, Failure> {
-        self.run.set_label(format!("{} to {size}", self.what));
-        let mut report = self.run.simplify_to(target)?;
-        let meshes = self.run.level(&mut report);
+        let mut report = self.simplify_to(target, &format!("{} to {size}", self.what))?;
+        let meshes = self.simplifier.settled_level(&mut report.volume);
         self.session.progress.stage(&format!("{}: measuring", self.what));
         let shown = self.subject.shown_with(&meshes);
         let level = Level {
@@ -101,10 +127,20 @@ impl<'s> ChainBuilder<'s> {
             measured: self.distance_of(&shown),
             quality: quality(&shown),
             flip: None,
-            time: self.run.time(),
+            time: self.time,
             file,
         };
         Ok(LevelMesh { level, meshes, shown })
+    }
+
+    fn simplify_to(&mut self, target: Target, label: &str) -> Result<Report, Failure> {
+        let now = self.simplifier.live_faces();
+        let to_go = now.saturating_sub(target.faces_of(self.simplifier.input_faces()));
+        let mut watch = self.session.progress.contractions(label, Some(to_go));
+        let start = Instant::now();
+        let report = self.simplifier.run(target, &mut watch);
+        self.time += start.elapsed();
+        report.map_err(|error| Failure::at(Path::new(&self.subject.name), error))
     }
 
     fn distance_of(&self, shown: &Mesh) -> Result<Distance, String> {

@@ -1,15 +1,13 @@
 //! Measurements of a simplified mesh, under the keys of JSON.
 
 use meshlod::Method;
+use meshlod::jobs::figures::{ContractionFigures, DistanceFigures, VolumeNotConserved};
 use meshlod::simplify::Refusals;
 use serde::Serialize;
 
 use crate::options::parse::LevelSize;
-use crate::options::volume::VolumeNotConserved;
 use crate::page::chain::Level;
 use crate::page::counts::Counts;
-use crate::text::distance::DistanceFigures;
-use crate::text::simplify_report::ContractionFigures;
 
 /// Measurements of a level for programs.
 #[derive(Serialize)]

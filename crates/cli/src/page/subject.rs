@@ -35,6 +35,15 @@ impl Subject {
             .map_err(|error| Failure::new(format_args!("{}: {error}", self.name)))
     }
 
+    /// Returns the scene with the given meshes in place of its own.
+    pub fn scene_with(&self, level: Vec<Mesh>) -> Scene {
+        let mut scene = self.scene.clone();
+        for (mesh, level) in scene.meshes.iter_mut().zip(level) {
+            mesh.mesh = level;
+        }
+        scene
+    }
+
     /// Flattens the scene to one mesh, with the given meshes in place of its own.
     pub fn shown_with(&self, level: &[Mesh]) -> Mesh {
         // The source document and its images are not needed for pictures.

@@ -3,8 +3,7 @@
 use std::path::Path;
 
 use meshlod::measure::{
-    Bracket, CertifiedDistance, Distance, DistanceOptions, MeasureError, OneSidedDistance, Place,
-    PreparedSurface, surface_distance,
+    Bracket, CertifiedDistance, Distance, OneSidedDistance, Place, PreparedSurface,
 };
 use meshlod::{Mesh, Scene, io::SceneMesh};
 use serde::Serialize;
@@ -35,80 +34,6 @@ pub fn meshes(scene: &Scene) -> impl Iterator<Item = &Mesh> {
 /// Prepares a mesh read from a file for distance measurements.
 pub fn ready<'m>(mesh: &'m Mesh, path: &Path) -> Result<PreparedSurface<'m>, Failure> {
     PreparedSurface::new(mesh).map_err(|error| Failure::at(path, error))
-}
-
-/// Number of samples each way for every face of a chain's original, and limits on all of them. At
-/// ten a face, means were within .3 % of those by half a million; the maximum, a lower bound, was up
-/// to 8 % lower.
-const SAMPLES_PER_FACE: usize = 10;
-const CHAIN_SAMPLES: [usize; 2] = [50_000, 500_000];
-
-/// Returns options for measuring the levels of a chain, with as many samples as the size of the
-/// original calls for.
-pub fn for_chain(original: &PreparedSurface<'_>) -> DistanceOptions {
-    let [least, most] = CHAIN_SAMPLES;
-    let faces = original.bvh().faces_in_leaf_order().len();
-    let samples = faces.saturating_mul(SAMPLES_PER_FACE).clamp(least, most);
-    DistanceOptions { samples, ..DistanceOptions::default() }
-}
-
-/// Measures the distance between a scene's original surface and a simplified level.
-pub fn of_level(
-    original: &PreparedSurface<'_>,
-    scene: &Scene,
-    level: &[Mesh],
-    options: &DistanceOptions,
-) -> Result<Distance, MeasureError> {
-    let level = surface_of(scene, level);
-    let level = PreparedSurface::new(&level).map_err(MeasureError::Second)?;
-    surface_distance(original, &level, options)
-}
-
-/// Distances in each direction and combined, in model units and percent of the diagonal.
-#[derive(Serialize)]
-pub struct DistanceFigures {
-    #[serde(flatten)]
-    both: Lengths,
-    diagonal: f64,
-    forward: OneWay,
-    backward: OneWay,
-}
-
-#[derive(Serialize)]
-struct OneWay {
-    #[serde(flatten)]
-    lengths: Lengths,
-    place: Place,
-}
-
-#[derive(Serialize)]
-struct Lengths {
-    mean: f64,
-    rms: f64,
-    max: f64,
-    mean_percent: f64,
-    rms_percent: f64,
-    max_percent: f64,
-}
-
-impl From<&Distance> for DistanceFigures {
-    fn from(distance: &Distance) -> Self {
-        let lengths = |[mean, rms, max]: [f64; 3]| {
-            let [mean_percent, rms_percent, max_percent] =
-                [mean, rms, max].map(|length| distance.percent(length));
-            Lengths { mean, rms, max, mean_percent, rms_percent, max_percent }
-        };
-        let way = |way: &OneSidedDistance| OneWay {
-            lengths: lengths([way.mean, way.rms, way.max]),
-            place: way.place,
-        };
-        Self {
-            both: lengths([distance.mean(), distance.rms(), distance.max()]),
-            diagonal: distance.diagonal,
-            forward: way(&distance.forward),
-            backward: way(&distance.backward),
-        }
-    }
 }
 
 /// Formats the distances in each direction and combined as a table.

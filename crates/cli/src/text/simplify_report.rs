@@ -1,59 +1,15 @@
-//! Reports of a simplification, as JSON and text.
+//! Reports of a simplification, as text.
 
 use std::time::Duration;
 
-use meshlod::simplify::{Contractions, Held, Refusal, Refusals};
+use meshlod::jobs::LostVolume;
+use meshlod::simplify::Refusal;
 use meshlod::{Report, Topology};
-use serde::Serialize;
 
-use crate::text::numbers::{count, faces, value};
+use crate::text::numbers::{count, faces, percent, value};
 
-/// Numbers of edges and faces contracted, with the share of edges.
-#[derive(Serialize)]
-pub struct ContractionFigures {
-    #[serde(flatten)]
-    contractions: Contractions,
-    edge_share: Option<f64>,
-}
-
-impl From<Contractions> for ContractionFigures {
-    fn from(contractions: Contractions) -> Self {
-        Self { contractions, edge_share: contractions.edge_share() }
-    }
-}
-
-/// Time that a run took, and what its input had that is left out or kept in place.
-#[derive(Serialize)]
-pub struct InputFigures {
-    simplify_seconds: f64,
-    degenerate_faces: usize,
-    duplicate_faces: usize,
-    non_manifold_vertices: usize,
-}
-
-impl InputFigures {
-    pub fn of(report: &Report, time: Duration) -> Self {
-        let Report { degenerate_faces, duplicate_faces, non_manifold_vertices, .. } = *report;
-        let simplify_seconds = time.as_secs_f64();
-        Self { simplify_seconds, degenerate_faces, duplicate_faces, non_manifold_vertices }
-    }
-}
-
-/// Vertices that a run held, components that vanished, and contractions that were refused.
-#[derive(Serialize)]
-pub struct RunFigures {
-    held: Held,
-    vanished: usize,
-    vanished_volume: f64,
-    refusals: Refusals,
-}
-
-impl From<&Report> for RunFigures {
-    fn from(report: &Report) -> Self {
-        let Report { held, vanished, refusals, volume, .. } = *report;
-        Self { held, vanished, vanished_volume: volume.vanished, refusals }
-    }
-}
+/// Relative change of volume up to which the text does not mention it.
+const UNSEEN: f64 = 1e-4;
 
 /// Formats a line that explains why the target of a simplification was missed, and what would help.
 pub fn why_not_reached(report: &Report, topology: Topology) -> String {
@@ -130,7 +86,38 @@ pub fn mesh_notes(report: &Report) -> String {
     text
 }
 
+/// Formats the line with the volume that a run has lost, and what would restore it.
+pub fn lost_volume(lost: &LostVolume) -> String {
+    let part = |relative: f64| percent(100.0 * relative);
+    let vanished = match lost.vanished {
+        gone if gone < UNSEEN => String::new(),
+        gone => format!(", {} in parts that vanished", part(gone)),
+    };
+    let sign = if lost.part > 0.0 { "-" } else { "+" };
+    let advice = match lost.is_restorable {
+        true => "--exact-volume restores it",
+        false => "more than --exact-volume can restore",
+    };
+    format!("volume: {sign}{}{vanished}; {advice}\n", part(lost.part.abs()))
+}
+
 /// Formats the line with the simplification time.
 pub fn seconds_line(time: Duration) -> String {
     format!("simplify_seconds: {}\n", value(time.as_secs_f64()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lost_volume_comes_with_what_can_be_done() {
+        let lost = LostVolume { part: 0.01, vanished: 0.0, is_restorable: true };
+        assert_eq!(lost_volume(&lost), "volume: -1%; --exact-volume restores it\n");
+        let stuck = LostVolume { is_restorable: false, ..lost };
+        assert_eq!(lost_volume(&stuck), "volume: -1%; more than --exact-volume can restore\n");
+        let vanished = LostVolume { vanished: 0.005, ..lost };
+        let expected = "volume: -1%, 0.5% in parts that vanished; --exact-volume restores it\n";
+        assert_eq!(lost_volume(&vanished), expected);
+    }
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use meshlod::jobs::figures::DistanceFigures;
 use meshlod::measure::{
     CertifiedOptions, area, certified_surface_distance, surface_distance, volume,
 };
@@ -16,7 +17,7 @@ use crate::session::Session;
 use crate::session::answer::Answer;
 use crate::session::failure::Failure;
 use crate::session::files;
-use crate::text::distance::{self, CertifiedFigures, DistanceFigures};
+use crate::text::distance::{self, CertifiedFigures};
 use crate::text::numbers::{change, value};
 use crate::text::poses::{FarthestFigures, FarthestPose};
 use crate::text::table::aligned;

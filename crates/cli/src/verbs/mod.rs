@@ -15,7 +15,6 @@ pub mod man;
 pub mod measure;
 pub mod render;
 pub mod repair;
-pub mod replay;
 pub mod run;
 pub mod sample;
 pub mod simplify;

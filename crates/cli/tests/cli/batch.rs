@@ -170,14 +170,13 @@ fn nothing_is_done_where_outputs_collide() {
 #[test]
 fn wrong_usage_of_a_batch_is_2() {
     let run = meshes();
-    let cases: [&[&str]; 8] = [
+    let cases: [&[&str]; 7] = [
         &["in", "out"],
         &["in"],
         &["in", "out", "--ratio", "10"],
         &["in", "out", "--ratio", "10%", "--jobs", "0"],
         &["in", "out", "--ratio", "10%", "--report", "r.txt"],
         &["in", "out", "--ratio", "10%", "--recipe", "r.toml"],
-        &["in", "out", "--faces", "10", "--sequence", "s.seq"],
         &["in", "out", "--ratio", "10%", "--format", "docx"],
     ];
     for arguments in cases {

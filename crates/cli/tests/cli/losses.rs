@@ -19,7 +19,6 @@ fn every_verb_that_writes_names_what_is_lost_and_strictly_writes_nothing() {
     for arguments in [
         "convert in.obj out.ply",
         "simplify in.obj out.off --ratio 50%",
-        "simplify in.obj out.obj --ratio 50% --sequence out.pm",
         "lods in.obj out.glb",
         "lods in.obj out.gltf --layout scene",
         "lods in.obj out.ply",
@@ -162,7 +161,6 @@ fn scalars_of_faces_stay_with_their_faces_or_are_named() {
         ("build in.ply a.mlod", all),
         ("compress in.ply a.mlz", all),
         ("compress in.ply a.glb", scalars),
-        ("simplify in.ply a.ply --ratio 10% --sequence a.pm", scalars),
     ] {
         let arguments: Vec<&str> = arguments.split(' ').collect();
         let done = run.run(&[&arguments[..], &["--strict"]].concat());

@@ -133,18 +133,6 @@ fn a_level_that_is_the_same_as_the_one_before_is_not_written() {
 }
 
 #[test]
-fn a_sequence_keeps_the_topology() {
-    let run = Run::new();
-    write(&run, "in.obj", sphere_with_a_crumb());
-    let simplify = ["simplify", "in.obj", "out.obj", "--faces", "20", "--sequence", "all.seq"];
-    assert_eq!(run.json(&simplify)["vanished"], 0);
-    for option in [&["--topology", "free"][..], &["--vanish-below", "1"]] {
-        let done = run.run(&[&simplify, option].concat());
-        assert!(done.code == 2 && done.only_line().contains("--sequence"), "{done:?}");
-    }
-}
-
-#[test]
 fn compare_takes_the_topology_too() {
     let run = Run::new();
     write(&run, "in.obj", sphere_with_a_crumb());

@@ -1,5 +1,5 @@
 use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId};
-use meshlod_simplify::{Method, Options, Target, simplify};
+use meshlod_simplify::{Method, Options, Target, contract_to};
 
 use crate::accept::accept;
 
@@ -52,8 +52,8 @@ fn defects(mesh: &Mesh) -> (usize, usize) {
 pub fn run(bytes: &[u8]) {
     let Some((mesh, target, options)) = mesh(bytes) else { return };
     // Before any contraction, but after cleaning has removed faces.
-    let Ok((cleaned, _)) = simplify(&mesh, Target::Ratio(1.0), &options) else { return };
-    let (level, _) = simplify(&mesh, target, &options).expect("the target is valid");
+    let Ok((cleaned, _)) = contract_to(&mesh, Target::Ratio(1.0), &options) else { return };
+    let (level, _) = contract_to(&mesh, target, &options).expect("the target is valid");
     accept(&level);
     let (before, after) = (defects(&cleaned), defects(&level));
     assert!(after.0 <= before.0 && after.1 <= before.1, "{before:?} became {after:?}");

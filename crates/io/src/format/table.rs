@@ -9,10 +9,13 @@ use super::facts::{
 };
 use crate::precision::Precision;
 use crate::scene::Scene;
+use serde::{Deserialize, Serialize};
+
 use crate::{gltf, obj, off, ply, smf, stl};
 
 /// File format of a mesh or scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Format {
     /// Polygon File Format (PLY, the Stanford format), text or binary.
     Ply,

@@ -78,16 +78,6 @@ fn a_scene_counts_what_it_shows() {
 }
 
 #[test]
-fn a_conditioned_mesh_has_no_history_of_its_own() {
-    let only = |mesh: Mesh| {
-        let scene = Scene::from_mesh("", mesh);
-        let ready = ConditionedScene::new(&scene, &Options::default(), Borders::Stitch).unwrap();
-        SceneSimplifier::new(&ready).unwrap().into_only().is_some()
-    };
-    assert!(only(samples::sphere(200)) && !only(torn(&samples::sphere(200))));
-}
-
-#[test]
 fn all_vertices_locked_or_no_faces_wanted_end_at_once() {
     let mesh = doubled(samples::sphere(500));
     let of_vertex = vec![meshlod_mesh::Lock::Locked; mesh.positions.len()];

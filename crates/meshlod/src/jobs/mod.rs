@@ -19,8 +19,18 @@ mod convert;
 mod error;
 #[cfg(feature = "multires")]
 mod extract;
+#[cfg(feature = "serde")]
+pub mod figures;
+#[cfg(feature = "check")]
+mod lods;
+#[cfg(feature = "check")]
+mod scene_run;
+#[cfg(feature = "check")]
+mod simplify;
 #[cfg(feature = "strip")]
 mod strip;
+#[cfg(feature = "check")]
+mod switching;
 mod watch;
 
 #[cfg(feature = "multires")]
@@ -42,10 +52,18 @@ pub use extract::{
     AskedError, ErrorLimit, ExtractReport, ExtractRequest, FocusRequest, KeptError, KnownError,
     PosedError, QueryRequest, QueryTarget, extract,
 };
+#[cfg(feature = "check")]
+pub use lods::{LodChain, LodReport, LodsReport, LodsRequest, chain_samples, lods};
+#[cfg(feature = "check")]
+pub use simplify::{
+    Aim, LostVolume, ProvedError, SimplifyReport, SimplifyRequest, WrittenAs, simplify,
+};
 #[cfg(feature = "strip")]
 pub use strip::{
     FollowReport, FollowRequest, FollowedCut, StripFilter, StripReport, StripRequest, Stripped,
     StrippedLevelReport, follow_strips, strip,
 };
+#[cfg(feature = "check")]
+pub use switching::{Switch, SwitchCamera};
 pub use watch::{About, Remark, Watch};
-pub(crate) use watch::{Contractions, begin, cancellable, check as check_watch};
+pub(crate) use watch::{Contractions, begin, cancellable, end_if_cancelled};

@@ -86,17 +86,23 @@ pub(crate) struct Contractions<'w> {
     gone: usize,
     /// Number of removed faces when the watch was last called.
     said: usize,
+    /// Number of faces removed between two calls.
+    pace: usize,
     /// Number of faces to remove, where it is known.
     of: Option<usize>,
 }
 
-/// Faces removed between two calls of the watch: one costs more than a contraction.
+/// Most faces removed between two calls of the watch: one costs more than a contraction.
 const FACES_A_STEP: usize = 8192;
+
+/// Number of calls of the watch in a short run.
+const STEPS: usize = 100;
 
 impl<'w> Contractions<'w> {
     pub(crate) fn new(watch: &'w dyn Watch, of: Option<usize>) -> Self {
         watch.step(0, of);
-        Self { watch, gone: 0, said: 0, of }
+        let pace = of.map_or(FACES_A_STEP, |of| (of / STEPS).clamp(1, FACES_A_STEP));
+        Self { watch, gone: 0, said: 0, pace, of }
     }
 }
 
@@ -107,11 +113,11 @@ impl Observe for Contractions<'_> {
 
     fn gone(&mut self, faces: usize) {
         self.gone += faces;
-        if self.gone >= self.said + FACES_A_STEP {
+        if self.gone >= self.said + self.pace {
             self.said = self.gone;
             self.watch.step(self.gone, self.of);
-            check(self.watch);
         }
+        end_if_cancelled(self.watch);
     }
 }
 
@@ -125,14 +131,14 @@ pub(crate) fn begin(watch: &dyn Watch, stage: &str) -> Result<(), JobError> {
 struct Unwound;
 
 /// Ends a job that runs under [`cancellable`], if it is cancelled, by unwinding to there.
-pub(crate) fn check(watch: &dyn Watch) {
+pub(crate) fn end_if_cancelled(watch: &dyn Watch) {
     if watch.is_cancelled() {
         // No panic: nothing is printed.
         resume_unwind(Box::new(Unwound));
     }
 }
 
-/// Runs a job, and returns [`JobError::Cancelled`] if [`check`] has ended it.
+/// Runs a job, and returns [`JobError::Cancelled`] if [`end_if_cancelled`] has ended it.
 pub(crate) fn cancellable<T>(job: impl FnOnce() -> Result<T, JobError>) -> Result<T, JobError> {
     match catch_unwind(AssertUnwindSafe(job)) {
         Ok(done) => done,

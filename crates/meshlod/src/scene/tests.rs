@@ -1,9 +1,9 @@
 use meshlod_fixtures::{fan, shared_mesh};
 use meshlod_io::{Node, ReadOptions, SceneMesh, read};
 use meshlod_measure::{DistanceOptions, distance};
-use meshlod_mesh::{Lock, Locks};
+use meshlod_mesh::{Borders, Lock, Locks};
 use meshlod_samples as samples;
-use meshlod_simplify::Topology;
+use meshlod_simplify::{Options, Topology};
 
 use super::*;
 
@@ -39,7 +39,7 @@ fn run(scene: &Scene, target: Target) -> (Vec<Mesh>, Report) {
 fn one_mesh_is_simplified_as_by_itself() {
     let knot = samples::knot(2_000);
     let (level, report) = run(&Scene::from_mesh("", knot.clone()), Target::Ratio(0.2));
-    let alone = meshlod_simplify::simplify(&knot, Target::Ratio(0.2), &Options::default());
+    let alone = meshlod_simplify::contract_to(&knot, Target::Ratio(0.2), &Options::default());
     let (mesh, alone_report) = alone.unwrap();
     assert_eq!(report, alone_report);
     assert!(level == [mesh]);
@@ -175,7 +175,10 @@ fn refused_candidates_that_look_cheap_do_not_cost_a_mesh_its_shape() {
     let Some(path) = shared_mesh("flight-helmet/FlightHelmet.gltf") else { return };
     let mut helmet = read(&path, &ReadOptions::default()).unwrap();
     let before = helmet.flatten();
-    simplify_scene(&mut helmet, Target::Ratio(0.25), &Options::default()).unwrap();
+    let (level, _) = run(&helmet, Target::Ratio(0.25));
+    for (mesh, level) in helmet.meshes.iter_mut().zip(level) {
+        mesh.mesh = level;
+    }
     let options = DistanceOptions { samples: 20_000, ..DistanceOptions::default() };
     let apart = distance(&before, &helmet.flatten(), &options).unwrap();
     assert!(apart.percent(apart.max()) < 1.0, "{}%", apart.percent(apart.max()));

@@ -360,11 +360,11 @@ mod tests {
     use meshlod_samples as samples;
 
     use super::*;
-    use crate::{Method, Options, Target, simplify};
+    use crate::{Method, Options, Target, contract_to};
 
     fn coarse(mesh: &Mesh, ratio: f64) -> Mesh {
         let options = Options { method: Method::LindstromTurk, ..Options::default() };
-        simplify(mesh, Target::Ratio(ratio), &options).unwrap().0
+        contract_to(mesh, Target::Ratio(ratio), &options).unwrap().0
     }
 
     /// Returns the residual as a reader of the file computes it, relative to a corner of the box.

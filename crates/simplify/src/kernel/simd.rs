@@ -131,7 +131,7 @@ mod tests {
 
     use super::*;
     use crate::kernel::attributes::import_export::tests::{faceted, halved};
-    use crate::{Method, Options, Target, simplify};
+    use crate::{Method, Options, Target, contract_to};
 
     /// Makes all tests go without wide registers, which must not change any result.
     static ARE_NARROW: AtomicBool = AtomicBool::new(false);
@@ -155,7 +155,7 @@ mod tests {
             let options = Options { method, ..Options::default() };
             let [wide, narrow] = [false, true].map(|are_narrow| {
                 ARE_NARROW.store(are_narrow, Relaxed);
-                simplify(&mesh, Target::Ratio(0.1), &options).unwrap().0
+                contract_to(&mesh, Target::Ratio(0.1), &options).unwrap().0
             });
             ARE_NARROW.store(false, Relaxed);
             assert_eq!(wide, narrow);

@@ -8,9 +8,7 @@ use meshlod::jobs::{self, CheckReport, CheckRequest};
 use meshlod::measure::{PreparedSurface, vertex_errors};
 use meshlod::picture::Picture;
 use meshlod::simplify::Observe;
-use meshlod::{
-    Borders, ConditionedScene, Method, Options, Report, Scene, SceneSimplifier, Target,
-};
+use meshlod::{Borders, ConditionedScene, Method, Options, Report, Scene, SceneSimplifier, Target};
 
 use super::document::{DocumentId, LevelDistance};
 use super::jobs::{Outcome, Watch};

@@ -1,9 +1,10 @@
 //! Textured models of many parts, beside meshoptimizer's simplification with attributes.
 
 use anyhow::Result;
+use meshlod::jobs::{Aim, SimplifyRequest, simplify};
 use meshlod::mesh::Mesh;
 use meshlod::picture::{Materials, ReferenceImages, Style};
-use meshlod::{Options, Scene, Target, materials_of, simplify_scene, single_sided_materials};
+use meshlod::{Scene, materials_of, single_sided_materials};
 use serde_json::{Value, json};
 
 use super::Tools;
@@ -85,9 +86,8 @@ impl TexturedModel {
     }
 
     fn simplified(&self, faces: usize) -> Result<Mesh> {
-        let mut scene = self.scene.clone();
-        simplify_scene(&mut scene, Target::Faces(faces), &Options::default())?;
-        Ok(scene.flatten())
+        let request = SimplifyRequest { target: Aim::Faces(faces), ..Default::default() };
+        Ok(simplify(self.scene.clone(), &request, &())?.0.flatten())
     }
 }
 

@@ -11,7 +11,7 @@ use meshlod_multires::{
 use meshlod_simplify::{ExactVolumeError, Held, Options, Simplifier, Target};
 
 use super::{BuildReport, BuildRequest, BuiltLevels, ErrorPoses, LevelModel};
-use crate::jobs::{About, Contractions, JobError, Remark, Watch, check};
+use crate::jobs::{About, Contractions, JobError, Remark, Watch, end_if_cancelled};
 use crate::{PackedScene, PlacedScene, PoseCounts, model_limits, place_scene};
 
 /// Recorded contractions with their errors, ready to be written.
@@ -103,7 +103,7 @@ fn record(
     let held = report.map_err(|error| failed(error.into()))?.held;
     let mut forest = both.0.into_forest().map_err(failed)?;
     watch.stage("measuring errors");
-    check(watch);
+    end_if_cancelled(watch);
     let poses = pose(&mut forest, mesh, rest, request, watch);
     match request.errors {
         ErrorKind::Bound => forest.measure_bounds(),
@@ -147,12 +147,12 @@ fn pack(
     watch: &dyn Watch,
 ) -> Result<(Archive<Vec<u8>>, Certificate, usize), JobError> {
     watch.stage("proving and packing");
-    check(watch);
+    end_if_cancelled(watch);
     let (archive, certificate) = Archive::write(forest, storage).map_err(JobError::input)?;
     let surface_bytes = archive.bytes().len();
     let Some(rest) = rest else { return Ok((archive, certificate, surface_bytes)) };
     watch.stage("packing images");
-    check(watch);
+    end_if_cancelled(watch);
     let resources = rest.resources(&archive.chunk_lengths());
     let archive = archive.with_resources(&resources).map_err(JobError::output)?;
     Ok((archive, certificate, surface_bytes))

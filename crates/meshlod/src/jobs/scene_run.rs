@@ -1,0 +1,211 @@
+//! What the jobs that simplify a scene share: its preparation, a run, and how far it went.
+
+use std::time::{Duration, Instant};
+
+use meshlod_io::{Scene, SceneMesh};
+use meshlod_measure::{Distance, DistanceOptions, MeasureError, PreparedSurface, surface_distance};
+use meshlod_mesh::Mesh;
+use meshlod_simplify::{
+    AttributeWeights, Digits, ExactVolumeError, Method, Options, Report, SimplifyError, Target,
+};
+
+use crate::jobs::{About, Contractions, JobError, Remark, Watch};
+use crate::{
+    ConditionedScene, Constraints, FuseReport, SceneError, SceneSimplifier, VertexLocking,
+    conserve_volumes,
+};
+
+/// Fuses a scene, if that is asked for.
+pub(super) fn fuse(
+    scene: &mut Scene,
+    constraints: &Constraints,
+    watch: &dyn Watch,
+) -> Option<FuseReport> {
+    constraints.fuse.then(|| {
+        watch.stage("fusing");
+        FuseReport::of(scene)
+    })
+}
+
+/// Method of a run with what it weighs and keeps.
+pub(super) struct RunChoice<'r> {
+    pub method: Method,
+    pub weights: AttributeWeights,
+    pub boundary: Option<f64>,
+    pub constraints: &'r Constraints,
+}
+
+impl RunChoice<'_> {
+    /// Returns the options for a scene that is already fused.
+    fn options(&self, scene: &Scene, watch: &dyn Watch) -> Result<Options, JobError> {
+        let Self { method, weights, boundary: boundary_weight, constraints } = *self;
+        if matches!(constraints.locks, VertexLocking::Contacts(_)) {
+            watch.stage("looking for contacts");
+        }
+        let options = Options { method, weights, boundary_weight, ..Options::default() };
+        constraints.options(scene, options).map_err(JobError::input)
+    }
+
+    /// Conditions a scene, and returns the time that it took.
+    pub fn condition<'s>(
+        &self,
+        scene: &'s Scene,
+        watch: &dyn Watch,
+    ) -> Result<(ConditionedScene<'s>, Duration), JobError> {
+        let options = self.options(scene, watch)?;
+        watch.stage("building connectivity");
+        let start = Instant::now();
+        let ready = ConditionedScene::new(scene, &options, self.constraints.borders);
+        Ok((ready.map_err(JobError::input)?, start.elapsed()))
+    }
+
+    /// Remarks on options that the method ignores.
+    pub fn remark(&self, watch: &dyn Watch) {
+        let (method, name) = (self.method, self.method.name());
+        if self.weights != AttributeWeights::DEFAULT && !method.counts_attributes() {
+            watch.remark(&Remark::field(
+                "weight_…",
+                format_args!("{name} ignores attributes; use lindstrom-turk, qem or qem-endpoint"),
+            ));
+        }
+        if self.boundary.is_some() && !method.weighs_boundaries() {
+            watch.remark(&Remark::field(
+                "boundary",
+                format_args!("{name} has no boundary weight; use lindstrom-turk or qem"),
+            ));
+        }
+    }
+}
+
+/// A running simplification of a scene, with the time it took so far.
+pub(super) struct SceneRun<'s> {
+    simplifier: SceneSimplifier<'s>,
+    watch: &'s dyn Watch,
+    time: Duration,
+}
+
+impl<'s> SceneRun<'s> {
+    /// Builds the connectivity of a scene whose conditioning took some time.
+    pub fn start(
+        ready: &'s ConditionedScene<'_>,
+        time: Duration,
+        watch: &'s dyn Watch,
+    ) -> Result<Self, JobError> {
+        watch.stage("building connectivity");
+        let start = Instant::now();
+        let simplifier = SceneSimplifier::new(ready).map_err(fault)?;
+        Ok(Self { simplifier, watch, time: time + start.elapsed() })
+    }
+
+    /// Goes on to a target.
+    pub fn simplify_to(&mut self, target: Target) -> Result<Report, JobError> {
+        let now = self.simplifier.live_faces();
+        let to_go = match target {
+            Target::Faces(faces) => Some(now.saturating_sub(faces)),
+            Target::Ratio(ratio) => {
+                Some(now.saturating_sub((self.input_faces() as f64 * ratio) as usize))
+            }
+            Target::Error(_) => None,
+        };
+        self.watch.stage("simplifying");
+        let start = Instant::now();
+        let report = self.simplifier.run(target, &mut Contractions::new(self.watch, to_go));
+        self.time += start.elapsed();
+        report.map_err(|error| fault(error.into()))
+    }
+
+    /// Returns the number of faces of the input scene.
+    pub fn input_faces(&self) -> usize {
+        self.simplifier.input_faces()
+    }
+
+    /// Returns the meshes of the scene as simplified so far, and notes in their report what volume
+    /// they were repaid.
+    pub fn level(&self, report: &mut Report) -> Vec<Mesh> {
+        self.simplifier.settled_level(&mut report.volume)
+    }
+
+    /// Returns the time spent so far on conditioning, connectivity and contractions.
+    pub fn time(&self) -> Duration {
+        self.time
+    }
+}
+
+fn fault(error: SceneError) -> JobError {
+    match error {
+        SceneError::Whole(error @ SimplifyError::BadTarget(_)) => JobError::request("", error),
+        error => JobError::input(error),
+    }
+}
+
+/// Restores the volumes of the meshes of a level. Returns the largest relative deviation that is
+/// left, or `None` if no mesh has a volume; remarks on meshes that could not be restored.
+pub(super) fn restore_volumes(
+    ready: &ConditionedScene<'_>,
+    level: &mut [Mesh],
+    digits: Digits,
+    watch: &dyn Watch,
+) -> Option<f64> {
+    let found = conserve_volumes(ready, level, digits);
+    let several = found.len() > 1;
+    let mut worst: Option<f64> = None;
+    for (i, residual) in found.into_iter().enumerate() {
+        match residual {
+            Ok(residual) => worst = Some(residual.after.abs().max(worst.unwrap_or(0.0))),
+            Err(error) => watch.remark(&not_restored(&error, several.then_some(i))),
+        }
+    }
+    worst
+}
+
+fn not_restored(error: &ExactVolumeError, mesh: Option<usize>) -> Remark {
+    match mesh {
+        Some(i) => Remark::field("exact_volume", format_args!("mesh {i}: {error}")),
+        None => Remark::field("exact_volume", error),
+    }
+}
+
+/// Replaces the meshes of a scene by those of a level.
+pub(super) fn replace(scene: &mut Scene, level: Vec<Mesh>) {
+    for (mesh, level) in scene.meshes.iter_mut().zip(level) {
+        mesh.mesh = level;
+    }
+}
+
+/// Joins the meshes of a scene into one surface in world space without attributes, with `meshes` in
+/// place of its own.
+pub(super) fn surface_of<'m>(scene: &Scene, meshes: impl IntoIterator<Item = &'m Mesh>) -> Mesh {
+    let bare = |mesh: &Mesh| Mesh::new(mesh.positions.clone(), mesh.faces.clone());
+    let meshes = meshes.into_iter().map(|m| SceneMesh { mesh: bare(m), ..SceneMesh::default() });
+    Scene {
+        meshes: meshes.collect(),
+        nodes: scene.nodes.clone(),
+        roots: scene.roots.clone(),
+        ..Scene::default()
+    }
+    .into_mesh()
+}
+
+/// Joins the meshes of a scene into one surface in world space without attributes.
+pub(super) fn own_surface(scene: &Scene) -> Mesh {
+    surface_of(scene, scene.meshes.iter().map(|mesh| &mesh.mesh))
+}
+
+/// Measures the distance of a level from the original; remarks and returns `None` if that is not
+/// possible.
+pub(super) fn measure(
+    (original, options): (&PreparedSurface<'_>, &DistanceOptions),
+    scene: &Scene,
+    level: &[Mesh],
+    watch: &dyn Watch,
+) -> Option<Distance> {
+    watch.stage("measuring");
+    let level = surface_of(scene, level);
+    let ready = PreparedSurface::new(&level).map_err(MeasureError::Second);
+    ready
+        .and_then(|level| surface_distance(original, &level, options))
+        .inspect_err(|error| {
+            watch.remark(&Remark::new(About::Job, format_args!("not measured: {error}")));
+        })
+        .ok()
+}

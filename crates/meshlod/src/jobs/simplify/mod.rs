@@ -1,0 +1,183 @@
+//! Simplification of a scene to a number of faces, or to an error that is proved as it is written.
+
+mod proved_error;
+mod report;
+mod request;
+
+use std::time::Instant;
+
+use meshlod_io::Scene;
+use meshlod_measure::{Distance, DistanceOptions, PreparedSurface};
+use meshlod_mesh::Mesh;
+use meshlod_simplify::{Report, Target};
+
+use crate::jobs::scene_run::{self, RunChoice, SceneRun};
+use crate::jobs::simplify::proved_error::AskedError;
+use crate::jobs::{JobError, Watch, cancellable};
+use crate::{ConditionedScene, moved_at_most};
+
+pub use proved_error::ProvedError;
+pub use report::{LostVolume, SimplifyReport};
+pub(super) use request::digits;
+pub use request::{Aim, SimplifyRequest, WrittenAs};
+
+/// Simplifies all meshes of a scene to one common target, and returns the scene with a report.
+///
+/// An error is proved of the scene [as it is written](SimplifyRequest::written_as): the run leaves
+/// room for the rounding of coordinates, and the report says what holds, in what precision. See
+/// [`ConditionedScene`] for what happens to the meshes before, and
+/// [`SceneSimplifier`](crate::SceneSimplifier) for the run.
+///
+/// Cost: O(n log n), n = faces, and several times that for an error.
+/// # Errors
+/// A target out of range, an invalid mesh or option, and a scene without faces to contract.
+///
+/// ```
+/// use meshlod::io::Precision;
+/// use meshlod::jobs::{Aim, SimplifyRequest, WrittenAs, simplify};
+/// use meshlod::{Format, Scene, samples};
+///
+/// let knot = Scene::from_mesh("knot", samples::knot(4_000));
+/// let request = SimplifyRequest {
+///     target: Aim::Error("0.5%".parse()?),
+///     written_as: Some(WrittenAs { format: Format::Ply, precision: Precision::Auto }),
+///     ..SimplifyRequest::default()
+/// };
+/// let (level, report) = simplify(knot, &request, &())?;
+/// assert!(report.run.reached && level.flatten().faces.len() < 2_000);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn simplify(
+    mut scene: Scene,
+    request: &SimplifyRequest,
+    watch: &dyn Watch,
+) -> Result<(Scene, SimplifyReport), JobError> {
+    cancellable(|| {
+        let fused = scene_run::fuse(&mut scene, &request.constraints, watch);
+        let target = request.target.target(&scene);
+        let target = fused.map_or(target, |fused| fused.target(target));
+        let (asked, written_as) = asked_and_written(request, target, &scene);
+        let target = asked.map_or(target, |asked| asked.target());
+        let task = Task { scene: &scene, request, asked, written_as, watch };
+        let (level, report) = task.run(target)?;
+        scene_run::replace(&mut scene, level);
+        Ok((scene, SimplifyReport { fused, ..report }))
+    })
+}
+
+/// A scene that is fused, with what is asked of it.
+struct Task<'t> {
+    scene: &'t Scene,
+    request: &'t SimplifyRequest,
+    /// The error that was asked for, if the target is one.
+    asked: Option<AskedError>,
+    written_as: Option<WrittenAs>,
+    watch: &'t dyn Watch,
+}
+
+/// Returns the error that was asked for, if the target is one, and how to write. Where 32 bits would
+/// round the error away, coordinates are written with 64, unless the request says otherwise.
+fn asked_and_written(
+    request: &SimplifyRequest,
+    target: Target,
+    scene: &Scene,
+) -> (Option<AskedError>, Option<WrittenAs>) {
+    let of_scene = |as_: Option<WrittenAs>| as_.map(|as_| as_.of(scene));
+    let Target::Error(error) = target else {
+        // The digits to which a volume is exact are those that are written.
+        let as_ = request.written_as;
+        return (None, if request.exact_volume { of_scene(as_) } else { as_ });
+    };
+    let with = |as_| AskedError::new(error, scene, digits(as_), request.exact_volume);
+    let mut as_ = request.written_as;
+    if with(of_scene(as_)).needs_precision() {
+        as_ = as_.map(WrittenAs::precise);
+    }
+    let as_ = of_scene(as_);
+    (Some(with(as_)), as_)
+}
+
+impl Task<'_> {
+    fn run(&self, target: Target) -> Result<(Vec<Mesh>, SimplifyReport), JobError> {
+        let Self { scene, request, watch, .. } = *self;
+        let choice = request.choice();
+        let (ready, time) = choice.condition(scene, watch)?;
+        let mut run = SceneRun::start(&ready, time, watch)?;
+        let mut report = run.simplify_to(target)?;
+        let mut level = run.level(&mut report);
+        let mut time = run.time();
+        drop(run);
+        let start = Instant::now();
+        let (volume_residual, moved) = self.restore_volume(&ready, &mut level);
+        time += start.elapsed();
+        let (measured, error) = self.measure(&report, &level, moved)?;
+        choice.remark(watch);
+        report.reached &= error.is_none_or(|error| error.is_held);
+        let lost = || LostVolume::of(&report, scene, (&ready, &level));
+        let report = SimplifyReport {
+            measured,
+            conditioning: ready.counts(),
+            near_borders: request.near_borders.then(|| ready.near_borders()).flatten(),
+            fused: None,
+            error,
+            volume_residual,
+            lost_volume: if request.exact_volume { None } else { lost() },
+            written_as: self.written_as,
+            time,
+            run: report,
+        };
+        drop(ready);
+        Ok((level, report))
+    }
+
+    /// Restores the volume, if that is asked for. Returns the relative deviation that is left, and
+    /// how far vertices have moved.
+    fn restore_volume(
+        &self,
+        ready: &ConditionedScene<'_>,
+        level: &mut [Mesh],
+    ) -> (Option<f64>, f64) {
+        if !self.request.exact_volume {
+            return (None, 0.0);
+        }
+        let before = level.to_vec();
+        let residual =
+            scene_run::restore_volumes(ready, level, digits(self.written_as), self.watch);
+        (residual, moved_at_most(self.scene, &before, level))
+    }
+
+    /// Measures the result if that was asked for. Returns what holds of an error that was asked
+    /// for: by the proof of the run before vertices moved by up to `moved`, or by a measurement.
+    fn measure(
+        &self,
+        report: &Report,
+        level: &[Mesh],
+        moved: f64,
+    ) -> Result<(Option<Distance>, Option<ProvedError>), JobError> {
+        let by_report = self.asked.filter(|_| report.proof.is_some());
+        let proved = by_report.map(|asked| asked.by_report(report, moved));
+        if !self.request.measured && (self.asked.is_none() || proved.is_some()) {
+            return Ok((None, proved));
+        }
+        let original = scene_run::own_surface(self.scene);
+        let surface = match PreparedSurface::new(&original) {
+            Ok(surface) => Some(surface),
+            Err(error) if self.asked.is_none() => return Err(JobError::input(error)),
+            Err(_) => None,
+        };
+        let options = DistanceOptions::default();
+        let measured = surface.as_ref().filter(|_| self.request.measured).and_then(|surface| {
+            scene_run::measure((surface, &options), self.scene, level, self.watch)
+        });
+        let by_measuring =
+            |asked: AskedError| asked.by_measuring(surface.as_ref(), self.scene, level);
+        Ok((measured, proved.or_else(|| self.asked.map(by_measuring))))
+    }
+}
+
+impl SimplifyRequest {
+    fn choice(&self) -> RunChoice<'_> {
+        let Self { method, weights, boundary, ref constraints, .. } = *self;
+        RunChoice { method, weights, boundary, constraints }
+    }
+}

@@ -1,0 +1,103 @@
+//! What a simplification of a scene has done.
+
+use std::time::Duration;
+
+use meshlod_io::Scene;
+use meshlod_measure::Distance;
+use meshlod_mesh::{Conditioning, Mesh, NearBorders};
+use meshlod_simplify::{Digits, ExactVolumeError, Report, VolumeLoss};
+
+use crate::jobs::{ProvedError, WrittenAs};
+use crate::{ConditionedScene, FuseReport, closed_volume, conserve_volumes, world_bounds};
+
+/// Report of [`simplify`](super::simplify). Serde writes the keys that the command prints.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(into = "crate::jobs::figures::SimplifyFigures"))]
+pub struct SimplifyReport {
+    /// What the run has done; [`reached`](Report::reached) counts what holds as it is written.
+    pub run: Report,
+    /// Measured distance from the input, if it was asked for and can be measured.
+    pub measured: Option<Distance>,
+    /// What conditioning has changed before the run.
+    pub conditioning: Conditioning,
+    /// Boundary edges near each other, if they were looked for and are many.
+    pub near_borders: Option<NearBorders>,
+    /// What fusing has changed before the run, if it was asked for.
+    pub fused: Option<FuseReport>,
+    /// What is proved of the error, if one was asked for.
+    pub error: Option<ProvedError>,
+    /// Largest relative deviation from the original volumes, if they were restored.
+    pub volume_residual: Option<f64>,
+    /// Volume that closed parts have lost, if the method is to conserve it and it is worth a line.
+    pub lost_volume: Option<LostVolume>,
+    /// How the result has to be written for the error and the volume to hold.
+    pub written_as: Option<WrittenAs>,
+    /// Time of conditioning, connectivity, contractions, and restoring the volume.
+    pub time: Duration,
+}
+
+/// Volume that a method which conserves it has lost in closed parts, as parts of that of the input.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LostVolume {
+    /// Lost part; negative if the volume has grown.
+    pub part: f64,
+    /// Part that was in components that vanished.
+    pub vanished: f64,
+    /// True if [`exact_volume`](super::SimplifyRequest::exact_volume) would restore it.
+    pub is_restorable: bool,
+}
+
+/// Relative change of volume that is not worth a line.
+pub(super) const UNSEEN: f64 = 1e-4;
+
+impl LostVolume {
+    /// Returns what a run has lost; what its level was repaid is not lost.
+    pub(super) fn of(
+        report: &Report,
+        input: &Scene,
+        (ready, level): (&ConditionedScene<'_>, &[Mesh]),
+    ) -> Option<Self> {
+        let lost = report.volume.lost().abs();
+        // Most runs lose next to nothing, and need no volume of the input.
+        if !report.method.conserves_volume()
+            || lost < 1e-12 * world_bounds(input).diagonal().powi(3)
+        {
+            return None;
+        }
+        Self::relative(&report.volume, closed_volume(input), || can_restore(ready, level))
+    }
+
+    fn relative(
+        loss: &VolumeLoss,
+        volume: f64,
+        can_restore: impl FnOnce() -> bool,
+    ) -> Option<Self> {
+        let [part, vanished] = [loss.lost(), loss.vanished].map(|lost| lost / volume);
+        // Without a closed part there is nothing to compare with.
+        let is_seen = part.is_finite() && part.abs() >= UNSEEN;
+        is_seen.then(|| Self { part, vanished, is_restorable: can_restore() })
+    }
+}
+
+/// Returns true if the volumes of all meshes of a level that have one can be restored.
+fn can_restore(ready: &ConditionedScene<'_>, level: &[Mesh]) -> bool {
+    let restored = conserve_volumes(ready, &mut level.to_vec(), Digits::F64);
+    restored.iter().all(|found| matches!(found, Ok(_) | Err(ExactVolumeError::OpenMesh)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_volume_is_lost_if_it_is_not_repaid() {
+        let loss = VolumeLoss { running_sum: 0.03, repaid: 0.01, ..VolumeLoss::default() };
+        let open = LostVolume::relative(&loss, 0.0, || true);
+        assert_eq!(open, None, "an open mesh has no volume to compare with");
+        let stuck = LostVolume::relative(&loss, 2.0, || false).unwrap();
+        assert!((stuck.part - 0.01).abs() < 1e-12 && !stuck.is_restorable, "{stuck:?}");
+        let repaid = VolumeLoss { repaid: 0.03, ..loss };
+        assert_eq!(LostVolume::relative(&repaid, 2.0, || true), None);
+    }
+}
