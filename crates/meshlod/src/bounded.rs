@@ -11,7 +11,7 @@ mod comparison;
 use meshlod_measure::{CertifiedOptions, PreparedSurface, certified_surface_distance};
 use meshlod_mesh::Mesh;
 use meshlod_simplify::{
-    ErrorProof, Excess, ExcessFace, Method, Observe, Report, Simplifier, SimplifyError, Target,
+    ErrorProof, Excess, ExcessFace, Observe, Report, Simplifier, SimplifyError, Target,
 };
 
 use crate::bounded::comparison::{Comparison, Outcome};
