@@ -133,8 +133,8 @@ impl LevelTable {
         if levels.is_empty() { depth } else { levels.start + directions.cell(direction) }
     }
 
-    /// Returns the chain and depth that decide how a level looks. A facing level looks like the level
-    /// of the whole chain at its depth.
+    /// Returns the chain and depth that decide how a level looks. A facing level looks like the
+    /// level of the whole chain at its depth.
     pub fn appearance(&self, level: usize) -> (ChainKind, usize) {
         match self.levels[level] {
             Level { chain: ChainKind::Facing(_), depth, .. } => (ChainKind::Whole, depth),

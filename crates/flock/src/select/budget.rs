@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Budget {
-    /// Upper limit of the triangles of all members together. The policies `budget` and `ours` keep to it where
-    /// the coarsest levels of all members in view allow; the others ignore it.
+    /// Upper limit of the triangles of all members together. The policies `budget` and `ours` keep
+    /// to it where the coarsest levels of all members in view allow; the others ignore it.
     pub triangles: usize,
     /// Fineness of the policies without a budget, above zero: distances at which levels change grow
     /// with it, and tolerated errors shrink.

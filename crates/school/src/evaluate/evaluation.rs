@@ -80,8 +80,8 @@ impl Evaluation {
         })
     }
 
-    /// Returns the mean over all scenes of a figure of an arm at a share of the triangles; `None` if
-    /// the arm is off by more than a tenth of the share in one of them.
+    /// Returns the mean over all scenes of a figure of an arm at a share of the triangles; `None`
+    /// if the arm is off by more than a tenth of the share in one of them.
     pub fn mean(&self, arm: &str, share: f64, figure: impl Fn(&Row) -> f64) -> Option<f64> {
         let rows = self.rows.iter().filter(|row| row.arm == arm && row.share == share);
         // Some arms cannot draw so little, or so much.

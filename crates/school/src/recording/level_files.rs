@@ -23,7 +23,7 @@ pub struct LevelsFile {
     pub chains: Vec<ChainEntry>,
     /// Facing levels at each depth of the whole chain; they follow the chains.
     pub facing: Vec<FacingEntry>,
-    /// Levels of all chains, finest first in each, and then the facing ones, direction by direction.
+    /// Levels of all chains, finest first in each, then the facing ones by direction.
     pub levels: Vec<LevelEntry>,
     pub layers: Vec<LayerEntry>,
     /// Names of the materials, in the order of the model's; `None` without materials.

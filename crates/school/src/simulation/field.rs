@@ -15,8 +15,8 @@ use crate::simulation::sides::Sides;
 /// Signed distances from a mesh, sampled on a regular grid and interpolated between its points.
 ///
 /// Distances are negative inside a closed mesh and behind the faces of an open one such as a
-/// terrain: on the back of the closest face. Beyond the grid, which is a little larger than the mesh,
-/// the distance from the grid is added, so that the solid under a terrain is a few cells thick.
+/// terrain: on the back of the closest face. Beyond the grid, which is a little larger than the
+/// mesh, the distance from the grid is added, so that the solid under a terrain is a few cells thick.
 /// Solids thinner than a cell may vanish.
 #[derive(Clone, PartialEq)]
 pub struct DistanceField {

@@ -123,7 +123,7 @@ impl LeaderPath {
         (point.as_vec3(), tangent.as_vec3().normalize_or(Vec3::Z))
     }
 
-    /// Returns position and derivative at `place`: a waypoint, and a fraction of the way to the next.
+    /// Returns position and derivative at `place`: a waypoint, plus a fraction towards the next.
     fn at(&self, place: f64) -> (DVec3, DVec3) {
         let count = self.waypoints.len();
         let (whole, t) = (place.floor() as usize, place.fract());

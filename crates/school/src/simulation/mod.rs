@@ -18,8 +18,8 @@
 //!
 //! To read, from a step down: `schools`, time and leaders; `step`, all members in parallel over
 //! the cells of the `grid`; `motion`, one member, with what `neighbours` and `avoid` (obstacles)
-//! ask of it. Before it: `options`, `leader` (paths), `start` with `slots`; `swarm` holds the arrays.
-//! Obstacles: `obstacle`, `field` (distances from a mesh, with their `sides`).
+//! ask of it. Before it: `options`, `leader` (paths), `start` with `slots`; `swarm` holds the
+//! arrays. Obstacles: `obstacle`, `field` (distances from a mesh, with their `sides`).
 
 mod avoid;
 mod error;

@@ -81,7 +81,8 @@ pub struct Behaviour {
 /// Between looks they keep their last response; slots and obstacles count in every step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SteerEvery {
-    /// Position of the eye, at the beginning; see [`Simulation::set_eye`](super::Simulation::set_eye).
+    /// Position of the eye, at the beginning; see
+    /// [`Simulation::set_eye`](super::Simulation::set_eye).
     pub eye: Vec3,
     /// Distances beyond which members look every 2nd, 4th and 8th step, in this order.
     pub distances: [f32; 3],

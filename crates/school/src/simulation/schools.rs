@@ -142,7 +142,8 @@ impl Simulation {
         &self.options
     }
 
-    /// Moves the eye from which [`SteerEvery`](crate::simulation::SteerEvery) measures distances; one that is not finite is ignored.
+    /// Moves the eye from which [`SteerEvery`](crate::simulation::SteerEvery) measures distances;
+    /// one that is not finite is ignored.
     pub fn set_eye(&mut self, eye: Vec3) {
         if let Some(steer_every) = &mut self.options.steer_every
             && eye.is_finite()
