@@ -14,6 +14,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
+use meshlod::jobs;
 use meshlod::simplify::Observe;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -71,6 +72,16 @@ impl Observe for Watch {
     fn gone(&mut self, faces: usize) {
         self.0.gone.fetch_add(faces, Ordering::Relaxed);
         self.check();
+    }
+}
+
+impl jobs::Watch for Watch {
+    fn step(&self, done: usize, _: Option<usize>) {
+        self.0.gone.store(done, Ordering::Relaxed);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.0.state.load(Ordering::Relaxed) == CANCELLED
     }
 }
 
