@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use meshlod::io::{Format, Note};
-use meshlod::{IoError, ReadOptions, Scene, WriteOptions, decompress_scene, read, write};
+use meshlod::{
+    AnyFile, AnyFileError, FileKind, IoError, ReadOptions, Scene, WriteOptions, read, write,
+};
 use pyo3::prelude::*;
 
 use crate::errors::{raised, raised_by_file};
@@ -16,9 +18,10 @@ use crate::work::{Watch, run};
 /// A file that is missing, damaged or of another format.
 #[pyfunction]
 pub fn load(py: Python<'_>, path: PathBuf) -> PyResult<(NativeScene, Vec<String>)> {
-    let scene = run(py, None, move |_| match is_compressed(&path) {
-        true => compressed(&path),
-        false => read(&path, &ReadOptions::default()).map_err(unreadable),
+    let scene = run(py, None, move |_| match FileKind::own_of_path(&path) {
+        // Levels are opened by `Model`.
+        Some(FileKind::Levels) => read(&path, &ReadOptions::default()).map_err(unreadable),
+        _ => scene_of(&path).map_err(not_opened),
     })??;
     let notes = texts(&scene.notes);
     Ok((NativeScene::new(scene), notes))
@@ -52,16 +55,16 @@ fn unreadable(error: IoError) -> PyErr {
     }
 }
 
-fn is_compressed(path: &Path) -> bool {
-    let suffix = path.extension().map(|suffix| suffix.to_ascii_lowercase());
-    suffix.is_some_and(|suffix| suffix == "mlz" || suffix == "mlq")
+fn scene_of(path: &Path) -> Result<Scene, AnyFileError> {
+    AnyFile::open(path, &ReadOptions::default())?.into_scene()
 }
 
-fn compressed(path: &Path) -> PyResult<Scene> {
-    let bytes = std::fs::read(path).map_err(|error| IoError::system(path, error));
-    let name = path.file_stem().unwrap_or_default().to_string_lossy();
-    decompress_scene(&bytes.map_err(raised_by_file)?, name)
-        .map_err(|error| raised(format_args!("{}: {error}", path.display())))
+/// Makes an exception of a file that cannot be opened, or whose scene cannot be read.
+fn not_opened(error: AnyFileError) -> PyErr {
+    match error {
+        AnyFileError::Io(error) => unreadable(error),
+        other => raised(other),
+    }
 }
 
 /// Returns notes in words, those on nothing left out.

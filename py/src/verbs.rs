@@ -2,17 +2,14 @@
 
 use std::path::{PathBuf, absolute};
 
-use meshlod::jobs::{self, CheckRequest};
 use meshlod::check::{HoleLimits, RepairOptions, Severity, Stitch};
-use meshlod::codec::CompressionTarget;
 use meshlod::io::write_file;
+use meshlod::jobs::{self, CheckRequest, CompressRequest, CompressTarget, Packing};
 use meshlod::measure::{DistanceOptions, area, distance, volume};
 use meshlod::mesh::LayerKind;
 use meshlod::picture::{Camera, UpAxis, View, Wireframe};
 use meshlod::strip::{StripOptions, StripQuality, stripify};
-use meshlod::{
-    CompressOptions, CompressedFileError, OwnedPaint, compress_bytes, normals_of,
-};
+use meshlod::{Bound as Length, FileKind, Mesh, OwnedPaint, Scene, normals_of};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -137,22 +134,27 @@ pub fn compress(
     bits: u32,
     error: Option<f64>,
 ) -> PyResult<(usize, bool)> {
-    let target = error.map_or(CompressionTarget::Bits(bits), CompressionTarget::Error);
-    let options = CompressOptions { target, ..CompressOptions::default() };
+    let Some(packing) = FileKind::own_of_path(&path).and_then(Packing::of) else {
+        let must = "a compressed file must end in .mlq or .mlz";
+        return Err(raised(format_args!("{}: {must}", path.display())));
+    };
+    let target = match error {
+        Some(length) => CompressTarget::Error(Length::Length(length)),
+        None => CompressTarget::Bits(bits),
+    };
+    let request = CompressRequest { packing, target, ..CompressRequest::default() };
     let mesh = mesh.shared();
     // The folder of the process may change while the work runs.
     let target = absolute(&path)?;
-    let work = move |watch: &mut Watch| -> Result<_, CompressedFileError> {
-        let (bytes, report) = compress_bytes(&mesh, &path, &options)?;
+    let work = move |watch: &mut Watch| {
+        let scene = Scene::from_mesh("", Mesh::clone(&mesh));
+        let (bytes, report) = jobs::compress(scene, &request, watch).map_err(raised)?;
         watch.commit();
-        write_file(&target, &bytes)?;
-        Ok(report)
+        write_file(&target, &bytes).map_err(raised_by_file)?;
+        Ok::<_, PyErr>(report)
     };
-    let report = run(py, None, work)?.map_err(|error| match error {
-        CompressedFileError::Io(error) => raised_by_file(error),
-        other => raised(other),
-    })?;
-    Ok((report.bytes, report.reached))
+    let report = run(py, None, work)??;
+    Ok((report.bytes_total, report.reached))
 }
 
 /// Draws a mesh, and returns the pixels as RGBA bytes, or as a PNG file.
