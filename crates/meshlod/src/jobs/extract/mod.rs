@@ -165,7 +165,7 @@ pub fn extract<S: Source>(
         true => Scene::from_mesh(request.name.clone(), mesh),
         false => written((file, model), mesh, rounding, (request, &mut report), watch)?,
     };
-    scene.notes.extend(lost.into_iter().filter(|note| note.count > 0));
+    scene.notes = lost.into_iter().filter(|note| note.count > 0).collect();
     let is_coarse = request.query.most_faces().is_none_or(|most| report.level_faces <= most);
     report.reached = is_coarse && report.error.is_kept() != Some(false);
     report.shown_faces = shown_faces(&scene);
