@@ -14,7 +14,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use meshlod::simplify::Observe;
+use meshlod::jobs;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -56,21 +56,20 @@ impl Shared {
     }
 }
 
-/// Observer that counts removed faces and ends the work if nobody waits for it any more.
+/// Watch of a job that keeps how much is done, and ends the work if nobody waits for it any more.
 #[derive(Clone)]
 pub struct Watch(Arc<Shared>);
 
 /// Payload with which cancelled work unwinds.
 struct Cancelled;
 
-impl Observe for Watch {
-    fn needs_surface(&self) -> bool {
-        false
+impl jobs::Watch for Watch {
+    fn step(&self, done: usize, _: Option<usize>) {
+        self.0.gone.store(done, Ordering::Relaxed);
     }
 
-    fn gone(&mut self, faces: usize) {
-        self.0.gone.fetch_add(faces, Ordering::Relaxed);
-        self.check();
+    fn is_cancelled(&self) -> bool {
+        self.0.state.load(Ordering::Relaxed) == CANCELLED
     }
 }
 
