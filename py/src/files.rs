@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use meshlod::io::{Format, Note};
+use meshlod::io::{Format, Note, Precision};
 use meshlod::{
     AnyFile, AnyFileError, FileKind, IoError, ReadOptions, Scene, WriteOptions, read, write,
 };
@@ -32,14 +32,22 @@ pub fn load(py: Python<'_>, path: PathBuf) -> PyResult<(NativeScene, Vec<String>
 /// # Errors
 /// An unknown suffix, a scene that the format cannot hold, and errors of the file system.
 #[pyfunction]
-pub fn save(py: Python<'_>, scene: &NativeScene, path: PathBuf) -> PyResult<Vec<String>> {
+pub fn save(
+    py: Python<'_>,
+    scene: &NativeScene,
+    path: PathBuf,
+    precision: &str,
+) -> PyResult<Vec<String>> {
+    let precision = precision
+        .parse::<Precision>()
+        .map_err(|_| raised(format_args!("precision must be auto, f32 or f64, not {precision}")))?;
     let format = Format::of_path(&path).map_err(raised_by_file)?;
     let scene = scene.shared();
     let notes = scene.limits_of(format);
     let work = move |watch: &mut Watch| {
         // Files that belong together refer to each other by name: they are written where they stay.
         watch.commit();
-        write(&path, &scene, &WriteOptions::default())
+        write(&path, &scene, &WriteOptions { precision })
     };
     run(py, None, work)?.map_err(raised_by_file)?;
     Ok(texts(&notes))

@@ -1,13 +1,34 @@
 //! Reports for Python, as dictionaries that the package makes classes of.
 
+use meshlod::jobs::{ProvedError, SimplifyReport};
 use meshlod::measure::{Distance, OneSidedDistance};
+use meshlod::mesh::Conditioning;
 use meshlod::simplify::Refusal;
 use meshlod::{Report, Topology};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Returns the report of a simplification as a dictionary.
-pub fn simplified<'py>(py: Python<'py>, report: &Report) -> PyResult<Bound<'py, PyDict>> {
+/// Returns the report of a job as a dictionary, with what is proved of the result as it is written.
+pub fn of_job<'py>(py: Python<'py>, report: &SimplifyReport) -> PyResult<Bound<'py, PyDict>> {
+    let dict = of_run(py, &report.run)?;
+    if let Some(ProvedError { asked, proved, rounds, rounding, .. }) = report.error {
+        dict.set_item("error_asked", asked)?;
+        dict.set_item("error_proved", proved)?;
+        dict.set_item("error_rounds", rounds)?;
+        dict.set_item("error_of_rounding", rounding)?;
+    }
+    let Conditioning { stitched_edges, stitched_vertices, split_vertices, .. } =
+        report.conditioning;
+    dict.set_item("stitched_edges", stitched_edges)?;
+    dict.set_item("stitched_vertices", stitched_vertices)?;
+    dict.set_item("split_vertices", split_vertices)?;
+    dict.set_item("simplify_seconds", report.time.as_secs_f64())?;
+    dict.set_item("precision", report.written_as.map(|as_| as_.precision.name()))?;
+    Ok(dict)
+}
+
+/// Returns the report of a run as a dictionary.
+pub fn of_run<'py>(py: Python<'py>, report: &Report) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     dict.set_item("method", report.method.name())?;
     dict.set_item("input_faces", report.input_faces)?;
@@ -19,6 +40,8 @@ pub fn simplified<'py>(py: Python<'py>, report: &Report) -> PyResult<Bound<'py, 
     dict.set_item("vanished", report.vanished)?;
     dict.set_item("degenerate_faces", report.degenerate_faces)?;
     dict.set_item("duplicate_faces", report.duplicate_faces)?;
+    dict.set_item("non_manifold_vertices", report.non_manifold_vertices)?;
+    dict.set_item("vanished_volume", report.volume.vanished)?;
     dict.set_item("locked", report.held.locked + report.held.tied)?;
     dict.set_item("volume_lost", report.volume.lost())?;
     let refusals = PyDict::new(py);

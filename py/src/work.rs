@@ -15,7 +15,6 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use meshlod::jobs;
-use meshlod::simplify::Observe;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -57,23 +56,12 @@ impl Shared {
     }
 }
 
-/// Observer that counts removed faces and ends the work if nobody waits for it any more.
+/// Watch of a job that keeps how much is done, and ends the work if nobody waits for it any more.
 #[derive(Clone)]
 pub struct Watch(Arc<Shared>);
 
 /// Payload with which cancelled work unwinds.
 struct Cancelled;
-
-impl Observe for Watch {
-    fn needs_surface(&self) -> bool {
-        false
-    }
-
-    fn gone(&mut self, faces: usize) {
-        self.0.gone.fetch_add(faces, Ordering::Relaxed);
-        self.check();
-    }
-}
 
 impl jobs::Watch for Watch {
     fn step(&self, done: usize, _: Option<usize>) {

@@ -52,6 +52,7 @@ def asked(
     lock_boundary: bool,
     locks: NDArray[Any] | None = None,
     weights: tuple[float, float, float] | None = None,
+    precision: str = "auto",
     progress: Callable[[float], object] | None = None,
 ) -> Asked:
     """Returns the argument of the native functions."""
@@ -64,6 +65,7 @@ def asked(
         "lock_boundary": bool(lock_boundary),
         "locks": locked,
         "weights": None if weights is None else triple("weights", weights),
+        "precision": word("precision", precision),
         "progress": progress,
     }
 

@@ -126,6 +126,7 @@ class Mesh(Immutable):
         locks: ArrayLike | None = None,
         lock_boundary: bool = False,
         weights: tuple[float, float, float] | None = None,
+        precision: str = "auto",
         progress: ProgressLike = None,
         return_report: bool = False,
     ) -> Any:
@@ -136,6 +137,7 @@ class Mesh(Immutable):
             "topology": topology,
             "lock_boundary": lock_boundary,
             "weights": weights,
+            "precision": precision,
             "progress": callback(progress, "simplifying"),
         }
         level, report = self._simplified(kind, value, locks, options)
@@ -264,10 +266,15 @@ class Mesh(Immutable):
         pixels = _native.render(self._native, [width, height], lines, axis, toward, False)
         return np.frombuffer(pixels, dtype=np.uint8).reshape(height, width, 4)
 
-    def save(self, path: Path) -> None:
-        """Writes a file in the format of its suffix, whole or not at all."""
-        name = _asked.path_name(path)
-        for note in _native.save(_native.NativeScene.of("", self._native), name):
+    def save(self, path: Path, *, precision: str = "auto") -> None:
+        """Writes a file in the format of its suffix, whole or not at all.
+
+        ``precision`` is that of coordinates where the format has both: ``"f32"``, ``"f64"``, or
+        ``"auto"``, which is 32 bits where they keep the shape.
+        """
+        name, word = _asked.path_name(path), _asked.word("precision", precision)
+        scene = _native.NativeScene.of("", self._native)
+        for note in _native.save(scene, name, word):
             warn(f"{name}: {note}")
 
     def to_arrays(self) -> tuple[NDArray[np.float64], NDArray[np.int32]]:

@@ -20,7 +20,7 @@ class Report:
     reached: bool
     #: Estimate of the method; no bound.
     error_estimate: float
-    #: Proved bound of the distance, if an error was asked for.
+    #: Proved bound of the distance in that precision, if an error was asked for.
     error_proved: float | None
     #: Number of edges and faces contracted.
     contractions: int
@@ -36,9 +36,36 @@ class Report:
     volume_lost: float
     #: Number of refused contractions, by reason.
     refusals: Mapping[str, int] = field(default_factory=dict)
+    #: Number of vertices kept in place because the surface is no manifold there.
+    non_manifold_vertices: int = 0
+    #: Volume of the components that were removed.
+    vanished_volume: float = 0.0
+    #: Distance asked for, if one was.
+    error_asked: float | None = None
+    #: Number of times that contractions were taken back to hold it.
+    error_rounds: int | None = None
+    #: Largest distance by which the precision moves a point.
+    error_of_rounding: float | None = None
+    #: Number of pairs of boundary edges that were sewn together before.
+    stitched_edges: int = 0
+    #: Number of vertices that were merged by that.
+    stitched_vertices: int = 0
+    #: Number of vertices that were divided before.
+    split_vertices: int = 0
+    #: Time of the method with its connectivity.
+    simplify_seconds: float | None = None
+    #: Precision of coordinates for which the error is proved: "f32" or "f64".
+    precision: str | None = None
 
     def why_not_reached(self) -> str:
         """Says why the target was missed."""
+        if self.error_asked is not None:
+            if self.error_proved is None:
+                return f"max_error {self.error_asked} is not proved: a surface has no area"
+            help_ = "a larger error can be kept"
+            if (self.error_of_rounding or 0) > 0.5 * self.error_asked:
+                help_ = 'coordinates are rounded by more than half of that: use precision="f64"'
+            return f"max_error {self.error_asked}: only {self.error_proved} is proved; {help_}"
         counts = ", ".join(f"{name} {count}" for name, count in self.refusals.items())
         faces = "face" if self.output_faces == 1 else "faces"
         return (

@@ -81,6 +81,7 @@ class Scene(Immutable):
         topology: str = "free",
         lock_boundary: bool = False,
         weights: tuple[float, float, float] | None = None,
+        precision: str = "auto",
         progress: ProgressLike = None,
         return_report: bool = False,
     ) -> Any:
@@ -96,6 +97,7 @@ class Scene(Immutable):
             topology=topology,
             lock_boundary=lock_boundary,
             weights=weights,
+            precision=precision,
             progress=callback(progress, "simplifying"),
         )
         level, fields = _native.simplify_scene(self._native, asked)
@@ -105,10 +107,14 @@ class Scene(Immutable):
         scene = Scene._of(level)
         return (scene, report) if return_report else scene
 
-    def save(self, path: Path) -> None:
-        """Writes a file in the format of its suffix, whole or not at all."""
-        name = _asked.path_name(path)
-        for note in _native.save(self._native, name):
+    def save(self, path: Path, *, precision: str = "auto") -> None:
+        """Writes a file in the format of its suffix, whole or not at all.
+
+        ``precision`` is that of coordinates where the format has both: ``"f32"``, ``"f64"``, or
+        ``"auto"``, which is 32 bits where they keep the shape.
+        """
+        name, word = _asked.path_name(path), _asked.word("precision", precision)
+        for note in _native.save(self._native, name, word):
             warn(f"{name}: {note}")
 
     def build(self, path: Path, *, lossless: bool = False, errors: str = "measured") -> Model:

@@ -32,6 +32,7 @@ def simplify(
     locks: ArrayLike | None = None,
     lock_boundary: bool = False,
     weights: tuple[float, float, float] | None = None,
+    precision: str = "auto",
     progress: ProgressLike = None,
     return_report: bool = False,
     triangles: ArrayLike | None = None,
@@ -60,7 +61,10 @@ def simplify(
 
     ``locks`` is a mask, or rows, of points that stay where they are; ``lock_boundary`` locks those
     on the boundary. ``topology="keep"`` keeps closed surfaces closed and every component.
-    ``weights`` are those of normals, uvs and colours against distances. With ``return_report`` a
+    ``weights`` are those of normals, uvs and colours against distances. ``precision`` is that of
+    the coordinates for which ``max_error`` is proved: ``"f32"``, as most files have them,
+    ``"f64"``, or ``"auto"``, which is 32 bits unless they take more than half of the error;
+    :attr:`Report.precision` says which, and ``save`` takes it. With ``return_report`` a
     :class:`Report` comes last.
 
     ``progress`` is a function of the part that is done, or ``True`` for a bar on a terminal. It is
@@ -99,6 +103,7 @@ def simplify(
         "topology": topology,
         "lock_boundary": lock_boundary,
         "weights": weights,
+        "precision": precision,
         "progress": bar,
     }
     if faces is None:

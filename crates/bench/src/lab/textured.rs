@@ -2,6 +2,7 @@
 //! simplification with attributes.
 
 use anyhow::{Context, Result};
+use meshlod::jobs::{Aim, SimplifyRequest, simplify};
 use meshlod::mesh::Mesh;
 use meshlod::multires::{Archive, Forest, Query, Storage, StoredErrors};
 use meshlod::picture::{ImageError, ReferenceImages, Style};

@@ -136,14 +136,8 @@ impl Lods {
             let file =
                 |(i, (level, _)): (usize, (Level, _))| (self.file_of(i + 1, layout), level.meshes);
             let levels = written.map(file).collect();
-            let first = self.file_of(0, layout);
-            return scene_files::write_chain(
-                &first,
-                &mut chain.scene,
-                levels,
-                &self.writing,
-                session,
-            );
+            let (first, writing) = (self.file_of(0, layout), &self.writing);
+            return scene_files::write_chain(&first, &mut chain.scene, levels, writing, session);
         }
         let levels: Vec<Level> = written.map(|(_, (level, _))| level).collect();
         let layout = match layout {

@@ -79,6 +79,19 @@ impl Watch {
     }
 }
 
+/// Jobs of the library are watched as those of the viewer.
+impl meshlod::jobs::Watch for Watch {
+    fn step(&self, done: usize, of: Option<usize>) {
+        if let Some(of) = of {
+            self.set(done as f64 / of.max(1) as f64);
+        }
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.is_cancelled()
+    }
+}
+
 impl<N: Send + 'static> Jobs<N> {
     /// Creates a list without jobs; `wake` is asked for a frame when news arrive.
     pub fn new(wake: &egui::Context) -> Self {

@@ -4,11 +4,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-use meshlod::jobs::{self, CheckReport, CheckRequest};
+use meshlod::jobs::{self, CheckReport, CheckRequest, JobError, SimplifyRequest};
 use meshlod::measure::{PreparedSurface, vertex_errors};
 use meshlod::picture::Picture;
-use meshlod::simplify::Observe;
-use meshlod::{Borders, ConditionedScene, Method, Options, Report, Scene, SceneSimplifier, Target};
+use meshlod::{Method, Report, Scene, Target};
 
 use super::document::{DocumentId, LevelDistance};
 use super::jobs::{Outcome, Watch};
@@ -52,8 +51,6 @@ pub(crate) struct Comparison {
 
 /// Largest number of listed findings of one kind.
 const FINDINGS_LISTED: usize = 500;
-/// Ratio of the faces from step to step of a simplification that can be cancelled between steps.
-const STEP: f64 = 0.85;
 
 /// Simplifies a document by a method to a target.
 pub(crate) fn simplify(
@@ -66,28 +63,12 @@ pub(crate) fn simplify(
 ) -> Outcome<News> {
     let start = Instant::now();
     let scene = Scene::from_mesh("level", (*loaded.mesh).clone());
-    let options = Options { method, ..Options::default() };
-    let conditioned = ConditionedScene::new(&scene, &options, Borders::Stitch);
-    let conditioned = conditioned.map_err(|error| error.to_string())?;
-    if watch.is_cancelled() {
-        return Ok(None);
-    }
-    let mut simplifier = SceneSimplifier::new(&conditioned).map_err(|error| error.to_string())?;
-    let faces = simplifier.live_faces();
-    let mut report = None;
-    for step in steps(faces, target) {
-        if watch.is_cancelled() {
-            return Ok(None);
-        }
-        let to = if let Target::Faces(to) = target { to } else { 0 };
-        let mut counter =
-            Counter { watch, gone: faces - simplifier.live_faces(), of: faces - to.min(faces) };
-        let reached = simplifier.run(step, &mut counter);
-        report = Some(reached.map_err(|error| error.to_string())?);
-    }
-    let (Some(report), Some(level)) = (report, simplifier.level().pop()) else {
-        return Err("nothing to simplify".into());
+    let request = SimplifyRequest { target: target.into(), method, ..SimplifyRequest::default() };
+    let (mut scene, report) = match jobs::simplify(scene, &request, watch) {
+        Err(JobError::Cancelled) => return Ok(None),
+        done => done.map_err(|error| error.to_string())?,
     };
+    let level = scene.meshes.pop().map(|level| level.mesh).unwrap_or_default();
     let seconds = start.elapsed().as_secs_f64();
     let level = Loaded {
         single_sided: Arc::clone(&loaded.single_sided),
@@ -97,43 +78,8 @@ pub(crate) fn simplify(
         return Err("no face is left at this level".into());
     }
     let subject = Subject::new(renderer, &level).map_err(|error| error.to_string())?;
-    let made = MadeLevel { loaded: Arc::new(level), subject, report, seconds };
+    let made = MadeLevel { loaded: Arc::new(level), subject, report: report.run, seconds };
     Ok(Some(News::Simplified(document, Box::new(made))))
-}
-
-/// Returns intermediate targets and the target itself; a run can be cancelled between them.
-fn steps(faces: usize, target: Target) -> Vec<Target> {
-    match target {
-        Target::Faces(to) => {
-            let ratio = |&at: &f64| Some(at * STEP);
-            let between = std::iter::successors(Some(faces as f64 * STEP), ratio);
-            let between = between.take_while(|&at| at > to as f64 * 1.1 && at > 16.0);
-            between.map(|at| Target::Faces(at as usize)).chain([target]).collect()
-        }
-        Target::Error(most) => {
-            // Each error is proved, a small one at a higher price than a large one.
-            vec![Target::Error(most / 4.0), target]
-        }
-        target => vec![target],
-    }
-}
-
-/// Observer that reports the progress of a simplification.
-struct Counter<'w> {
-    watch: &'w Watch,
-    gone: usize,
-    of: usize,
-}
-
-impl Observe for Counter<'_> {
-    fn needs_surface(&self) -> bool {
-        false
-    }
-
-    fn gone(&mut self, faces: usize) {
-        self.gone += faces;
-        self.watch.set(self.gone as f64 / self.of.max(1) as f64);
-    }
 }
 
 /// Measures the distance of two surfaces, and uploads both in its colours.
@@ -174,10 +120,7 @@ pub(crate) fn compare(
 /// Checks a document.
 pub(crate) fn check(document: DocumentId, loaded: &Loaded, watch: &Watch) -> Outcome<News> {
     let request = CheckRequest { limit: FINDINGS_LISTED, ..CheckRequest::default() };
-    let report = jobs::check(&loaded.mesh, &request, &()).map_err(|error| error.to_string())?;
-    if watch.is_cancelled() {
-        return Ok(None);
-    }
+    let Ok(report) = jobs::check(&loaded.mesh, &request, watch) else { return Ok(None) };
     let places = report.findings.iter().map(|finding| finding.place(&loaded.mesh)).collect();
     Ok(Some(News::Checked(document, Box::new((report, places)))))
 }
@@ -199,22 +142,4 @@ pub(crate) fn color(
 pub(crate) fn save(picture: &Picture, path: PathBuf) -> Outcome<News> {
     meshlod::io::write_file(&path, &picture.png()).map_err(|error| error.to_string())?;
     Ok(Some(News::Saved(path)))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn steps_end_at_the_target_and_shrink() {
-        let faces = |target: &Target| match target {
-            Target::Faces(faces) => *faces,
-            _ => 0,
-        };
-        for to in [0, 10, 5_000, 9_999, 20_000] {
-            let all = steps(10_000, Target::Faces(to));
-            assert_eq!(all.last(), Some(&Target::Faces(to)));
-            assert!(all.is_sorted_by(|a, b| faces(a) > faces(b)), "{all:?}");
-        }
-    }
 }
