@@ -6,7 +6,7 @@
 use std::error::Error;
 
 use meshlod::jobs::{BuildRequest, build};
-use meshlod::multires::{ModelFile, Query, SlotMesh, UpdateLimits, ViewCamera};
+use meshlod::multires::{ModelFile, Query, UpdateLimits, ViewCamera};
 use meshlod::{Scene, samples};
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -25,8 +25,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let camera = ViewCamera { eye, look, up, fov_rad: 0.8, viewport: [1280, 720] };
         cut.update(&Query::pixels(camera, 1.0), &UpdateLimits::default())?;
         // A renderer would write these slots of its index buffer.
-        let changed = cut.patches().count();
-        println!("{frame:>5}  {distance:>8.2}  {:>7}  {changed:>7}", cut.face_count());
+        let changed = cut.slot_mesh().patches().count();
+        println!("{frame:>5}  {distance:>8.2}  {:>7}  {changed:>7}", cut.slot_mesh().face_count());
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! Formatting of numbers for people.
 
-pub use meshlod::io::grouped as count;
+pub use meshlod_io::grouped as count;
 
 /// Formats a number of faces with its noun: 1 face, 2 faces.
 pub fn faces(number: usize) -> String {

@@ -1,6 +1,6 @@
 use meshlod_multires::{
     Archive, Cut, Focus, HeightField, Implicit, Level, Model, ModelFile, Query, Rtin,
-    RtinExtractor, SlotMesh, Tolerance, UpdateLimits, ViewCamera,
+    RtinExtractor, Tolerance, UpdateLimits, ViewCamera,
 };
 
 use crate::accept::accept;

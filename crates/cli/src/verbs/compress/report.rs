@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use meshlod::jobs::{CompressReport, PieceCount, StripCounts};
+use meshlod::jobs::{CompressReport, ErrorPoses, PieceCount, StripCounts};
 use serde::Serialize;
 
 use crate::options::fuse;
 use crate::session::files;
-use crate::text::model_scene::{self, ErrorPoses};
+use crate::text::model_scene;
 use crate::text::numbers::{count, faces, percent, plural, value};
 
 /// Figures of a compressed file for programs.

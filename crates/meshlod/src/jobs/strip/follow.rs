@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use meshlod_multires::{Cut, Implicit, Query, UpdateLimits};
+use meshlod_multires::{Cut, Implicit, Query, SlotMesh, UpdateLimits};
 use meshlod_strip::{
     CutStrips, Difference, StripEffort, StripIndices, StripQuality, StripStatistics,
 };
