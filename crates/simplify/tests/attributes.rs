@@ -6,7 +6,7 @@ use meshlod_fixtures as fixtures;
 use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId};
 use meshlod_samples as samples;
 use meshlod_simplify::{
-    AttributeWeights, Method, Options, Simplifier, SimplifyError, Target, simplify,
+    AttributeWeights, Method, Options, Simplifier, SimplifyError, Target, contract_to,
 };
 
 /// A layer as a function of the position.
@@ -29,7 +29,7 @@ fn with_layers(mesh: Mesh, layers: &[Painted]) -> Mesh {
 }
 
 fn to(mesh: &Mesh, method: Method, ratio: f64) -> Mesh {
-    simplify(mesh, Target::Ratio(ratio), &Options { method, ..Options::default() }).unwrap().0
+    contract_to(mesh, Target::Ratio(ratio), &Options { method, ..Options::default() }).unwrap().0
 }
 
 /// Every corner with its position and its values in a layer.
@@ -95,7 +95,7 @@ fn an_edge_between_colours_is_kept_where_colours_count() {
     let square = with_layers(square, &[(LayerKind::Color(0), of)]);
     let off = |weights| {
         let options = Options { weights, ..Options::default() };
-        let (level, report) = simplify(&square, Target::Faces(60), &options).unwrap();
+        let (level, report) = contract_to(&square, Target::Faces(60), &options).unwrap();
         assert!(report.reached);
         let [before, after] = [&square, &level].map(dark_halves);
         (before[0] - after[0]).abs() + (before[1] - after[1]).abs()
@@ -250,7 +250,7 @@ fn weights_are_numbers_of_at_least_0() {
     for uv in [-1.0, f64::NAN, f64::INFINITY] {
         let weights = AttributeWeights { uv, ..AttributeWeights::DEFAULT };
         let options = Options { weights, ..Options::default() };
-        let refused = simplify(&samples::sphere(100), Target::Ratio(0.5), &options);
+        let refused = contract_to(&samples::sphere(100), Target::Ratio(0.5), &options);
         assert!(matches!(refused, Err(SimplifyError::BadWeight(_))));
     }
 }

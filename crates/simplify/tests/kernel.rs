@@ -7,7 +7,7 @@ use meshlod_mesh::{Connectivity, FaceId, Lock, Locks, Mesh, VertexId, face_compo
 use meshlod_samples as samples;
 use meshlod_simplify::{
     History, Method, Observe, Options, Report, Simplifier, SimplifyError, Target, Topology,
-    simplify,
+    contract_to,
 };
 use meshlod_spatial::Bvh;
 
@@ -21,7 +21,7 @@ fn options(method: Method) -> Options {
 fn run(method: Method, mesh: &Mesh, target: Target) -> (Mesh, Report) {
     let mut mesh = mesh.clone();
     mesh.attributes = None;
-    simplify(&mesh, target, &options(method)).unwrap()
+    contract_to(&mesh, target, &options(method)).unwrap()
 }
 
 fn meshes() -> Vec<(&'static str, Mesh)> {
@@ -100,7 +100,7 @@ fn a_level_is_valid_and_as_closed_manifold_and_oriented_as_its_mesh() {
             for ratio in [0.5, 0.1, 0.0] {
                 let what = format!("{name} to {ratio}");
                 let keep = Options { topology: Topology::Keep, ..options(method) };
-                let (level, report) = simplify(&mesh, Target::Ratio(ratio), &keep).unwrap();
+                let (level, report) = contract_to(&mesh, Target::Ratio(ratio), &keep).unwrap();
                 check_level(&what, &level, &report);
                 assert_eq!(topology(&level), topology(&mesh), "{what}");
             }
@@ -191,7 +191,7 @@ fn scale_and_place_change_nothing_to_speak_of() {
         }
         let mut huge = mesh;
         huge.positions.iter_mut().flatten().for_each(|x| *x *= 1e40);
-        let refused = simplify(&huge, Target::Ratio(0.1), &options(method));
+        let refused = contract_to(&huge, Target::Ratio(0.1), &options(method));
         assert!(matches!(refused, Err(SimplifyError::Extent { .. })));
     }
 }
@@ -226,7 +226,7 @@ fn tiny_and_huge_faces_go_together() {
             mesh.faces.extend(faces.iter().map(|face| face.map(|v| VertexId(v.0 + first))));
         }
         let keep = Options { topology: Topology::Keep, ..options(method) };
-        let (level, report) = simplify(&mesh, Target::Ratio(0.0), &keep).unwrap();
+        let (level, report) = contract_to(&mesh, Target::Ratio(0.0), &keep).unwrap();
         check_level("spheres", &level, &report);
         assert_eq!(topology(&level).0, 3);
     }
@@ -243,7 +243,7 @@ fn a_thousand_components_keep_apart() {
             mesh.faces.extend(one.faces.iter().map(|face| face.map(|v| VertexId(v.0 + first))));
         }
         let keep = Options { topology: Topology::Keep, ..options(method) };
-        let (level, report) = simplify(&mesh, Target::Faces(4), &keep).unwrap();
+        let (level, report) = contract_to(&mesh, Target::Faces(4), &keep).unwrap();
         assert_eq!((level.faces.len(), report.reached), (4000, false));
     }
 }
@@ -259,13 +259,13 @@ fn locked_vertices_stay() {
         };
         let bare = Mesh { attributes: None, ..mesh.clone() };
         let locked = Options { locks, ..options(method) };
-        let (level, report) = simplify(&bare, Target::Ratio(0.0), &locked).unwrap();
+        let (level, report) = contract_to(&bare, Target::Ratio(0.0), &locked).unwrap();
         check_level("locked", &level, &report);
         let left: HashSet<[u64; 3]> = level.positions.iter().map(|p| p.map(f64::to_bits)).collect();
         let kept = |v: &usize| left.contains(&mesh.positions[*v].map(f64::to_bits));
         assert!((0..mesh.positions.len()).step_by(5).all(|v| kept(&v)));
         let edge = Options { lock_boundary: true, ..options(method) };
-        let (level, report) = simplify(&bare, Target::Ratio(0.0), &edge).unwrap();
+        let (level, report) = contract_to(&bare, Target::Ratio(0.0), &edge).unwrap();
         let connectivity = Connectivity::new(&level.faces, level.positions.len());
         assert_eq!(connectivity.boundary_edges(), report.held.locked);
     }
@@ -476,7 +476,7 @@ fn damaged_files_end() {
             let faces = faces.map(|b| [index(b), index(&b[1..]), index(&b[2..])]).collect();
             let positions = (0..40).map(|i| [f64::from(i % 7), f64::from(i % 5), f64::from(i % 3)]);
             let soup = Mesh::new(positions.collect(), faces);
-            if let Ok((level, report)) = simplify(&soup, Target::Ratio(0.1), &options(method)) {
+            if let Ok((level, report)) = contract_to(&soup, Target::Ratio(0.1), &options(method)) {
                 check_level("soup", &level, &report);
             }
         }

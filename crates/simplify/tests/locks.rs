@@ -6,7 +6,7 @@ use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId, face_components};
 use meshlod_samples as samples;
 use meshlod_simplify::{
     History, Method, Neighbourhood, Observe, Options, Placed, Progressive, Simplifier,
-    SimplifyError, Surface, Target, Topology, simplify,
+    SimplifyError, Surface, Target, Topology, contract_to,
 };
 use proptest::prelude::*;
 
@@ -331,7 +331,7 @@ fn what_is_protected_goes_last_and_is_not_safe() {
     for method in Method::ALL {
         let share = |locks: &Locks, ratio| {
             let options = Options { method, locks: locks.clone(), ..Options::default() };
-            let (level, report) = simplify(&mesh, Target::Ratio(ratio), &options).unwrap();
+            let (level, report) = contract_to(&mesh, Target::Ratio(ratio), &options).unwrap();
             assert!(report.reached);
             let there = level.positions.iter().filter(|p| p[0] > 0.01).count();
             there as f64 / level.positions.len() as f64
@@ -385,7 +385,7 @@ fn locks_of_another_mesh_are_refused_by_name() {
     let refused = |of_vertex: Vec<Lock>, ties: &[&[u32]]| {
         let ties = ties.iter().map(|tie| tie.iter().copied().map(VertexId).collect()).collect();
         let options = Options { locks: Locks { of_vertex, ties }, ..Options::default() };
-        simplify(&mesh, Target::Ratio(0.5), &options).err()
+        contract_to(&mesh, Target::Ratio(0.5), &options).err()
     };
     let [v0, v1, v8] = [0, 1, 8].map(VertexId);
     assert_eq!(
@@ -422,7 +422,7 @@ fn a_crowd_at_one_place_stays_there() {
     let tips = (0..3000).map(|i| VertexId(4 * i)).collect();
     let options =
         Options { locks: Locks { ties: vec![tips], ..Locks::default() }, ..Options::default() };
-    let (level, report) = simplify(&mesh, Target::Faces(0), &options).unwrap();
+    let (level, report) = contract_to(&mesh, Target::Faces(0), &options).unwrap();
     assert_eq!((report.held.tied, report.held.locked), (0, 3000));
     assert_eq!(level.positions.iter().filter(|p| **p == [0.0; 3]).count(), 3000);
 }
@@ -439,7 +439,7 @@ fn the_more_protected_a_side_is_the_finer_it_stays() {
         let kept = |protection| {
             let options =
                 Options { method, protection, locks: locks.clone(), ..Options::default() };
-            let (level, _) = simplify(&ball, Target::Ratio(0.25), &options).unwrap();
+            let (level, _) = contract_to(&ball, Target::Ratio(0.25), &options).unwrap();
             level.positions.iter().filter(|p| p[0] > 0.0).count() as f64
                 / level.positions.len() as f64
         };
@@ -448,5 +448,5 @@ fn the_more_protected_a_side_is_the_finer_it_stays() {
         assert!(shares[1] > shares[0] + 0.05 && shares[2] > shares[1], "{method:?}: {shares:?}");
     }
     let bad = Options { protection: Some(f64::NAN), ..Options::default() };
-    assert!(simplify(&ball, Target::Ratio(0.5), &bad).is_err());
+    assert!(contract_to(&ball, Target::Ratio(0.5), &bad).is_err());
 }

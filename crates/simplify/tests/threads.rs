@@ -6,7 +6,7 @@ use meshlod_fixtures as fixtures;
 use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId};
 use meshlod_samples as samples;
 use meshlod_simplify::{
-    History, Method, Options, Report, Simplifier, Target, VolumeLoss, simplify,
+    History, Method, Options, Report, Simplifier, Target, VolumeLoss, contract_to,
 };
 
 /// Methods that the kernel runs.
@@ -18,7 +18,7 @@ fn options(method: Method) -> Options {
 
 fn run_with(threads: usize, mesh: &Mesh, target: Target, options: &Options) -> (Mesh, Report) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| simplify(mesh, target, options).unwrap())
+    pool.install(|| contract_to(mesh, target, options).unwrap())
 }
 
 fn run(method: Method, mesh: &Mesh, target: Target) -> (Mesh, Report) {

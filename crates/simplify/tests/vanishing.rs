@@ -7,7 +7,7 @@ use meshlod_mesh::{Lock, Locks, Mesh, VertexId, face_components};
 use meshlod_samples as samples;
 use meshlod_simplify::{
     History, Method, Options, Progressive, Report, Simplifier, SimplifyError, Target, Topology,
-    simplify,
+    contract_to,
 };
 
 /// The diagonal of a ball of diameter 2.
@@ -28,7 +28,7 @@ fn balls(sizes: &[f64]) -> Mesh {
 }
 
 fn run(mesh: &Mesh, options: &Options, target: Target) -> (Mesh, Report) {
-    simplify(mesh, target, options).unwrap()
+    contract_to(mesh, target, options).unwrap()
 }
 
 /// The methods of the kernel.
@@ -260,7 +260,7 @@ fn a_hub_that_vanishes_takes_its_own_faces() {
 fn what_is_no_size_is_refused() {
     for size in [-1.0, f64::NAN] {
         let options = Options { vanish_below: Some(size), ..Options::default() };
-        let refused = simplify(&balls(&[]), Target::Ratio(0.5), &options);
+        let refused = contract_to(&balls(&[]), Target::Ratio(0.5), &options);
         assert!(matches!(refused, Err(SimplifyError::BadSize(_))));
     }
 }

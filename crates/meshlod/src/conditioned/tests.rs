@@ -3,7 +3,7 @@ use meshlod_mesh::{Connectivity, VertexId};
 use meshlod_samples as samples;
 
 use super::*;
-use crate::{ConditionedScene, Scene, SceneSimplifier};
+use crate::{ConditionedScene, Scene};
 
 /// Takes a mesh apart into faces with three vertices each.
 fn torn(of: &Mesh) -> Mesh {
