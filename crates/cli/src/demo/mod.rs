@@ -27,7 +27,7 @@ use crate::session::files;
 use pipeline::Pipeline;
 use sample_report::SampleReport;
 
-/// Take sample meshes through all steps, compare methods, and write a report page with pictures
+/// Take sample meshes through all steps, and write a page with pictures
 #[derive(Args)]
 pub struct Demo {
     /// Folder to write to; created if missing

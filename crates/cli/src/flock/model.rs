@@ -23,9 +23,10 @@ pub struct ModelArgs {
     /// Model of the members, or - [default: the sample fish]
     #[arg(long, value_name = "FILE")]
     pub model: Option<PathBuf>,
-    /// Way the model swims: +x, -x, +y, -y, +z, -z or auto. With auto it is +z, as in glTF (-y if z is
-    /// up); but a model that is half as long again along the other horizontal axis swims along that
-    /// one, with its bulkier end first
+    /// Way the model swims: +x, -x, +y, -y, +z, -z or auto
+    ///
+    /// With auto it is +z, as in glTF (-y if z is up); but a model that is half as long again along
+    /// the other horizontal axis swims along that one, with its bulkier end first.
     #[arg(long, value_name = "AXIS", default_value = "auto", value_parser = axes::forward,
         allow_hyphen_values = true)]
     pub forward: Forward,

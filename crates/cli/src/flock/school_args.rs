@@ -19,8 +19,10 @@ pub struct SchoolArgs {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = parse::positive,
         allow_negative_numbers = true)]
     pub schools: usize,
-    /// Scene and path of the camera: ring circles a school, inside swims in it, far keeps away from
-    /// it, obstacles and terrain follow it past solids and over hills
+    /// Scene and path of the camera
+    ///
+    /// ring circles a school, inside swims in it, far keeps away from it; obstacles and terrain
+    /// follow it past solids and over hills.
     #[arg(long, value_name = "NAME", default_value = "ring")]
     pub camera: ScenarioName,
     /// Policy that chooses the levels

@@ -1,7 +1,6 @@
 //! Groups of command-line options that several commands share.
 
 use clap::{Args, ValueEnum};
-use meshlod::io::gltf::SourceDocument;
 use meshlod::io::{Precision, Weld};
 use meshlod::jobs::WrittenAs;
 use meshlod::mesh::AttributeBounds;
@@ -17,8 +16,10 @@ pub struct GlobalArgs {
     /// Print one JSON object to standard output and nothing else; messages go to standard error
     #[arg(long, global = true)]
     pub json: bool,
-    /// Exit with 1 if something of a file would be left out, then without output, or if a target is
-    /// out of reach, then with what comes closest to it
+    /// Exit with 1 if data would be lost or a target is out of reach
+    ///
+    /// If something of a file would be left out, nothing is written; if a target is out of reach,
+    /// what comes closest to it is.
     #[arg(long, global = true)]
     pub strict: bool,
     /// Print errors only, and JSON with --json: no progress, no warnings, no summary
@@ -28,7 +29,9 @@ pub struct GlobalArgs {
     #[arg(short = 'j', long, global = true, value_name = "N", value_parser = parse::threads,
         allow_negative_numbers = true)]
     pub threads: Option<usize>,
-    /// Format of standard input and output (-) and of the files of a batch, as a suffix: ply, glb, …
+    /// Format of - and of the files of a batch: ply, glb, …
+    ///
+    /// A suffix, for standard input and output and for the outputs of a batch.
     #[arg(long, global = true, value_name = "SUFFIX", value_parser = parse::suffix)]
     pub format: Option<Suffix>,
 }
@@ -85,8 +88,10 @@ impl ReadArgs {
 #[derive(Clone, Copy, Args)]
 #[command(next_help_heading = "Files")]
 pub struct WriteArgs {
-    /// Coordinate type in PLY, OBJ, OFF, SMF and text STL: f32, f64, or auto, which is f32 where that
-    /// keeps vertices apart and moves none by more than a thousandth of the mean edge
+    /// Coordinates of PLY, OBJ, OFF, SMF and text STL: f32, f64 or auto
+    ///
+    /// With auto they are f32 where that keeps vertices apart and moves none by more than a
+    /// thousandth of the mean edge.
     #[arg(long, value_name = "TYPE", default_value = "auto")]
     precision: Precision,
 }
@@ -124,11 +129,6 @@ impl WriteArgs {
             _ => self,
         }
     }
-
-    /// Chooses the bits that the scene needs, unless `--precision` chooses.
-    pub fn of(self, scene: &Scene) -> Self {
-        Self { precision: self.precision.of(scene.meshes.iter().map(|mesh| &mesh.mesh)) }
-    }
 }
 
 /// Options for the precision of attributes.
@@ -147,15 +147,6 @@ pub struct AttributeErrorArgs {
 }
 
 impl AttributeErrorArgs {
-    /// Makes the bound of texture coordinates hold for textures that a material repeats by scaling
-    /// the coordinates.
-    pub fn refine_for(&mut self, scene: &Scene) {
-        let scale = scene.source.as_ref().map_or(1.0, SourceDocument::largest_texture_scale);
-        if scale > 1.0 {
-            self.uv_error = Some(self.bounds().uv / scale);
-        }
-    }
-
     /// Returns the bounds, with the defaults for those not given.
     pub fn bounds(&self) -> AttributeBounds {
         let default = AttributeBounds::default();
@@ -191,8 +182,9 @@ impl SamplingArgs {
 #[derive(Args)]
 #[command(next_help_heading = "Picture")]
 pub struct ViewArgs {
-    /// Side to look from: front, back, left, right, top or bottom; or the viewing direction x,y,z
-    /// [default: three-quarter view]
+    /// Side to look from, or the viewing direction x,y,z [default: three-quarter view]
+    ///
+    /// The sides are front, back, left, right, top and bottom.
     #[arg(long, value_name = "DIR", value_parser = parse::view_direction, allow_hyphen_values = true)]
     view: Option<ViewDirection>,
     /// Axis that points up

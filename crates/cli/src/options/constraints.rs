@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use clap::Args;
-use meshlod::{Constraints, Mesh, Options, Scene, VertexLocking};
+use meshlod::{Constraints, Options, Scene, VertexLocking};
 
 use crate::options::args::ReadArgs;
 use crate::options::fuse::{FuseArgs, FuseReport};
@@ -22,12 +22,6 @@ pub struct ConstraintArgs {
     pub locks: LockArgs,
     #[command(flatten)]
     pub topology: TopologyArgs,
-}
-
-/// A scene merged into one mesh, with the options to simplify it by.
-pub struct FlatInput {
-    pub mesh: Mesh,
-    pub options: Options,
 }
 
 impl ConstraintArgs {
@@ -53,20 +47,6 @@ impl ConstraintArgs {
         let mut scene = files::read_surface(path, reading, session)?;
         let fused = self.fuse.apply(&mut scene, session);
         Ok((scene, fused))
-    }
-
-    /// Merges a scene read from a path into one mesh, with the constraints added to the options.
-    pub fn flatten(
-        &self,
-        scene: Scene,
-        (path, reading): (&Path, &ReadArgs),
-        options: Options,
-        session: &Session,
-    ) -> Result<FlatInput, Failure> {
-        let constraints = self.constraints(&InputScene { scene: &scene, path, reading })?;
-        note_search(&constraints, session);
-        let (mesh, options) = constraints.flatten(scene, options).map_err(Failure::new)?;
-        Ok(FlatInput { mesh, options })
     }
 
     /// Returns true if vertices are to be held or objects to be fused.

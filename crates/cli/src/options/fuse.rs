@@ -11,9 +11,10 @@ use crate::text::numbers::{count, faces, plural};
 #[derive(Args)]
 #[command(next_help_heading = "Constraints")]
 pub struct FuseArgs {
-    /// Fuse closed objects that intersect into one surface: cut them where they meet, remove the
-    /// parts inside, join the rest. Object labels are kept, and ratios refer to the faces before
-    /// fusing
+    /// Fuse closed objects that intersect into one surface
+    ///
+    /// They are cut where they meet, the parts inside are removed, and the rest is joined. Object
+    /// labels are kept, and ratios refer to the faces before fusing.
     #[arg(long)]
     pub fuse: bool,
 }

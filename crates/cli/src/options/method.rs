@@ -29,18 +29,24 @@ const WEIGHTS: AttributeWeights = AttributeWeights::DEFAULT;
 #[derive(Args)]
 #[command(next_help_heading = "Attributes")]
 struct WeightArgs {
-    /// Weight of normals: a deviation of 1 counts like this fraction of the diagonal, where 0 means
-    /// not at all; for lindstrom-turk, qem and qem-endpoint
+    /// Weight of normals in the cost, 0 for none
+    ///
+    /// A deviation of 1 counts like this fraction of the diagonal. For lindstrom-turk, qem and
+    /// qem-endpoint.
     #[arg(long, value_name = "W", default_value_t = WEIGHTS.normal, value_parser = parse::weight,
         allow_negative_numbers = true)]
     weight_normal: f64,
-    /// Weight of texture coordinates: a texture that slides by a length counts like this fraction
-    /// of it, where 0 means not at all; for lindstrom-turk, qem and qem-endpoint
+    /// Weight of texture coordinates in the cost, 0 for none
+    ///
+    /// A texture that slides by a length counts like this fraction of it. For lindstrom-turk, qem
+    /// and qem-endpoint.
     #[arg(long, value_name = "W", default_value_t = WEIGHTS.uv, value_parser = parse::weight,
         allow_negative_numbers = true)]
     weight_uv: f64,
-    /// Weight of colours: a deviation of 1 counts like this fraction of the diagonal, where 0 means
-    /// not at all; for lindstrom-turk, qem and qem-endpoint
+    /// Weight of colours in the cost, 0 for none
+    ///
+    /// A deviation of 1 counts like this fraction of the diagonal. For lindstrom-turk, qem and
+    /// qem-endpoint.
     #[arg(long, value_name = "W", default_value_t = WEIGHTS.color, value_parser = parse::weight,
         allow_negative_numbers = true)]
     weight_color: f64,

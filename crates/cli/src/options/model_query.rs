@@ -18,18 +18,22 @@ use crate::text::numbers::faces;
 pub struct QueryArgs {
     #[command(flatten)]
     pub target: TargetArgs,
-    /// Camera for errors in pixels and the focus frustum: "eye=x,y,z look=x,y,z fov=45 1920x1080",
-    /// with up=x,y,z unless y is up
+    /// Camera: "eye=x,y,z look=x,y,z fov=45 1920x1080"
+    ///
+    /// Errors in pixels and the focus `frustum` refer to it. Add up=x,y,z unless y is up.
     #[arg(long, value_name = "CAMERA", value_parser = query_args::camera)]
     pub camera: Option<ViewCamera>,
-    /// Region where the error counts, coarse elsewhere: point=x,y,z for the point of the surface
-    /// closest to it, segment=x,y,z,x,y,z, box=x,y,z,x,y,z, sphere=x,y,z,r, ground-line=x,y,x,y and
-    /// ground-box=x,y,x,y for a line and a window on a map, or frustum for what the camera sees
-    /// [default: everywhere]
+    /// Region where the error counts [default: everywhere]
+    ///
+    /// The level is coarse elsewhere. One of point=x,y,z for the point of the surface closest to
+    /// it, segment=x,y,z,x,y,z, box=x,y,z,x,y,z, sphere=x,y,z,r, ground-line=x,y,x,y and
+    /// ground-box=x,y,x,y for a line and a window on a map, or frustum for what the camera sees.
     #[arg(long, value_name = "FOCUS", value_parser = query_args::focus, allow_hyphen_values = true)]
     pub focus: Option<FocusRequest>,
-    /// Vertical axis of ground-line and ground-box, which take the other two axes in the order x, y,
-    /// z [default: that of the heights of right triangles, otherwise y]
+    /// Vertical axis of ground-line and ground-box
+    ///
+    /// These take the other two axes in the order x, y, z. The default is the axis of the heights
+    /// for right triangles, otherwise y.
     #[arg(long, value_name = "AXIS", requires = "focus")]
     up: Option<VerticalAxis>,
 }
@@ -46,14 +50,19 @@ enum VerticalAxis {
 #[derive(Args)]
 #[group(multiple = false)]
 pub struct TargetArgs {
-    /// Largest error: 1px as the camera sees it, 0.01% of the diagonal of the meshes as
-    /// they are stored, whatever nodes make of them, or 0.5 in model units; 0 for the finest level. In the focus, every point of the result is as close to the mesh, and every
-    /// point of the mesh to the result, which is proven
+    /// Largest error: 0.01%, 0.5 or 1px; 0 for the finest level
+    ///
+    /// 1px is a pixel of the camera, 0.01% a part of the diagonal of the meshes as they are stored,
+    /// whatever nodes make of them, and 0.5 a length in model units. In the focus, every point of
+    /// the result is as close to the mesh, and every point of the mesh to the result: this is
+    /// proved.
     #[arg(short, long, value_name = "BOUND", value_parser = query_args::error_limit,
         allow_hyphen_values = true)]
     pub error: Option<ErrorLimit>,
-    /// The best mesh of at most N faces: for the camera if there is one, else from all sides. A mesh
-    /// that several nodes show counts once
+    /// Largest number of faces: the best mesh within it
+    ///
+    /// Best for the camera if there is one, else from all sides. A mesh that several nodes show
+    /// counts once.
     #[arg(short, long, value_name = "N", value_parser = parse::whole,
         allow_negative_numbers = true)]
     pub faces: Option<usize>,

@@ -16,9 +16,10 @@ pub struct TopologyArgs {
     /// Changes that are allowed to the topology of the surface [default: free]
     #[arg(long, value_name = "KIND")]
     topology: Option<TopologyArg>,
-    /// Largest connected component that may vanish, by the diagonal of its bounding box: a length in
-    /// model units, or 5% of the model's diagonal [default: no limit by lindstrom-turk and qem; by
-    /// other methods nothing vanishes]
+    /// Largest component that may vanish: 5% or a length
+    ///
+    /// By the diagonal of its bounding box, in model units or relative to the model's diagonal. By
+    /// default lindstrom-turk and qem have no limit, and with other methods nothing vanishes.
     #[arg(long, value_name = "SIZE", value_parser = parse::bound, allow_hyphen_values = true)]
     vanish_below: Option<Bound>,
     /// Do not sew boundary edges that coincide exactly

@@ -134,17 +134,6 @@ pub fn write_encoded(
     Ok(write_file(path, bytes)?)
 }
 
-/// Notes the vertices that no face uses, and the faces that a file of our own with `there` faces
-/// leaves out of a mesh.
-pub fn unused_parts(mesh: &Mesh, there: usize) -> Vec<Note> {
-    let alone = mesh.used_vertices().iter().filter(|&&used| !used).count();
-    let odd = mesh.faces.len().saturating_sub(there);
-    vec![
-        Note::left_out(alone, "unused vertex", "unused vertices"),
-        Note::left_out(odd, "degenerate or duplicate face", "degenerate or duplicate faces"),
-    ]
-}
-
 /// Exchanges the meshes of a scene for those of a level.
 fn swap(scene: &mut Scene, level: &mut [Mesh]) {
     let meshes = scene.meshes.iter_mut().map(|mesh| &mut mesh.mesh);

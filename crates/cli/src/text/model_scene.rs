@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use meshlod::io::merged_instances;
 use meshlod::jobs::ErrorPoses;
 use meshlod::multires::{ModelFile, Query};
-use meshlod::{FileBytes, Format, ModelScene, Scene, SceneCounts, SceneQueryError};
+use meshlod::{FileBytes, Format, ModelScene, SceneCounts, SceneQueryError};
 
 use crate::session::Session;
 use crate::session::failure::Failure;
@@ -67,36 +66,6 @@ pub fn read(
     Ok(model)
 }
 
-/// Returns a scene of the level in `flat`, as the format can hold it: glTF has the nodes of the
-/// scene, and other formats get a copy for each instance of a mesh.
-pub fn restored(
-    path: &Path,
-    model: ModelScene,
-    mut flat: Scene,
-    format: Format,
-) -> Result<Scene, Failure> {
-    if model.is_flat() && !is_gltf(format) {
-        // So that what the format lacks of the document is noted.
-        flat.source = model.source().cloned();
-        return Ok(flat);
-    }
-    let level = std::mem::take(&mut flat.meshes[0]);
-    model.into_scene(level.name, level.mesh).map_err(|error| Failure::at(path, error))
-}
-
-/// Notes that meshes become one in a format without nodes. Those with several instances come with
-/// their nodes, and are noted when they are written.
-pub fn note_merged(
-    output: &Path,
-    model: &ModelScene,
-    format: Format,
-    session: &Session,
-) -> Result<(), Failure> {
-    let is_merged = model.is_flat() && !is_gltf(format);
-    let merged = merged_instances(if is_merged { model.mesh_count() } else { 0 });
-    session.note(output, &[merged.remedied(".glb keeps them apart")])
-}
-
 /// Puts a query about the scene of a file to the levels of its meshes. Of a point, returns the place
 /// where the levels have the closest one that is shown.
 pub fn query<'f>(
@@ -113,11 +82,6 @@ pub fn query<'f>(
 
 pub fn is_gltf(format: Format) -> bool {
     format.is_gltf()
-}
-
-/// Returns the number of faces that a scene shows, over all instances.
-pub fn shown_faces(scene: &Scene) -> usize {
-    scene.instances().iter().map(|instance| scene.meshes[instance.mesh].mesh.faces.len()).sum()
 }
 
 /// Lists numbers of things, without those of which there are none.

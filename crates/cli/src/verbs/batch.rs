@@ -9,28 +9,35 @@ use crate::recipe::{Recipe, Spelled, VerbOptions};
 use crate::session::failure::Failure;
 use crate::verbs::simplify::Simplify;
 
-/// Simplify many files, or do with them what a recipe says
+/// Simplify many files, or run a recipe on them
 ///
 /// Files that were made before by the same recipe are skipped, so that a batch that was interrupted
 /// goes on. A file that fails does not stop the others; the exit code is 1 then.
 #[derive(Args)]
 pub struct Batch {
-    /// Files, folders, and patterns such as 'in/**/*.glb', in quotes: ** stands for any folders. Below
-    /// the fixed part of a pattern, OUT gets the same folders
+    /// Files, folders, and patterns such as 'in/**/*.glb'
+    ///
+    /// Put patterns in quotes: ** stands for any folders. Below the fixed part of a pattern, OUT
+    /// gets the same folders.
     #[arg(value_name = "IN", required = true)]
     pub inputs: Vec<PathBuf>,
     /// Folder to write to
     #[arg(value_name = "OUT", required = true)]
     pub output: PathBuf,
-    /// Recipe in place of the options of simplify, for a verb with IN and OUT: a .toml or .json file
-    /// as for the verb run, or its JSON itself, in braces
+    /// Recipe to use in place of the options of simplify
+    ///
+    /// For a verb with IN and OUT: a .toml or .json file as for the verb run, or its JSON itself,
+    /// in braces.
     #[arg(long, value_name = "FILE")]
     recipe: Option<PathBuf>,
-    /// Number of files at a time, each on cores / N threads unless --threads is given [default: one
-    /// per core]
+    /// Number of files at a time [default: one per core]
+    ///
+    /// Each works on cores / N threads unless --threads is given.
     #[arg(long, value_name = "N", value_parser = parse::threads, allow_negative_numbers = true)]
     pub jobs: Option<usize>,
-    /// Write a table of all files, their faces, errors, times and warnings: a .csv or .json file
+    /// Write a table of all files: .csv or .json
+    ///
+    /// It has their faces, errors, times and warnings.
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
     /// Make files again that are there already

@@ -21,11 +21,13 @@ use crate::session::hearing::Hearing;
 use crate::session::model_file;
 use crate::session::scene_files;
 
-/// Write all levels of a mesh or scene to one multiresolution file (.mlod). The topology is kept,
-/// and locks hold in every level: tied vertices are locked. Nodes, materials, images, skins, morph
-/// targets and animations come back with extract. A mesh that several nodes show is stored once, and
-/// errors hold for the largest of them; in the pose of the file they are measured, proved or estimated,
-/// and in up to 64 poses of its animations they are measured too, unless --bounds or --estimates is given
+/// Write all levels of a mesh or scene to one file (.mlod)
+///
+/// The topology is kept, and locks hold in every level: tied vertices are locked. Nodes, materials,
+/// images, skins, morph targets and animations come back with extract. A mesh that several nodes
+/// show is stored once, and errors hold for the largest of them. In the pose of the file they are
+/// measured, proved or estimated; in up to 64 poses of its animations they are measured too, unless
+/// --bounds or --estimates is given.
 #[derive(Args)]
 pub struct Build {
     /// Mesh or scene to read, or -
@@ -40,32 +42,42 @@ pub struct Build {
     #[arg(long, value_name = "NAME", default_value = Method::LindstromTurk.name(),
         help = parse::methods())]
     method: Method,
-    /// Compute proven error bounds in place of measured errors: levels of the same error have two to
-    /// six times as many faces. The errors of right triangles are bounds in any case
+    /// Compute proven error bounds in place of measured errors
+    ///
+    /// Levels of the same error have two to six times as many faces. The errors of right triangles
+    /// are bounds in any case.
     #[arg(long)]
     bounds: bool,
-    /// Keep the method's smoothed estimates in place of measured errors: two to three times faster.
-    /// Cuts that go by what the file says, such as those of extract --unverified, are then off by up
-    /// to three times as much
+    /// Keep estimates in place of measured errors: faster
+    ///
+    /// Building is two to three times faster. Cuts that go by the stored errors, such as those of
+    /// extract --unverified, are then off by up to three times as much.
     #[arg(long, conflicts_with = "bounds")]
     estimates: bool,
-    /// Largest displacement of a vertex by rounding: 0.001 in model units, or 0.005% of the
-    /// diagonal; by a cell or two more where a triangle would lose its area
+    /// Largest displacement by rounding: 0.005% or a length
+    ///
+    /// A length is in model units, a percentage relative to the diagonal. Vertices move by a cell
+    /// or two more where a triangle would lose its area.
     #[arg(long, value_name = "BOUND", value_parser = parse::bound, default_value = "0.005%",
         allow_hyphen_values = true)]
     rounding: Bound,
-    /// Keep the vertices of the mesh bit for bit, so that extract --error 0 restores all its faces;
-    /// vertices of coarser levels move by about 0.002% of the diagonal. Where a node of glTF moves,
-    /// turns or scales a mesh, coordinates smaller than 2^-28 of its size or of its distance from the
-    /// origin, normals and tangents may differ in their last bits, and so may texture coordinates
+    /// Keep the vertices of the mesh bit for bit
+    ///
+    /// Then extract --error 0 restores all its faces. Vertices of coarser levels move by about
+    /// 0.002% of the diagonal. Where a node of glTF moves, turns or scales a mesh, coordinates
+    /// smaller than 2^-28 of its size or of its distance from the origin, normals, tangents and
+    /// texture coordinates may differ in their last bits.
     #[arg(long, conflicts_with = "rounding")]
     lossless: bool,
-    /// Keep the volume of closed parts exactly in the finest cut, as --lossless does, so that extract
-    /// --exact-volume gives it to any other cut
+    /// Keep the volume of closed parts exactly in the finest cut
+    ///
+    /// Like --lossless, so that extract --exact-volume can give it to any other cut.
     #[arg(long, conflicts_with = "rounding")]
     exact_volume: bool,
-    /// Approximate number of vertices in a chunk, the unit of reading: smaller chunks make a larger
-    /// file of which a query reads less
+    /// Approximate number of vertices in a chunk
+    ///
+    /// A chunk is the unit of reading: smaller chunks make a larger file of which a query reads
+    /// less.
     #[arg(long, value_name = "N", value_parser = parse::positive, default_value_t = 4096,
         allow_negative_numbers = true)]
     in_chunk: usize,

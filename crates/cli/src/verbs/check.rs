@@ -31,7 +31,9 @@ pub struct Check {
     /// Mesh to read, or -; or a .mlod file, to prove that none of its cuts has a crack
     #[arg(value_name = "IN")]
     input: PathBuf,
-    /// Definition of an object; auto takes named objects if there are two or more, else components
+    /// Definition of an object
+    ///
+    /// With auto it is a named object if there are two or more, else a component.
     #[arg(long, value_name = "BY", default_value = "auto")]
     objects: By,
     /// Also exit with 3 on findings of this severity
@@ -47,8 +49,9 @@ pub struct Check {
     /// Skip the search for faces that intersect, which --locks needs
     #[arg(long, conflicts_with = "locks")]
     no_intersections: bool,
-    /// Write vertex locks for the places where components meet, for simplify --locks and other
-    /// programs
+    /// Write vertex locks for the places where components meet
+    ///
+    /// For simplify --locks and for other programs.
     #[arg(long, value_name = "FILE.json")]
     locks: Option<PathBuf>,
     /// Lock the boundary in that file too

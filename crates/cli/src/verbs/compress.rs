@@ -20,9 +20,11 @@ use crate::session::hearing::Hearing;
 use crate::session::scene_files;
 use crate::text::numbers::percent;
 
-/// Compress a scene for rendering or transmission: meshes with attributes and objects, and in .mlq
-/// and .mlz nodes, materials, skins and animations as they are. No face is removed, and every vertex
-/// moves to a grid: --lock-contacts keeps vertices at one place together, and other locks are refused
+/// Compress a scene for rendering or transmission
+///
+/// Meshes keep their attributes and objects, and .mlq and .mlz also hold nodes, materials, skins
+/// and animations as they are. No face is removed, and every vertex moves to a grid:
+/// --lock-contacts keeps vertices at one place together, and other locks are refused.
 #[derive(Args)]
 pub struct Compress {
     /// Mesh to read, or -
@@ -31,18 +33,26 @@ pub struct Compress {
     /// File to write: .mlq to render from directly, .mlz to send, .glb for other programs
     #[arg(value_name = "OUT")]
     output: PathBuf,
-    /// Encoding of positions: any scheme in .mlq [default: blocks], lattice in .mlz, parts in .glb
+    /// Encoding of positions
+    ///
+    /// In .mlq any scheme [default: blocks], in .mlz lattice, in .glb parts.
     #[arg(long, value_name = "SCHEME")]
     scheme: Option<SchemeArg>,
-    /// Store the faces of --scheme parts as triangle strips, in local indices of mostly one byte that
-    /// are drawn as they are: a larger file, but far less memory while it is drawn
+    /// Store the faces of --scheme parts as triangle strips
+    ///
+    /// Local indices of mostly one byte that are drawn as they are: a larger file, but far less
+    /// memory while it is drawn.
     #[arg(long)]
     strips: bool,
-    /// Write .glb that a GPU reads directly: KHR_mesh_quantization without EXT_meshopt_compression
+    /// Write a .glb that a GPU reads directly
+    ///
+    /// With KHR_mesh_quantization and without EXT_meshopt_compression.
     #[arg(long)]
     resident: bool,
-    /// Largest error of animated rotations in .glb, in degrees, at any time; translations and scales
-    /// may err by the arc of this angle at the largest of their track [default: 0.1]
+    /// Largest error of rotations in .glb, in degrees [default: 0.1]
+    ///
+    /// At any time of an animation; translations and scales may err by the arc of this angle at the
+    /// largest of their track.
     #[arg(long, value_name = "DEGREES", value_parser = parse::length, allow_hyphen_values = true)]
     animation_error: Option<f64>,
     #[command(flatten)]

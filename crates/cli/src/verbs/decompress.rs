@@ -16,7 +16,9 @@ use crate::session::files;
 use crate::session::scene_files;
 use crate::text::numbers::{count, faces, value};
 
-/// Decode a compressed file (.mlq or .mlz) to the scene that it was made of, as convert does
+/// Decode a compressed file (.mlq or .mlz)
+///
+/// To glTF as the scene that it was made from, to other formats as its surface.
 #[derive(Args)]
 pub struct Decompress {
     /// File to read, .mlq or .mlz, or -

@@ -22,8 +22,10 @@ use crate::session::scene_files;
 use crate::text::kept_error;
 use crate::text::numbers::value;
 
-/// Extract one level from a multiresolution file: fine where it is needed, coarse elsewhere. glTF
-/// gets the whole scene, with nodes, materials, skins and animations, other formats its surface
+/// Extract one level from a multiresolution file (.mlod)
+///
+/// Fine where it is needed, coarse elsewhere. glTF gets the whole scene, with nodes, materials,
+/// skins and animations, other formats its surface.
 #[derive(Args)]
 pub struct Extract {
     /// Multiresolution file to read
@@ -35,14 +37,18 @@ pub struct Extract {
     /// Leave out faces that do not intersect the focus; of a point leave the nearest ones
     #[arg(long, requires = "focus")]
     only: bool,
-    /// Move vertices along their normals, mostly by their last digits, until closed parts have the
+    /// Restore the volume of closed parts
+    ///
+    /// Vertices move along their normals, mostly by their last digits, until closed parts have the
     /// volume of the finest cut in the file, in the precision that is written: that of the mesh, if
-    /// the file was built with --exact-volume or --lossless. Reads the whole file; vertices move on
-    /// top of --error, and so do those that were locked, which the file does not know
+    /// the file was built with --exact-volume or --lossless. Reads the whole file. Vertices move on
+    /// top of --error, and so do those that were locked, which the file does not know.
     #[arg(long, conflicts_with = "only")]
     exact_volume: bool,
-    /// Trust the errors in the file: faster, and reads only what the result needs, but places can be
-    /// farther off than --error, and the error of --faces is not measured
+    /// Trust the errors in the file: faster
+    ///
+    /// Reads only what the result needs, but places can be farther off than --error, and the error
+    /// of --faces is not measured.
     #[arg(long)]
     unverified: bool,
     #[command(flatten)]

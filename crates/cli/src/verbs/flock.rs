@@ -20,7 +20,7 @@ use crate::session::answer::Answer;
 use crate::session::failure::Failure;
 use crate::session::files;
 
-/// Film schools of a model, every member only as fine as a policy decides
+/// Film schools of a model, each member only as fine as needed
 ///
 /// Writes the frames as PNG and their figures as OUT/frames.jsonl, one JSON object a line. Lengths
 /// are in body lengths: the longest side of the model's box is 1.
@@ -40,8 +40,10 @@ pub struct Flock {
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = names::detail,
         allow_negative_numbers = true)]
     pub detail: f64,
-    /// Draw members smaller than this as impostors: quads of two triangles with a picture of the model.
-    /// The size is that of a body length, in pixels
+    /// Draw members smaller than this many pixels as impostors
+    ///
+    /// Impostors are quads of two triangles with a picture of the model. The size is that of a body
+    /// length.
     #[arg(long, value_name = "PX", value_parser = names::impostors, allow_negative_numbers = true)]
     pub impostors: Option<f64>,
     /// Number of frames
@@ -61,20 +63,25 @@ pub struct Flock {
     /// Folder to write to; created if missing
     #[arg(long, value_name = "DIR", default_value = "flock")]
     pub out: PathBuf,
-    /// Folder for a recording of members, cameras, levels and selection, as JSON and NumPy arrays;
-    /// created if missing
+    /// Folder for a recording; created if missing
+    ///
+    /// Members, cameras, levels and selection, as JSON and NumPy arrays.
     #[arg(long, value_name = "DIR")]
     pub record: Option<PathBuf>,
-    /// Compare all policies instead, in five scenes: triangles against image error, written to OUT as
-    /// a page with pictures (index.html) and as figures (evaluation.json)
+    /// Compare all policies instead
+    ///
+    /// In five scenes: triangles against image error, written to OUT as a page with pictures
+    /// (index.html) and as figures (evaluation.json).
     #[arg(long, conflicts_with_all = ["policy", "camera", "triangles", "detail", "impostors", "frames",
         "size", "no_pictures", "record"])]
     pub evaluate: bool,
     /// Evaluate small pictures and few frames, within minutes
     #[arg(long, requires = "evaluate")]
     pub quick: bool,
-    /// Score a recording instead: draw the levels of its selection.npy, whoever chose them, and
-    /// compare them with full detail; --model names the recorded model, for its textures
+    /// Score a recording instead
+    ///
+    /// Draws the levels of its selection.npy, whoever chose them, and compares them with full
+    /// detail; --model names the recorded model, for its textures.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["evaluate", "policy", "camera", "triangles",
         "detail", "impostors", "frames", "size", "no_pictures", "record"])]
     pub score: Option<PathBuf>,

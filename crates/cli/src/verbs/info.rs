@@ -21,8 +21,10 @@ use crate::text::numbers::{coordinate, count, faces, value};
 use crate::text::table::aligned;
 use crate::verbs::info::contents::Contents;
 
-/// Print what a file contains: counts, bounds, area, volume, closed or open; textures, skins,
-/// animations, instances, extensions and bytes
+/// Print what a file contains
+///
+/// Counts, bounds, area, volume, closed or open; textures, skins, animations, instances, extensions
+/// and bytes.
 #[derive(Args)]
 pub struct Info {
     /// Mesh to read, or -

@@ -35,8 +35,10 @@ pub struct Lods {
     /// Mesh to read, or -
     #[arg(value_name = "IN")]
     input: PathBuf,
-    /// File to write; with one file a level, NAME_LOD0, NAME_LOD1, … beside it. NAME.lods.json has
-    /// the measured error of each level and the distance from which it is fine enough
+    /// File to write
+    ///
+    /// With one file a level, these are NAME_LOD0, NAME_LOD1, … beside it. NAME.lods.json has the
+    /// measured error of each level and the distance from which it is fine enough.
     #[arg(value_name = "OUT")]
     output: PathBuf,
     /// Level sizes, finest first: 50% or 0.5 of the faces, or a number of faces

@@ -31,12 +31,16 @@ pub struct Measure {
     /// The mesh to compare with it
     #[arg(value_name = "B")]
     b: PathBuf,
-    /// Also enclose the maximum between a lower and an upper bound, 1% apart, by dividing faces
-    /// until none can reach farther: a proof, where samples may miss a peak
+    /// Also prove the maximum distance, to within 1%
+    ///
+    /// It is enclosed between a lower and an upper bound by dividing faces until none can reach
+    /// farther: a proof, where samples may miss a peak.
     #[arg(long)]
     certified: bool,
-    /// Measure in N poses of the animations of A, at key times and, if N is large enough, between
-    /// them, and report the pose in which the two are farthest apart. B must be a level of A
+    /// Measure in N poses of the animations of A
+    ///
+    /// At key times and, if N is large enough, between them; reports the pose in which the two are
+    /// farthest apart. B must be a level of A.
     #[arg(long, value_name = "N", value_parser = parse::positive, allow_negative_numbers = true)]
     poses: Option<usize>,
     #[command(flatten)]

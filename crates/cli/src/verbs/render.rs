@@ -52,8 +52,10 @@ pub struct Render {
     /// Colour every vertex by its distance from this mesh
     #[arg(long, value_name = "B")]
     heat_against: Option<PathBuf>,
-    /// Draw on the GPU, as the viewer does; also draws .mlod and .mlq files as they are stored. Needs a
-    /// meshlod built with the feature view
+    /// Draw on the GPU, as the viewer does
+    ///
+    /// Also draws .mlod and .mlq files as they are stored. Needs a meshlod built with the feature
+    /// view.
     #[arg(long)]
     gpu: bool,
     #[command(flatten)]

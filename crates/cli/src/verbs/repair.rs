@@ -55,8 +55,9 @@ struct StepArgs {
     #[arg(long, value_name = "EPS", default_value_t = 0.0, value_parser = parse::length,
         allow_negative_numbers = true)]
     stitch: f64,
-    /// Close holes of up to N edges, at most 256. If too many are large, the smallest are closed
-    /// first; run again to go on
+    /// Close holes of up to N edges, at most 256
+    ///
+    /// If too many are large, the smallest are closed first; run again to go on.
     #[arg(long, value_name = "N", value_parser = parse::whole, allow_negative_numbers = true)]
     holes: Option<usize>,
     /// Close only holes whose perimeter is at most LENGTH, in model units

@@ -7,9 +7,10 @@ use clap::Args;
 use crate::recipe::Recipe;
 use crate::session::failure::Failure;
 
-/// Run a recipe: a verb with its options in a TOML or JSON file. Keys are the long names of the
-/// options, and verb, input and output: verb = "simplify", ratio = "10%", measured = true. Paths in a
-/// recipe are relative to its folder
+/// Run a recipe: a verb with its options, in TOML or JSON
+///
+/// Keys are the long names of the options, and verb, input and output: verb = "simplify", ratio =
+/// "10%", measured = true. Paths in a recipe are relative to its folder.
 #[derive(Args)]
 pub struct Run {
     /// Recipe, a .toml or .json file, or its JSON itself, in braces

@@ -60,9 +60,11 @@ struct TargetArgs {
     #[arg(short, long, value_name = "RATIO", value_parser = parse::ratio,
         allow_hyphen_values = true)]
     ratio: Option<f64>,
-    /// Largest distance from the input: 0.5 in model units, or 0.1% of the diagonal. It is proved
-    /// for every point of both surfaces, as written, and what is farther away is mended; methods
-    /// other than lindstrom-turk and qem start again with a lower bound for that
+    /// Largest distance from the input: 0.1% or a length, proved
+    ///
+    /// A length is in model units, a percentage relative to the diagonal. The bound holds for every
+    /// point of both surfaces, as written, and faces that are farther away are mended; methods
+    /// other than lindstrom-turk and qem start again with a lower bound.
     #[arg(short, long, value_name = "BOUND", value_parser = parse::bound,
         allow_hyphen_values = true)]
     error: Option<Bound>,

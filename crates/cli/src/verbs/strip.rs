@@ -28,15 +28,18 @@ use crate::text::kept_error;
 use crate::text::numbers;
 use options::{EffortArg, FilterArg, QualityArg};
 
-/// Convert a mesh and its levels, or a cut of a multiresolution file, to triangle strips, and count
-/// the vertices they send
+/// Convert a mesh and its levels to triangle strips
+///
+/// Or a cut of a multiresolution file; counts the vertices that the strips send.
 #[derive(Args)]
 pub struct Strip {
     /// Mesh to read, or -; or an .mlod file to take a cut from
     #[arg(value_name = "IN")]
     input: PathBuf,
-    /// Follow the cuts of an .mlod file at these errors in turn, repair strips and index buffers
-    /// where one differs from the last, and list each: 1%,0.1%,1%
+    /// Follow the cuts of an .mlod file at these errors: 1%,0.1%
+    ///
+    /// In turn, repairing strips and index buffers where one differs from the last, and listing
+    /// each.
     #[arg(long, value_name = "BOUNDS", value_delimiter = ',', value_parser = query_args::error_limit,
         allow_hyphen_values = true, conflicts_with_all = ["error", "faces", "levels", "filter", "out",
         "strict"])]
@@ -45,8 +48,9 @@ pub struct Strip {
     #[arg(long, visible_alias = "level", value_name = "SIZES", value_delimiter = ',',
         default_value = "100%", value_parser = parse::size, allow_hyphen_values = true)]
     levels: Vec<LevelSize>,
-    /// Carry the strips of the whole mesh down to each level and shorten them by this filter
-    /// [default: each level gets strips of its own]
+    /// Carry the strips of the whole mesh down by this filter
+    ///
+    /// They are shortened at each level. By default each level gets strips of its own.
     #[arg(long, value_name = "FILTER")]
     filter: Option<FilterArg>,
     /// Quality of the strips of the mesh or of a level
@@ -55,12 +59,16 @@ pub struct Strip {
     /// Effort of --quality best and --filter repair
     #[arg(long, value_name = "EFFORT", default_value = "thorough")]
     effort: EffortArg,
-    /// File to write: .glb or .gltf for the scene with strips for faces, finest level first, linked
-    /// by MSFT_lod; .json for lists of vertices
+    /// File to write: .glb, .gltf or .json
+    ///
+    /// glTF gets the scene with strips for faces, finest level first, linked by MSFT_lod; .json
+    /// gets lists of vertices.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Compare the triangles drawn, and without --follow their attributes and materials, with those of
-    /// the level, which is simplified a second time for that, or of the cut; exit with 3 if they differ
+    /// Verify what the strips draw; exit with 3 if it differs
+    ///
+    /// Compares the triangles, and without --follow their attributes and materials, with those of
+    /// the level, which is simplified a second time for that, or of the cut.
     #[arg(long)]
     verify: bool,
     #[command(flatten)]

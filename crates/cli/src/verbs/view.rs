@@ -28,11 +28,14 @@ pub struct View {
     /// Close the window S seconds after the first picture
     #[arg(long, value_name = "S", value_parser = parse::length, allow_negative_numbers = true)]
     pub seconds: Option<f64>,
-    /// Write a picture once everything is loaded (of a school, after 30 frames), and close the window unless --seconds is given
+    /// Write a picture once everything is loaded
+    ///
+    /// Of a school, after 30 frames. Then the window closes unless --seconds is given.
     #[arg(long, value_name = "OUT.png")]
     pub screenshot: Option<PathBuf>,
-    /// Draw the film that a script describes instead, without a window: OUT/frame_0000.png and so on,
-    /// and the figures of its frames in OUT/frames.jsonl
+    /// Draw the film that a script describes, without a window
+    ///
+    /// Writes OUT/frame_0000.png and so on, and the figures of the frames in OUT/frames.jsonl.
     #[arg(long, value_name = "FILE", requires = "out", conflicts_with_all = ["seconds", "screenshot"])]
     pub script: Option<PathBuf>,
     /// Folder for the film of a script; created if missing
