@@ -6,7 +6,8 @@ use meshlod::io::{Precision, SceneMesh};
 use meshlod::jobs::{self, LodsRequest, SimplifyRequest, WrittenAs};
 use meshlod::mesh::{Lock, Locks};
 use meshlod::simplify::{AttributeWeights, Digits};
-use meshlod::{Constraints, Format, Mesh, Method, Scene, Target, VertexLocking, rounding_of_level};
+use meshlod::scene::rounding_of_level;
+use meshlod::{Constraints, Format, Mesh, Method, Scene, Target, VertexLocking};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 

@@ -11,8 +11,8 @@
 use anyhow::{Context, Result};
 use meshlod::mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId};
 use meshlod::picture::{ReferenceImages, Style};
+use meshlod::scene::{materials_of, single_sided_materials};
 use meshlod::simplify::{Method, Options, Target, contract_to};
-use meshlod::{materials_of, single_sided_materials};
 use meshlod_bench::peer::{GpuMesh, Settings, SimplifyOptions, Update, simplify_with_attributes};
 use meshlod_bench::{alternate, one_core, read_scene};
 

@@ -51,5 +51,5 @@ fn load(name: &str) -> Result<Mesh, Box<dyn std::error::Error>> {
         return samples::by_name(sample, Some(faces.parse()?))
             .ok_or_else(|| format!("no sample is called {sample}").into());
     }
-    Ok(meshlod_io::read(name.as_ref(), &Default::default())?.flatten())
+    Ok(meshlod_io::read(name, &Default::default())?.flatten())
 }

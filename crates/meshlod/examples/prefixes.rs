@@ -9,12 +9,11 @@
 
 use std::error::Error;
 
+use meshlod::model::{ModelScene, place_scene};
 use meshlod::multires::{Archive, Forest, Query, Storage, StoredErrors};
 use meshlod::picture::{Paint, ReferenceImages, Style};
-use meshlod::{
-    Constraints, ModelScene, Options, ReadOptions, materials_of, place_scene, read,
-    single_sided_materials,
-};
+use meshlod::scene::{materials_of, single_sided_materials};
+use meshlod::{Constraints, Options, ReadOptions, read};
 use meshlod_fixtures::shared_mesh;
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -12,13 +12,12 @@ use std::error::Error;
 
 use meshlod::jobs::{Aim, SimplifyRequest, simplify};
 use meshlod::mesh::{AttributeBounds, Mesh};
+use meshlod::model::{ModelScene, place_scene};
 use meshlod::multires::{Archive, Forest, Query, Storage, StoredErrors};
 use meshlod::picture::{ReferenceImages, Style};
+use meshlod::scene::{materials_of, single_sided_materials};
 use meshlod::simplify::Target;
-use meshlod::{
-    Constraints, ModelScene, Options, ReadOptions, Topology, materials_of, place_scene, read,
-    single_sided_materials,
-};
+use meshlod::{Constraints, Options, ReadOptions, Topology, read};
 use meshlod_fixtures::shared_mesh;
 
 const PARTS: [f64; 2] = [0.25, 0.1];

@@ -264,7 +264,7 @@
 //!
 //! | feature | adds | and needs |
 //! |---|---|---|
-//! | `io` | [`io`]: files and scenes, [`SceneSimplifier`] | |
+//! | `io` | [`io`]: files and scenes, [`scene::SceneSimplifier`] | |
 //! | `check` | [`check`]: findings, repair, locks, [`Constraints`] | `io` |
 //! | `picture` | [`picture`]: a rasteriser, the materials of scenes | `io` |
 //! | `multires` | [`multires`]: all levels in a file, [`jobs::build`], [`jobs::extract`]; compiles zstd, which is C | `check`, `picture` |
@@ -304,43 +304,17 @@ mod bound;
 mod bounded;
 mod conditioned;
 
-#[cfg(feature = "picture")]
-mod appearance;
-#[cfg(feature = "io")]
-mod conditioned_scene;
-#[cfg(feature = "check")]
-mod constraints;
-#[cfg(feature = "check")]
-mod contacts;
-#[cfg(feature = "multires")]
-mod cut_volume;
-#[cfg(feature = "io")]
-mod exact_volume;
 #[cfg(feature = "io")]
 mod files;
-#[cfg(feature = "check")]
-mod fuse;
 #[cfg(feature = "io")]
 pub mod jobs;
-#[cfg(feature = "io")]
-mod locks;
-#[cfg(feature = "picture")]
-mod materials;
 #[cfg(feature = "multires")]
-mod model_scene;
+pub mod model;
 #[cfg(feature = "io")]
 #[doc(hidden)]
 pub mod numbers;
 #[cfg(feature = "io")]
-mod place;
-#[cfg(feature = "multires")]
-mod posed;
-#[cfg(feature = "check")]
-mod repair;
-#[cfg(feature = "io")]
-mod scene;
-#[cfg(feature = "multires")]
-mod verified;
+pub mod scene;
 
 pub use meshlod_measure as measure;
 pub use meshlod_mesh as mesh;
@@ -370,40 +344,11 @@ pub use conditioned::simplify;
 pub use meshlod_mesh::{Borders, Mesh};
 pub use meshlod_simplify::{Method, Options, Report, SimplifyError, Target, Topology};
 
-#[cfg(feature = "picture")]
-pub use appearance::{OwnedPaint, normals_of};
-#[cfg(feature = "io")]
-pub use conditioned_scene::ConditionedScene;
-#[cfg(feature = "check")]
-pub use constraints::{Constraints, VertexLocking};
-#[cfg(feature = "check")]
-pub use contacts::scene_locks;
-#[cfg(feature = "io")]
-pub use exact_volume::{closed_volume, conserve_volumes, digits_of};
 #[cfg(feature = "codec")]
 pub use files::{AnyFile, AnyFileError, FileBytes};
 #[cfg(feature = "io")]
 pub use files::{FileKind, Output};
-#[cfg(feature = "check")]
-pub use fuse::{FuseReport, fuse_scene};
-#[cfg(feature = "io")]
-pub use locks::join_locks;
-#[cfg(feature = "picture")]
-pub use materials::{ImageWarning, materials_of, single_sided_materials};
 #[cfg(feature = "io")]
 pub use meshlod_io::{Format, IoError, ReadOptions, Scene, WriteOptions, read, write};
-#[cfg(feature = "multires")]
-pub use model_scene::{
-    LevelInstance, MissingParts, ModelScene, ModelSceneError, PackedScene, PlaceError, PlacedScene,
-    SceneCounts, SceneLayout, SceneQueryError, measured_poses, model_limits, place_scene,
-};
-#[cfg(feature = "io")]
-pub use place::{moved_at_most, rounding_of_level, shown_rounding, world_bounds};
-#[cfg(feature = "multires")]
-pub use posed::{PoseCounts, ScenePoses, posed_mesh};
 #[cfg(feature = "check")]
-pub use repair::repair_scene;
-#[cfg(feature = "io")]
-pub use scene::{SceneError, SceneSimplifier};
-#[cfg(feature = "multires")]
-pub use verified::Verification;
+pub use scene::{Constraints, VertexLocking};

@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{}, {side} x {side} pixels", gpu.name());
     println!("| | | ms | / plain | bytes a vertex | plain |\n|---|---|--:|--:|--:|--:|");
     for path in paths {
-        let mut mesh = meshlod::read(path.as_ref(), &Default::default())?.into_mesh();
+        let mut mesh = meshlod::read(&path, &Default::default())?.into_mesh();
         mesh.attributes = None;
         let name = path.rsplit('/').next().unwrap_or(&path);
         measure(&renderer, name.trim_end_matches(".ply"), &mesh, side)?;

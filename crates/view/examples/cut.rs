@@ -4,9 +4,10 @@
 
 use std::sync::Arc;
 
+use meshlod::model::SceneLayout;
 use meshlod::multires::{Focus, Forest, Hierarchy, Implicit, ViewCamera};
 use meshlod::picture::{Background, Camera, Wireframe};
-use meshlod::{SceneLayout, samples};
+use meshlod::samples;
 use meshlod_view::{
     Canvas, CutFollower, CutModel, CutQuery, CutTolerance, FollowOptions, Gpu, GpuCut, Renderer,
     Shade, TargetFormat, Transition,

@@ -160,7 +160,7 @@ pub(crate) fn clip_from_world(camera: &Camera, size: [u32; 2], origin: [f64; 3])
     DMat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose()
 }
 
-/// sRGB colour of surfaces without colours, the same as [`meshlod::OwnedPaint::CLAY`].
+/// sRGB colour of surfaces without colours, the same as [`meshlod::scene::OwnedPaint::CLAY`].
 pub(crate) const CLAY: [u8; 3] = [226, 208, 186];
 
 /// Converts an sRGB colour to linear light.

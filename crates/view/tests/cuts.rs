@@ -7,9 +7,10 @@ use std::sync::Arc;
 use common::cracks::cracks;
 use common::{bumpy, gpu};
 use meshlod::Mesh;
+use meshlod::model::SceneLayout;
 use meshlod::multires::{Focus, Forest, HeightField, Hierarchy, Implicit, Rtin, ViewCamera};
 use meshlod::picture::{Camera, Picture, View};
-use meshlod::{SceneLayout, samples};
+use meshlod::samples;
 use meshlod_view::{
     Canvas, CutFollower, CutModel, CutQuery, CutTolerance, FollowOptions, Gpu, GpuCut, Renderer,
     Shade, TargetFormat, Transition,

@@ -223,7 +223,7 @@ fn a_mesh_that_is_one_point_is_drawn_and_casts_a_shadow() {
     let mut ball = samples::sphere(20);
     ball.attributes = None;
     ball.positions.iter_mut().for_each(|p| *p = [1.0, 2.0, 3.0]);
-    let clay = std::sync::Arc::new(meshlod::OwnedPaint::CLAY);
+    let clay = std::sync::Arc::new(meshlod::scene::OwnedPaint::CLAY);
     let loaded = Loaded::from_mesh("point", ball, clay);
     let renderer = Renderer::new(gpu, TargetFormat::CANVAS);
     let mut stage = Stage::default();

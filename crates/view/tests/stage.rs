@@ -8,7 +8,8 @@ use std::sync::Arc;
 use meshlod::jobs::{BuildRequest, CompressRequest, Packing, build, compress};
 use meshlod::mesh::{Bounds, Labels};
 use meshlod::multires::{Focus, HeightField, HeightPrecision, Hierarchy};
-use meshlod::{FileKind, OwnedPaint, ReadOptions, Scene, WriteOptions, samples, write};
+use meshlod::scene::OwnedPaint;
+use meshlod::{FileKind, ReadOptions, Scene, WriteOptions, samples, write};
 use meshlod_view::stage::{Coloring, Display, Loaded, LoadedContent, Stage, Subject, SubjectId};
 use meshlod_view::{Canvas, CutQuery, CutTolerance, Gpu, Renderer, TargetFormat};
 

@@ -11,9 +11,11 @@ use common::{difference, gpu};
 use glam::{DMat4, DVec3};
 use meshlod::io::{Image, Material, Node, SceneMesh};
 use meshlod::mesh::Labels;
+use meshlod::model::{SceneLayout, place_scene};
 use meshlod::multires::{Archive, Focus, Forest, Geomorph, Implicit, Query, Storage, UpdateLimits};
 use meshlod::picture::{Background, Camera, Normals, Paint, Picture, Style, View};
-use meshlod::{Constraints, OwnedPaint, ReadOptions, Scene, SceneLayout, place_scene, samples};
+use meshlod::scene::OwnedPaint;
+use meshlod::{Constraints, ReadOptions, Scene, samples};
 use meshlod_view::stage::{Coloring, Display, Loaded, Subject};
 use meshlod_view::{
     Canvas, CutFollower, CutModel, CutQuery, CutTolerance, FollowOptions, Gpu, GpuCut, Renderer,

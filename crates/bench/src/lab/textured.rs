@@ -4,12 +4,12 @@
 use anyhow::{Context, Result};
 use meshlod::jobs::{Aim, SimplifyRequest, simplify};
 use meshlod::mesh::Mesh;
+use meshlod::model::{ModelScene, place_scene};
 use meshlod::multires::{Archive, Forest, Query, Storage, StoredErrors};
 use meshlod::picture::{ImageError, ReferenceImages, Style};
+use meshlod::scene::{materials_of, single_sided_materials};
 use meshlod::simplify::{Method, Options, Target};
-use meshlod::{
-    Constraints, ModelScene, Scene, Topology, materials_of, place_scene, single_sided_materials,
-};
+use meshlod::{Constraints, Scene, Topology};
 
 use crate::lab::table::Table;
 use crate::peer::{Settings, SimplifyOptions, Update, simplify_with_attributes};

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use meshlod::FileBytes;
+use meshlod::model::measured_poses;
 use meshlod::multires::{Archive, FileError, HeightField, ModelFile, Rtin};
-use meshlod::{FileBytes, measured_poses};
 use serde_json::json;
 
 use crate::session::Session;

@@ -16,7 +16,8 @@ use std::path::PathBuf;
 use clap::Args;
 use meshlod::io::write_file;
 use meshlod::picture::View;
-use meshlod::{Method, Options, single_sided_materials};
+use meshlod::scene::single_sided_materials;
+use meshlod::{Method, Options};
 
 use crate::options::args::{ReadArgs, SamplingArgs, ViewArgs};
 use crate::options::constraints::ConstraintArgs;

@@ -1,8 +1,8 @@
 //! Fusing of intersecting objects before simplification.
 
 use clap::Args;
-pub use meshlod::FuseReport;
 use meshlod::Scene;
+pub use meshlod::scene::FuseReport;
 
 use crate::session::Session;
 use crate::text::numbers::{count, faces, plural};

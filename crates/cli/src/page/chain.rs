@@ -6,7 +6,8 @@ use std::time::{Duration, Instant};
 use meshlod::measure::{
     Distance, DistanceOptions, PreparedSurface, Quality, quality, surface_distance,
 };
-use meshlod::{Borders, ConditionedScene, Mesh, Method, Options, Report, SceneSimplifier, Target};
+use meshlod::scene::{ConditionedScene, SceneSimplifier};
+use meshlod::{Borders, Mesh, Method, Options, Report, Target};
 
 use crate::options::parse::LevelSize;
 use crate::page::counts::Counts;

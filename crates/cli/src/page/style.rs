@@ -1,8 +1,9 @@
 //! Drawing style of a mesh, chosen by its attributes and materials.
 
 use meshlod::picture::{Materials, Normals, Style, Wireframe};
-use meshlod::{Mesh, Scene, materials_of};
-pub use meshlod::{OwnedPaint, normals_of};
+use meshlod::scene::materials_of;
+pub use meshlod::scene::{OwnedPaint, normals_of};
+use meshlod::{Mesh, Scene};
 
 use crate::session::Session;
 use crate::session::failure::Failure;

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use meshlod::model::PoseCounts;
 use meshlod::multires::{Archive, Certificate, ErrorKind, FileError, Fit, ModelFile, Source};
-use meshlod::{AnyFile, FileBytes, PoseCounts, ReadOptions};
+use meshlod::{AnyFile, FileBytes, ReadOptions};
 
 use crate::session::Session;
 use crate::session::failure::Failure;

@@ -1,7 +1,7 @@
 //! The error of a mesh that `extract` writes, asked for and known, as text.
 
-use meshlod::Verification;
 use meshlod::jobs::{AskedError, KeptError, KnownError, PosedError};
+use meshlod::model::Verification;
 
 use crate::session::model_file;
 use crate::text::numbers::{count, percent, plural, value};

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use meshlod::jobs::ErrorPoses;
+use meshlod::model::{ModelScene, SceneCounts, SceneQueryError};
 use meshlod::multires::{ModelFile, Query};
-use meshlod::{FileBytes, Format, ModelScene, SceneCounts, SceneQueryError};
+use meshlod::{FileBytes, Format};
 
 use crate::session::Session;
 use crate::session::failure::Failure;

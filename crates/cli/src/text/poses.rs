@@ -2,7 +2,8 @@
 
 use meshlod::io::gltf::{Animator, Moment};
 use meshlod::measure::{DistanceOptions, surface_distance};
-use meshlod::{Mesh, Scene, posed_mesh};
+use meshlod::model::posed_mesh;
+use meshlod::{Mesh, Scene};
 use serde::Serialize;
 
 use crate::session::Session;

@@ -3,13 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use meshlod::Scene;
 use meshlod::check::{
     BroadPhase, CheckOptions, ContactPolicy, Kind, Kinds, LockOptions, ObjectsBy,
 };
 use meshlod::io::write_file;
 use meshlod::jobs::CheckRequest;
 use meshlod::mesh::Lock;
-use meshlod::{Scene, scene_locks};
+use meshlod::scene::scene_locks;
 
 use crate::check::inspection::Inspection;
 use crate::check::lock_file::{self, FileRows};

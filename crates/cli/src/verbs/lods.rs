@@ -6,7 +6,8 @@ use clap::Args;
 use meshlod::io::gltf::{Level, LodLayout};
 use meshlod::io::write_file;
 use meshlod::jobs::{self, LodChain, LodReport, LodsReport, LodsRequest};
-use meshlod::{Format, Scene, Topology, world_bounds};
+use meshlod::scene::world_bounds;
+use meshlod::{Format, Scene, Topology};
 
 use crate::options::args::{ReadArgs, WriteArgs};
 use crate::options::locks::InputScene;

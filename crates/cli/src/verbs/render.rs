@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use meshlod::Mesh;
 use meshlod::measure::vertex_errors;
 use meshlod::picture::{
     Camera, ColorMap, Lighting, Normals, Paint, Picture, Style, Values, View, Wireframe, render,
 };
-use meshlod::{Mesh, single_sided_materials};
+use meshlod::scene::single_sided_materials;
 use serde_json::json;
 
 use crate::options::args::{ReadArgs, ViewArgs};

@@ -9,7 +9,8 @@ use meshlod::check::{
     CheckOptions, HoleLimits, Kinds, RepairOptions, RepairReport, RepairStep, Stitch, Summary,
     check,
 };
-use meshlod::{Format, Scene, repair_scene};
+use meshlod::scene::repair_scene;
+use meshlod::{Format, Scene};
 use serde::Serialize;
 
 use crate::options::args::{ReadArgs, WriteArgs};

@@ -5,9 +5,8 @@ use meshlod::codec::{
 };
 use meshlod::io::{Node, SceneMesh};
 use meshlod::mesh::{AttributeBounds, LayerKind, Mesh};
-use meshlod::{
-    Constraints, Options, ReadOptions, Scene, WriteOptions, place_scene, read, samples, write,
-};
+use meshlod::model::place_scene;
+use meshlod::{Constraints, Options, ReadOptions, Scene, WriteOptions, read, samples, write};
 use meshlod_fixtures::shared_mesh;
 
 use crate::documents::document;

@@ -38,7 +38,8 @@ mod write_ply;
 /// # Errors
 /// One line that names the file, the location in it and the reason: an unknown suffix, a missing
 /// file, or invalid contents.
-pub fn read(path: &Path, options: &ReadOptions) -> Result<Scene, IoError> {
+pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Scene, IoError> {
+    let path = path.as_ref();
     let format = Format::of_path(path)?;
     let bytes = fs::read(path).map_err(|error| IoError::system(path, error))?;
     let mut beside = Beside::of(path, format);
@@ -69,7 +70,8 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Scene, IoError> {
 /// One line that names the file: an unknown suffix, an error of the system, or the part of the
 /// scene that the format cannot store. An old file at `path` then stays with its companions, and no
 /// new file is left.
-pub fn write(path: &Path, scene: &Scene, options: &WriteOptions) -> Result<(), IoError> {
+pub fn write(path: impl AsRef<Path>, scene: &Scene, options: &WriteOptions) -> Result<(), IoError> {
+    let path = path.as_ref();
     let format = Format::of_path(path)?;
     match format.stores().holds {
         Holds::Document => write_lods(path, scene, &[], LodLayout::default()),
@@ -87,11 +89,12 @@ pub fn write(path: &Path, scene: &Scene, options: &WriteOptions) -> Result<(), I
 /// Errors of [`write()`]; also any other suffix, and levels whose number of meshes differs from the
 /// scene's.
 pub fn write_lods(
-    path: &Path,
+    path: impl AsRef<Path>,
     scene: &Scene,
     levels: &[gltf::Level],
     layout: LodLayout,
 ) -> Result<(), IoError> {
+    let path = path.as_ref();
     let unsupported = |error| IoError::unsupported(path, error);
     match Format::of_path(path)? {
         Format::Glb => {
@@ -115,7 +118,12 @@ pub fn write_lods(
 ///
 /// # Errors
 /// Errors of [`write()`]; also any other suffix, and strips that do not fit the scene.
-pub fn write_strips(path: &Path, scene: &Scene, strips: &[gltf::StripMesh]) -> Result<(), IoError> {
+pub fn write_strips(
+    path: impl AsRef<Path>,
+    scene: &Scene,
+    strips: &[gltf::StripMesh],
+) -> Result<(), IoError> {
+    let path = path.as_ref();
     let unsupported = |error| IoError::unsupported(path, error);
     match Format::of_path(path)? {
         Format::Glb => {
@@ -144,10 +152,11 @@ pub fn write_strips(path: &Path, scene: &Scene, strips: &[gltf::StripMesh]) -> R
 /// # Errors
 /// Errors of [`write()`]; also any other suffix, and bit counts out of range.
 pub fn write_compressed(
-    path: &Path,
+    path: impl AsRef<Path>,
     scene: &Scene,
     compression: &gltf::Compression,
 ) -> Result<gltf::CompressionReport, IoError> {
+    let path = path.as_ref();
     let unsupported = |error| IoError::unsupported(path, error);
     match Format::of_path(path)? {
         Format::Glb => {

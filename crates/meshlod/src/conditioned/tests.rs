@@ -3,7 +3,8 @@ use meshlod_mesh::{Connectivity, VertexId};
 use meshlod_samples as samples;
 
 use super::*;
-use crate::{ConditionedScene, Scene};
+use crate::Scene;
+use crate::scene::ConditionedScene;
 
 /// Takes a mesh apart into faces with three vertices each.
 fn torn(of: &Mesh) -> Mesh {

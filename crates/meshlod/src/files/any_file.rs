@@ -10,7 +10,7 @@ use thiserror::Error;
 
 use crate::files::compressed::decode;
 use crate::files::{FileBytes, FileKind};
-use crate::{ModelScene, ModelSceneError};
+use crate::model::{ModelScene, ModelSceneError};
 
 /// A file of any kind that we read, opened: the suffix decides whether it is one of ours.
 ///

@@ -3,7 +3,7 @@
 use meshlod_codec::{Compressed, Malformed, TransportFile};
 use meshlod_mesh::Mesh;
 
-use crate::{ModelScene, ModelSceneError};
+use crate::model::{ModelScene, ModelSceneError};
 
 /// Decodes the mesh of a compressed file from its bytes, and the scene that [`ModelScene`] makes of
 /// it. Of several instances of a mesh, the one mesh has the largest.

@@ -4,7 +4,7 @@ use meshlod_io::{Format, Note, Precision, Scene};
 use meshlod_mesh::Mesh;
 
 use crate::files::limits;
-use crate::place::shown_faces;
+use crate::scene::place::shown_faces;
 
 /// Request of [`convert`].
 #[derive(Clone, Copy, Debug, PartialEq)]

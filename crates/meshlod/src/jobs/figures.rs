@@ -5,8 +5,8 @@ use meshlod_mesh::Conditioning;
 use meshlod_simplify::{Contractions, Held, Method, Refusals, Report, Unconserved, VolumeLoss};
 use serde::Serialize;
 
-use crate::FuseReport;
 use crate::jobs::{LodReport, LodsReport, SimplifyReport};
+use crate::scene::FuseReport;
 
 /// A measured distance in each direction and combined, in model units and percent of the diagonal.
 #[derive(Clone, Debug, Serialize)]

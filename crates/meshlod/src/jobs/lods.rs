@@ -8,10 +8,11 @@ use meshlod_measure::{Distance, DistanceOptions, PreparedSurface};
 use meshlod_mesh::{Conditioning, NearBorders};
 use meshlod_simplify::{AttributeWeights, Method, Report, Target};
 
+use crate::Constraints;
 use crate::jobs::scene_run::{self, RunChoice, SceneRun};
 use crate::jobs::simplify::digits;
 use crate::jobs::{About, JobError, Remark, SwitchCamera, Watch, WrittenAs, cancellable};
-use crate::{Constraints, FuseReport};
+use crate::scene::FuseReport;
 
 /// Request to make levels of a scene; see [`lods`].
 #[derive(Clone, Debug, PartialEq)]

@@ -10,10 +10,8 @@ use meshlod_simplify::{
 };
 
 use crate::jobs::{About, Contractions, JobError, Remark, Watch};
-use crate::{
-    ConditionedScene, Constraints, FuseReport, SceneError, SceneSimplifier, VertexLocking,
-    conserve_volumes,
-};
+use crate::scene::{ConditionedScene, FuseReport, SceneError, SceneSimplifier, conserve_volumes};
+use crate::{Constraints, VertexLocking};
 
 /// Fuses a scene, if that is asked for.
 pub(super) fn fuse(

@@ -1,9 +1,9 @@
 //! Vertices for the GPU, from positions and layers of a model.
 
 use glam::{DVec3, Vec3};
-use meshlod::OwnedPaint;
 use meshlod::mesh::LayerKind;
 use meshlod::multires::{Hierarchy, LayerFormat, VertexValues};
+use meshlod::scene::OwnedPaint;
 
 use super::model::CutModel;
 use crate::mesh::{VertexAttributes, fractions};

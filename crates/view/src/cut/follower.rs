@@ -114,10 +114,11 @@ impl CutFollower {
 mod tests {
     use std::collections::HashMap;
 
+    use meshlod::model::SceneLayout;
     use meshlod::multires::{
         Focus, Forest, HeightField, Hierarchy, Implicit, Query, Rtin, UpdateLimits,
     };
-    use meshlod::{SceneLayout, samples};
+    use meshlod::samples;
 
     use super::*;
     use crate::CutTolerance;

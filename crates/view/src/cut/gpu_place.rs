@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, DMat4, DVec3};
-use meshlod::LevelInstance;
+use meshlod::model::LevelInstance;
 use wgpu::{VertexBufferLayout, VertexStepMode, vertex_attr_array};
 
 /// `Place` of cut.wgsl: rows of matrices that take positions, and normals, relative to the origin.

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use meshlod::SceneLayout;
 use meshlod::mesh::Bounds;
+use meshlod::model::SceneLayout;
 use meshlod::multires::{Hierarchy, Implicit};
 
 /// Groups of a model, and the one of each vertex.

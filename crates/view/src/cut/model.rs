@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use meshlod::mesh::{Bounds, LayerKind};
+use meshlod::model::SceneLayout;
 use meshlod::multires::{Hierarchy, Implicit, Query, QueryError, UpdateLimits};
-use meshlod::{OwnedPaint, SceneLayout};
+use meshlod::scene::OwnedPaint;
 
 use super::groups::Groups;
 use super::places::Places;

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use glam::{DMat4, DVec3};
-use meshlod::LevelInstance;
 use meshlod::mesh::Bounds;
+use meshlod::model::LevelInstance;
 use meshlod::multires::ViewCamera;
 
 use super::gpu_place::GpuPlace;

@@ -7,12 +7,11 @@ use std::time::{Duration, Instant};
 
 use meshlod::codec::{Compressed, Malformed};
 use meshlod::mesh::Bounds;
+use meshlod::model::{MissingParts, ModelScene, ModelSceneError};
 use meshlod::multires::{FileError, Hierarchy, ModelFile, Query, UpdateLimits};
 use meshlod::picture::Normals;
-use meshlod::{
-    AnyFile, AnyFileError, IoError, Mesh, MissingParts, ModelScene, ModelSceneError, OwnedPaint,
-    ReadOptions, Scene, materials_of, normals_of, single_sided_materials,
-};
+use meshlod::scene::{OwnedPaint, materials_of, normals_of, single_sided_materials};
+use meshlod::{AnyFile, AnyFileError, IoError, Mesh, ReadOptions, Scene};
 use thiserror::Error;
 
 use crate::CutModel;
@@ -164,7 +163,8 @@ fn mesh_file(path: &Path, options: &ReadOptions) -> Result<Loaded, LoadError> {
 fn of_scene(path: &Path, scene: Scene, content: LoadedContent) -> Loaded {
     let (materials, images) = materials_of(&scene);
     let paint = OwnedPaint::of(&scene, materials);
-    let warning = |image: meshlod::ImageWarning| format!("image {}: {}", image.name, image.reason);
+    let warning =
+        |image: meshlod::scene::ImageWarning| format!("image {}: {}", image.name, image.reason);
     let warnings = images.into_iter().map(warning).collect();
     let single_sided = single_sided_materials(&scene).into();
     let loaded = Loaded::of(path, scene.into_mesh(), paint, content);

@@ -3,11 +3,12 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use meshlod::Mesh;
 use meshlod::check::{Objects, ObjectsBy};
 use meshlod::mesh::{Bounds, LayerKind, VertexId};
 use meshlod::picture::{ColorMap, Normals, Paint, Values};
+use meshlod::scene::OwnedPaint;
 use meshlod::strip::{StripOptions, stripify};
-use meshlod::{Mesh, OwnedPaint};
 use wgpu::RenderPass;
 
 use super::palette::color_of;

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread::JoinHandle;
 
+use meshlod::ReadOptions;
 use meshlod::picture::Normals;
-use meshlod::{OwnedPaint, ReadOptions};
+use meshlod::scene::OwnedPaint;
 
 use super::jobs::{Outcome, Watch};
 use super::work::{News, NormalsState};

@@ -1,10 +1,11 @@
 //! Textured models of many parts, beside meshoptimizer's simplification with attributes.
 
 use anyhow::Result;
+use meshlod::Scene;
 use meshlod::jobs::{Aim, SimplifyRequest, simplify};
 use meshlod::mesh::Mesh;
 use meshlod::picture::{Materials, ReferenceImages, Style};
-use meshlod::{Scene, materials_of, single_sided_materials};
+use meshlod::scene::{materials_of, single_sided_materials};
 use serde_json::{Value, json};
 
 use super::Tools;

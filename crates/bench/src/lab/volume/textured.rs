@@ -7,11 +7,9 @@ use anyhow::Result;
 use meshlod::io::{Precision, Scene};
 use meshlod::mesh::Mesh;
 use meshlod::samples;
+use meshlod::scene::{ConditionedScene, SceneSimplifier, closed_volume, conserve_volumes};
 use meshlod::simplify::{Digits, Method, Options, Target, Topology, VolumeLoss};
-use meshlod::{
-    Borders, ConditionedScene, ReadOptions, SceneSimplifier, WriteOptions, closed_volume,
-    conserve_volumes, read, write,
-};
+use meshlod::{Borders, ReadOptions, WriteOptions, read, write};
 
 use super::RATIOS;
 use crate::fixtures::{charted, in_materials};

@@ -12,7 +12,7 @@ use meshlod_simplify::{ExactVolumeError, Held, Options, Simplifier, Target};
 
 use super::{BuildReport, BuildRequest, BuiltLevels, ErrorPoses, LevelModel};
 use crate::jobs::{About, Contractions, JobError, Remark, Watch, end_if_cancelled};
-use crate::{PackedScene, PlacedScene, PoseCounts, model_limits, place_scene};
+use crate::model::{PackedScene, PlacedScene, PoseCounts, model_limits, place_scene};
 
 /// Recorded contractions with their errors, ready to be written.
 struct Recorded {

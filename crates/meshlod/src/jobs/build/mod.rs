@@ -11,7 +11,8 @@ use meshlod_multires::{Certificate, ErrorKind, Fit};
 use meshlod_simplify::{Held, Method};
 
 use crate::jobs::{JobError, Watch, cancellable};
-use crate::{Bound, Constraints, PoseCounts, SceneCounts, VertexLocking};
+use crate::model::{PoseCounts, SceneCounts};
+use crate::{Bound, Constraints, VertexLocking};
 
 /// What [`build`] is asked for.
 #[derive(Clone, Debug, PartialEq)]

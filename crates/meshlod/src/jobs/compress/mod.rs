@@ -20,7 +20,8 @@ use self::report::Packed;
 pub use self::report::{CompressReport, PieceCount, StripCounts};
 pub use self::request::{CompressRequest, CompressTarget, GltfPacking, Packing, PositionScheme};
 use crate::jobs::{JobError, Watch, begin};
-use crate::{FuseReport, SceneCounts, model_limits};
+use crate::model::{SceneCounts, model_limits};
+use crate::scene::FuseReport;
 
 /// Compresses a scene, and returns the bytes of the file with what is in them.
 ///

@@ -5,8 +5,9 @@ use meshlod_mesh::Mesh;
 use meshlod_simplify::Options;
 
 use super::request::CompressRequest;
+use crate::Constraints;
 use crate::jobs::{About, JobError, Remark, Watch};
-use crate::{Constraints, PackedScene, SceneCounts, place_scene};
+use crate::model::{PackedScene, SceneCounts, place_scene};
 
 /// Scene that is ready to be compressed.
 pub(super) struct Placed {

@@ -6,8 +6,9 @@ use meshlod_codec::LayerReport;
 use meshlod_io::Note;
 use meshlod_mesh::{AttributeBounds, LayerKind, Mesh};
 
+use crate::model::SceneCounts;
 use crate::numbers::value;
-use crate::{FuseReport, SceneCounts};
+use crate::scene::FuseReport;
 
 /// Report of [`compress`](super::compress). Sizes are in bytes.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,8 +2,8 @@
 
 use meshlod_multires::Tolerance;
 
-use crate::PoseCounts;
-use crate::verified::Verification;
+use crate::model::PoseCounts;
+use crate::model::verified::Verification;
 
 /// Error that was asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]

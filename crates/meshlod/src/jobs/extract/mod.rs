@@ -11,7 +11,7 @@ use meshlod_io::{Format, Precision, Scene};
 use meshlod_multires::{ErrorKind, FileError, ModelFile, Source};
 
 use crate::jobs::{About, JobError, Remark, Watch};
-use crate::model_scene::{ModelScene, SceneQueryError};
+use crate::model::scene::{ModelScene, SceneQueryError};
 use taken::{Taken, take};
 use written::written;
 

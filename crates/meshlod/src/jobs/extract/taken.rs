@@ -7,8 +7,8 @@ use super::{
     failed, failed_for_scene,
 };
 use crate::jobs::{JobError, Watch, begin};
-use crate::model_scene::ModelScene;
-use crate::verified::{VerifiedExtract, extract_verified, measure_extract};
+use crate::model::scene::ModelScene;
+use crate::model::verified::{VerifiedExtract, extract_verified, measure_extract};
 
 /// Level of a file, with what the report says of it and of what was read.
 pub(super) struct Taken {

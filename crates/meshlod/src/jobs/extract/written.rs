@@ -6,10 +6,10 @@ use meshlod_multires::{ModelFile, Source};
 use meshlod_simplify::Digits;
 
 use super::{ExtractReport, ExtractRequest};
-use crate::cut_volume::{CutVolumeError, conserve_cut_volume};
 use crate::jobs::{JobError, Remark, Watch, begin};
-use crate::model_scene::ModelScene;
-use crate::{digits_of, shown_rounding};
+use crate::model::cut_volume::{CutVolumeError, conserve_cut_volume};
+use crate::model::scene::ModelScene;
+use crate::scene::{digits_of, shown_rounding};
 
 /// Makes the scene of a level that is not empty, in the form in which it is to be written, and
 /// reports what writing changes. `rounding` is that of the file, in model units.

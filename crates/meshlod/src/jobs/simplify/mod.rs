@@ -14,7 +14,7 @@ use meshlod_simplify::{Report, Target};
 use crate::jobs::scene_run::{self, RunChoice, SceneRun};
 use crate::jobs::simplify::proved_error::AskedError;
 use crate::jobs::{JobError, Watch, cancellable};
-use crate::{ConditionedScene, moved_at_most};
+use crate::scene::{ConditionedScene, moved_at_most};
 
 pub use proved_error::ProvedError;
 pub use report::{LostVolume, SimplifyReport};
@@ -26,7 +26,7 @@ pub use request::{Aim, SimplifyRequest, WrittenAs};
 /// An error is proved of the scene [as it is written](SimplifyRequest::written_as): the run leaves
 /// room for the rounding of coordinates, and the report says what holds, in what precision. See
 /// [`ConditionedScene`] for what happens to the meshes before, and
-/// [`SceneSimplifier`](crate::SceneSimplifier) for the run.
+/// [`SceneSimplifier`](crate::scene::SceneSimplifier) for the run.
 ///
 /// Cost: O(n log n), n = faces, and several times that for an error.
 /// # Errors

@@ -6,7 +6,7 @@ use meshlod_mesh::Mesh;
 use meshlod_simplify::{Digits, Report, Target};
 
 use crate::jobs::scene_run::surface_of;
-use crate::rounding_of_level;
+use crate::scene::rounding_of_level;
 
 /// Part of the error that rounding may take before coordinates are written with 64 bits.
 const UNSEEN: f64 = 0.005;

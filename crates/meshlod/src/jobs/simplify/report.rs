@@ -8,7 +8,7 @@ use meshlod_mesh::{Conditioning, Mesh, NearBorders};
 use meshlod_simplify::{Digits, ExactVolumeError, Report, VolumeLoss};
 
 use crate::jobs::{ProvedError, WrittenAs};
-use crate::{ConditionedScene, FuseReport, closed_volume, conserve_volumes, world_bounds};
+use crate::scene::{ConditionedScene, FuseReport, closed_volume, conserve_volumes, world_bounds};
 
 /// Report of [`simplify`](super::simplify). Serde writes the keys that the command prints.
 #[derive(Clone, Debug)]

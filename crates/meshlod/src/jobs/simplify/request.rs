@@ -3,7 +3,8 @@
 use meshlod_io::{Format, Precision, Scene};
 use meshlod_simplify::{AttributeWeights, Digits, Method, Target};
 
-use crate::{Bound, Constraints, digits_of, world_bounds};
+use crate::scene::{digits_of, world_bounds};
+use crate::{Bound, Constraints};
 
 /// Request to simplify a scene; see [`simplify`](super::simplify).
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -73,7 +73,7 @@ pub struct FollowedCut {
 /// cut differs from the last.
 ///
 /// Queries are about the levels, as
-/// [`ModelScene::query_of_levels`](crate::ModelScene::query_of_levels) makes them.
+/// [`ModelScene::query_of_levels`](crate::model::ModelScene::query_of_levels) makes them.
 ///
 /// # Errors
 /// A query that is invalid.

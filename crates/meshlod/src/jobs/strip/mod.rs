@@ -22,10 +22,11 @@ use self::report::odd_faces;
 pub use self::report::{StripReport, StrippedLevelReport};
 pub use self::request::{StripFilter, StripRequest};
 use self::request::{check_sizes, options, quality_name, size_text};
+use crate::VertexLocking;
 use crate::jobs::{About, JobError, Remark, Watch, begin};
 use crate::numbers;
-use crate::place::shown_faces;
-use crate::{FuseReport, VertexLocking};
+use crate::scene::FuseReport;
+use crate::scene::place::shown_faces;
 
 /// Strips of a scene and its levels.
 #[derive(Clone, Debug)]

@@ -6,7 +6,7 @@ use meshlod_mesh::{Connectivity, Mesh};
 use meshlod_strip::{Difference, MergeTree, StripEffort, StripStatistics};
 
 use super::StripFilter;
-use crate::FuseReport;
+use crate::scene::FuseReport;
 
 /// Report of [`strip`](super::strip).
 #[derive(Clone, Debug, PartialEq)]

@@ -14,7 +14,7 @@ use meshlod_multires::{
 use meshlod_spatial::closest_point;
 
 use self::check::{Check, CutSurface, RESERVE};
-use crate::measured_poses;
+use crate::model::measured_poses;
 
 /// Part of the tolerance asked for at which a cut starts, by the stored errors. Faces of the bunny at
 /// .1 and .03 %, by smoothed estimates: 1 8,054 and 31,601, 1.5 7,848 and 31,473, 2.2 the same; by

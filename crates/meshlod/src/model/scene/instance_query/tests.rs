@@ -3,8 +3,8 @@
 use meshlod_io::Scene;
 
 use super::*;
-use crate::model_scene::tests::{lossless_file, scene};
-use crate::verified::extract_verified;
+use crate::model::scene::tests::{lossless_file, scene};
+use crate::model::verified::extract_verified;
 
 const FOV_RAD: f64 = 0.8;
 

@@ -28,7 +28,7 @@ impl OwnedPaint {
     pub const CLAY: Self = Self::Plain([226, 208, 186]);
 
     /// Returns the colouring that shows a scene as its author meant it; `materials` are those of
-    /// the scene, see [`materials_of`](crate::materials_of).
+    /// the scene, see [`materials_of`](crate::scene::materials_of).
     pub fn of(scene: &Scene, materials: Materials) -> Self {
         let white = |material: &Material| material.base_color[..3] == [1.0; 3];
         let colors = |mesh: &SceneMesh| has(&mesh.mesh, LayerKind::Color(0));
@@ -90,7 +90,7 @@ mod tests {
     use meshlod_samples as samples;
 
     use super::*;
-    use crate::materials_of;
+    use crate::scene::materials_of;
 
     #[test]
     fn uvs_without_a_texture_are_compared_under_a_checker_whatever_the_colours() {

@@ -3,7 +3,7 @@
 use meshlod_io::gltf::Skeleton;
 
 use super::parts::PartKind;
-use crate::PoseCounts;
+use crate::model::PoseCounts;
 
 /// Tables and skeleton of the scene of a file.
 #[derive(Clone, Debug, Default, PartialEq)]

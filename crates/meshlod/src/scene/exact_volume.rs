@@ -6,8 +6,8 @@ use meshlod_measure::volume;
 use meshlod_mesh::{Mesh, closed_faces};
 use meshlod_simplify::{Digits, ExactVolumeError, VolumeResidual, conserve_volume};
 
-use crate::ConditionedScene;
 use crate::conditioned::ConditionedMesh;
+use crate::scene::ConditionedScene;
 
 /// Returns the number format in which a mesh file stores positions, given its format and precision;
 /// [`Precision::Auto`] counts as 32 bits.

@@ -10,7 +10,7 @@ use super::head::Head;
 use super::parts::PartKind;
 use super::resources::{JoinedResources, Resources};
 use super::split::split;
-use crate::PoseCounts;
+use crate::model::PoseCounts;
 
 /// Scene of a multiresolution or compressed file, without the geometry of its mesh.
 #[derive(Clone, Debug, Default)]

@@ -6,10 +6,10 @@ use meshlod_mesh::{Borders, Lock, Locks, Mesh, VertexId};
 use meshlod_simplify::{Options, SimplifyError, Topology};
 
 use crate::Bound;
-use crate::contacts::scene_locks;
-use crate::fuse::fuse_scene;
-use crate::locks::join_locks;
-use crate::place::world_bounds;
+use crate::scene::contacts::scene_locks;
+use crate::scene::fuse::fuse_scene;
+use crate::scene::locks::join_locks;
+use crate::scene::place::world_bounds;
 
 /// Constraints on a simplification: its topology, its boundaries, and vertices that stay.
 ///
@@ -124,7 +124,7 @@ fn flat_locks(scene: &Scene, of_meshes: &[Locks]) -> Result<Locks, SimplifyError
     if joined == Locks::default() {
         return Ok(joined);
     }
-    let of_meshes = crate::locks::split(scene, &joined)?;
+    let of_meshes = crate::scene::locks::split(scene, &joined)?;
     let mut flat = Locks::default();
     for placed in scene.instances() {
         let (own, base) = (&of_meshes[placed.mesh], flat.of_vertex.len());

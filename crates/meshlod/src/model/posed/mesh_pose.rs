@@ -4,7 +4,7 @@ use glam::{DMat4, DVec3};
 use meshlod_io::gltf::{Animator, Pose, parse_target_name};
 use meshlod_mesh::{Layer, LayerKind, WedgeId};
 
-use crate::place::length_scale;
+use crate::scene::place::length_scale;
 
 /// Attribute layers by which a mesh is posed.
 #[derive(Clone, Debug, Default)]

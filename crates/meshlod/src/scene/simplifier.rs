@@ -8,9 +8,9 @@ use meshlod_simplify::{
 };
 use thiserror::Error;
 
-use crate::ConditionedScene;
 use crate::bounded::run_within;
-use crate::place::length_scale;
+use crate::scene::ConditionedScene;
+use crate::scene::place::length_scale;
 
 /// Simplifies all meshes of a scene to one common target, always contracting where it costs least
 /// in world space.

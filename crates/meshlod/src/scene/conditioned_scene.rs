@@ -5,7 +5,7 @@ use meshlod_mesh::{Borders, Conditioning, Mesh, NearBorders, near_borders};
 use meshlod_simplify::{Options, SimplifyError};
 
 use crate::conditioned::ConditionedMesh;
-use crate::locks;
+use crate::scene::locks;
 
 /// Smallest number of near boundary edges that is worth mentioning.
 const MANY_EDGES: usize = 100;
@@ -35,7 +35,7 @@ impl<'s> ConditionedScene<'s> {
     /// each other.
     ///
     /// `options.locks` number vertices through all meshes of the scene, mesh after mesh, see
-    /// [`join_locks`](crate::join_locks). Vertices tied across two meshes are locked, since meshes
+    /// [`join_locks`](crate::scene::join_locks). Vertices tied across two meshes are locked, since meshes
     /// are simplified independently.
     ///
     /// Cost: linear, with a sort of the boundary edges. Non-manifold vertices are split only when

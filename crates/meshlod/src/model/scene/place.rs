@@ -17,8 +17,11 @@ use super::parts::{interleave, sort_parts};
 use super::placement::{Placement, placements};
 use super::resources::join_resources;
 use super::slots::{material_of, slots_of, slots_of_labels};
-use crate::posed::PosedMesh;
-use crate::{Constraints, PoseCounts, ScenePoses, VertexLocking, join_locks, locks};
+use crate::model::posed::PosedMesh;
+use crate::model::{PoseCounts, ScenePoses};
+use crate::scene::join_locks;
+use crate::scene::locks;
+use crate::{Constraints, VertexLocking};
 
 /// A scene merged into one mesh in world space, ready for levels or compression.
 #[derive(Clone, Debug)]
@@ -66,7 +69,7 @@ pub enum PlaceError {
 /// mesh is as large or larger than those it makes anywhere in the scene. Skins and morph targets are
 /// not applied. Meshes are objects of the merged one.
 ///
-/// Cost: linear, or that of [`scene_locks`](crate::scene_locks) for contacts.
+/// Cost: linear, or that of [`scene_locks`](crate::scene::scene_locks) for contacts.
 /// # Errors
 /// Locks that do not match the scene, or a scene that does not match its source.
 pub fn place_scene(

@@ -5,7 +5,7 @@ use meshlod_io::Scene;
 use meshlod_mesh::FaceId;
 use meshlod_simplify::Target;
 
-use crate::place::shown_faces;
+use crate::scene::place::shown_faces;
 
 /// Merges intersecting closed components within each mesh of a scene; see [`fuse`]. Different
 /// meshes are not merged.

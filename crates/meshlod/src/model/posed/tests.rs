@@ -5,8 +5,9 @@ use meshlod_multires::{Archive, Forest, ModelFile, Query, Storage, StoredErrors}
 use meshlod_simplify::Options;
 
 use super::*;
-use crate::verified::extract_verified;
-use crate::{Constraints, ModelScene, PlacedScene, measured_poses, place_scene, read};
+use crate::model::verified::extract_verified;
+use crate::model::{ModelScene, PlacedScene, measured_poses, place_scene};
+use crate::{Constraints, read};
 
 /// Levels of a scene as bytes, with errors measured in its poses or without.
 fn levels(scene: &Scene, posed: bool) -> (Archive<Vec<u8>>, PoseCounts) {

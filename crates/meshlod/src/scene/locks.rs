@@ -5,7 +5,7 @@ use meshlod_mesh::{Lock, Locks, VertexId};
 use meshlod_simplify::SimplifyError;
 
 /// Joins the vertex locks of the meshes of a scene into one list, as
-/// [`SceneSimplifier`](crate::SceneSimplifier) takes it.
+/// [`SceneSimplifier`](crate::scene::SceneSimplifier) takes it.
 ///
 /// Meshes at the end may be left out and are free. Tied vertices at different positions are locked
 /// instead: a transform can move them together in world space although they are apart in their
