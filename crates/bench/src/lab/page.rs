@@ -33,7 +33,7 @@ const SECTIONS: [(&str, Section); 15] = [
 /// Section that `py/bench.py` makes, as it needs other packages of Python. It is kept as it is.
 const OF_PYTHON: &str = "\n## Python\n\n";
 
-/// Makes all tables of measurements, and writes docs/RESULTS.md and a dated copy in docs/records.
+/// Makes all tables of measurements, and writes docs/RESULTS.md, whose history has earlier ones.
 ///
 /// Takes some minutes. Tables whose meshes are missing say so. With `names`, only the sections
 /// whose title contains one of them are remade, and marked with the date.
@@ -70,11 +70,7 @@ pub fn run(names: &[String]) -> Result<()> {
         page.push_str(&section()?);
     }
     page.push_str(&of_python);
-    let record = root().join(format!("docs/records/{}.md", machine.date));
-    for path in [results, record] {
-        std::fs::create_dir_all(path.parent().context("a file has a folder")?)?;
-        std::fs::write(&path, &page).with_context(|| path.display().to_string())?;
-    }
+    std::fs::write(&results, &page).with_context(|| results.display().to_string())?;
     print!("{page}");
     Ok(())
 }

@@ -46,16 +46,10 @@ fn small_components_vanish_unless_that_is_ruled_out() {
     assert_eq!(vanished(&["--topology", "keep"]), 0);
     assert_eq!(vanished(&["--vanish-below", "0.1"]), 0);
     assert_eq!(vanished(&["--vanish-below", "50%"]), 1);
-    // The former name of the option.
-    assert_eq!(vanished(&["--keep-objects"]), 0);
-    assert_eq!(vanished(&["--keep-objects=0.1"]), 0);
-    assert_eq!(vanished(&["--keep-objects=50%"]), 1);
     for bad in ["-1", "nan", "-3%", "big"] {
-        for option in ["--vanish-below", "--keep-objects"] {
-            let size = format!("{option}={bad}");
-            let done = run.run(&["simplify", "in.obj", "a.obj", "--faces", "4", &size]);
-            assert_eq!(done.code, 2, "{size}: {done:?}");
-        }
+        let size = format!("--vanish-below={bad}");
+        let done = run.run(&["simplify", "in.obj", "a.obj", "--faces", "4", &size]);
+        assert_eq!(done.code, 2, "{size}: {done:?}");
     }
     let both = ["--topology", "keep", "--vanish-below", "5%"];
     let done = run.run(&[&["simplify", "in.obj", "a.obj", "--faces", "4"], &both[..]].concat());

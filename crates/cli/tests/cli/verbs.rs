@@ -435,13 +435,3 @@ fn an_error_limit_bounds_what_vanishes() {
     };
     assert!(within("0.01") && within("0.1"));
 }
-
-#[test]
-fn a_size_that_may_be_left_out_takes_no_file_for_it() {
-    let run = Run::new();
-    run.sample("torus", 200, "in.ply");
-    let before = ["simplify", "--keep-objects", "in.ply", "out.ply", "--faces", "100"];
-    assert_eq!(run.json(&before)["vanished"], 0);
-    let apart = ["simplify", "in.ply", "out.ply", "--faces", "100", "--keep-objects", "5%"];
-    assert_eq!(run.run(&apart).code, 2);
-}
