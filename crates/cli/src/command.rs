@@ -1,6 +1,8 @@
 //! The command line: global options and one subcommand per verb.
 
-use clap::{Parser, Subcommand};
+use std::ffi::OsString;
+
+use clap::{CommandFactory, Parser, Subcommand};
 use meshlod::Format;
 
 use crate::compare::Compare;
@@ -98,17 +100,20 @@ impl Verb {
             Self::Render(verb) => verb.run(session),
             Self::View(verb) => verb.run(session),
             Self::Flock(verb) => verb.run(session),
-            Self::Demo(verb) => verb.run(session),
-            Self::Completions(verb) => verb.run(),
-            Self::Man(verb) => verb.run(session),
+            Self::Demo(verb) => verb.run(run_line, session),
+            Self::Completions(verb) => verb.run(Cli::command()),
+            Self::Man(verb) => verb.run(Cli::command(), session),
         }
     }
 }
 
+/// Runs a verb with its arguments, the first of which is the name of the program.
+fn run_line(line: Vec<OsString>, session: &Session) -> Result<Answer, Failure> {
+    VerbLine::try_parse_from(line).map_err(Failure::new)?.verb.run(session)
+}
+
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
-
     use super::*;
 
     #[test]

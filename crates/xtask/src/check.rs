@@ -4,7 +4,6 @@ mod arrows;
 mod circles;
 mod folders;
 mod functions;
-mod known;
 mod lengths;
 mod modules;
 mod prose;
@@ -31,10 +30,10 @@ pub fn run(project: &Project) -> Result<()> {
     let lengths = lengths::check(&files);
     let functions = functions::check(&sources, &crates);
     let circles = circles::check(&crates);
-    for note in [lengths.notes, functions.notes, circles.notes, folders::check(&sources)].concat() {
+    for note in [lengths.notes, circles.notes, folders::check(&sources)].concat() {
         println!("note: {note}");
     }
-    let mut errors = [lengths.errors, functions.errors, circles.errors].concat();
+    let mut errors = [lengths.errors, functions, circles.errors].concat();
     errors.extend(references::check(&files, &pages));
     let manifests = [project.files("crates", "Cargo.toml")?, project.files("py", "Cargo.toml")?];
     errors.extend(arrows::check(&manifests.concat(), &pages)?);

@@ -24,7 +24,7 @@ use crate::session::Session;
 use crate::session::answer::Answer;
 use crate::session::failure::Failure;
 use crate::session::files;
-use pipeline::Pipeline;
+use pipeline::{Pipeline, RunLine};
 use sample_report::SampleReport;
 
 /// Take sample meshes through all steps, and write a page with pictures
@@ -53,12 +53,13 @@ impl DemoResult {
 }
 
 impl Demo {
-    pub fn run(self, session: &Session) -> Result<Answer, Failure> {
+    /// Makes the page; `run_line` runs the commands on it.
+    pub fn run(self, run_line: RunLine, session: &Session) -> Result<Answer, Failure> {
         let start = Instant::now();
         files::make_folder(&self.folder)?;
         let make = |sample| SampleReport::make(sample, &self.folder, session);
         let reports: Vec<SampleReport> = samples::ALL.iter().map(make).collect::<Result<_, _>>()?;
-        let pipeline = Pipeline::make(&reports[0], &self.folder, session)?;
+        let pipeline = Pipeline::make(&reports[0], &self.folder, run_line, session)?;
         session.progress.stage("drawing the picture and writing the page");
         let title_picture = title_picture::TitlePicture::make(&reports[0], &self.folder)?;
         let page = self.folder.join("index.html");

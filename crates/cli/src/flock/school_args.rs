@@ -7,7 +7,7 @@ use meshlod_school::scene::ScenarioName;
 use crate::flock::names;
 use crate::options::parse;
 
-/// Who swims, how they are filmed, and how their levels are chosen.
+/// Options of a school: its members, its camera and the choice of their levels.
 #[derive(Args)]
 #[cfg_attr(not(feature = "view"), allow(dead_code))]
 pub struct SchoolArgs {

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use meshlod::Mesh;
+use meshlod::flock::FlockCamera;
 use meshlod::flock::draw::FlockPainter;
 use meshlod::flock::levels::{Impostor, ImpostorOptions, LevelTable};
 use meshlod::flock::select::{Budget, InstanceLevel, PolicyName, Selector};
@@ -41,19 +42,14 @@ pub fn shoot(
     session: &Session,
 ) -> Result<Take, Failure> {
     let obstacles: Vec<Mesh> = film.scenario().obstacle_meshes();
-    let mut painter =
-        (!options.no_pictures).then(|| FlockPainter::new(table, &model.look, &obstacles));
-    if let (Some(painter), Some(_)) = (&mut painter, budget.impostors_below_px) {
-        let impostor = Impostor::draw(table, &model.look, &ImpostorOptions::default());
-        painter.impostor = Some(Arc::new(impostor.map_err(Failure::new)?));
-    }
+    let mut painter = (!options.no_pictures)
+        .then(|| painter(table, model, &obstacles, budget.impostors_below_px.is_some()))
+        .transpose()?;
     let levels_only = Budget { impostors_below_px: None, ..*budget };
     let mut selector = Selector::new(options.school.policy, table.clone());
     let mut everything = Selector::new(PolicyName::None, table.clone());
-    let mut recorder = options
-        .record
-        .as_deref()
-        .map(|folder| Recorder::new(folder, film.scenario(), model.file.as_deref()));
+    let record = |folder: &PathBuf| Recorder::new(folder, film.scenario(), model.file.as_deref());
+    let mut recorder = options.record.as_ref().map(record);
     let mut before: Vec<InstanceLevel> = Vec::new();
     let mut figures = Figures::default();
     for frame in 0..options.frames {
@@ -76,13 +72,8 @@ pub fn shoot(
         let mut draw_ms = None;
         if let Some(painter) = &mut painter {
             check_size(selector.triangles())?;
-            let start = Instant::now();
-            let picture = painter.draw(flock, &before, &camera).map_err(Failure::new)?;
-            draw_ms = Some(milliseconds(start));
-            if frame == 0 {
-                files::make_folder(&options.out)?;
-            }
-            write_file(&options.out.join(frame_name(frame)), &picture.png())?;
+            let path = options.out.join(frame_name(frame));
+            draw_ms = Some(draw(painter, (flock, &before, &camera), &path)?);
         }
         figures.frames.push(FrameFigures {
             frame,
@@ -97,14 +88,52 @@ pub fn shoot(
             draw_ms,
         });
     }
-    files::make_folder(&options.out)?;
-    let lines = options.out.join("frames.jsonl");
-    write_file(&lines, figures.lines().as_bytes())?;
     warn_of_others(options, session);
-    if let Some(recorder) = &recorder {
-        recorder.write(table, session)?;
-    }
+    write_figures(figures, &options.out, || match &recorder {
+        Some(recorder) => recorder.write(table, session),
+        None => Ok(()),
+    })
+}
+
+/// Writes the figures of all frames, and what else belongs to the film.
+fn write_figures(
+    figures: Figures,
+    out: &Path,
+    write_others: impl FnOnce() -> Result<(), Failure>,
+) -> Result<Take, Failure> {
+    files::make_folder(out)?;
+    let lines = out.join("frames.jsonl");
+    write_file(&lines, figures.lines().as_bytes())?;
+    write_others()?;
     Ok(Take { figures, lines })
+}
+
+/// Draws a frame to a file, and returns the milliseconds of drawing.
+fn draw(
+    painter: &mut FlockPainter<'_>,
+    (flock, levels, camera): (&meshlod::flock::Flock, &[InstanceLevel], &FlockCamera),
+    path: &Path,
+) -> Result<f64, Failure> {
+    let start = Instant::now();
+    let picture = painter.draw(flock, levels, camera).map_err(Failure::new)?;
+    let draw_ms = milliseconds(start);
+    write_file(path, &picture.png())?;
+    Ok(draw_ms)
+}
+
+/// Creates the painter of a film, with a picture of the model if members may be impostors.
+fn painter<'p>(
+    table: &'p LevelTable,
+    model: &'p FlockModel,
+    obstacles: &'p [Mesh],
+    has_impostors: bool,
+) -> Result<FlockPainter<'p>, Failure> {
+    let mut painter = FlockPainter::new(table, &model.look, obstacles);
+    if has_impostors {
+        let impostor = Impostor::draw(table, &model.look, &ImpostorOptions::default());
+        painter.impostor = Some(Arc::new(impostor.map_err(Failure::new)?));
+    }
+    Ok(painter)
 }
 
 /// Returns the file name of a frame.

@@ -17,7 +17,7 @@ use crate::text::numbers::faces;
 #[command(next_help_heading = "Query of an .mlod file")]
 pub struct QueryArgs {
     #[command(flatten)]
-    pub target: TargetArgs,
+    pub target: QueryTargetArgs,
     /// Camera: "eye=x,y,z look=x,y,z fov=45 1920x1080"
     ///
     /// Errors in pixels and the focus `frustum` refer to it. Add up=x,y,z unless y is up.
@@ -49,7 +49,7 @@ enum VerticalAxis {
 /// Target of a query: an error or a number of faces.
 #[derive(Args)]
 #[group(multiple = false)]
-pub struct TargetArgs {
+pub struct QueryTargetArgs {
     /// Largest error: 0.01%, 0.5 or 1px; 0 for the finest level
     ///
     /// 1px is a pixel of the camera, 0.01% a part of the diagonal of the meshes as they are stored,
@@ -79,7 +79,7 @@ impl QueryArgs {
 
     /// Returns true if any of the options was given.
     pub fn is_given(&self) -> bool {
-        let Self { target: TargetArgs { error, faces }, camera, focus, up } = self;
+        let Self { target: QueryTargetArgs { error, faces }, camera, focus, up } = self;
         let is_region = camera.is_some() || focus.is_some() || up.is_some();
         error.is_some() || faces.is_some() || is_region
     }

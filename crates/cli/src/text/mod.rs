@@ -1,4 +1,4 @@
-//! What verbs print: numbers, tables and the lines of reports, as text and as JSON.
+//! Output of verbs: numbers, tables and the lines of reports, as text and as JSON.
 
 pub mod distance;
 pub mod error_bound;

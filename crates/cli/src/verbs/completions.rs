@@ -1,10 +1,9 @@
 //! `completions`: what a shell needs to complete the command line.
 
-use clap::{Args, CommandFactory};
+use clap::{Args, Command};
 use clap_complete::{Shell, generate};
 use serde_json::json;
 
-use crate::command::Cli;
 use crate::session::answer::Answer;
 use crate::session::failure::Failure;
 
@@ -19,9 +18,10 @@ pub struct Completions {
 }
 
 impl Completions {
-    pub fn run(self) -> Result<Answer, Failure> {
+    /// Prints a script for the whole `command`.
+    pub fn run(self, mut command: Command) -> Result<Answer, Failure> {
         let mut script = Vec::new();
-        generate(self.shell, &mut Cli::command(), "meshlod", &mut script);
+        generate(self.shell, &mut command, "meshlod", &mut script);
         let script = String::from_utf8(script).map_err(Failure::new)?;
         let json = json!({ "shell": self.shell.to_string(), "script": script });
         Ok(Answer { is_output: true, ..Answer::new(json, script) })

@@ -56,7 +56,7 @@ pub struct Compress {
     #[arg(long, value_name = "DEGREES", value_parser = parse::length, allow_hyphen_values = true)]
     animation_error: Option<f64>,
     #[command(flatten)]
-    target: TargetArgs,
+    target: CompressTargetArgs,
     #[command(flatten)]
     attributes: AttributeErrorArgs,
     #[command(flatten)]
@@ -69,7 +69,7 @@ pub struct Compress {
 #[derive(Args)]
 #[command(next_help_heading = "Accuracy, one of")]
 #[group(id = "CompressTarget", multiple = false)]
-struct TargetArgs {
+struct CompressTargetArgs {
     /// As accurate as a grid of this many bits per axis over the whole mesh [default: 11]
     #[arg(long, value_name = "BITS", allow_negative_numbers = true)]
     bits: Option<u32>,
@@ -126,7 +126,7 @@ impl Compress {
     }
 }
 
-impl TargetArgs {
+impl CompressTargetArgs {
     fn target(&self) -> CompressTarget {
         match (self.bits, self.error, self.reduction) {
             (_, Some(error), _) => CompressTarget::Error(error),

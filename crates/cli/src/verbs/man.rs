@@ -3,12 +3,11 @@
 use std::io;
 use std::path::PathBuf;
 
-use clap::{Args, Command, CommandFactory};
+use clap::{Args, Command};
 use clap_mangen::Man as ManualPage;
 use meshlod::io::write_file;
 use serde_json::json;
 
-use crate::command::Cli;
 use crate::session::Session;
 use crate::session::answer::Answer;
 use crate::session::failure::Failure;
@@ -25,8 +24,8 @@ pub struct Man {
 }
 
 impl Man {
-    pub fn run(self, session: &Session) -> Result<Answer, Failure> {
-        let mut command = Cli::command();
+    /// Prints or writes the pages of the whole `command`.
+    pub fn run(self, mut command: Command, session: &Session) -> Result<Answer, Failure> {
         command.build();
         let Some(folder) = self.folder else {
             let page = page(&command)?;

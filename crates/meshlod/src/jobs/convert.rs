@@ -1,4 +1,4 @@
-//! What becomes of a scene in another format.
+//! Conversion of a scene to another format: its counts, and its losses.
 
 use meshlod_io::{Format, Note, Precision, Scene};
 use meshlod_mesh::Mesh;

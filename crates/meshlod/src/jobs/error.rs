@@ -20,7 +20,7 @@ pub enum JobError {
         /// Reason, without the name of the field.
         reason: String,
     },
-    /// What the job works on cannot be used.
+    /// The input of the job cannot be used.
     #[error("{0}")]
     Input(#[source] Box<dyn Error + Send + Sync>),
     /// The result cannot be made or stored in the form that was asked for.

@@ -29,7 +29,7 @@ pub struct LodsRequest {
     pub weights: AttributeWeights,
     /// Weight of boundaries in the costs; `None` for that of the method.
     pub boundary: Option<f64>,
-    /// What to keep of the scene.
+    /// Constraints on every level.
     pub constraints: Constraints,
     /// True to restore the volume of closed parts, exactly in the digits that are written.
     pub exact_volume: bool,
@@ -74,15 +74,15 @@ pub struct LodChain {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(into = "crate::jobs::figures::LodsFigures"))]
 pub struct LodsReport {
-    /// What the run has done up to the coarsest level.
+    /// Report of the run up to the coarsest level.
     pub run: Report,
     /// Report of each level, finest first.
     pub levels: Vec<LodReport>,
-    /// What conditioning has changed before the run.
+    /// Changes made by conditioning, before the run.
     pub conditioning: Conditioning,
     /// Boundary edges near each other, if they were looked for and are many.
     pub near_borders: Option<NearBorders>,
-    /// What fusing has changed before the run, if it was asked for.
+    /// Changes made by fusing, before the run, if it was asked for.
     pub fused: Option<FuseReport>,
     /// Time of conditioning, connectivity and contractions.
     pub time: Duration,
@@ -95,7 +95,7 @@ pub struct LodsReport {
 pub struct LodReport {
     /// Size that was asked for: `50%` or `500 faces`.
     pub size: String,
-    /// What the run has done up to this level.
+    /// Report of the run up to this level.
     pub run: Report,
     /// Measured distance from the input, if it was asked for and can be measured.
     pub measured: Option<Distance>,

@@ -1,4 +1,4 @@
-//! What the jobs that simplify a scene share: its preparation, a run, and how far it went.
+//! Parts shared by the jobs that simplify a scene: preparation, a run, and how far it went.
 
 use std::time::{Duration, Instant};
 

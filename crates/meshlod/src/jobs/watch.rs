@@ -1,4 +1,4 @@
-//! What a job says while it runs, and how it is cancelled.
+//! Progress and remarks of a job, and its cancellation.
 
 use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -51,9 +51,9 @@ pub enum About {
     Job,
     /// A field of its request, by its name.
     Field(&'static str),
-    /// What it works on.
+    /// Its input.
     Input,
-    /// What it returns.
+    /// Its output.
     Output,
 }
 

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use crate::check::known::CIRCLES;
 use crate::check::modules::Crate;
 
 /// Number of files above which a circle is an error.
@@ -10,12 +9,12 @@ const LARGE: usize = 6;
 /// Folder whose files must not import each other in a circle.
 const LAYERED: &str = "crates/simplify/src/kernel/";
 
-/// Circles of imports that were found: some are only reported, others are errors.
+/// Circles of imports that were found: small ones are only reported, others are errors.
 #[derive(Debug, Default, PartialEq)]
 pub struct Circles {
     /// The largest import circle of each crate, for information.
     pub notes: Vec<String>,
-    /// Circles of more files than a crate may have, and circles in the folder that must be layered.
+    /// Circles of more than six files, and circles in the folder that must be layered.
     pub errors: Vec<String>,
 }
 
@@ -24,11 +23,9 @@ pub fn check(crates: &[Crate<'_>]) -> Circles {
     let mut found = Circles::default();
     for krate in crates {
         let imports = krate.imports();
-        let known = CIRCLES.iter().find(|(name, _)| *name == krate.name);
-        let allowed = known.map_or(LARGE, |(_, allowed)| *allowed);
         let mut all = circles(&imports, |_| true);
         all.sort_by_key(BTreeSet::len);
-        let smaller = all.partition_point(|circle| circle.len() <= allowed);
+        let smaller = all.partition_point(|circle| circle.len() <= LARGE);
         found.errors.extend(all[smaller..].iter().map(|circle| describe(krate, circle)));
         found.notes.extend(all[..smaller].last().map(|circle| describe(krate, circle)));
         let is_layered = |at: usize| krate.modules[at].file.starts_with(LAYERED);

@@ -2,7 +2,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::check::known::LONG_FUNCTIONS;
 use crate::check::modules::Crate;
 use crate::check::source::Source;
 
@@ -13,15 +12,6 @@ const REASON: &str = "Long because ";
 /// Sources of the crate that is in no folder of `crates`.
 const PYTHON: &str = "py/src/";
 
-/// Long functions without a reason: what is known of them is only reported, others are errors.
-#[derive(Debug, Default, PartialEq)]
-pub struct LongFunctions {
-    /// Functions of the list of known ones, and entries of that list to take out.
-    pub notes: Vec<String>,
-    /// Functions that are too long and give no reason.
-    pub errors: Vec<String>,
-}
-
 /// A function: its name, and its first and last line, from 1.
 #[derive(Debug, PartialEq)]
 struct Function<'s> {
@@ -29,28 +19,20 @@ struct Function<'s> {
     lines: [usize; 2],
 }
 
-/// Lists functions outside tests of more than 60 lines, unless a line of the comment above them
-/// begins with `Long because `.
-pub fn check(sources: &[Source], crates: &[Crate<'_>]) -> LongFunctions {
+/// Returns errors for functions outside tests of more than 60 lines, unless a line of the comment
+/// above them begins with `Long because `.
+pub fn check(sources: &[Source], crates: &[Crate<'_>]) -> Vec<String> {
     let modules = crates.iter().flat_map(|krate| &krate.modules).map(|module| module.file);
     let modules: BTreeSet<&str> = modules.collect();
     let counts = |path: &str| modules.contains(path) || path.starts_with(PYTHON);
-    let mut found = LongFunctions::default();
-    let mut unseen: BTreeSet<[&str; 2]> = LONG_FUNCTIONS.into_iter().collect();
+    let mut errors = Vec::new();
     for source in sources.iter().filter(|source| counts(&source.path)) {
         for Function { name, lines: [first, last] } in unexcused(source) {
             let what = format!("{}:{first}: `{name}` has {} lines", source.path, last - first + 1);
-            if LONG_FUNCTIONS.contains(&[&source.path, name]) {
-                unseen.remove(&[source.path.as_str(), name]);
-                found.notes.push(what);
-            } else {
-                found.errors.push(format!("{what}: divide it, or say above it `// {REASON}…`"));
-            }
+            errors.push(format!("{what}: divide it, or say above it `// {REASON}…`"));
         }
     }
-    let short = unseen.iter().map(|[path, name]| format!("{path}: `{name}` is no longer long"));
-    found.notes.extend(short.map(|what| format!("{what}; take it out of known.rs")));
-    found
+    errors
 }
 
 /// Iterates over the long functions of a source that give no reason.
@@ -116,7 +98,7 @@ mod tests {
         let text = format!("struct A;\n{above}pub fn long(a: [u8; 3]) -> u8 {{\n{body}}}\n");
         let root = Text { path: "crates/a/src/lib.rs".into(), text: String::new() };
         let sources = [Source::new(&root), Source::new(&Text { path: path.into(), text })];
-        check(&sources, &crates(&sources)).errors
+        check(&sources, &crates(&sources))
     }
 
     #[test]

@@ -12,10 +12,8 @@ mod steps;
 use std::ffi::OsString;
 use std::path::Path;
 
-use clap::Parser;
 use serde_json::{Value, json};
 
-use crate::command::VerbLine;
 use crate::demo::sample_report::SampleReport;
 use crate::page::inline_picture::InlinePicture;
 use crate::session::Session;
@@ -30,6 +28,9 @@ pub struct Pipeline {
     done: Vec<StepDone>,
 }
 
+/// Runs a command of this program, given its arguments, the first of which is its name.
+pub type RunLine = fn(Vec<OsString>, &Session) -> Result<Answer, Failure>;
+
 /// A step that has been run.
 struct StepDone {
     step: &'static Step,
@@ -39,11 +40,20 @@ struct StepDone {
 
 impl Pipeline {
     /// Runs all steps on the file of a sample in the folder of the page.
-    pub fn make(report: &SampleReport, folder: &Path, session: &Session) -> Result<Self, Failure> {
+    pub fn make(
+        report: &SampleReport,
+        folder: &Path,
+        run_line: RunLine,
+        session: &Session,
+    ) -> Result<Self, Failure> {
         broken::write_file(&report.subject.mesh, folder)?;
         let painter = StepPainter::new(&report.subject, folder, session);
         let run = |step: &'static Step| {
-            let commands = step.commands.iter().map(|words| run(words, folder, session));
+            let commands = step.commands.iter().map(|words| {
+                let line = line(words, folder);
+                // The mesh is broken on purpose: that `check` finds errors is no failure.
+                Ok::<_, Failure>(run_line(line, session)?.json)
+            });
             let answers: Vec<Value> = commands.collect::<Result<_, _>>()?;
             session.progress.stage(&format!("drawing: {}", step.name));
             let figure = (step.figure)(&answers);
@@ -79,19 +89,15 @@ impl Pipeline {
     }
 }
 
-/// Runs a command of this program on files in a folder, and returns its JSON.
-fn run(words: &[&str], folder: &Path, session: &Session) -> Result<Value, Failure> {
+/// Returns the arguments of a command, with its files in a folder.
+fn line(words: &[&str], folder: &Path) -> Vec<OsString> {
     // So that the name of a folder is not taken for an option.
     let folder = Path::new(".").join(folder);
     let placed = words.iter().map(|word| match steps::is_file(word) {
         true => folder.join(word).into_os_string(),
         false => OsString::from(word),
     });
-    let line = std::iter::once(OsString::from("meshlod")).chain(placed);
-    let line = VerbLine::try_parse_from(line).map_err(Failure::new)?;
-    // The mesh is broken on purpose: that `check` finds errors is no failure.
-    let Answer { json, .. } = line.verb.run(session)?;
-    Ok(json)
+    std::iter::once(OsString::from("meshlod")).chain(placed).collect()
 }
 
 /// Formats a command as readers type it in the folder of the page.

@@ -1,4 +1,4 @@
-//! What a row of the table of policies becomes.
+//! Entries of the table of policies.
 
 /// Setting that makes a policy coarser or finer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -14,7 +14,7 @@ use crate::jobs::{JobError, Watch, cancellable};
 use crate::model::{PoseCounts, SceneCounts};
 use crate::{Bound, Constraints, VertexLocking};
 
-/// What [`build`] is asked for.
+/// Request to [`build`] all levels of a scene.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]

@@ -1,4 +1,4 @@
-//! What came of a compression.
+//! The report of a compression.
 
 use std::time::Duration;
 

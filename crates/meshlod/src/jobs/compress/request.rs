@@ -1,4 +1,4 @@
-//! What is asked of a compression.
+//! The request for a compression.
 
 use meshlod_codec::CompressionTarget;
 use meshlod_io::gltf::SourceDocument;

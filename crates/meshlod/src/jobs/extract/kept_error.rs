@@ -8,7 +8,7 @@ use crate::model::verified::Verification;
 /// Error that was asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AskedError {
-    /// That of the finest mesh in the file.
+    /// The error of the finest mesh in the file.
     Finest,
     /// A length in model units.
     Length(f64),
@@ -37,9 +37,9 @@ pub enum KnownError {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(into = "form::KeptErrorForm"))]
 pub struct KeptError {
-    /// What was asked for.
+    /// The error that was asked for.
     pub asked: AskedError,
-    /// What is known.
+    /// The knowledge of the error.
     pub known: KnownError,
     /// True if the error holds in a focus only.
     pub in_focus: bool,

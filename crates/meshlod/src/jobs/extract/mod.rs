@@ -18,7 +18,7 @@ use written::written;
 pub use kept_error::{AskedError, KeptError, KnownError, PosedError};
 pub use query::{ErrorLimit, FocusRequest, QueryRequest, QueryTarget};
 
-/// What [`extract`] is asked for.
+/// Request to [`extract`] a level.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
@@ -56,7 +56,7 @@ pub struct ExtractReport {
     pub reached: bool,
     /// Kind of the errors stored in the file.
     pub error_kind: ErrorKind,
-    /// What is known about its error.
+    /// Its error: asked for, and known.
     pub error: KeptError,
     /// True if the finest level equals the mesh that the file was built from.
     pub lossless: bool,

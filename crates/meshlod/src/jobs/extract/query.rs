@@ -55,7 +55,7 @@ pub enum FocusRequest {
     /// The whole surface.
     #[default]
     Everything,
-    /// What the camera sees.
+    /// The view of the camera.
     Frustum,
     /// A region of space.
     Region(Focus),

@@ -12,7 +12,7 @@ use meshlod_mesh::Mesh;
 use meshlod_simplify::{Report, Target};
 
 use crate::jobs::scene_run::{self, RunChoice, SceneRun};
-use crate::jobs::simplify::proved_error::AskedError;
+use crate::jobs::simplify::proved_error::BoundToProve;
 use crate::jobs::{JobError, Watch, cancellable};
 use crate::scene::{ConditionedScene, moved_at_most};
 
@@ -70,7 +70,7 @@ struct Task<'t> {
     scene: &'t Scene,
     request: &'t SimplifyRequest,
     /// The error that was asked for, if the target is one.
-    asked: Option<AskedError>,
+    asked: Option<BoundToProve>,
     written_as: Option<WrittenAs>,
     watch: &'t dyn Watch,
 }
@@ -81,14 +81,14 @@ fn asked_and_written(
     request: &SimplifyRequest,
     target: Target,
     scene: &Scene,
-) -> (Option<AskedError>, Option<WrittenAs>) {
+) -> (Option<BoundToProve>, Option<WrittenAs>) {
     let of_scene = |as_: Option<WrittenAs>| as_.map(|as_| as_.of(scene));
     let Target::Error(error) = target else {
         // The digits to which a volume is exact are those that are written.
         let as_ = request.written_as;
         return (None, if request.exact_volume { of_scene(as_) } else { as_ });
     };
-    let with = |as_| AskedError::new(error, scene, digits(as_), request.exact_volume);
+    let with = |as_| BoundToProve::new(error, scene, digits(as_), request.exact_volume);
     let mut as_ = request.written_as;
     if with(of_scene(as_)).needs_precision() {
         as_ = as_.map(WrittenAs::precise);
@@ -170,7 +170,7 @@ impl Task<'_> {
             scene_run::measure((surface, &options), self.scene, level, self.watch)
         });
         let by_measuring =
-            |asked: AskedError| asked.by_measuring(surface.as_ref(), self.scene, level);
+            |asked: BoundToProve| asked.by_measuring(surface.as_ref(), self.scene, level);
         Ok((measured, proved.or_else(|| self.asked.map(by_measuring))))
     }
 }

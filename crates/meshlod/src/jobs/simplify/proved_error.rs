@@ -29,7 +29,7 @@ const LEAST_TOLD: f64 = f32::EPSILON as f64;
 
 /// An error asked for, in world units.
 #[derive(Clone, Copy)]
-pub(super) struct AskedError {
+pub(super) struct BoundToProve {
     asked: f64,
     /// Largest distance by which writing moves a point.
     rounding: f64,
@@ -61,7 +61,7 @@ impl ProvedError {
     }
 }
 
-impl AskedError {
+impl BoundToProve {
     /// Restoring the volume moves vertices too, mostly by about twice the rounding.
     pub fn new(asked: f64, scene: &Scene, digits: Digits, is_volume_restored: bool) -> Self {
         let rounding = rounding_of_level(scene, digits);

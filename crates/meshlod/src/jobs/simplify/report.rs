@@ -1,4 +1,4 @@
-//! What a simplification of a scene has done.
+//! The report of a simplification.
 
 use std::time::Duration;
 
@@ -15,17 +15,17 @@ use crate::scene::{ConditionedScene, FuseReport, closed_volume, conserve_volumes
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(into = "crate::jobs::figures::SimplifyFigures"))]
 pub struct SimplifyReport {
-    /// What the run has done; [`reached`](Report::reached) counts what holds as it is written.
+    /// Report of the run; [`reached`](Report::reached) says whether the target holds as written.
     pub run: Report,
     /// Measured distance from the input, if it was asked for and can be measured.
     pub measured: Option<Distance>,
-    /// What conditioning has changed before the run.
+    /// Changes made by conditioning, before the run.
     pub conditioning: Conditioning,
     /// Boundary edges near each other, if they were looked for and are many.
     pub near_borders: Option<NearBorders>,
-    /// What fusing has changed before the run, if it was asked for.
+    /// Changes made by fusing, before the run, if it was asked for.
     pub fused: Option<FuseReport>,
-    /// What is proved of the error, if one was asked for.
+    /// The proof of the error, if one was asked for.
     pub error: Option<ProvedError>,
     /// Largest relative deviation from the original volumes, if they were restored.
     pub volume_residual: Option<f64>,

@@ -1,4 +1,4 @@
-//! What to simplify a scene to, and how.
+//! The request for a simplification.
 
 use meshlod_io::{Format, Precision, Scene};
 use meshlod_simplify::{AttributeWeights, Digits, Method, Target};
@@ -19,7 +19,7 @@ pub struct SimplifyRequest {
     pub weights: AttributeWeights,
     /// Weight of boundaries in the costs; `None` for that of the method.
     pub boundary: Option<f64>,
-    /// What to keep of the scene.
+    /// Constraints on the level.
     pub constraints: Constraints,
     /// True to restore the volume of closed parts, exactly in the digits that are written.
     pub exact_volume: bool,

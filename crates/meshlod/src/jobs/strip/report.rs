@@ -1,4 +1,4 @@
-//! What came of strips.
+//! The report on strips.
 
 use std::time::Duration;
 

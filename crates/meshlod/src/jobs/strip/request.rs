@@ -1,4 +1,4 @@
-//! What is asked of strips.
+//! The request for strips.
 
 use meshlod_simplify::Target;
 use meshlod_strip::{StripEffort, StripOptions, StripQuality};
@@ -24,7 +24,7 @@ pub struct StripRequest {
     /// True to compare what the strips draw with the levels, which are simplified a second time for
     /// that.
     pub verify: bool,
-    /// What simplification keeps. It always keeps the topology, whatever these say, since all levels
+    /// Constraints on every level. The topology is always kept, whatever these say, since all levels
     /// share the vertices of the mesh.
     pub constraints: Constraints,
 }

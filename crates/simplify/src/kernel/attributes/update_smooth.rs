@@ -62,7 +62,7 @@ impl<const K: usize> Scratch<K> {
     /// sum over the new faces, which is used away from seams. There the values of both ends and of
     /// the new vertex are those of all apexes.
     #[inline(always)]
-    // long: one loop over lanes, whose rows must stay in registers from the first line to the last.
+    // Long because it is one loop over lanes, whose rows stay in registers from end to end.
     pub(crate) fn quadric_changes<M: Metric, const SEAMS: bool>(
         &mut self,
         edge_ring: &EdgeRing,
