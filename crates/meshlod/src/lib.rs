@@ -335,8 +335,6 @@ pub mod numbers;
 mod place;
 #[cfg(feature = "multires")]
 mod posed;
-#[cfg(feature = "check")]
-mod repair;
 #[cfg(feature = "io")]
 mod scene;
 #[cfg(feature = "multires")]
@@ -401,8 +399,6 @@ pub use model_scene::{
 pub use place::{moved_at_most, rounding_of_level, shown_rounding, world_bounds};
 #[cfg(feature = "multires")]
 pub use posed::{PoseCounts, ScenePoses, posed_mesh};
-#[cfg(feature = "check")]
-pub use repair::repair_scene;
 #[cfg(feature = "io")]
 pub use scene::{SceneError, SceneSimplifier};
 #[cfg(feature = "multires")]
