@@ -4,8 +4,11 @@ use std::path::{PathBuf, absolute};
 
 use meshlod::check::{HoleLimits, RepairOptions, Severity, Stitch};
 use meshlod::io::write_file;
-use meshlod::jobs::{self, CheckRequest, CompressRequest, CompressTarget, Packing};
-use meshlod::measure::{DistanceOptions, area, distance, volume};
+use meshlod::jobs::{
+    self, CheckRequest, CompressRequest, CompressTarget, JobError, MeasureRequest, Packing,
+    RepairRequest,
+};
+use meshlod::measure::{area, volume};
 use meshlod::mesh::LayerKind;
 use meshlod::picture::{Camera, UpAxis, View, Wireframe};
 use meshlod::strip::{StripOptions, StripQuality, stripify};
@@ -36,9 +39,17 @@ pub fn measure<'py>(
     seed: u64,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (a, b) = (a.shared(), b.shared());
-    let options = DistanceOptions { samples, seed };
-    let found = run(py, None, move |_| distance(&a, &b, &options))?.map_err(raised)?;
-    report::measured(py, &found)
+    let request = MeasureRequest { samples, seed, ..MeasureRequest::default() };
+    let work = move |watch: &mut Watch| {
+        let [a, b] = [a, b].map(|mesh| Scene::from_mesh("", Mesh::clone(&mesh)));
+        jobs::measure(&a, &b, &request, watch)
+    };
+    let found = run(py, None, work)?.map_err(|error| match error {
+        JobError::Input(error) => raised(format_args!("the first mesh: {error}")),
+        JobError::Second(error) => raised(format_args!("the second mesh: {error}")),
+        error => raised(error),
+    })?;
+    report::measured(py, &found.distance)
 }
 
 /// Returns the area of a mesh, and the volume that it encloses.
@@ -61,6 +72,9 @@ pub fn check(py: Python<'_>, mesh: &NativeMesh) -> PyResult<Vec<(&'static str, u
 }
 
 /// Repairs a mesh, and returns it with the number of changes of each kind that was made.
+///
+/// # Errors
+/// A length that is negative, and a mesh of which no face is left.
 #[pyfunction]
 pub fn repair(
     py: Python<'_>,
@@ -76,11 +90,16 @@ pub fn repair(
     }
     let holes = fill_holes.map(|edges| HoleLimits { edges, length: None });
     let stitch = stitch.map_or(Stitch::Off, Stitch::Within);
-    let options = RepairOptions { weld, stitch, holes, ..RepairOptions::default() };
+    let steps = RepairOptions { weld, stitch, holes, ..RepairOptions::default() };
+    let request = RepairRequest { steps, ..RepairRequest::default() };
     let mesh = mesh.shared();
-    let (repaired, report) = run(py, None, move |_| meshlod::check::repair(&mesh, &options))?;
-    let counts = report.nonzero().map(|(step, count)| (step.name(), count)).collect();
-    Ok((NativeMesh::new(repaired)?, counts))
+    let work = move |watch: &mut Watch| {
+        let scene = Scene::from_mesh("", Mesh::clone(&mesh));
+        jobs::repair(scene, &request, watch)
+    };
+    let (mut scene, report) = run(py, None, work)?.map_err(raised)?;
+    let counts = report.steps.nonzero().map(|(step, count)| (step.name(), count)).collect();
+    Ok((NativeMesh::new(scene.meshes.swap_remove(0).mesh)?, counts))
 }
 
 /// Returns triangle strips of the faces as one array of points, each strip but the last followed by

@@ -13,7 +13,8 @@ use meshlod::flock::select::{Budget, PolicyName};
 use meshlod::io::{Precision, Weld};
 use meshlod::jobs::{
     BuildRequest, CheckRequest, CompressRequest, CompressTarget, ErrorLimit, ExtractRequest,
-    FocusRequest, LevelModel, Packing, PositionScheme, QueryRequest, QueryTarget, check,
+    FocusRequest, LevelModel, MeasureRequest, Packing, PositionScheme, QueryRequest, QueryTarget,
+    RepairRequest, WrittenAs, check,
 };
 use meshlod::measure::{BeyondOptions, CertifiedOptions, DistanceOptions};
 use meshlod::mesh::{AttributeBounds, ConditionOptions, Lock, Locks, Search, VertexId};
@@ -21,7 +22,7 @@ use meshlod::multires::{ErrorKind, Focus, Ground, GroundShape, Storage, UpdateLi
 use meshlod::simplify::AttributeWeights;
 use meshlod::strip::{CacheAware, Prices, StripOptions, StripQuality};
 use meshlod::{
-    Bound, Constraints, Method, Options, ReadOptions, Target, Topology, VertexLocking,
+    Bound, Constraints, Format, Method, Options, ReadOptions, Target, Topology, VertexLocking,
     WriteOptions, samples, simplify,
 };
 use serde::Serialize;
@@ -111,10 +112,19 @@ fn options_of_checks_and_repair() {
         &json!({ "stitch": { "within": 0.5 }, "weld": 0.0, "holes": null }),
     );
     options_as(&HoleLimits { length: Some(2.5), ..Default::default() }, &json!({ "length": 2.5 }));
+    let written_as = Some(WrittenAs { format: Format::Ply, precision: Precision::Auto });
+    options_as(
+        &RepairRequest { fuse: true, written_as, ..Default::default() },
+        &json!({ "fuse": true, "written_as": { "format": "ply", "precision": "auto" } }),
+    );
 }
 
 #[test]
 fn options_of_files_levels_and_bytes() {
+    options_as(
+        &MeasureRequest { certified: true, poses: Some(8), ..Default::default() },
+        &json!({ "samples": 500_000, "certified": true, "poses": 8 }),
+    );
     options_as(&ReadOptions { weld: Weld::Within(0.5) }, &json!({ "weld": { "within": 0.5 } }));
     options_as(&WriteOptions { precision: Precision::F64 }, &json!({ "precision": "f64" }));
     let model = LevelModel::RightTriangles;

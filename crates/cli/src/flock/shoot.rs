@@ -64,8 +64,7 @@ pub fn shoot(
         let selection_ms = milliseconds(start);
         let switches = switches(table, &before, levels);
         let impostors = levels.iter().filter(|level| level.is_impostor()).count();
-        before.clear();
-        before.extend_from_slice(levels);
+        before.splice(.., levels.iter().copied());
         if let Some(recorder) = &mut recorder {
             recorder.push(flock, &camera, levels);
         }

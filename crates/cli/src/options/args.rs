@@ -5,7 +5,7 @@ use meshlod::io::{Precision, Weld};
 use meshlod::jobs::WrittenAs;
 use meshlod::mesh::AttributeBounds;
 use meshlod::picture::{UpAxis, View};
-use meshlod::{Format, ReadOptions, Scene, WriteOptions};
+use meshlod::{Format, ReadOptions, WriteOptions};
 
 use crate::options::parse::{self, Suffix, ViewDirection};
 
@@ -106,12 +106,6 @@ impl WriteArgs {
         Self { precision }
     }
 
-    /// Chooses 64-bit coordinates, unless `--precision` chooses, if 32 bits would move one by more
-    /// than `most`, in model units.
-    pub fn within(self, most: f64, scene: &Scene, format: Format) -> Self {
-        if scene.rounding(format, self.precision) > most { self.precise() } else { self }
-    }
-
     /// Returns what a job has to know about a file of a format.
     pub fn in_format(self, format: Format) -> WrittenAs {
         WrittenAs { format, precision: self.precision }
@@ -120,14 +114,6 @@ impl WriteArgs {
     /// Chooses the precision in which the result of a job has to be written.
     pub fn written_as(self, as_: Option<WrittenAs>) -> Self {
         as_.map_or(self, |as_| Self { precision: as_.precision })
-    }
-
-    /// Chooses 64-bit coordinates unless `--precision` chooses.
-    fn precise(self) -> Self {
-        match self.precision {
-            Precision::Auto => Self { precision: Precision::F64 },
-            _ => self,
-        }
     }
 }
 

@@ -191,7 +191,7 @@ fn check_stdout(session: &Session) -> Result<(), Failure> {
 }
 
 /// Returns the format of standard input and output.
-pub fn pipe_format(session: &Session) -> Result<Format, Failure> {
+fn pipe_format(session: &Session) -> Result<Format, Failure> {
     session
         .format
         .ok_or_else(|| Failure::usage("-: give --format with the suffix of a mesh, such as ply"))

@@ -7,17 +7,23 @@ use meshlod::jobs::{About, JobError, Remark, Watch};
 use crate::session::Session;
 use crate::session::failure::Failure;
 
-/// A session that hears a job about one file.
+/// A session that hears a job about one file, or two that it compares.
 pub struct Hearing<'s> {
     session: &'s Session,
     input: &'s Path,
+    second: &'s Path,
     output: &'s Path,
 }
 
 impl<'s> Hearing<'s> {
     /// Creates the watch of a job that works on `input` for `output`, which may be the same.
     pub fn new(session: &'s Session, input: &'s Path, output: &'s Path) -> Self {
-        Self { session, input, output }
+        Self { session, input, second: input, output }
+    }
+
+    /// Creates the watch of a job that compares two files.
+    pub fn of_two(session: &'s Session, first: &'s Path, second: &'s Path) -> Self {
+        Self { session, input: first, second, output: first }
     }
 
     /// Names the file or option that an error of the job is about.
@@ -28,6 +34,7 @@ impl<'s> Hearing<'s> {
                 Failure::usage(format_args!("{}: {reason}", option(field)))
             }
             JobError::Input(error) => Failure::at(self.input, error),
+            JobError::Second(error) => Failure::at(self.second, error),
             JobError::Output(error) => Failure::at(self.output, error),
             error => Failure::new(error),
         }
@@ -47,6 +54,7 @@ impl Watch for Hearing<'_> {
         match about {
             About::Field(name) => self.session.warn(format_args!("{}: {text}", option(name))),
             About::Input => self.session.warn(Failure::at(self.input, text)),
+            About::Second => self.session.warn(Failure::at(self.second, text)),
             About::Output => self.session.warn(Failure::at(self.output, text)),
             _ => self.session.warn(text),
         }

@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use meshlod::io::gltf::{Level, LodLayout, StripMesh};
-use meshlod::io::{Note, read_bytes, write_file, write_lods, write_strips, write_to};
+use meshlod::io::{Note, write_file, write_lods, write_strips, write_to};
 use meshlod::jobs::{self, ConvertReport, ConvertRequest};
-use meshlod::{Format, Mesh, ReadOptions, Scene, WriteOptions};
+use meshlod::{Format, Mesh, Scene};
 
 use crate::options::args::WriteArgs;
 use crate::session::Session;
 use crate::session::failure::Failure;
-use crate::session::files::{check_output, is_pipe, name, pipe_format};
+use crate::session::files::{check_output, is_pipe, name};
 
 /// Writes a scene to a file or standard output.
 pub fn write(
@@ -140,24 +140,6 @@ fn swap(scene: &mut Scene, level: &mut [Mesh]) {
     meshes.zip(level).for_each(|(mesh, level)| std::mem::swap(mesh, level));
 }
 
-/// Reads a file just written with [`write()`] again, with default options.
-pub fn read_again(
-    path: &Path,
-    scene: &Scene,
-    writing: &WriteArgs,
-    session: &Session,
-) -> Result<Scene, Failure> {
-    session.progress.stage(&format!("reading {} again", name(path)));
-    let options = ReadOptions::default();
-    if !is_pipe(path) {
-        return Ok(meshlod::read(path, &options)?);
-    }
-    let format = pipe_format(session)?;
-    let mut bytes = Vec::new();
-    write_pipe(format, scene, writing.options(), &mut bytes)?;
-    read_bytes(&bytes, format, &mut |_| None, &options).map_err(|error| Failure::at(path, error))
-}
-
 fn write_noted(
     path: &Path,
     scene: &Scene,
@@ -171,16 +153,6 @@ fn write_noted(
     }
     let format = check_output(path, session)?;
     let mut out = BufWriter::new(io::stdout().lock());
-    write_pipe(format, scene, writing.options(), &mut out)?;
-    out.flush().map_err(|error| Failure::at(path, error))
-}
-
-fn write_pipe(
-    format: Format,
-    scene: &Scene,
-    options: WriteOptions,
-    out: &mut impl Write,
-) -> Result<(), Failure> {
-    let written = write_to(out, scene, format, &options);
-    written.map_err(|error| Failure::at(Path::new("-"), error))
+    let written = write_to(&mut out, scene, format, &writing.options());
+    written.and_then(|()| out.flush()).map_err(|error| Failure::at(path, error))
 }

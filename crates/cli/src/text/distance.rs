@@ -1,40 +1,9 @@
-//! Measured distances between scenes, and their JSON and text.
+//! Measured distances between scenes as text.
 
-use std::path::Path;
+use meshlod::measure::{Bracket, CertifiedDistance, Distance, OneSidedDistance};
 
-use meshlod::measure::{
-    Bracket, CertifiedDistance, Distance, OneSidedDistance, Place, PreparedSurface,
-};
-use meshlod::{Mesh, Scene, io::SceneMesh};
-use serde::Serialize;
-
-use crate::session::failure::Failure;
 use crate::text::numbers;
 use crate::text::table::aligned;
-
-/// Joins the meshes of a scene into one surface in world space without attributes, with `meshes` in
-/// place of its own.
-pub fn surface_of<'m>(scene: &Scene, meshes: impl IntoIterator<Item = &'m Mesh>) -> Mesh {
-    let bare = |mesh: &Mesh| Mesh::new(mesh.positions.clone(), mesh.faces.clone());
-    let meshes = meshes.into_iter().map(|m| SceneMesh { mesh: bare(m), ..SceneMesh::default() });
-    Scene {
-        meshes: meshes.collect(),
-        nodes: scene.nodes.clone(),
-        roots: scene.roots.clone(),
-        ..Scene::default()
-    }
-    .into_mesh()
-}
-
-/// Iterates over the meshes of a scene.
-pub fn meshes(scene: &Scene) -> impl Iterator<Item = &Mesh> {
-    scene.meshes.iter().map(|mesh| &mesh.mesh)
-}
-
-/// Prepares a mesh read from a file for distance measurements.
-pub fn ready<'m>(mesh: &'m Mesh, path: &Path) -> Result<PreparedSurface<'m>, Failure> {
-    PreparedSurface::new(mesh).map_err(|error| Failure::at(path, error))
-}
 
 /// Formats the distances in each direction and combined as a table.
 pub fn to_table(distance: &Distance) -> String {
@@ -52,40 +21,6 @@ pub fn to_table(distance: &Distance) -> String {
         way("backward", &distance.backward),
         row("both", distance.mean(), distance.rms(), distance.max()),
     ])
-}
-
-/// Bounds of the maximum distance in each direction and combined, in model units and percent of the
-/// diagonal.
-#[derive(Serialize)]
-pub struct CertifiedFigures {
-    #[serde(flatten)]
-    both: BracketFigures,
-    forward: BracketFigures,
-    backward: BracketFigures,
-}
-
-#[derive(Serialize)]
-struct BracketFigures {
-    lower: f64,
-    upper: f64,
-    lower_percent: f64,
-    upper_percent: f64,
-    reached: bool,
-    place: Place,
-}
-
-impl From<&CertifiedDistance> for CertifiedFigures {
-    fn from(distance: &CertifiedDistance) -> Self {
-        let way = |Bracket { lower, upper, place, reached, .. }: Bracket| {
-            let [lower_percent, upper_percent] = [lower, upper].map(|l| distance.percent(l));
-            BracketFigures { lower, upper, lower_percent, upper_percent, reached, place }
-        };
-        Self {
-            both: way(distance.symmetric()),
-            forward: way(distance.forward),
-            backward: way(distance.backward),
-        }
-    }
 }
 
 /// Formats the bounds of the maximum distance in each direction and combined as a table.

@@ -4,7 +4,6 @@ pub mod distance;
 pub mod error_bound;
 pub mod kept_error;
 pub mod model_scene;
-pub mod poses;
 pub mod simplify_report;
 pub mod table;
 

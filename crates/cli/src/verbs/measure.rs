@@ -3,13 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use meshlod::jobs::figures::DistanceFigures;
-use meshlod::measure::{
-    CertifiedOptions, area, certified_surface_distance, surface_distance, volume,
-};
-use meshlod::mesh::Connectivity;
-use meshlod::{Mesh, Scene};
-use serde::Serialize;
+use meshlod::jobs::{self, FarthestPose, MeasureReport, MeasureRequest};
+use meshlod::measure::DistanceOptions;
 
 use crate::options::args::{ReadArgs, SamplingArgs};
 use crate::options::parse;
@@ -17,9 +12,9 @@ use crate::session::Session;
 use crate::session::answer::Answer;
 use crate::session::failure::Failure;
 use crate::session::files;
-use crate::text::distance::{self, CertifiedFigures};
-use crate::text::numbers::{change, value};
-use crate::text::poses::{FarthestFigures, FarthestPose};
+use crate::session::hearing::Hearing;
+use crate::text::distance;
+use crate::text::numbers::{change, count, plural, value};
 use crate::text::table::aligned;
 
 /// Measure the distance between two meshes, both ways
@@ -49,104 +44,51 @@ pub struct Measure {
     reading: ReadArgs,
 }
 
-/// Figures of a measurement for programs.
-#[derive(Serialize)]
-struct MeasureFigures {
-    #[serde(flatten)]
-    distance: DistanceFigures,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    certified: Option<CertifiedFigures>,
-    area_a: f64,
-    volume_a: f64,
-    closed_a: bool,
-    area_b: f64,
-    volume_b: f64,
-    closed_b: bool,
-    /// Relative; `None` if the area of A is zero.
-    area_change: Option<f64>,
-    /// Relative; `None` unless both are closed.
-    volume_change: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pose: Option<FarthestFigures>,
-}
-
 impl Measure {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         if files::is_pipe(&self.a) && files::is_pipe(&self.b) {
             return Err(Failure::usage("-: only one of the two meshes can be standard input"));
         }
         let [a, b] = [&self.a, &self.b].map(|path| files::read(path, &self.reading, session));
-        let scenes = [a?, b?];
-        session.progress.stage("measuring");
-        let (a, b, pose) = self.surfaces(&scenes, session)?;
-        let surfaces = (distance::ready(&a, &self.a)?, distance::ready(&b, &self.b)?);
-        let apart = surface_distance(&surfaces.0, &surfaces.1, &self.sampling.options())
-            .map_err(Failure::new)?;
-        let certified = self.certified.then(|| {
-            session.progress.stage("certifying");
-            let options = CertifiedOptions::default();
-            certified_surface_distance(&surfaces.0, &surfaces.1, &options)
-        });
-        let (areas, volumes) = ([area(&a), area(&b)], [volume(&a), volume(&b)]);
-        let closed = [is_closed(&a), is_closed(&b)];
-
-        let figures = MeasureFigures {
-            distance: (&apart).into(),
-            certified: certified.as_ref().map(CertifiedFigures::from),
-            area_a: areas[0],
-            volume_a: volumes[0],
-            closed_a: closed[0],
-            area_b: areas[1],
-            volume_b: volumes[1],
-            closed_b: closed[1],
-            area_change: relative(areas),
-            volume_change: relative(volumes).filter(|_| closed == [true; 2]),
-            pose: pose.as_ref().map(FarthestPose::figures),
-        };
-        let row = |name: &str, [a, b]: [f64; 2]| [name.into(), value(a), value(b), change(a, b)];
-        let text = format!(
-            "{}{}{}diagonal {}\n\n{}{}",
-            pose.map(|pose| pose.to_text()).unwrap_or_default(),
-            distance::to_table(&apart),
-            certified.as_ref().map(distance::certified_table).unwrap_or_default(),
-            value(apart.diagonal),
-            aligned(&[
-                ["", "A", "B", "change"].map(String::from),
-                row("area", areas),
-                row("volume", volumes),
-            ]),
-            open_note(closed),
-        );
-        Ok(Answer::new(figures, text))
+        let (a, b) = (a?, b?);
+        let hearing = Hearing::of_two(session, &self.a, &self.b);
+        let done = jobs::measure(&a, &b, &self.request(), &hearing);
+        let report = done.map_err(|error| hearing.failure(error))?;
+        let text = text(&report);
+        Ok(Answer::new(report, text))
     }
 
-    /// Returns the surfaces of both scenes, as they are or in the pose that keeps them farthest apart.
-    fn surfaces(
-        &self,
-        scenes: &[Scene; 2],
-        session: &Session,
-    ) -> Result<(Mesh, Mesh, Option<FarthestPose>), Failure> {
-        let Some(most) = self.poses else {
-            let [a, b] =
-                scenes.each_ref().map(|scene| distance::surface_of(scene, distance::meshes(scene)));
-            return Ok((a, b, None));
-        };
-        let options = self.sampling.options();
-        let paths = [self.a.as_path(), &self.b];
-        let mut pose = FarthestPose::of(scenes.each_ref(), paths, (most, &options), session)?;
-        let [a, b] = std::mem::take(&mut pose.meshes);
-        Ok((a, b, Some(pose)))
+    fn request(&self) -> MeasureRequest {
+        let DistanceOptions { samples, seed } = self.sampling.options();
+        MeasureRequest { samples, seed, certified: self.certified, poses: self.poses }
     }
 }
 
-fn is_closed(mesh: &Mesh) -> bool {
-    Connectivity::new(&mesh.faces, mesh.positions.len()).is_closed()
+fn text(report: &MeasureReport) -> String {
+    let row = |name: &str, [a, b]: [f64; 2]| [name.into(), value(a), value(b), change(a, b)];
+    format!(
+        "{}{}{}diagonal {}\n\n{}{}",
+        report.pose.as_ref().map(pose).unwrap_or_default(),
+        distance::to_table(&report.distance),
+        report.certified.as_ref().map(distance::certified_table).unwrap_or_default(),
+        value(report.distance.diagonal),
+        aligned(&[
+            ["", "A", "B", "change"].map(String::from),
+            row("area", [report.area_a, report.area_b]),
+            row("volume", [report.volume_a, report.volume_b]),
+        ]),
+        open_note([report.closed_a, report.closed_b]),
+    )
 }
 
-/// Returns the relative change of a quantity; `None` if it was zero.
-fn relative([before, after]: [f64; 2]) -> Option<f64> {
-    let change = (after - before) / before.abs();
-    change.is_finite().then_some(change)
+fn pose(pose: &FarthestPose) -> String {
+    let FarthestPose { measured, animation, seconds } = *pose;
+    format!(
+        "the farthest of {} pose{}: animation {animation} at {} s\n\n",
+        count(measured),
+        plural(measured),
+        value(seconds),
+    )
 }
 
 /// Returns a line that names the meshes that are not closed.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use meshlod::Mesh;
-use meshlod::measure::vertex_errors;
+use meshlod::measure::{PreparedSurface, vertex_errors};
 use meshlod::picture::{
     Camera, ColorMap, Lighting, Normals, Paint, Picture, Style, Values, View, Wireframe, render,
 };
@@ -18,7 +18,6 @@ use crate::session::Session;
 use crate::session::answer::Answer;
 use crate::session::failure::Failure;
 use crate::session::files;
-use crate::text::distance;
 #[cfg(feature = "view")]
 use crate::text::numbers::count;
 use crate::text::numbers::{percent, value};
@@ -157,7 +156,7 @@ impl Render {
         let Some(path) = &self.heat_against else { return Ok(None) };
         let against = files::read_surface(path, &self.reading, session)?.into_mesh();
         session.progress.stage("measuring");
-        let against = distance::ready(&against, path)?;
+        let against = PreparedSurface::new(&against).map_err(|error| Failure::at(path, error))?;
         let errors = vertex_errors(mesh, &against);
         let max = errors.iter().copied().fold(0.0, f64::max);
         let values = errors.into_iter().map(|error| error as f32).collect();

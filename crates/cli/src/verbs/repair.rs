@@ -1,28 +1,24 @@
 //! `repair`: repairs the defects that can be repaired safely.
 
-use std::ops::ControlFlow;
+mod report;
+
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
 
 use clap::Args;
-use meshlod::check::{
-    CheckOptions, HoleLimits, Kinds, RepairOptions, RepairReport, RepairStep, Stitch, Summary,
-    check,
-};
-use meshlod::scene::repair_scene;
-use meshlod::{Format, Scene};
-use serde::Serialize;
+use meshlod::Format;
+use meshlod::check::{HoleLimits, RepairOptions, RepairStep, Stitch};
+use meshlod::jobs::{self, RepairRequest, SceneRepair};
 
 use crate::options::args::{ReadArgs, WriteArgs};
-use crate::options::fuse::{self, FuseArgs, FuseReport};
+use crate::options::fuse::FuseArgs;
 use crate::options::parse;
 use crate::session::Session;
 use crate::session::answer::Answer;
 use crate::session::failure::Failure;
 use crate::session::files;
+use crate::session::hearing::Hearing;
 use crate::session::scene_files;
-use crate::text::numbers::{count, faces, plural, value};
-use crate::text::table::aligned;
+use crate::text::numbers::{count, plural};
 
 /// Repair the defects that can be repaired safely, and report every step.
 ///
@@ -104,159 +100,34 @@ impl StepArgs {
 impl Repair {
     pub fn run(mut self, session: &Session) -> Result<Answer, Failure> {
         let format = files::check_output(&self.output, session)?;
-        let options = self.steps.options(self.reading.take_weld());
-        let mut scene = files::read(&self.input, &self.reading, session)?;
-        let before = MeshSize::of(&scene);
-        session.progress.stage("repairing");
-        let start = Instant::now();
-        let mut report = repair_scene(&mut scene, &options);
-        let fused = self.fuse.apply(&mut scene, session);
-        if fused.is_some() {
-            // Where cuts are close together, rounding leaves faces without area.
-            report = report.then(&repair_scene(&mut scene, &options));
-        }
-        let time = start.elapsed();
-        let after = MeshSize::of(&scene);
-        if after.faces == 0 {
-            return Err(Failure::at(&self.input, "no face with an area is left"));
-        }
-        // Rounding could undo repairs.
-        self.writing = self.writing.within(0.0, &scene, format);
-        scene_files::write(&self.output, &scene, &self.writing, session)?;
-        let left = errors(scene_files::read_again(&self.output, &scene, &self.writing, session)?);
-        let done = Repaired { report, fused, left, before, after, time };
-        self.warn(format, &done, session);
-        Ok(Answer {
-            file_on_stdout: files::is_pipe(&self.output),
-            ..Answer::new(self.figures(&done), self.text(&done))
-        })
-    }
-
-    /// Warns of defects that are left.
-    fn warn(&self, format: Format, done: &Repaired, session: &Session) {
-        let shells = done.report.count(RepairStep::NotOrientable);
-        if shells > 0 {
-            let reason = format!(
-                "{} one-sided shell{} left unchanged: cut open, they could be oriented",
-                count(shells),
-                plural(shells)
-            );
-            session.warn(Failure::at(&self.input, reason));
-        }
-        let untried = done.report.count(RepairStep::HolesUntried);
-        if untried > 0 {
-            let reason =
-                format!("too many large holes for one run; run again to close the other {untried}");
-            session.warn(Failure::at(&self.input, reason));
-        }
-        if done.left.total() > 0 {
-            let joins = format.is_welded() && done.report.count(RepairStep::SplitVertices) > 0;
-            let how = match joins {
-                true => "reading this format without --no-weld joins what was split".into(),
-                false => format!("check {} lists them", files::name(&self.output)),
-            };
-            let (errors, s) = (count(done.left.total()), plural(done.left.total()));
-            let reason = format!("has {errors} error{s} when it is read back; {how}");
-            session.warn(Failure::at(&self.output, reason));
-        }
-    }
-
-    fn figures<'d>(&self, done: &'d Repaired) -> RepairFigures<'d> {
-        let Repaired { report, fused, left, before, after, time } = done;
-        RepairFigures {
-            file: files::name(&self.output),
-            changed: !report.is_unchanged() || fused.as_ref().is_some_and(|fused| fused.is_change),
-            input_faces: before.faces,
-            input_vertices: before.vertices,
-            output_faces: after.faces,
-            output_vertices: after.vertices,
-            steps: report,
-            fused: *fused,
-            errors_left: left.total(),
-            errors_left_by_kind: left,
-            repair_seconds: time.as_secs_f64(),
-        }
-    }
-
-    fn text(&self, done: &Repaired) -> String {
-        let Repaired { report, fused, left, before, after, time } = done;
-        let steps: Vec<[String; 2]> = report
-            .nonzero()
-            .map(|(step, number)| [format!("  {}", step.name()), count(number)])
-            .collect();
-        let nothing = match (report.is_unchanged(), left.total()) {
-            (false, _) => "",
-            (true, 0) => "  nothing to repair\n",
-            (true, _) => "  nothing repaired\n",
+        let request = RepairRequest {
+            steps: self.steps.options(self.reading.take_weld()),
+            fuse: self.fuse.fuse,
+            written_as: Some(self.writing.in_format(format)),
         };
-        let left: Vec<[String; 2]> = left
-            .found()
-            .map(|(kind, number)| [format!("  left: {}", kind.name()), count(number)])
-            .collect();
-        format!(
-            "{}: {} to {}, {} vertices to {}\n{nothing}{}{}{}repair_seconds: {}\n",
-            files::name(&self.output),
-            faces(before.faces),
-            count(after.faces),
-            count(before.vertices),
-            count(after.vertices),
-            aligned(&steps),
-            fuse::to_text(fused.as_ref()),
-            aligned(&left),
-            value(time.as_secs_f64()),
-        )
+        let scene = files::read(&self.input, &self.reading, session)?;
+        let hearing = Hearing::new(session, &self.input, &self.output);
+        let done = jobs::repair(scene, &request, &hearing);
+        let (scene, report) = done.map_err(|error| hearing.failure(error))?;
+        let writing = self.writing.written_as(report.written_as);
+        scene_files::write(&self.output, &scene, &writing, session)?;
+        self.warn_of_errors(format, &report, session);
+        let answer = Answer::new(self.figures(&report), self.text(&report));
+        Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..answer })
     }
-}
 
-/// Figures of a repair for programs.
-#[derive(Serialize)]
-struct RepairFigures<'d> {
-    file: String,
-    changed: bool,
-    input_faces: usize,
-    input_vertices: usize,
-    output_faces: usize,
-    output_vertices: usize,
-    steps: &'d RepairReport,
-    fused: Option<FuseReport>,
-    errors_left: usize,
-    errors_left_by_kind: &'d Summary,
-    repair_seconds: f64,
-}
-
-/// Counts the errors of a scene.
-fn errors(scene: Scene) -> Summary {
-    let options = CheckOptions { kinds: Kinds::errors(), ..CheckOptions::default() };
-    let mut errors = Summary::default();
-    let _ = check(&scene.into_mesh(), &options, &mut |finding| {
-        errors.add(finding);
-        ControlFlow::Continue(())
-    });
-    errors
-}
-
-struct Repaired {
-    report: RepairReport,
-    fused: Option<FuseReport>,
-    /// Errors in the file that was written.
-    left: Summary,
-    before: MeshSize,
-    after: MeshSize,
-    time: Duration,
-}
-
-/// Total size of all meshes.
-struct MeshSize {
-    vertices: usize,
-    faces: usize,
-}
-
-impl MeshSize {
-    fn of(scene: &Scene) -> Self {
-        let meshes = || scene.meshes.iter().map(|mesh| &mesh.mesh);
-        Self {
-            vertices: meshes().map(|mesh| mesh.positions.len()).sum(),
-            faces: meshes().map(|mesh| mesh.faces.len()).sum(),
+    /// Warns of errors that are left, and says how to see or avoid them.
+    fn warn_of_errors(&self, format: Format, report: &SceneRepair, session: &Session) {
+        if report.errors_left == 0 {
+            return;
         }
+        let joins = format.is_welded() && report.steps.count(RepairStep::SplitVertices) > 0;
+        let how = match joins {
+            true => "reading this format without --no-weld joins what was split".into(),
+            false => format!("check {} lists them", files::name(&self.output)),
+        };
+        let (errors, s) = (count(report.errors_left), plural(report.errors_left));
+        let reason = format!("has {errors} error{s} when it is read back; {how}");
+        session.warn(Failure::at(&self.output, reason));
     }
 }

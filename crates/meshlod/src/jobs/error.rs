@@ -23,6 +23,9 @@ pub enum JobError {
     /// The input of the job cannot be used.
     #[error("{0}")]
     Input(#[source] Box<dyn Error + Send + Sync>),
+    /// The second of two things that the job works on cannot be used.
+    #[error("{0}")]
+    Second(#[source] Box<dyn Error + Send + Sync>),
     /// The result cannot be made or stored in the form that was asked for.
     #[error("{0}")]
     Output(#[source] Box<dyn Error + Send + Sync>),
@@ -40,6 +43,11 @@ impl JobError {
     /// Creates the error of what a job works on.
     pub fn input(error: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
         Self::Input(error.into())
+    }
+
+    /// Creates the error of the second of two things that a job works on.
+    pub fn second(error: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
+        Self::Second(error.into())
     }
 
     /// Creates the error of what a job returns.

@@ -1,9 +1,9 @@
 //! Parts of reports under the keys that the command prints with `--json`.
 
-use meshlod_measure::{Distance, OneSidedDistance, Place};
+use meshlod_measure::{Bracket, CertifiedDistance, Distance, OneSidedDistance, Place};
 use meshlod_mesh::Conditioning;
 use meshlod_simplify::{Contractions, Held, Method, Refusals, Report, Unconserved, VolumeLoss};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use crate::jobs::{LodReport, LodsReport, SimplifyReport};
 use crate::scene::FuseReport;
@@ -53,6 +53,54 @@ impl From<&Distance> for DistanceFigures {
             backward: way(&distance.backward),
         }
     }
+}
+
+/// Writes a measured distance as [`DistanceFigures`].
+pub(super) fn distance<S: Serializer>(distance: &Distance, to: S) -> Result<S::Ok, S::Error> {
+    DistanceFigures::from(distance).serialize(to)
+}
+
+/// Bounds of the maximum distance in each direction and combined, in model units and percent of the
+/// diagonal.
+#[derive(Serialize)]
+struct CertifiedFigures {
+    #[serde(flatten)]
+    both: BracketFigures,
+    forward: BracketFigures,
+    backward: BracketFigures,
+}
+
+#[derive(Serialize)]
+struct BracketFigures {
+    lower: f64,
+    upper: f64,
+    lower_percent: f64,
+    upper_percent: f64,
+    reached: bool,
+    place: Place,
+}
+
+impl From<&CertifiedDistance> for CertifiedFigures {
+    fn from(distance: &CertifiedDistance) -> Self {
+        let way = |Bracket { lower, upper, place, reached, .. }: Bracket| {
+            let [lower_percent, upper_percent] = [lower, upper].map(|l| distance.percent(l));
+            BracketFigures { lower, upper, lower_percent, upper_percent, reached, place }
+        };
+        Self {
+            both: way(distance.symmetric()),
+            forward: way(distance.forward),
+            backward: way(distance.backward),
+        }
+    }
+}
+
+/// Writes the bounds of a distance, if they were asked for, in percent too.
+#[cfg(feature = "multires")]
+pub(super) fn certified<S: Serializer>(
+    distance: &Option<CertifiedDistance>,
+    to: S,
+) -> Result<S::Ok, S::Error> {
+    distance.as_ref().map(CertifiedFigures::from).serialize(to)
 }
 
 /// Numbers of edges and faces contracted, with the share of edges.

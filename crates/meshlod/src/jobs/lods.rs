@@ -133,7 +133,7 @@ pub fn lods(
     watch: &dyn Watch,
 ) -> Result<(LodChain, LodsReport), JobError> {
     cancellable(|| {
-        let fused = scene_run::fuse(&mut scene, &request.constraints, watch);
+        let fused = scene_run::fuse(&mut scene, request.constraints.fuse, watch);
         let (levels, report) = made(&scene, request, fused, watch)?;
         Ok((LodChain { scene, levels }, report))
     })

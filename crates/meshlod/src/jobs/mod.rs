@@ -23,6 +23,10 @@ mod extract;
 pub mod figures;
 #[cfg(feature = "check")]
 mod lods;
+#[cfg(feature = "multires")]
+mod measure;
+#[cfg(feature = "check")]
+mod repair;
 #[cfg(feature = "check")]
 mod scene_run;
 #[cfg(feature = "check")]
@@ -54,6 +58,10 @@ pub use extract::{
 };
 #[cfg(feature = "check")]
 pub use lods::{LodChain, LodReport, LodsReport, LodsRequest, chain_samples, lods};
+#[cfg(feature = "multires")]
+pub use measure::{FarthestPose, MeasureReport, MeasureRequest, measure};
+#[cfg(feature = "check")]
+pub use repair::{RepairRequest, SceneRepair, repair};
 #[cfg(feature = "check")]
 pub use simplify::{
     Aim, LostVolume, ProvedError, SimplifyReport, SimplifyRequest, WrittenAs, simplify,

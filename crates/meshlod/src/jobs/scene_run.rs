@@ -14,12 +14,8 @@ use crate::scene::{ConditionedScene, FuseReport, SceneError, SceneSimplifier, co
 use crate::{Constraints, VertexLocking};
 
 /// Fuses a scene, if that is asked for.
-pub(super) fn fuse(
-    scene: &mut Scene,
-    constraints: &Constraints,
-    watch: &dyn Watch,
-) -> Option<FuseReport> {
-    constraints.fuse.then(|| {
+pub(super) fn fuse(scene: &mut Scene, is_wanted: bool, watch: &dyn Watch) -> Option<FuseReport> {
+    is_wanted.then(|| {
         watch.stage("fusing");
         FuseReport::of(scene)
     })

@@ -51,8 +51,10 @@ pub enum About {
     Job,
     /// A field of its request, by its name.
     Field(&'static str),
-    /// Its input.
+    /// Its input; of two, the first.
     Input,
+    /// The second of two inputs.
+    Second,
     /// Its output.
     Output,
 }
@@ -75,6 +77,7 @@ impl fmt::Display for Remark {
             About::Job => f.write_str(&self.text),
             About::Field(name) => write!(f, "{name}: {}", self.text),
             About::Input => write!(f, "input: {}", self.text),
+            About::Second => write!(f, "second input: {}", self.text),
             About::Output => write!(f, "output: {}", self.text),
         }
     }

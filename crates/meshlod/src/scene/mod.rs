@@ -21,8 +21,6 @@ pub(crate) mod locks;
 #[cfg(feature = "picture")]
 mod materials;
 pub(crate) mod place;
-#[cfg(feature = "check")]
-mod repair;
 mod simplifier;
 
 #[cfg(feature = "picture")]
@@ -39,6 +37,4 @@ pub use locks::join_locks;
 #[cfg(feature = "picture")]
 pub use materials::{ImageWarning, materials_of, single_sided_materials};
 pub use place::{moved_at_most, rounding_of_level, shown_rounding, world_bounds};
-#[cfg(feature = "check")]
-pub use repair::repair_scene;
 pub use simplifier::{SceneError, SceneSimplifier};

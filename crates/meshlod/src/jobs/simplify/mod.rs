@@ -53,7 +53,7 @@ pub fn simplify(
     watch: &dyn Watch,
 ) -> Result<(Scene, SimplifyReport), JobError> {
     cancellable(|| {
-        let fused = scene_run::fuse(&mut scene, &request.constraints, watch);
+        let fused = scene_run::fuse(&mut scene, request.constraints.fuse, watch);
         let target = request.target.target(&scene);
         let target = fused.map_or(target, |fused| fused.target(target));
         let (asked, written_as) = asked_and_written(request, target, &scene);

@@ -93,7 +93,7 @@ impl WrittenAs {
     }
 
     /// Chooses 64 bits, unless they are chosen already.
-    pub(super) fn precise(self) -> Self {
+    pub(in crate::jobs) fn precise(self) -> Self {
         match self.precision {
             Precision::Auto => Self { precision: Precision::F64, ..self },
             _ => self,
