@@ -20,8 +20,8 @@ pub struct FarthestPose {
     pub seconds: f64,
 }
 
-/// Compares two scenes at `most` moments of the animations of the first, and returns the surfaces of
-/// both at the moment at which they are farthest apart.
+/// Compares two scenes at `most` moments of the animations of the first, and returns the surfaces
+/// of both at the moment at which they are farthest apart.
 pub(super) fn pose(
     scenes: [&Scene; 2],
     most: usize,

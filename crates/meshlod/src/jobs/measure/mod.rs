@@ -73,14 +73,14 @@ pub struct MeasureReport {
 /// Measures the distance between the surfaces of two scenes in both directions, and the change of
 /// area and volume from A to B.
 ///
-/// With [`poses`](MeasureRequest::poses), B must be a level of A: both are posed alike, and measured
-/// in the pose in which they are farthest apart.
+/// With [`poses`](MeasureRequest::poses), B must be a level of A: both are posed alike, and
+/// measured in the pose in which they are farthest apart.
 ///
 /// Cost: O((samples + vertices + faces) log faces) a pose; in parallel.
 ///
 /// # Errors
-/// A surface without area: of A it is [`JobError::Input`], of B [`JobError::Second`]. No samples, no
-/// animations, and animations or nodes that differ.
+/// A surface without area: of A it is [`JobError::Input`], of B [`JobError::Second`]. No samples,
+/// no animations, and animations or nodes that differ.
 ///
 /// ```
 /// use meshlod::jobs::{MeasureRequest, measure};
