@@ -11,8 +11,8 @@ use meshlod::jobs::{
 use meshlod::measure::{area, volume};
 use meshlod::mesh::LayerKind;
 use meshlod::picture::{Camera, UpAxis, View, Wireframe};
-use meshlod::strip::{StripOptions, StripQuality, stripify};
 use meshlod::scene::{OwnedPaint, normals_of};
+use meshlod::strip::{StripOptions, StripQuality, stripify};
 use meshlod::{Bound as Length, FileKind, Mesh, Scene};
 use numpy::PyArray1;
 use pyo3::prelude::*;

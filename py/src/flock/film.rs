@@ -1,8 +1,8 @@
 //! Films: scenarios that run, frame by frame.
 
 use meshlod::flock::FlockCamera;
-use meshlod_school::scene::{Film, Scenario, ScenarioName, ScenarioOptions};
 use meshlod::samples;
+use meshlod_school::scene::{Film, Scenario, ScenarioName, ScenarioOptions};
 use pyo3::prelude::*;
 
 use super::CameraArguments;

@@ -48,7 +48,7 @@ fn page(name: &str, inspection: &Inspection, sites: &Sites) -> Result<Markup, Fa
         }
         _ => html! {},
     };
-    let contacts = inspection.report.contacts.len() > 0;
+    let contacts = !inspection.report.contacts.is_empty();
     let links = [("findings", "Findings"), ("contacts", "Contacts")];
     let links = links.into_iter().filter(|(id, _)| contacts || *id != "contacts");
     Ok(document(Document {
