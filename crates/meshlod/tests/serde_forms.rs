@@ -137,7 +137,12 @@ fn options_of_files_levels_and_bytes() {
     options_as(
         &ExtractRequest { query, crop: true, ..Default::default() },
         &json!({
-            "query": { "target": { "error": { "length": "1%" } }, "focus": "frustum" },
+            "query": {
+                "target": { "error": { "length": "1%" } },
+                "focus": "frustum",
+                "camera": null,
+                "up": null,
+            },
             "crop": true,
         }),
     );

@@ -71,8 +71,7 @@ pub fn shoot(
         let mut draw_ms = None;
         if let Some(painter) = &mut painter {
             check_size(selector.triangles())?;
-            let path = options.out.join(frame_name(frame));
-            draw_ms = Some(draw(painter, (flock, &before, &camera), &path)?);
+            draw_ms = Some(draw(painter, (flock, &before, &camera), &options.out, frame)?);
         }
         figures.frames.push(FrameFigures {
             frame,
@@ -107,16 +106,20 @@ fn write_figures(
     Ok(Take { figures, lines })
 }
 
-/// Draws a frame to a file, and returns the milliseconds of drawing.
+/// Draws a frame to a file in a folder, and returns the milliseconds of drawing.
 fn draw(
     painter: &mut FlockPainter<'_>,
     (flock, levels, camera): (&meshlod::flock::Flock, &[InstanceLevel], &FlockCamera),
-    path: &Path,
+    out: &Path,
+    frame: usize,
 ) -> Result<f64, Failure> {
     let start = Instant::now();
     let picture = painter.draw(flock, levels, camera).map_err(Failure::new)?;
     let draw_ms = milliseconds(start);
-    write_file(path, &picture.png())?;
+    if frame == 0 {
+        files::make_folder(out)?;
+    }
+    write_file(&out.join(frame_name(frame)), &picture.png())?;
     Ok(draw_ms)
 }
 

@@ -28,8 +28,17 @@ pub fn stem(path: &Path) -> String {
 
 /// Reads a scene from a file or standard input; of our own formats, the finest level.
 pub fn read(path: &Path, reading: &ReadArgs, session: &Session) -> Result<Scene, Failure> {
-    let scene = open(path, reading, session)?.into_scene()?;
-    session.note(path, &scene.notes)?;
+    scene_of(open(path, reading, session)?, session)
+}
+
+/// Returns the scene in a file, with its notes; of all levels, the finest one.
+pub fn scene_of(file: AnyFile, session: &Session) -> Result<Scene, Failure> {
+    let path = file.path().to_owned();
+    let of_file = file.levels().map(|_| file.notes()).unwrap_or_default();
+    session.note(&path, &of_file)?;
+    let scene = file.into_scene()?;
+    let others = scene.notes.iter().filter(|note| !of_file.contains(note)).cloned();
+    session.note(&path, &others.collect::<Vec<_>>())?;
     Ok(scene)
 }
 

@@ -38,8 +38,7 @@ impl Info {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         let file = files::open(&self.input, &self.reading, session)?;
         let stored = own_files::stored(&file).transpose()?;
-        let scene = file.into_scene()?;
-        session.note(&self.input, &scene.notes)?;
+        let scene = files::scene_of(file, session)?;
         session.progress.stage("inspecting");
         let meshes = scene.meshes.len();
         let file = (!files::is_pipe(&self.input)).then(|| std::fs::metadata(&self.input));

@@ -94,14 +94,14 @@ fn what_could_not_be_done_is_1_and_one_line() {
     let cases: [(&[&str], &str); 10] = [
         (&["info", "none.ply"], "none.ply: "),
         (&["info", "in.fbx"], "in.fbx: unknown suffix"),
-        (&["simplify", "none.ply", "no/out.ply", "--faces", "9"], "no/out.ply: "),
+        (&["simplify", "none.ply", "in.ply/no/a.ply", "--faces", "9"], "in.ply/no/a.ply: "),
         (&["simplify", "none.ply", "in.ply/out.ply", "--faces", "9"], "in.ply/out.ply: "),
-        (&["lods", "none.ply", "no/out.off"], "no/out.off: "),
+        (&["lods", "none.ply", "in.ply/out.off"], "in.ply/out.off: "),
         (&["sample", "sphere", "folder.ply"], "folder.ply: is a folder"),
         (&["lods", "none.ply", "folder.glb"], "folder.glb: is a folder"),
         (&["lods", "none.ply", "l.off"], "l_LOD2.off: is a folder"),
         (&["measure", "in.ply", "none.obj"], "none.obj: "),
-        (&["render", "none.ply", "no/out.png"], "no/out.png: "),
+        (&["render", "none.ply", "in.ply/out.png"], "in.ply/out.png: "),
     ];
     for (arguments, beginning) in cases {
         let done = run.run(arguments);

@@ -109,11 +109,8 @@ mod tests {
     #[test]
     fn a_mesh_alone_has_white_materials_by_name() {
         for kind in KINDS {
-            let mut mesh = scene().into_mesh();
-            let names = mesh.materials.take();
-            let mut bare = Scene::from_mesh("strip", mesh);
-            bare.meshes[0].mesh.materials = names;
-            let is = unpacked(packed(bare, kind), kind).unwrap();
+            let alone = Scene::from_mesh("strip", scene().into_mesh());
+            let is = unpacked(packed(alone, kind), kind).unwrap();
             let names: Vec<_> = is.materials.iter().map(|material| &material.name[..]).collect();
             assert_eq!(names, ["red", "wood"]);
             assert!(is.images.is_empty());

@@ -135,12 +135,9 @@ impl Header {
         for ChunkEntry { stored, updates, faces, area } in &self.chunks {
             let words = [stored.bytes, stored.checksum, *updates, *faces];
             out.extend(words.iter().flat_map(|word| word.to_le_bytes()));
-            // Infinite bounds become finite ones beyond everything.
-            let [min, max] = [area.min, area.max]
-                .map(|x| x.clamp(DVec3::splat(-MAX_BOUND), DVec3::splat(MAX_BOUND)));
-            let numbers = [-round_up(-min), round_up(max)].map(|corner| corner.to_array());
+            let numbers = [area.min, area.max].map(|corner| corner.as_vec3().to_array());
             out.extend(numbers.as_flattened().iter().flat_map(|x| x.to_le_bytes()));
-            out.extend(round_up(DVec3::splat(area.error)).x.to_le_bytes());
+            out.extend((area.error as f32).to_le_bytes());
         }
         resources::write_index(&self.resources, &mut out);
         let checksum = crc32fast::hash(&out[BODY_AT..]);
@@ -252,6 +249,18 @@ const OLD_WEDGES: &str = "its attributes are in a form that was never released; 
 pub(super) const UNKNOWN_FLAGS: &str = "it has flags unknown to this program";
 /// Upper limit on updates and on roots, so that roots and two nodes per update stay below 2³¹.
 const MAX_UPDATES: usize = 1 << 29;
+
+/// Returns an area in the precision of the file: 32 bits, rounded outwards.
+pub(super) fn rounded(area: &Area) -> Area {
+    // Infinite bounds become finite ones beyond everything.
+    let [min, max] =
+        [area.min, area.max].map(|x| x.clamp(DVec3::splat(-MAX_BOUND), DVec3::splat(MAX_BOUND)));
+    Area {
+        min: (-round_up(-min)).as_dvec3(),
+        max: round_up(max).as_dvec3(),
+        error: round_up(DVec3::splat(area.error)).x.into(),
+    }
+}
 
 impl ChunkEntry {
     fn from_bytes(bytes: &[u8]) -> Self {

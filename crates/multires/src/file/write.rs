@@ -11,7 +11,7 @@ use super::header::{ChunkEntry, Header, Section};
 use super::lattice::Lattice;
 use super::quantize::Quantized;
 use super::wedge_state::WedgeState;
-use super::{FileError, base, chunk};
+use super::{FileError, base, chunk, header};
 use crate::cut::Certificate;
 use crate::forest::Forest;
 use crate::implicit::{Dependencies, DetachedUpdate, Implicit, ModelInfo, Order, SplitRule};
@@ -157,7 +157,7 @@ fn encode_sections(
             stored: Section::of(&body),
             updates: updates.len() as u32,
             faces: updates.iter().map(DetachedUpdate::created_face_count).sum::<usize>() as u32,
-            area: chunk.area,
+            area: header::rounded(&chunk.area),
         };
         Ok((entry, body))
     };
