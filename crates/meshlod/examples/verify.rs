@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err("give IN.mlod ORIGINAL ERROR...".into());
     };
     let file = ModelFile::open(File::open(input)?)?;
-    let original = read(&original, &ReadOptions::default())?.into_mesh();
+    let original = read(original, &ReadOptions::default())?.into_mesh();
     for error in errors {
         let tolerance = error.parse::<f64>()? / 100.0 * file.diagonal();
         let (scene, report) = extract(&file, &within(tolerance, FocusRequest::Everything), &())?;

@@ -48,7 +48,7 @@ fn files_of_every_kind_are_shown() {
     let path = |name: &str| folder.path().join(name);
     let knot = samples::knot(2_000);
     let scene = Scene::from_mesh("knot", knot.clone());
-    write(&path("a.ply"), &scene, &WriteOptions::default()).unwrap();
+    write(path("a.ply"), &scene, &WriteOptions::default()).unwrap();
     let (levels, _) = build(scene.clone(), &BuildRequest::default(), &()).unwrap();
     std::fs::write(path("b.mlod"), levels).unwrap();
     for (name, kind) in [("c.mlq", FileKind::Resident), ("d.mlz", FileKind::Sent)] {

@@ -41,6 +41,6 @@ impl Output {
     /// Writes a simplified mesh with 64-bit coordinates where the format allows, so that it can be
     /// measured again with equal results.
     pub fn write(&self, file: &str, scene: &Scene) -> Result<(), IoError> {
-        write(&self.folder.join(file), scene, &WriteOptions { precision: Precision::F64 })
+        write(self.folder.join(file), scene, &WriteOptions { precision: Precision::F64 })
     }
 }

@@ -118,7 +118,7 @@ impl SampleFiles<'_> {
     }
 
     fn write(&self, file: &str, scene: &Scene) -> Result<(), Failure> {
-        Ok(write(&self.folder.join(file), scene, &WriteOptions::default())?)
+        Ok(write(self.folder.join(file), scene, &WriteOptions::default())?)
     }
 
     fn write_lods(&self, scene: &Scene, levels: &[LevelMesh]) -> Result<(), Failure> {
@@ -132,7 +132,7 @@ impl SampleFiles<'_> {
         };
         let levels: Vec<_> = levels.iter().map(level).collect();
         Ok(write_lods(
-            &self.folder.join(self.sample.lods_file()),
+            self.folder.join(self.sample.lods_file()),
             scene,
             &levels,
             gltf::LodLayout::Linked,

@@ -28,6 +28,8 @@ mod measure;
 #[cfg(feature = "check")]
 mod repair;
 #[cfg(feature = "check")]
+mod running;
+#[cfg(feature = "check")]
 mod scene_run;
 #[cfg(feature = "check")]
 mod simplify;
@@ -63,6 +65,10 @@ pub use measure::{FarthestPose, MeasureReport, MeasureRequest, measure};
 #[cfg(feature = "check")]
 pub use repair::{RepairRequest, SceneRepair, repair};
 #[cfg(feature = "check")]
+pub(crate) use running::{Contractions, begin, cancellable};
+#[cfg(feature = "multires")]
+pub(crate) use running::end_if_cancelled;
+#[cfg(feature = "check")]
 pub use simplify::{
     Aim, LostVolume, ProvedError, SimplifyReport, SimplifyRequest, WrittenAs, simplify,
 };
@@ -74,4 +80,3 @@ pub use strip::{
 #[cfg(feature = "check")]
 pub use switching::{Switch, SwitchCamera};
 pub use watch::{About, Remark, Watch};
-pub(crate) use watch::{Contractions, begin, cancellable, end_if_cancelled};

@@ -12,7 +12,7 @@ use crate::session::failure::Failure;
 /// Writes a mesh with a hole, a tear, reversed faces and duplicate faces.
 pub fn write_file(mesh: &Mesh, folder: &Path) -> Result<(), Failure> {
     let scene = Scene::from_mesh("broken", broken(mesh));
-    Ok(write(&folder.join(BROKEN), &scene, &WriteOptions::default())?)
+    Ok(write(folder.join(BROKEN), &scene, &WriteOptions::default())?)
 }
 
 /// Where the mesh is broken, on its side that faces +z: the place as fractions of the width and

@@ -307,7 +307,7 @@ fn files_of_both_forms_are_written_by_path() {
         let again = crate::read(&path, &ReadOptions::default()).unwrap();
         assert_eq!(faces(&again).len(), faces(&scene).len());
     }
-    let error = crate::write_compressed(&folder.path().join("a.ply"), &scene, &PACKED).unwrap_err();
+    let error = crate::write_compressed(folder.path().join("a.ply"), &scene, &PACKED).unwrap_err();
     assert!(error.to_string().contains("use one of those"), "{error}");
 }
 
