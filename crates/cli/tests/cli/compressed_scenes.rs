@@ -18,7 +18,7 @@ const MODELS: [&str; 4] =
 const FILES: [&str; 2] = ["a.mlq", "a.mlz"];
 
 fn scene_of(run: &Run, name: &str) -> Scene {
-    read(&run.path(name), &ReadOptions::default()).unwrap()
+    read(run.path(name), &ReadOptions::default()).unwrap()
 }
 
 /// A torus that two nodes show, the second one turned and at half the size.
@@ -34,7 +34,7 @@ fn two_instances() -> Scene {
 }
 
 fn write_two_instances(run: &Run) {
-    write(&run.path("in.glb"), &two_instances(), &WriteOptions::default()).unwrap();
+    write(run.path("in.glb"), &two_instances(), &WriteOptions::default()).unwrap();
 }
 
 /// Returns the mean weight that each joint has over the corners of a mesh; none without joints.

@@ -41,11 +41,11 @@ fn balls() -> Mesh {
 }
 
 fn write(run: &Run, name: &str, mesh: Mesh) {
-    meshlod::write(&run.path(name), &Scene::from_mesh("", mesh), &WriteOptions::default()).unwrap();
+    meshlod::write(run.path(name), &Scene::from_mesh("", mesh), &WriteOptions::default()).unwrap();
 }
 
 fn read(run: &Run, name: &str) -> Mesh {
-    meshlod::read(&run.path(name), &ReadOptions::default()).unwrap().into_mesh()
+    meshlod::read(run.path(name), &ReadOptions::default()).unwrap().into_mesh()
 }
 
 /// Returns the positions on the boundary.
@@ -249,7 +249,7 @@ fn compressed_contacts_stay_together() {
         run.json(&[&["compress", "in.ply", file], options].concat());
         if file.ends_with("glb") {
             return shared_places(
-                &meshlod::read(&run.path(file), &ReadOptions { weld: meshlod::io::Weld::Off })
+                &meshlod::read(run.path(file), &ReadOptions { weld: meshlod::io::Weld::Off })
                     .unwrap()
                     .into_mesh(),
             );

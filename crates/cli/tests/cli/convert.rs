@@ -95,7 +95,7 @@ fn what_a_scan_has_beyond_its_numbers_is_counted() {
     ] {
         assert!(done.err.contains(note), "{note}: {done:?}");
     }
-    let mesh = meshlod::read(&run.path("b.ply"), &meshlod::ReadOptions::default()).unwrap();
+    let mesh = meshlod::read(run.path("b.ply"), &meshlod::ReadOptions::default()).unwrap();
     let layers = mesh.into_mesh().attributes.unwrap().layers;
     let of = |name: &str| &layers.iter().find(|layer| layer.name == name).unwrap().values[..];
     assert_eq!(of("scalar_a"), [0.0, 0.0, 5.0]);

@@ -82,7 +82,7 @@ fn labelled(run: &Run) {
 
 /// Returns the distinct labels of the vertices of a PLY file.
 fn labels(run: &Run, file: &str) -> Vec<f32> {
-    let scene = meshlod::read(&run.path(file), &meshlod::ReadOptions::default()).unwrap();
+    let scene = meshlod::read(run.path(file), &meshlod::ReadOptions::default()).unwrap();
     let mesh = scene.into_mesh();
     let layers = mesh.attributes.unwrap().layers;
     let layer = layers.iter().find(|layer| layer.name == "label").expect("a layer of labels");
@@ -265,13 +265,13 @@ fn what_stl_and_off_have_beside_their_surface_is_named() {
 fn meshes_that_become_one_are_noted_by_every_way() {
     let run = Run::new();
     run.sample("torus", 100, "one.ply");
-    let mut scene = meshlod::read(&run.path("one.ply"), &meshlod::ReadOptions::default()).unwrap();
+    let mut scene = meshlod::read(run.path("one.ply"), &meshlod::ReadOptions::default()).unwrap();
     scene.meshes.push(scene.meshes[0].clone());
     let node = meshlod::io::Node { mesh: Some(1), ..scene.nodes[0].clone() };
     scene.nodes.push(node);
     scene.roots.push(1);
     scene.meshes[1].mesh.positions.iter_mut().for_each(|position| position[0] += 9.0);
-    meshlod::write(&run.path("in.glb"), &scene, &meshlod::WriteOptions::default()).unwrap();
+    meshlod::write(run.path("in.glb"), &scene, &meshlod::WriteOptions::default()).unwrap();
     run.json(&["build", "in.glb", "in.mlod"]);
     run.json(&["compress", "in.glb", "in.mlz"]);
     for way in [

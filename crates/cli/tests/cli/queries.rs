@@ -6,11 +6,11 @@ use serde_json::Value;
 use crate::run::Run;
 
 fn read(run: &Run, name: &str) -> Mesh {
-    meshlod::read(&run.path(name), &ReadOptions::default()).unwrap().into_mesh()
+    meshlod::read(run.path(name), &ReadOptions::default()).unwrap().into_mesh()
 }
 
 fn build(run: &Run, mesh: Mesh, options: &[&str]) {
-    meshlod::write(&run.path("in.ply"), &Scene::from_mesh("", mesh), &WriteOptions::default())
+    meshlod::write(run.path("in.ply"), &Scene::from_mesh("", mesh), &WriteOptions::default())
         .unwrap();
     run.json(&[&["build", "in.ply", "in.mlod"], options].concat());
 }

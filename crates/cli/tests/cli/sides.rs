@@ -62,7 +62,7 @@ impl Outlined {
     /// Returns the pixels in the middle and at the left rim of a picture of the balls.
     fn middle_and_rim(&self) -> [[u8; 4]; 2] {
         let run = Run::new();
-        write(&run.path("in.glb"), &self.scene(), &WriteOptions::default()).unwrap();
+        write(run.path("in.glb"), &self.scene(), &WriteOptions::default()).unwrap();
         run.json(&["render", "in.glb", "out.png", "--size", "101x101", "--view", "front"]);
         let png = std::fs::read(run.path("out.png")).unwrap();
         let texture = Texture::decode(&png).unwrap();
@@ -104,9 +104,9 @@ fn a_hull_hides_what_is_within_if_it_has_two_sides_or_faces_outwards() {
 #[test]
 fn image_errors_are_those_of_what_is_seen() {
     let run = Run::new();
-    write(&run.path("in.glb"), &OUTLINE.scene(), &WriteOptions::default()).unwrap();
+    write(run.path("in.glb"), &OUTLINE.scene(), &WriteOptions::default()).unwrap();
     let two_sided = Outlined { is_double_sided: true, ..OUTLINE };
-    write(&run.path("both.glb"), &two_sided.scene(), &WriteOptions::default()).unwrap();
+    write(run.path("both.glb"), &two_sided.scene(), &WriteOptions::default()).unwrap();
     let flip = |file: &str| {
         let arguments = ["compare", file, "--out", file.split_at(2).0, "--ratio", "20%"];
         let options = ["--methods", "qem", "--samples", "1000"];

@@ -30,7 +30,7 @@ fn torn(of: &Mesh, gap: f64) -> Mesh {
 
 fn write(run: &Run, name: &str, mesh: Mesh) {
     let scene = meshlod::Scene::from_mesh("", mesh);
-    meshlod::write(&run.path(name), &scene, &meshlod::WriteOptions::default()).unwrap();
+    meshlod::write(run.path(name), &scene, &meshlod::WriteOptions::default()).unwrap();
 }
 
 #[test]

@@ -64,10 +64,10 @@ pub use lods::{LodChain, LodReport, LodsReport, LodsRequest, chain_samples, lods
 pub use measure::{FarthestPose, MeasureReport, MeasureRequest, measure};
 #[cfg(feature = "check")]
 pub use repair::{RepairRequest, SceneRepair, repair};
-#[cfg(feature = "check")]
-pub(crate) use running::{Contractions, begin, cancellable};
 #[cfg(feature = "multires")]
 pub(crate) use running::end_if_cancelled;
+#[cfg(feature = "check")]
+pub(crate) use running::{Contractions, begin, cancellable};
 #[cfg(feature = "check")]
 pub use simplify::{
     Aim, LostVolume, ProvedError, SimplifyReport, SimplifyRequest, WrittenAs, simplify,
