@@ -20,7 +20,7 @@ pub enum Weld {
     Within(f64),
 }
 
-/// Options for reading a mesh file with [`read()`] or [`read_bytes`].
+/// Options for reading a mesh file with [`read()`](crate::read) or [`read_bytes`](crate::read_bytes).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ReadOptions {
@@ -28,13 +28,13 @@ pub struct ReadOptions {
     pub weld: Weld,
 }
 
-/// Options for writing a mesh file with [`write()`].
+/// Options for writing a mesh file with [`write()`](crate::write()).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct WriteOptions {
     /// Precision of coordinates in PLY, OBJ, OFF, SMF and text STL. Binary STL and glTF always use
     /// 32 bits; glTF stores them relative to the centre of the mesh where necessary, see
-    /// [`gltf::write_glb`].
+    /// [`gltf::write_glb`](crate::gltf::write_glb).
     pub precision: Precision,
 }
 

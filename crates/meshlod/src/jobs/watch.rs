@@ -16,7 +16,7 @@ pub trait Watch: Sync {
         let _ = (done, of);
     }
 
-    /// Returns true to end the job with [`JobError::Cancelled`] at its next step.
+    /// Returns true to end the job with [`JobError::Cancelled`](crate::jobs::JobError::Cancelled) at its next step.
     fn is_cancelled(&self) -> bool {
         false
     }
