@@ -20,7 +20,8 @@ pub enum Weld {
     Within(f64),
 }
 
-/// Options for reading a mesh file with [`read()`](crate::read) or [`read_bytes`](crate::read_bytes).
+/// Options for reading a mesh file with [`read()`](crate::read) or
+/// [`read_bytes`](crate::read_bytes).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ReadOptions {

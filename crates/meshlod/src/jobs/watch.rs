@@ -16,7 +16,8 @@ pub trait Watch: Sync {
         let _ = (done, of);
     }
 
-    /// Returns true to end the job with [`JobError::Cancelled`](crate::jobs::JobError::Cancelled) at its next step.
+    /// Returns true to end the job at its next step, with
+    /// [`JobError::Cancelled`](crate::jobs::JobError::Cancelled).
     fn is_cancelled(&self) -> bool {
         false
     }
