@@ -31,7 +31,7 @@ def answer(line):
 def test_max_error_holds_as_written(tmp_path, suffix, precision, part):
     points, faces = torus(60, 40)
     meshlod.Mesh(points, faces).save(tmp_path / "in.ply", precision="f64")
-    mesh = meshlod.Mesh.load(tmp_path / "in.ply")
+    mesh = meshlod.load(tmp_path / "in.ply")
     asked = part * np.linalg.norm(mesh.bounds[1] - mesh.bounds[0])
     level, report = mesh.simplify(max_error=asked, return_report=True)
     out = tmp_path / f"out.{suffix}"
