@@ -58,7 +58,7 @@ def test_bad_files_raise(tmp_path):
         with pytest.raises(meshlod.MeshlodError, match=path.name):
             meshlod.load(path)
     with pytest.raises(OSError):
-        meshlod.Mesh(*torus()).save(tmp_path / "no folder" / "a.ply")
+        meshlod.Mesh(*torus()).save(broken / "a.ply")
 
 
 @pytest.mark.parametrize("suffix", ["mlz", "mlq"])
