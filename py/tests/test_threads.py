@@ -91,8 +91,8 @@ def test_new_files_keep_links_and_permissions(tmp_path):
     mesh.build(link)
     assert link.is_symlink() and target.read_bytes() != b"old"
     assert target.stat().st_mode & 0o777 == 0o600
-    with pytest.raises(FileNotFoundError, match="missing"):
-        mesh.build(tmp_path / "missing" / "a.mlod")
+    mesh.build(tmp_path / "folder" / "made" / "a.mlod")
+    assert [file.name for file in (tmp_path / "folder" / "made").iterdir()] == ["a.mlod"]
     with pytest.raises(meshlod.MeshlodError, match=r"a\.mlx: a compressed file must end in"):
         mesh.compress(tmp_path / "a.mlx")
-    assert len(list(tmp_path.iterdir())) == 2
+    assert len(list(tmp_path.iterdir())) == 3
