@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use meshlod::io::{Format, Note, Precision};
+use meshlod::io::{Note, Precision};
 use meshlod::{
-    AnyFile, AnyFileError, FileKind, IoError, ReadOptions, Scene, WriteOptions, read, write,
+    AnyFile, AnyFileError, FileKind, IoError, Output, ReadOptions, Scene, WriteOptions, read,
 };
 use pyo3::prelude::*;
 
@@ -41,16 +41,16 @@ pub fn save(
     let precision = precision
         .parse::<Precision>()
         .map_err(|_| raised(format_args!("precision must be auto, f32 or f64, not {precision}")))?;
-    let format = Format::of_path(&path).map_err(raised_by_file)?;
+    let output = Output::new(path).map_err(raised_by_file)?;
+    let options = WriteOptions { precision };
     let scene = scene.shared();
-    let notes = scene.limits_of(format);
     let work = move |watch: &mut Watch| {
+        let notes = output.limits(&scene, &options);
         // Files that belong together refer to each other by name: they are written where they stay.
         watch.commit();
-        write(&path, &scene, &WriteOptions { precision })
+        output.write(&scene, &options).map(|()| notes)
     };
-    run(py, None, work)?.map_err(raised_by_file)?;
-    Ok(texts(&notes))
+    Ok(texts(&run(py, None, work)?.map_err(raised_by_file)?))
 }
 
 /// Makes an exception of an error of reading, which names the formats of this package too.

@@ -159,7 +159,7 @@ fn answer(verb: Verb, session: &Session) -> Result<Answer, Failure> {
         }
         verb => session.on_threads(|| verb.run(session))?,
     };
-    session.add_notes(&mut answer);
+    session.complete(&mut answer);
     Ok(answer)
 }
 

@@ -253,7 +253,6 @@
 //! [`multires::Ground`] and [`codec::Lattice`], are given whole. What is not plain data stays in
 //! code:
 //! - [`multires::Query`], which may hold a function: [`jobs::QueryRequest`] is its form as data;
-//! - the format in [`jobs::ExtractRequest::written_as`];
 //! - [`picture::SeeThroughOptions`] and [`flock::levels::ImpostorOptions`], options of pictures;
 //! - what options borrow, one value a face: [`strip::StripOptions::clusters`],
 //!   [`measure::BeyondOptions::faces`].

@@ -14,11 +14,14 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod blocks;
 mod fish;
 mod grid;
 mod gyroid;
 mod knot;
 mod plate;
+mod prism;
+mod random;
 mod sphere;
 mod terrain;
 #[cfg(test)]
@@ -26,10 +29,13 @@ mod tests;
 mod tetrahedra;
 mod torus;
 
+pub use blocks::{boxes, cube, stairs, voxels};
 pub use fish::fish;
 pub use gyroid::gyroid;
 pub use knot::knot;
 pub use plate::plate;
+pub use prism::{plates, prism};
+pub use random::turned;
 pub use sphere::sphere;
 pub use terrain::terrain;
 pub use torus::{faceted_torus, torus};
@@ -37,8 +43,22 @@ pub use torus::{faceted_torus, torus};
 use meshlod_mesh::Mesh;
 
 /// Names of all sample meshes, as accepted by [`by_name`].
-pub const NAMES: [&str; 8] =
-    ["sphere", "torus", "faceted-torus", "knot", "gyroid", "plate", "terrain", "fish"];
+pub const NAMES: [&str; 14] = [
+    "sphere",
+    "torus",
+    "faceted-torus",
+    "knot",
+    "gyroid",
+    "plate",
+    "terrain",
+    "fish",
+    "cube",
+    "plates",
+    "prism",
+    "boxes",
+    "stairs",
+    "voxels",
+];
 
 /// Maximum number of faces of a sample made by [`by_name`]; larger requests are clamped to it.
 pub const MAX_FACES: usize = 500_000_000;
@@ -47,16 +67,27 @@ pub const MAX_FACES: usize = 500_000_000;
 ///
 /// Returns `None` if the name is unknown.
 pub fn by_name(name: &str, faces: Option<usize>) -> Option<Mesh> {
-    let (make, default_faces): (fn(usize) -> Mesh, usize) = match name {
-        "sphere" => (sphere, 5_000),
-        "torus" => (torus, 5_000),
-        "faceted-torus" => (faceted_torus, 10_000),
-        "knot" => (knot, 10_000),
-        "gyroid" => (gyroid, 50_000),
-        "plate" => (plate, 10_000),
-        "terrain" => (terrain, 20_000),
-        "fish" => (fish, 4_000),
+    by_seed(name, faces, 0)
+}
+
+/// Builds a sample like [`by_name`], the random parts of `boxes` and `voxels` from a seed.
+pub fn by_seed(name: &str, faces: Option<usize>, seed: u64) -> Option<Mesh> {
+    let faces = |default: usize| faces.unwrap_or(default).min(MAX_FACES);
+    Some(match name {
+        "sphere" => sphere(faces(5_000)),
+        "torus" => torus(faces(5_000)),
+        "faceted-torus" => faceted_torus(faces(10_000)),
+        "knot" => knot(faces(10_000)),
+        "gyroid" => gyroid(faces(50_000)),
+        "plate" => plate(faces(10_000)),
+        "terrain" => terrain(faces(20_000)),
+        "fish" => fish(faces(4_000)),
+        "cube" => cube(faces(10_000)),
+        "plates" => plates(faces(10_000)),
+        "prism" => prism(faces(10_000)),
+        "boxes" => boxes(faces(20_000), seed),
+        "stairs" => stairs(faces(20_000)),
+        "voxels" => voxels(faces(50_000), seed),
         _ => return None,
-    };
-    Some(make(faces.unwrap_or(default_faces).min(MAX_FACES)))
+    })
 }

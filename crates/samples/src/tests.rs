@@ -5,7 +5,18 @@ use meshlod_mesh::{Connectivity, VertexId, face_components};
 
 use super::*;
 
-const CLOSED: [&str; 7] = ["sphere", "torus", "faceted-torus", "knot", "gyroid", "plate", "fish"];
+const CLOSED: [&str; 10] = [
+    "sphere",
+    "torus",
+    "faceted-torus",
+    "knot",
+    "gyroid",
+    "plate",
+    "fish",
+    "cube",
+    "prism",
+    "stairs",
+];
 
 fn named(name: &str, faces: usize) -> Mesh {
     by_name(name, Some(faces)).expect("a known name")
@@ -66,7 +77,7 @@ fn every_name_is_known_and_no_other() {
     for name in NAMES {
         assert!(by_name(name, Some(100)).is_some_and(|mesh| !mesh.faces.is_empty()), "{name}");
     }
-    assert_eq!(by_name("cube", None), None);
+    assert_eq!(by_name("cubes", None), None);
 }
 
 #[test]
@@ -89,6 +100,12 @@ fn face_counts_come_near_the_wish() {
         ("plate", 0.04),
         ("terrain", 0.01),
         ("fish", 0.02),
+        ("cube", 0.03),
+        ("plates", 0.02),
+        ("prism", 0.02),
+        ("boxes", 0.25),
+        ("stairs", 0.15),
+        ("voxels", 0.2),
     ];
     for (name, part) in within {
         for wish in [20_000, 33_333, 100_000] {
@@ -173,5 +190,32 @@ fn finer_terrain_is_the_same_landscape() {
 fn a_sample_is_the_same_each_time() {
     for name in NAMES {
         assert_eq!(named(name, 3_000), named(name, 3_000));
+    }
+}
+
+#[test]
+fn boxes_and_voxels_are_closed_and_look_outwards() {
+    for seed in 0..3 {
+        let boxes = boxes(20_000, seed);
+        assert_watertight("boxes", &boxes);
+        let voxels = voxels(50_000, seed);
+        let edges = directed_edges(&voxels);
+        assert!(edges.iter().all(|(&[a, b], count)| edges.get(&[b, a]) == Some(count)));
+        assert!(volume(&voxels) > 0.3 * 8.0 && volume(&voxels) < 0.7 * 8.0);
+    }
+    assert_ne!(boxes(20_000, 1), boxes(20_000, 2));
+}
+
+#[test]
+fn a_turned_sample_is_as_large_and_on_no_axis() {
+    let cube = cube(100);
+    for seed in 0..5 {
+        let turned = turned(&cube, seed);
+        assert!((volume(&turned) - 1.0).abs() < 1e-12);
+        let is_off = |face: &[VertexId; 3]| {
+            let [a, b, c] = turned.triangle(*face);
+            (b - a).cross(c - a).normalize().abs().max_element() < 1.0 - 1e-6
+        };
+        assert!(turned.faces.iter().all(is_off), "{seed}");
     }
 }

@@ -67,7 +67,7 @@ fn attempt(
     let done = line.verb.run(&session);
     report.warnings = session.take_warnings();
     let mut answer = done?;
-    session.add_notes(&mut answer);
+    session.complete(&mut answer);
     Ok(answer)
 }
 

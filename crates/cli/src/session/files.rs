@@ -5,7 +5,7 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 use meshlod::io::{IoError, write_file};
-use meshlod::{AnyFile, AnyFileError, FileKind, Format, Scene};
+use meshlod::{AnyFile, AnyFileError, FileKind, Format, Output, Scene};
 
 use crate::options::args::ReadArgs;
 use crate::session::Session;
@@ -88,6 +88,14 @@ pub fn check_output(path: &Path, session: &Session) -> Result<Format, Failure> {
         }
         format => Ok(format),
     }
+}
+
+/// Returns the output at a path, which [`check_output`] allows; `-` is standard output.
+pub fn output(path: &Path, session: &Session) -> Result<Output, Failure> {
+    Ok(match is_pipe(path) {
+        true => Output::stdout(check_output(path, session)?),
+        false => Output::new(path)?,
+    })
 }
 
 /// Makes the failure of a mesh whose suffix is unknown.

@@ -52,7 +52,9 @@ impl Watch for Hearing<'_> {
 
     fn remark(&self, Remark { about, text }: &Remark) {
         match about {
-            About::Field(name) => self.session.warn(format_args!("{}: {text}", option(name))),
+            About::Field(name) => {
+                self.session.miss(&Failure::new(format_args!("{}: {text}", option(name))));
+            }
             About::Input => self.session.warn(Failure::at(self.input, text)),
             About::Second => self.session.warn(Failure::at(self.second, text)),
             About::Output => self.session.warn(Failure::at(self.output, text)),

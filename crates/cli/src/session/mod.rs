@@ -16,6 +16,7 @@ pub mod scene_files;
 use std::fmt;
 use std::io::Write;
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
@@ -24,7 +25,7 @@ use meshlod::io::{Note, NoteKind};
 use serde_json::{Value, json};
 
 use crate::options::args::GlobalArgs;
-use crate::session::answer::Answer;
+use crate::session::answer::{Answer, Outcome};
 use crate::session::failure::Failure;
 use crate::session::progress::Progress;
 
@@ -47,6 +48,8 @@ pub struct Session {
     threads: Option<usize>,
     /// Notes on files so far, for the JSON object.
     notes: Mutex<Vec<Value>>,
+    /// True once something that was asked for was missed.
+    has_missed: AtomicBool,
     /// Warnings so far, where they are kept for somebody else to print.
     kept_warnings: Option<Mutex<Vec<String>>>,
 }
@@ -68,6 +71,7 @@ impl Session {
             started: Instant::now(),
             threads,
             notes: Mutex::default(),
+            has_missed: AtomicBool::new(false),
             kept_warnings: None,
         }
     }
@@ -127,9 +131,10 @@ impl Session {
         }
     }
 
-    /// Says that a target was missed: with a warning or, with `--strict`, an error line, since it is
-    /// then why the run fails.
+    /// Says that something that was asked for was missed: with a warning or, with `--strict`, an
+    /// error line, since it is then why the run fails.
     pub fn miss(&self, reason: &Failure) {
+        self.has_missed.store(true, Ordering::Relaxed);
         match self.kept_warnings {
             None if self.strict => self.complain(reason),
             _ => self.warn(reason),
@@ -164,8 +169,13 @@ impl Session {
         Ok(())
     }
 
-    /// Puts the notes on all files into the JSON object of an answer.
-    pub fn add_notes(&self, answer: &mut Answer) {
+    /// Completes an answer: with the notes on all files in its JSON, and with the outcome if
+    /// something was missed under `--strict`.
+    pub fn complete(&self, answer: &mut Answer) {
+        let has_missed = self.strict && self.has_missed.load(Ordering::Relaxed);
+        if has_missed && answer.outcome == Outcome::Done {
+            answer.outcome = Outcome::Missed;
+        }
         let notes = std::mem::take(&mut *self.notes.lock().unwrap_or_else(PoisonError::into_inner));
         if let Value::Object(json) = &mut answer.json {
             json.insert("notes".into(), notes.into());

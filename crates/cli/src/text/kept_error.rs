@@ -6,19 +6,30 @@ use meshlod::model::Verification;
 use crate::session::model_file;
 use crate::text::numbers::{count, percent, plural, value};
 
-/// Returns a warning if less was asked for than the file can give.
+/// Returns a warning if an error was asked for that is not kept, or that nobody knows to be.
 pub fn warning(error: &KeptError) -> Option<String> {
-    let rounding = error.below_rounding()?;
     let (asked, part) = match error.asked {
         AskedError::Finest | AskedError::Faces => return None,
         AskedError::Length(asked) => (value(asked), "it"),
         AskedError::Pixels(asked) => (format!("{}px", value(asked)), "parts of it"),
     };
-    Some(format!(
-        "--error {asked} is below the rounding of the file, {}: {part} cannot be that close to the \
-         mesh; build with --lossless or a smaller --rounding",
-        value(rounding)
-    ))
+    let reason = if let Some(rounding) = error.below_rounding() {
+        format!(
+            " is below the rounding of the file, {}: {part} cannot be that close to the mesh; build \
+             with --lossless or a smaller --rounding",
+            value(rounding)
+        )
+    } else if error.is_kept() == Some(false) {
+        format!(
+            ": vertices were moved by up to {}, which is more than it leaves",
+            value(error.moved)
+        )
+    } else if !error.is_whole {
+        " is not proved, as the file is truncated".into()
+    } else {
+        return None;
+    };
+    Some(format!("--error {asked}{reason}"))
 }
 
 /// Describes what is known about the error, in one line or two.

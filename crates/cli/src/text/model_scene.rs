@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
+use meshlod::FileBytes;
 use meshlod::jobs::ErrorPoses;
 use meshlod::model::{ModelScene, SceneCounts, SceneQueryError};
 use meshlod::multires::{ModelFile, Query};
-use meshlod::{FileBytes, Format};
 
 use crate::session::Session;
 use crate::session::failure::Failure;
@@ -79,10 +79,6 @@ pub fn query<'f>(
         SceneQueryError::File(error) => model_file::failure(path, error),
         SceneQueryError::Scene(error) => Failure::at(path, error),
     })
-}
-
-pub fn is_gltf(format: Format) -> bool {
-    format.is_gltf()
 }
 
 /// Lists numbers of things, without those of which there are none.

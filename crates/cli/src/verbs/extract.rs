@@ -13,7 +13,7 @@ use meshlod::jobs::{self, ExtractReport, ExtractRequest};
 use crate::options::args::WriteArgs;
 use crate::options::model_query::QueryArgs;
 use crate::session::Session;
-use crate::session::answer::{Answer, Outcome};
+use crate::session::answer::Answer;
 use crate::session::failure::Failure;
 use crate::session::files;
 use crate::session::hearing::Hearing;
@@ -81,7 +81,6 @@ impl Extract {
         let figures = report::figures(&self.output, &report, time);
         Ok(Answer {
             file_on_stdout: files::is_pipe(&self.output),
-            outcome: Outcome::Missed.when(session.strict && !report.reached),
             ..Answer::new(figures, report::to_text(&self.output, &report, time))
         })
     }
@@ -92,7 +91,7 @@ impl Extract {
             verify: !self.unverified,
             crop: self.only,
             exact_volume: self.exact_volume,
-            written_as: Some((format, self.writing.options().precision)),
+            written_as: Some(self.writing.in_format(format)),
             name: files::stem(&self.input),
         }
     }
@@ -108,11 +107,7 @@ impl Extract {
         self.query.warn_of_faces(&self.input, report.level_faces, "extracted", session);
         if let Some(moves) = report.rounded {
             let moved = format_args!("rounding to f32 moved coordinates by up to {}", value(moves));
-            let moved = Failure::at(&self.output, moved);
-            match report.error.is_kept() {
-                Some(false) => session.miss(&moved),
-                Some(true) | None => session.warn(moved),
-            }
+            session.warn(Failure::at(&self.output, moved));
         }
         if let Some(warning) = kept_error::warning(&report.error) {
             session.miss(&Failure::at(&self.input, warning));

@@ -29,6 +29,12 @@ pub struct Sample {
     /// Approximate number of faces [default: enough to show the sample well]
     #[arg(short, long, value_name = "N", value_parser = faces, allow_negative_numbers = true)]
     faces: Option<usize>,
+    /// Seed of the random parts of boxes and voxels, and of --turned
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
+    seed: u64,
+    /// Turn the mesh in a random direction, so that its flats are on no axis
+    #[arg(long)]
+    turned: bool,
     #[command(flatten)]
     writing: WriteArgs,
 }
@@ -37,8 +43,9 @@ impl Sample {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         files::check_output(&self.output, session)?;
         session.progress.stage("generating");
-        let mesh = samples::by_name(&self.name, self.faces)
+        let mesh = samples::by_seed(&self.name, self.faces, self.seed)
             .ok_or_else(|| Failure::usage(format_args!("no sample is called {}", self.name)))?;
+        let mesh = if self.turned { samples::turned(&mesh, self.seed) } else { mesh };
         let (vertices, faces) = (mesh.positions.len(), mesh.faces.len());
         let scene = Scene::from_mesh(&self.name, mesh);
         scene_files::write(&self.output, &scene, &self.writing, session)?;

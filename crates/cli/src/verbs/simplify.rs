@@ -15,7 +15,7 @@ use crate::options::parse::{self, Bound};
 use crate::options::topology;
 use crate::options::volume::ExactVolumeArgs;
 use crate::session::Session;
-use crate::session::answer::{Answer, Outcome};
+use crate::session::answer::Answer;
 use crate::session::failure::Failure;
 use crate::session::files;
 use crate::session::hearing::Hearing;
@@ -90,11 +90,10 @@ impl Simplify {
         let (scene, report) = done.map_err(|error| hearing.failure(error))?;
         topology::warn(report.near_borders, session);
         self.warn_if_missed(&report, &request, session);
-        let outcome = Outcome::Missed.when(session.strict && !report.run.reached);
         let answer = Answer::new(self.figures(&report), self.text(&report));
         let writing = self.writing.written_as(report.written_as);
         scene_files::write(&self.output, &scene, &writing, session)?;
-        Ok(Answer { file_on_stdout: files::is_pipe(&self.output), outcome, ..answer })
+        Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..answer })
     }
 
     fn request(&self, scene: &Scene, format: Format) -> Result<SimplifyRequest, Failure> {

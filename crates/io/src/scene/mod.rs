@@ -120,4 +120,10 @@ impl Scene {
             ..Self::default()
         }
     }
+
+    /// Exchanges the meshes for those of a level, in the same order.
+    pub fn swap_meshes(&mut self, level: &mut [Mesh]) {
+        let meshes = self.meshes.iter_mut().map(|mesh| &mut mesh.mesh);
+        meshes.zip(level).for_each(|(mesh, level)| std::mem::swap(mesh, level));
+    }
 }

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use crate::certified::cell::{CALM, Cell, Probe};
 use crate::certified::rounding::Rounding;
+use crate::certified::sheet::Sheet;
 use crate::distance::Place;
 use crate::prepared::PreparedSurface;
 
@@ -85,7 +86,7 @@ pub fn faces_beyond(
     options: &BeyondOptions<'_>,
 ) -> FacesBeyond {
     let point = Rounding::of_points(from.mesh, to.mesh);
-    let decision = Decision { surface: &to.bvh, limit, point, slack: options.slack };
+    let decision = Decision { to, surface: &to.bvh, limit, point, slack: options.slack };
     let faces = options.faces.unwrap_or_else(|| from.bvh.faces_in_leaf_order());
     let mut examined = decision.start(from.mesh, faces);
     let mut left = options.most_splits;
@@ -108,6 +109,7 @@ pub fn faces_beyond(
 
 /// Question that is asked of every face.
 struct Decision<'d> {
+    to: &'d PreparedSurface<'d>,
     surface: &'d Bvh,
     limit: &'d (dyn Fn([[f64; 3]; 3]) -> f64 + Sync),
     /// Allowance for rounding, in model units.
@@ -137,7 +139,7 @@ enum State {
     Within,
 }
 
-impl Decision<'_> {
+impl<'d> Decision<'d> {
     /// Measures the corners and the middles of the faces, and returns those that may be beyond.
     fn start(&self, mesh: &Mesh, faces: &[FaceId]) -> Vec<Examined> {
         let corners = |face: FaceId| mesh.faces[face.index()];
@@ -148,12 +150,12 @@ impl Decision<'_> {
         };
         let limited: Vec<(FaceId, f64)> = faces.par_iter().filter_map(limit).collect();
         let (slots, probes) = self.measure_corners(mesh, &limited);
-        let examine = |&(face, limit): &(FaceId, f64)| {
+        let examine = |sheet: &mut Option<Sheet<'d>>, &(face, limit): &(FaceId, f64)| {
             let corners = corners(face).map(|v| probes[slots[v.index()] as usize]);
-            let examined = self.examine(face, corners, limit);
+            let examined = self.examine((face, limit), corners, sheet);
             (examined.state != State::Within).then_some(examined)
         };
-        limited.par_iter().filter_map(examine).collect()
+        limited.par_iter().map_init(|| None, examine).flatten().collect()
     }
 
     /// Measures the corners of faces, each once and only as closely as the limits around demand.
@@ -185,14 +187,27 @@ impl Decision<'_> {
     }
 
     /// Looks at the corners and the middle of a face.
-    fn examine(&self, face: FaceId, corners: [Probe; 3], limit: f64) -> Examined {
+    fn examine(
+        &self,
+        (face, limit): (FaceId, f64),
+        corners: [Probe; 3],
+        sheet: &mut Option<Sheet<'d>>,
+    ) -> Examined {
         let mut examined =
             Examined { face, open: Vec::new(), farthest: corners[0], state: State::Open };
         corners.into_iter().for_each(|corner| self.look_at(corner, &mut examined));
         let enough = self.enough(limit);
         let mut cell = Cell::new(corners, self.surface, [enough, f64::INFINITY]);
         if cell.upper > enough && examined.state == State::Open {
-            self.look_at(cell.probe_middle(self.surface, enough), &mut examined);
+            let middle = cell.probe_middle(self.surface, enough);
+            self.look_at(middle, &mut examined);
+            if cell.upper > enough && examined.state == State::Open {
+                let sheet = sheet.get_or_insert_with(|| Sheet::new(self.to, self.point));
+                let corners = corners.map(|corner| corner.at);
+                if sheet.bound(corners, middle.face, enough - self.point).is_some() {
+                    examined.state = State::Within;
+                }
+            }
         }
         if examined.state == State::Open {
             self.keep(cell, &mut examined);

@@ -8,6 +8,7 @@ mod beyond;
 mod cell;
 mod rounding;
 mod search;
+mod sheet;
 
 use meshlod_mesh::Mesh;
 

@@ -1,24 +1,27 @@
 //! Where a result goes, and in which format.
 
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use meshlod_io::gltf::{Level, LodLayout, StripMesh};
 use meshlod_io::{
     Format, IoError, Note, Scene, WriteOptions, check_place, write, write_file, write_lods,
-    write_strips,
+    write_strips, write_to,
 };
+use meshlod_mesh::Mesh;
 
 use crate::files::FileKind;
 use crate::jobs::ConvertRequest;
 
-/// A file to be written: its path, and what its suffix says that it is.
+/// A file to be written: its path, and what its suffix says that it is; or standard output.
 ///
 /// Missing folders are made when it is written. Scenes are written one at a time in a process, since
 /// an image takes a name that is free.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Output {
-    path: PathBuf,
+    /// `None` for standard output.
+    path: Option<PathBuf>,
     kind: FileKind,
 }
 
@@ -30,12 +33,22 @@ impl Output {
     pub fn new(path: impl Into<PathBuf>) -> Result<Self, IoError> {
         let path = path.into();
         check_place(&path)?;
-        Ok(Self { kind: FileKind::of_path(&path)?, path })
+        Ok(Self { kind: FileKind::of_path(&path)?, path: Some(path) })
     }
 
-    /// Returns the path.
+    /// Creates standard output, to which a scene goes in this format.
+    pub fn stdout(format: Format) -> Self {
+        Self { path: None, kind: FileKind::Mesh(format) }
+    }
+
+    /// Returns the path; `-` for standard output.
     pub fn path(&self) -> &Path {
-        &self.path
+        self.path.as_deref().unwrap_or(Path::new("-"))
+    }
+
+    /// Returns true if the file comes without others beside it.
+    pub fn is_alone(&self) -> bool {
+        self.path.is_none()
     }
 
     /// Returns the kind of file that is written.
@@ -46,11 +59,31 @@ impl Output {
     /// Returns notes on what the file will lack of a scene, with a format that keeps everything as
     /// the remedy, where there is one.
     pub fn limits(&self, scene: &Scene, options: &WriteOptions) -> Vec<Note> {
-        let FileKind::Mesh(format) = self.kind else { return Vec::new() };
-        limits(
-            scene,
-            &ConvertRequest { precision: options.precision, ..ConvertRequest::new(format) },
-        )
+        self.request(options).map(|request| limits(scene, &request)).unwrap_or_default()
+    }
+
+    /// Returns notes like [`limits`](Self::limits) on all files of a scene and its levels, each
+    /// given as the meshes that it has instead of those of the scene.
+    pub fn limits_of_levels<'l>(
+        &self,
+        scene: &mut Scene,
+        levels: impl IntoIterator<Item = &'l mut Vec<Mesh>>,
+        options: &WriteOptions,
+    ) -> Vec<Note> {
+        let Some(request) = self.request(options) else { return Vec::new() };
+        let mut lost = scene.limits_of(request.format);
+        for level in levels {
+            scene.swap_meshes(level);
+            Note::merge(&mut lost, scene.limits_of(request.format));
+            scene.swap_meshes(level);
+        }
+        all_limits(scene, lost, &request)
+    }
+
+    /// Returns the request to convert a scene to what this is, unless it is of a kind of our own.
+    fn request(&self, options: &WriteOptions) -> Option<ConvertRequest> {
+        let FileKind::Mesh(format) = self.kind else { return None };
+        Some(ConvertRequest { format, precision: options.precision, alone: self.is_alone() })
     }
 
     /// Writes a scene, with the files that belong to it.
@@ -59,8 +92,18 @@ impl Output {
     /// Those of [`meshlod_io::write`]; a kind of our own, which a job packs: see
     /// [`write_bytes`](Self::write_bytes).
     pub fn write(&self, scene: &Scene, options: &WriteOptions) -> Result<(), IoError> {
-        let _naming = naming();
-        write(&self.path, scene, options)
+        match (&self.path, self.kind) {
+            (None, FileKind::Mesh(format)) => {
+                let mut out = BufWriter::new(io::stdout().lock());
+                let written = write_to(&mut out, scene, format, options);
+                let written = written.and_then(|()| out.flush());
+                written.map_err(|error| IoError::system(self.path(), error))
+            }
+            _ => {
+                let _naming = naming();
+                write(self.path(), scene, options)
+            }
+        }
     }
 
     /// Writes a scene and its coarser levels as glTF.
@@ -74,7 +117,7 @@ impl Output {
         layout: LodLayout,
     ) -> Result<(), IoError> {
         let _naming = naming();
-        write_lods(&self.path, scene, levels, layout)
+        write_lods(self.path(), scene, levels, layout)
     }
 
     /// Writes a scene as glTF, with strips for faces.
@@ -83,7 +126,7 @@ impl Output {
     /// Those of [`meshlod_io::write_strips`].
     pub fn write_strips(&self, scene: &Scene, strips: &[StripMesh]) -> Result<(), IoError> {
         let _naming = naming();
-        write_strips(&self.path, scene, strips)
+        write_strips(self.path(), scene, strips)
     }
 
     /// Writes a file that a job has packed.
@@ -91,14 +134,19 @@ impl Output {
     /// # Errors
     /// Errors of the system.
     pub fn write_bytes(&self, bytes: &[u8]) -> Result<(), IoError> {
-        write_file(&self.path, bytes)
+        write_file(self.path(), bytes)
     }
 }
 
 /// Returns notes on what a file of a format will lack of a scene.
 pub(crate) fn limits(scene: &Scene, request: &ConvertRequest) -> Vec<Note> {
+    all_limits(scene, scene.limits_of(request.format), request)
+}
+
+/// Adds remedies to what a format lacks, and notes on what this file lacks besides.
+fn all_limits(scene: &Scene, lost: Vec<Note>, request: &ConvertRequest) -> Vec<Note> {
     let ConvertRequest { format, precision, alone } = *request;
-    let mut notes = remedied(scene, scene.limits_of(format));
+    let mut notes = remedied(scene, lost);
     if alone {
         notes.extend(scene.lone_file_limits(format));
     }

@@ -8,12 +8,16 @@ use crate::scene::place::shown_faces;
 
 /// Request of [`convert`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ConvertRequest {
     /// Format of the file.
     pub format: Format,
     /// Precision of coordinates, where the format leaves a choice.
+    #[cfg_attr(feature = "serde", serde(default))]
     pub precision: Precision,
     /// True if the file comes without others beside it, as through a pipe.
+    #[cfg_attr(feature = "serde", serde(default))]
     pub alone: bool,
 }
 

@@ -10,7 +10,7 @@ use meshlod_simplify::{AttributeWeights, Method, Report, Target};
 
 use crate::Constraints;
 use crate::jobs::scene_run::{self, RunChoice, SceneRun};
-use crate::jobs::simplify::digits;
+use crate::jobs::written_as::digits;
 use crate::jobs::{About, JobError, Remark, SwitchCamera, Watch, WrittenAs, cancellable};
 use crate::scene::FuseReport;
 

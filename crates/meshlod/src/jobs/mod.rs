@@ -37,7 +37,11 @@ mod simplify;
 mod strip;
 #[cfg(feature = "check")]
 mod switching;
+#[cfg(feature = "multires")]
+mod unused;
 mod watch;
+#[cfg(feature = "check")]
+mod written_as;
 
 #[cfg(feature = "multires")]
 pub use build::{BuildReport, BuildRequest, BuiltLevels, ErrorPoses, LevelModel, build};
@@ -69,9 +73,7 @@ pub(crate) use running::end_if_cancelled;
 #[cfg(feature = "check")]
 pub(crate) use running::{Contractions, begin, cancellable};
 #[cfg(feature = "check")]
-pub use simplify::{
-    Aim, LostVolume, ProvedError, SimplifyReport, SimplifyRequest, WrittenAs, simplify,
-};
+pub use simplify::{Aim, LostVolume, ProvedError, SimplifyReport, SimplifyRequest, simplify};
 #[cfg(feature = "strip")]
 pub use strip::{
     FollowReport, FollowRequest, FollowedCut, StripFilter, StripReport, StripRequest, Stripped,
@@ -80,3 +82,5 @@ pub use strip::{
 #[cfg(feature = "check")]
 pub use switching::{Switch, SwitchCamera};
 pub use watch::{About, Remark, Watch};
+#[cfg(feature = "check")]
+pub use written_as::WrittenAs;

@@ -8,7 +8,6 @@ use meshlod::Format;
 use super::Lods;
 use crate::session::failure::Failure;
 use crate::session::files;
-use crate::text::model_scene;
 
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 pub(super) enum ChainLayout {
@@ -23,7 +22,7 @@ pub(super) enum ChainLayout {
 impl ChainLayout {
     /// Returns the layout asked for, or the usual one of the format.
     pub fn of(asked: Option<Self>, format: Format) -> Result<Self, Failure> {
-        let is_gltf = model_scene::is_gltf(format);
+        let is_gltf = format.is_gltf();
         match asked {
             None if is_gltf => Ok(Self::Msft),
             None => Ok(Self::Files),

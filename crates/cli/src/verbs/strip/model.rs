@@ -1,7 +1,7 @@
 //! `strip` of multiresolution files: the scene of one cut.
 
 use meshlod::io::Precision;
-use meshlod::jobs::{self, ExtractReport, ExtractRequest, KeptError};
+use meshlod::jobs::{self, ExtractReport, ExtractRequest, KeptError, WrittenAs};
 use meshlod::{Format, Scene};
 
 use super::{Strip, output};
@@ -16,8 +16,6 @@ use crate::text::kept_error;
 pub(super) struct CutScene {
     pub scene: Scene,
     pub error: KeptError,
-    /// True if it is as close or as coarse as asked.
-    pub reached: bool,
 }
 
 impl Strip {
@@ -52,11 +50,11 @@ impl Strip {
         let done = jobs::extract(model_file::levels(&file)?, &self.cut_request(), &hearing);
         let (scene, report) = done.map_err(|error| hearing.failure(error))?;
         session.note(&self.input, &scene.notes)?;
-        let ExtractReport { error, reached, level_faces, .. } = report;
+        let ExtractReport { error, level_faces, .. } = report;
         let warning = kept_error::warning(&error);
         warning.into_iter().for_each(|text| session.miss(&Failure::at(&self.input, text)));
         self.query.warn_of_faces(&self.input, level_faces, "stripped", session);
-        Ok(CutScene { scene, error, reached })
+        Ok(CutScene { scene, error })
     }
 
     fn cut_request(&self) -> ExtractRequest {
@@ -66,7 +64,8 @@ impl Strip {
             // The distance of the best mesh of some number of faces is a question for `extract`.
             verify: query.most_faces().is_none(),
             query,
-            written_as: is_written.then_some((Format::Glb, Precision::F32)),
+            written_as: is_written
+                .then_some(WrittenAs { format: Format::Glb, precision: Precision::F32 }),
             name: files::stem(&self.input),
             ..ExtractRequest::default()
         }

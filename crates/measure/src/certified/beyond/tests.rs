@@ -115,9 +115,9 @@ fn what_is_not_proven_is_listed() {
     // Without divisions, or within less than rounding, nothing can be shown.
     let (from, to) = (sphere(10, 1.0), sphere(7, 1.02));
     let short = BeyondOptions { most_splits: 0, ..Default::default() };
-    let found = beyond(&from, &to, |_| 0.06, &short);
+    let found = beyond(&from, &to, |_| 0.04, &short);
     assert!(found.faces.iter().any(|face| !face.decided) && found.splits == 0);
-    assert!(listed(&from, &to, |_| 0.06).len() < found.faces.len());
+    assert!(listed(&from, &to, |_| 0.04).len() < found.faces.len());
     for limit in [0.0, 1e-16, -1.0, f64::NAN] {
         let found = beyond(&from, &from, |_| limit, &BeyondOptions::default());
         assert_eq!(found.faces.len(), from.faces.len(), "{limit}");

@@ -11,6 +11,7 @@ use meshlod_multires::{
 use meshlod_simplify::{ExactVolumeError, Held, Options, Simplifier, Target};
 
 use super::{BuildReport, BuildRequest, BuiltLevels, ErrorPoses, LevelModel};
+use crate::jobs::unused::{unused_parts, used_vertices};
 use crate::jobs::{About, Contractions, JobError, Remark, Watch, end_if_cancelled};
 use crate::model::{PackedScene, PlacedScene, PoseCounts, model_limits, place_scene};
 
@@ -49,8 +50,8 @@ pub(super) fn build(
     };
     let (archive, certificate, surface_bytes) = pack(&recorded.forest, &storage, rest, watch)?;
     let faces = recorded.forest.full_faces();
-    notes.extend(super::unused_parts(&mesh, faces));
-    let input_vertices = super::used_vertices(&mesh);
+    notes.extend(unused_parts(&mesh, faces));
+    let input_vertices = used_vertices(&mesh);
     let mut report = BuildReport {
         input_vertices,
         input_faces: mesh.faces.len(),

@@ -238,18 +238,3 @@ pub fn build(
         }
     })
 }
-
-/// Counts the vertices that faces use.
-fn used_vertices(mesh: &Mesh) -> usize {
-    mesh.used_vertices().iter().filter(|&&used| used).count()
-}
-
-/// Notes the vertices that no face uses, and the faces that the levels leave out of a mesh.
-fn unused_parts(mesh: &Mesh, levels_faces: usize) -> [Note; 2] {
-    let alone = mesh.positions.len() - used_vertices(mesh);
-    let odd = mesh.faces.len().saturating_sub(levels_faces);
-    [
-        Note::left_out(alone, "unused vertex", "unused vertices"),
-        Note::left_out(odd, "degenerate or duplicate face", "degenerate or duplicate faces"),
-    ]
-}

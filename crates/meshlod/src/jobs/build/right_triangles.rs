@@ -6,6 +6,7 @@ use meshlod_simplify::Options;
 
 use super::{BuildReport, BuildRequest, BuiltLevels, ErrorPoses, LevelModel};
 use crate::jobs::JobError;
+use crate::jobs::unused::{unused_parts, used_vertices};
 
 /// Builds the levels of a height field, of whose scene only the surface is kept.
 pub(super) fn build(
@@ -22,8 +23,8 @@ pub(super) fn build(
         rounding => HeightPrecision::Within(rounding),
     };
     let (bytes, fit) = field.to_file(precision).map_err(JobError::input)?;
-    let (input_vertices, input_faces) = (super::used_vertices(&mesh), mesh.faces.len());
-    notes.extend(super::unused_parts(&mesh, input_faces));
+    let (input_vertices, input_faces) = (used_vertices(&mesh), mesh.faces.len());
+    notes.extend(unused_parts(&mesh, input_faces));
     let report = BuildReport {
         input_vertices,
         input_faces,

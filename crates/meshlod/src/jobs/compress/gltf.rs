@@ -6,9 +6,10 @@ use meshlod_io::gltf::{
 };
 use meshlod_io::{Format, Note, Scene};
 
-use super::report::{Packed, PieceCount, unused_parts};
+use super::report::{Packed, PieceCount};
 use super::request::{CompressTarget, GltfPacking};
 use super::resident::refused;
+use crate::jobs::unused::unused_parts;
 use crate::jobs::{About, JobError, Remark, Watch};
 
 /// Packs a scene as `.glb`.
@@ -68,7 +69,7 @@ fn pack_parts(scene: Scene, target: CompressTarget) -> Result<Packed, JobError> 
     let quantized = quantized(&parts);
     let bytes = write_parts_glb(&quantized).map_err(JobError::input)?;
     let faces = parts.parts().iter().map(|part| part.faces.len()).sum();
-    Note::merge(&mut notes, unused_parts(&mesh, faces));
+    Note::merge(&mut notes, unused_parts(&mesh, faces).into());
     // Positions are padded to four bytes, and each part has a matrix.
     let positions: usize =
         quantized.iter().map(|part| 4 * part.positions.len() + size_of_val(&part.matrix)).sum();

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use meshlod_codec::LayerReport;
 use meshlod_io::Note;
-use meshlod_mesh::{AttributeBounds, LayerKind, Mesh};
+use meshlod_mesh::{AttributeBounds, LayerKind};
 
 use crate::model::SceneCounts;
 use crate::numbers::value;
@@ -148,15 +148,4 @@ impl Packed {
             "correct values that are far from all others, or use build --lossless, which keeps all",
         )
     }
-}
-
-/// Notes the vertices that no face uses, and the faces that a file with `there` faces leaves out of
-/// a mesh.
-pub(super) fn unused_parts(mesh: &Mesh, there: usize) -> Vec<Note> {
-    let alone = mesh.used_vertices().iter().filter(|&&used| !used).count();
-    let odd = mesh.faces.len().saturating_sub(there);
-    vec![
-        Note::left_out(alone, "unused vertex", "unused vertices"),
-        Note::left_out(odd, "degenerate or duplicate face", "degenerate or duplicate faces"),
-    ]
 }

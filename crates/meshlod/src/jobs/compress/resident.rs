@@ -7,9 +7,10 @@ use meshlod_mesh::{AttributeBounds, Mesh};
 use meshlod_strip::StripQuality;
 
 use super::part_strips::with_strips;
-use super::report::{Packed, PieceCount, StripCounts, unused_parts};
+use super::report::{Packed, PieceCount, StripCounts};
 use super::request::PositionScheme;
 use crate::jobs::JobError;
+use crate::jobs::unused::unused_parts;
 
 /// Packs a mesh with the bytes of the rest of its scene.
 pub(super) fn pack(
@@ -39,7 +40,7 @@ pub(super) fn pack(
         layers: compressed.layers(),
         strips: strip_counts(&compressed).map_err(JobError::input)?,
         reached: done.reached,
-        notes: unused_parts(mesh, compressed.faces()),
+        notes: unused_parts(mesh, compressed.faces()).into(),
         bytes: compressed.to_bytes(),
     })
 }

@@ -6,9 +6,10 @@ use meshlod_codec::{
 };
 use meshlod_mesh::{AttributeBounds, Mesh};
 
-use super::report::{Packed, PieceCount, unused_parts};
+use super::report::{Packed, PieceCount};
 use super::resident::refused;
 use crate::jobs::JobError;
+use crate::jobs::unused::unused_parts;
 
 /// Packs a mesh with the bytes of the rest of its scene.
 pub(super) fn pack(
@@ -36,7 +37,7 @@ pub(super) fn pack(
         pieces: PieceCount::Blocks(done.blocks),
         strips: None,
         reached: true,
-        notes: unused_parts(mesh, done.faces),
+        notes: unused_parts(mesh, done.faces).into(),
         layers: done.layers,
         bytes: done.bytes,
     })

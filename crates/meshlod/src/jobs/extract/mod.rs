@@ -7,11 +7,12 @@ mod taken;
 mod tests;
 mod written;
 
-use meshlod_io::{Format, Precision, Scene};
+use meshlod_io::{Precision, Scene};
 use meshlod_multires::{ErrorKind, FileError, ModelFile, Source};
 
-use crate::jobs::{About, JobError, Remark, Watch};
+use crate::jobs::{About, JobError, Remark, Watch, WrittenAs};
 use crate::model::scene::{ModelScene, SceneQueryError};
+use crate::scene::place::shown_faces;
 use taken::{Taken, take};
 use written::written;
 
@@ -38,8 +39,7 @@ pub struct ExtractRequest {
     /// Format and precision in which the scene will be written, so that the error holds for what is
     /// read back; `None` for a scene that stays in memory. A format without nodes gets one mesh, if
     /// the scene shows each of its meshes once and where the levels have it.
-    #[cfg_attr(feature = "serde", serde(skip))]
-    pub written_as: Option<(Format, Precision)>,
+    pub written_as: Option<WrittenAs>,
     /// Name of the mesh, if the file has none.
     pub name: String,
 }
@@ -181,10 +181,6 @@ fn scene_of<S: Source>(file: &ModelFile<S>, watch: &dyn Watch) -> Result<ModelSc
         watch.remark(&Remark::new(About::Input, reason));
     }
     ModelScene::read(archive).map_err(JobError::input)
-}
-
-fn shown_faces(scene: &Scene) -> usize {
-    scene.instances().iter().map(|shown| scene.meshes[shown.mesh].mesh.faces.len()).sum()
 }
 
 /// Says whether a query is wrong, or the file that it was put to.

@@ -1,3 +1,4 @@
+use meshlod_io::Format;
 use meshlod_mesh::Mesh;
 use meshlod_multires::{Focus, ViewCamera};
 use meshlod_samples as samples;
@@ -97,8 +98,10 @@ fn a_precision_is_chosen_so_that_the_error_holds_as_written() {
     let mut mesh = samples::torus(4_000);
     mesh.positions.iter_mut().for_each(|at| at[0] += 1e4);
     let file = file(&mesh, true);
-    let written =
-        |given| ExtractRequest { written_as: Some((Format::Ply, given)), ..asking(within(1e-2)) };
+    let written = |given| ExtractRequest {
+        written_as: Some(WrittenAs { format: Format::Ply, precision: given }),
+        ..asking(within(1e-2))
+    };
     let chosen = report(&file, &written(Precision::Auto));
     assert_eq!((chosen.precision, chosen.rounded), (Some(Precision::F64), None));
     assert!(chosen.reached && chosen.error.moved == 0.0);

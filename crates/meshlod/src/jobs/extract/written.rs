@@ -1,15 +1,16 @@
 //! The scene of a level in the form in which it is written, whose error holds as written.
 
-use meshlod_io::{Format, Precision, Scene};
+use meshlod_io::Scene;
 use meshlod_mesh::Mesh;
 use meshlod_multires::{ModelFile, Source};
 use meshlod_simplify::Digits;
 
 use super::{ExtractReport, ExtractRequest};
-use crate::jobs::{JobError, Remark, Watch, begin};
+use crate::jobs::written_as::digits;
+use crate::jobs::{JobError, Remark, Watch, WrittenAs, begin};
 use crate::model::cut_volume::{CutVolumeError, conserve_cut_volume};
 use crate::model::scene::ModelScene;
-use crate::scene::{digits_of, shown_rounding};
+use crate::scene::shown_rounding;
 
 /// Makes the scene of a level that is not empty, in the form in which it is to be written, and
 /// reports what writing changes. `rounding` is that of the file, in model units.
@@ -20,7 +21,7 @@ pub(super) fn written<S: Source>(
     (request, report): (&ExtractRequest, &mut ExtractReport),
     watch: &dyn Watch,
 ) -> Result<Scene, JobError> {
-    let has_nodes = request.written_as.is_none_or(|(format, _)| is_gltf(format));
+    let has_nodes = request.written_as.is_none_or(|as_| as_.format.is_gltf());
     let is_taken_back = has_nodes && !model.is_unmoved();
     if request.exact_volume && is_taken_back {
         let reason = "nodes move, turn or scale meshes, whose coordinates are rounded again";
@@ -28,37 +29,30 @@ pub(super) fn written<S: Source>(
     }
     let mut flat = model.flat_scene(request.name.clone(), mesh);
     let spare = report.error.spare(rounding);
-    let form = request
-        .written_as
-        .map(|(format, precision)| (format, precision_within(spare, &flat, format, precision)));
-    let mut moves = form.map_or(0.0, |(format, precision)| flat.rounding(format, precision));
+    let form = request.written_as.map(|as_| within(spare, &flat, as_));
+    let mut moves = form.map_or(0.0, |as_| flat.rounding(as_.format, as_.precision));
     if request.exact_volume {
-        let digits = form.map_or(Digits::F64, |(format, precision)| digits_of(format, precision));
-        restore_volume(&mut flat.meshes[0].mesh, (file, digits), report, watch)?;
+        restore_volume(&mut flat.meshes[0].mesh, (file, digits(form)), report, watch)?;
     }
     if model.is_flat() && !has_nodes {
         report.merged_meshes = model.mesh_count();
     }
     let scene = restored(model, flat, has_nodes)?;
-    if let (true, Some((format, precision))) = (is_taken_back, form) {
-        moves = shown_rounding(&scene, format, precision);
+    if let (true, Some(as_)) = (is_taken_back, form) {
+        moves = shown_rounding(&scene, as_.format, as_.precision);
     }
     report.error.note_rounding(moves);
-    report.precision = form.map(|(_, precision)| precision);
+    report.precision = form.map(|as_| as_.precision);
     report.rounded = (moves > spare).then_some(moves);
     Ok(scene)
 }
 
-fn is_gltf(format: Format) -> bool {
-    matches!(format, Format::Gltf | Format::Glb)
-}
-
 /// Chooses the precision of coordinates: 64 bits if 32 would move one by more than `most`, in model
 /// units, unless the precision is given.
-fn precision_within(most: f64, scene: &Scene, format: Format, given: Precision) -> Precision {
-    match given {
-        Precision::Auto if scene.rounding(format, given) > most => Precision::F64,
-        given => given.of(scene.meshes.iter().map(|mesh| &mesh.mesh)),
+fn within(most: f64, scene: &Scene, as_: WrittenAs) -> WrittenAs {
+    match scene.rounding(as_.format, as_.precision) > most {
+        true => as_.precise().of(scene),
+        false => as_.of(scene),
     }
 }
 

@@ -13,13 +13,13 @@ use meshlod_simplify::{Report, Target};
 
 use crate::jobs::scene_run::{self, RunChoice, SceneRun};
 use crate::jobs::simplify::proved_error::BoundToProve;
-use crate::jobs::{JobError, Watch, cancellable};
+use crate::jobs::written_as::digits;
+use crate::jobs::{JobError, Watch, WrittenAs, cancellable};
 use crate::scene::{ConditionedScene, moved_at_most};
 
 pub use proved_error::ProvedError;
 pub use report::{LostVolume, SimplifyReport};
-pub(super) use request::digits;
-pub use request::{Aim, SimplifyRequest, WrittenAs};
+pub use request::{Aim, SimplifyRequest};
 
 /// Simplifies all meshes of a scene to one common target, and returns the scene with a report.
 ///

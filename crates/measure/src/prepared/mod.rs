@@ -1,9 +1,14 @@
 //! Mesh prepared for repeated distance measurements.
 
+pub(crate) mod mates;
+
+use std::sync::OnceLock;
+
 use meshlod_mesh::{FaceId, Frame, Mesh, VertexId};
 use meshlod_spatial::{Bvh, BvhError};
 use thiserror::Error;
 
+use self::mates::Mates;
 use crate::size::triangle_area;
 
 /// Mesh prepared for distance measurements, with a bounding volume hierarchy and a table for
@@ -17,6 +22,7 @@ pub struct PreparedSurface<'m> {
     /// Vertices used by faces, in leaf order.
     pub(crate) vertices: Vec<VertexId>,
     pub(crate) diagonal: f64,
+    mates: OnceLock<Mates>,
 }
 
 /// Reason why distances to or from a mesh cannot be measured.
@@ -64,13 +70,18 @@ impl<'m> PreparedSurface<'m> {
             return Err(SurfaceError::Extent { diagonal });
         }
         let vertices = used_in_order(mesh, bvh.faces_in_leaf_order());
-        Ok(Self { mesh, bvh, area_up_to, vertices, diagonal })
+        Ok(Self { mesh, bvh, area_up_to, vertices, diagonal, mates: OnceLock::new() })
     }
 
     /// Returns the length of the diagonal of the mesh's bounding box, in model units; unused
     /// vertices do not count.
     pub fn diagonal(&self) -> f64 {
         self.diagonal
+    }
+
+    /// Returns the faces that share edges, found when they are first asked for.
+    pub(crate) fn mates(&self) -> &Mates {
+        self.mates.get_or_init(|| Mates::new(self.mesh))
     }
 
     /// Returns the bounding volume hierarchy over the faces of the mesh.

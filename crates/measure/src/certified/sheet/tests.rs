@@ -1,0 +1,96 @@
+use glam::DVec3;
+use meshlod_mesh::{Mesh, VertexId};
+
+use super::*;
+use crate::fixtures::{cube, moved, plane, sphere};
+
+fn bound(triangle: [[f64; 3]; 3], mesh: &Mesh, most: f64) -> Option<f64> {
+    let surface = PreparedSurface::new(mesh).unwrap();
+    let middle = triangle.into_iter().map(DVec3::from).sum::<DVec3>() / 3.0;
+    let start = surface.bvh().closest(middle.into(), None).face;
+    Sheet::new(&surface, 1e-14).bound(triangle.map(DVec3::from), start, most)
+}
+
+/// A triangle over most of the unit square at this height.
+fn over(z: f64) -> [[f64; 3]; 3] {
+    [[0.05, 0.05, z], [0.95, 0.1, z], [0.1, 0.95, z]]
+}
+
+#[test]
+fn faces_that_cover_a_triangle_bound_its_distance_along_the_normal() {
+    let mesh = plane(40, 0.0);
+    for height in [0.0, 1e-9, 0.01] {
+        let found = bound(over(height), &mesh, 0.011).unwrap();
+        assert!((height..height + 0.02 * 0.011 + 1e-15).contains(&found), "{height} {found}");
+    }
+    assert_eq!(bound(over(0.012), &mesh, 0.011), None);
+}
+
+#[test]
+fn a_hole_is_not_covered_but_a_seam_and_a_turned_face_are() {
+    let whole = plane(9, 0.0);
+    let mut holed = whole.clone();
+    let middle = |face: &[VertexId; 3]| {
+        face.iter().map(|v| DVec3::from(whole.positions[v.index()])).sum::<DVec3>() / 3.0
+    };
+    let at = DVec3::new(0.3, 0.3, 0.0);
+    let near = |face: &&[VertexId; 3]| middle(face).distance(at);
+    let gone = *whole.faces.iter().min_by(|a, b| near(a).total_cmp(&near(b))).unwrap();
+    holed.faces.retain(|face| *face != gone);
+    assert_eq!(bound(over(0.0), &holed, 0.01), None);
+    // Put back with vertices of its own, and turned over.
+    let first = holed.positions.len();
+    holed.positions.extend(gone.map(|v| whole.positions[v.index()]));
+    holed.faces.push([2, 1, 0].map(|i| VertexId::new(first + i)));
+    assert!(bound(over(0.0), &holed, 0.01).is_some());
+}
+
+#[test]
+fn a_fold_does_not_count_twice_and_a_fin_is_no_hole() {
+    // A sheet that comes back over itself covers a point as often as it does so, with signs.
+    let sheet = |points: &[[f64; 2]], faces: &[[usize; 2]]| {
+        let rows = points.iter().flat_map(|&[x, z]| [[x, -1.0, z], [x, 2.0, z]]);
+        let quad = |&[a, b]: &[usize; 2]| {
+            let [p, q, r, s] = [2 * a, 2 * b, 2 * b + 1, 2 * a + 1].map(VertexId::new);
+            [[p, q, r], [p, r, s]]
+        };
+        Mesh::new(rows.collect(), faces.iter().flat_map(quad).collect())
+    };
+    let fold = sheet(&[[-1.0, 0.0], [0.5, 0.001], [-1.0, 0.002]], &[[0, 1], [1, 2]]);
+    assert_eq!(bound(over(0.0), &fold, 0.01), None, "there and back covers nothing");
+    let fin = sheet(&[[-1.0, 0.0], [0.4, 0.0], [2.0, 0.0], [0.4, 3.0]], &[[0, 1], [1, 2], [1, 3]]);
+    assert!(bound(over(0.0), &fin, 0.01).is_some());
+}
+
+#[test]
+fn no_point_is_farther_than_the_bound() {
+    let mesh = sphere(30, 1.0);
+    let surface = PreparedSurface::new(&mesh).unwrap();
+    let coarse = sphere(7, 1.0);
+    let mut sheet = Sheet::new(&surface, 1e-14);
+    let mut count = 0;
+    for face in &coarse.faces {
+        let [a, b, c] = face.map(|v| DVec3::from(coarse.positions[v.index()]));
+        let start = surface.bvh().closest(((a + b + c) / 3.0).into(), None).face;
+        let Some(bound) = sheet.bound([a, b, c], start, 0.3) else { continue };
+        count += 1;
+        let mut farthest = 0f64;
+        for (i, j) in (0..=20).flat_map(|i| (0..=20 - i).map(move |j| (i, j))) {
+            let [s, t] = [i, j].map(|k| f64::from(k) / 20.0);
+            let at = a + (b - a) * s + (c - a) * t;
+            farthest = farthest.max(surface.bvh().closest(at.into(), None).distance_squared.sqrt());
+        }
+        assert!(farthest <= bound && bound < 2.0 * farthest + 0.01, "{farthest} {bound}");
+    }
+    assert!(2 * count > coarse.faces.len(), "{count}");
+}
+
+#[test]
+fn beside_an_edge_a_face_is_covered_by_its_own_side() {
+    let mesh = cube();
+    let side = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]];
+    let found = bound(side, &mesh, 1e-9);
+    assert!(found.is_some_and(|found| found <= 1e-9), "{found:?}");
+    assert!(bound(side, &moved(&mesh, 1e-10), 1e-9).is_some());
+    assert_eq!(bound(side, &moved(&mesh, 2e-9), 1e-9), None);
+}

@@ -1,0 +1,41 @@
+//! Random numbers that are the same on every run, and what is made of them.
+
+use std::f64::consts::TAU;
+
+use glam::{DQuat, DVec3};
+use meshlod_mesh::Mesh;
+
+/// Sequence of random numbers (SplitMix64).
+pub(crate) struct Random(u64);
+
+impl Random {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    /// Returns a number from 0 to 1, without 1.
+    pub(crate) fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut bits = self.0;
+        bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((bits ^ (bits >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// Returns a mesh turned about the origin, in any direction alike, so that no plane of it is on an
+/// axis any more.
+///
+/// # References
+/// [Sho92], Uniform Random Rotations.
+pub fn turned(mesh: &Mesh, seed: u64) -> Mesh {
+    let mut random = Random::new(seed ^ 0x7475_726e);
+    let [part, first, second] = [(); 3].map(|()| random.unit());
+    let [(sine, cosine), (far_sine, far_cosine)] =
+        [first, second].map(|turn| (TAU * turn).sin_cos());
+    let [near, far] = [(1.0 - part).sqrt(), part.sqrt()];
+    let turn =
+        DQuat::from_xyzw(near * sine, near * cosine, far * far_sine, far * far_cosine).normalize();
+    let positions = mesh.positions.iter().map(|&at| (turn * DVec3::from(at)).into()).collect();
+    Mesh { positions, ..mesh.clone() }
+}
