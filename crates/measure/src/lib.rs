@@ -39,6 +39,7 @@ mod size;
 pub use certified::{
     BeyondOptions, Bracket, CertifiedDistance, CertifiedOptions, FaceBeyond, FacesBeyond,
     certified_distance, certified_one_way, certified_surface_distance, faces_beyond,
+    least_provable,
 };
 pub use distance::{
     Distance, DistanceOptions, MeasureError, OneSidedDistance, Place, distance, surface_distance,

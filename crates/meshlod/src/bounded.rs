@@ -8,13 +8,15 @@
 
 mod comparison;
 
-use meshlod_measure::{CertifiedOptions, PreparedSurface, certified_surface_distance};
+use meshlod_measure::{
+    CertifiedOptions, PreparedSurface, certified_surface_distance, least_provable,
+};
 use meshlod_mesh::Mesh;
 use meshlod_simplify::{
     ErrorProof, Excess, ExcessFace, Observe, Report, Simplifier, SimplifyError, Target,
 };
 
-use crate::bounded::comparison::{Comparison, Outcome};
+use crate::bounded::comparison::{Comparison, Outcome, SLACK};
 use crate::conditioned::ConditionedMesh;
 
 /// Largest number of times that contractions are taken back before the whole run is repeated.
@@ -35,18 +37,14 @@ const SLIGHTLY: f64 = 0.95;
 /// Part of the bound that would just have done, for a whole run with a lower bound.
 const CAUTION: f64 = 0.97;
 
-/// Part of the diagonal below which an error is not compared: where flats are divided into other
-/// faces, a proof takes a number of cells inverse to the error.
-const LEAST_PROVABLE: f64 = 1e-6;
-
 /// Limits of the factor by which the bound of a whole run is lowered.
 const FACTOR: [f64; 2] = [0.5, 0.93];
 
 /// Simplifies to an error, in units of the mesh, and proves that it is held.
 ///
-/// What is proved is in the report; nothing is if the mesh has no area, if the error is infinite or
-/// below a millionth of the diagonal, or if the observer wants to see contractions, which then
-/// cannot be taken back. `again` is the mesh with its option `vanish_below`, if the run may be
+/// What is proved is in the report; nothing is if the mesh has no area, if the error is infinite, or
+/// if the observer wants to see contractions, which then cannot be taken back. An error below the
+/// [rounding of `f64`](least_provable) is not held but for what it comes to. `again` is the mesh with its option `vanish_below`, if the run may be
 /// repeated.
 pub(crate) fn run_within<'m>(
     again: Option<(&'m ConditionedMesh<'_>, Option<f64>)>,
@@ -54,13 +52,18 @@ pub(crate) fn run_within<'m>(
     error: f64,
     observer: &mut dyn Observe,
 ) -> Result<Report, SimplifyError> {
-    let mut report = simplifier.run(Target::Error(error), observer)?;
-    let least = LEAST_PROVABLE * simplifier.input().bounds().diagonal();
-    if observer.needs_surface() || error == f64::INFINITY || error < least {
+    // What a face may exceed when it is compared is kept free.
+    let mut bound = error / (1.0 + SLACK);
+    let mut report = simplifier.run(Target::Error(bound), observer)?;
+    if observer.needs_surface() || error == f64::INFINITY {
         return Ok(report);
     }
     let Ok(input) = PreparedSurface::new(simplifier.input()) else { return Ok(report) };
-    let (mut bound, mut rounds, mut runs, mut mends) = (error, 0, 1, 0);
+    if error < least_provable(&input) {
+        let proved = distance_at_most(&input, &simplifier.level(), error);
+        return Ok(with_proof(report, [error, proved], 0));
+    }
+    let (mut rounds, mut runs, mut mends) = (0, 1, 0);
     let whole = simplifier.input();
     let mut comparison = Comparison::new(whole, &input, error);
     loop {
@@ -70,7 +73,7 @@ pub(crate) fn run_within<'m>(
             Outcome::Far(found) => found,
             Outcome::NoArea => Vec::new(),
             Outcome::Undecided => {
-                let proved = distance_at_most(&input, &level);
+                let proved = distance_at_most(&input, &level, error);
                 return Ok(with_proof(report, [error, proved], rounds));
             }
         };
@@ -85,7 +88,7 @@ pub(crate) fn run_within<'m>(
             *simplifier = mesh.simplifier(vanish_below)?;
             comparison.start_again();
         } else {
-            let proved = distance_at_most(&input, &level);
+            let proved = distance_at_most(&input, &level, error);
             return Ok(with_proof(report, [error, proved], rounds));
         }
         report = simplifier.run(Target::Error(bound), observer)?;
@@ -114,10 +117,11 @@ fn lower(found: &[Excess]) -> f64 {
     worst.map_or(0.0, |worst| CAUTION / worst).clamp(FACTOR[0], FACTOR[1])
 }
 
-/// Returns an upper bound of the distance between an input and a level; infinite if the level has no
-/// area.
-fn distance_at_most(input: &PreparedSurface<'_>, level: &Mesh) -> f64 {
+/// Returns an upper bound of the distance between an input and a level, no closer than `enough`;
+/// infinite if the level has no area.
+fn distance_at_most(input: &PreparedSurface<'_>, level: &Mesh, enough: f64) -> f64 {
     PreparedSurface::new(level).map_or(f64::INFINITY, |level| {
-        certified_surface_distance(input, &level, &CertifiedOptions::default()).symmetric().upper
+        let options = CertifiedOptions::up_to(enough / input.diagonal());
+        certified_surface_distance(input, &level, &options).symmetric().upper
     })
 }

@@ -1,5 +1,5 @@
 //! Spatial search over triangle meshes: closest points by a bounding volume hierarchy ([`Bvh`]), an
-//! octree of triangles ([`Octree`]) and sorting along a space-filling curve ([`curve_order`]).
+//! octree of triangles ([`Octree`]), faces that cover a triangle ([`Sheet`]) and sorting along a space-filling curve ([`curve_order`]).
 //!
 //! The hierarchy's boxes are compact and rounded outwards. Answers are computed from the triangles
 //! in `f64` and do not depend on the tree, the hint or the number of threads.
@@ -24,7 +24,9 @@ mod bvh;
 mod closest;
 mod curve;
 mod labelled;
+mod mates;
 mod octree;
+mod sheet;
 mod sum;
 #[cfg(test)]
 mod tests;
@@ -35,6 +37,8 @@ pub use bvh::{Bvh, BvhError};
 pub use closest::ClosestPoint;
 pub use curve::curve_order;
 pub use labelled::LabelledBvh;
+pub use mates::Mates;
 pub use octree::{Octree, OctreeLeaf};
+pub use sheet::{Cover, Sheet};
 pub use sum::CompensatedSum;
 pub use triangle::{Triangle, closest_point};

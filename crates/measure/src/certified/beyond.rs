@@ -5,12 +5,11 @@
 
 use glam::DVec3;
 use meshlod_mesh::{FaceId, Mesh, VertexId};
-use meshlod_spatial::Bvh;
+use meshlod_spatial::{Bvh, Sheet};
 use rayon::prelude::*;
 
 use crate::certified::cell::{CALM, Cell, Probe};
 use crate::certified::rounding::Rounding;
-use crate::certified::sheet::Sheet;
 use crate::distance::Place;
 use crate::prepared::PreparedSurface;
 
@@ -150,12 +149,13 @@ impl<'d> Decision<'d> {
         };
         let limited: Vec<(FaceId, f64)> = faces.par_iter().filter_map(limit).collect();
         let (slots, probes) = self.measure_corners(mesh, &limited);
-        let examine = |sheet: &mut Option<Sheet<'d>>, &(face, limit): &(FaceId, f64)| {
+        let examine = |sheet: &mut Sheet<'d>, &(face, limit): &(FaceId, f64)| {
             let corners = corners(face).map(|v| probes[slots[v.index()] as usize]);
             let examined = self.examine((face, limit), corners, sheet);
             (examined.state != State::Within).then_some(examined)
         };
-        limited.par_iter().map_init(|| None, examine).flatten().collect()
+        let sheet = || Sheet::new(&self.to.bvh, self.to.mates());
+        limited.par_iter().map_init(sheet, examine).flatten().collect()
     }
 
     /// Measures the corners of faces, each once and only as closely as the limits around demand.
@@ -191,7 +191,7 @@ impl<'d> Decision<'d> {
         &self,
         (face, limit): (FaceId, f64),
         corners: [Probe; 3],
-        sheet: &mut Option<Sheet<'d>>,
+        sheet: &mut Sheet<'d>,
     ) -> Examined {
         let mut examined =
             Examined { face, open: Vec::new(), farthest: corners[0], state: State::Open };
@@ -202,11 +202,7 @@ impl<'d> Decision<'d> {
             let middle = cell.probe_middle(self.surface, enough);
             self.look_at(middle, &mut examined);
             if cell.upper > enough && examined.state == State::Open {
-                let sheet = sheet.get_or_insert_with(|| Sheet::new(self.to, self.point));
-                let corners = corners.map(|corner| corner.at);
-                if sheet.bound(corners, middle.face, enough - self.point).is_some() {
-                    examined.state = State::Within;
-                }
+                cell.bound_by_sheet(middle.face, sheet, enough - self.point);
             }
         }
         if examined.state == State::Open {

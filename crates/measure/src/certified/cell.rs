@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use meshlod_mesh::FaceId;
-use meshlod_spatial::Bvh;
+use meshlod_spatial::{Bvh, Cover, Sheet};
 
 /// Part of the distance at which a cell may be discarded below which a distance need not be the
 /// least. CPU time for the dragon and its tenth: 0 5.7 s, .1 5.4, .3 5.0, .5 5.3.
@@ -73,6 +73,14 @@ impl Cell {
         self.bound_by(middle.distance + way.into_iter().fold(0.0, f64::max));
         self.bound_by_face(middle.face, surface);
         middle
+    }
+
+    /// Lowers the bound to that by the faces that lie over the triangle, given one of them, if that
+    /// is at most `most`.
+    pub(super) fn bound_by_sheet(&mut self, start: FaceId, sheet: &mut Sheet<'_>, most: f64) {
+        if let Cover::Within(bound) = sheet.cover(self.corners(), start, most) {
+            self.bound_by(bound);
+        }
     }
 
     /// Divides the triangle at the middle of its longest edge. Returns both halves and the middle.

@@ -8,11 +8,11 @@ mod beyond;
 mod cell;
 mod rounding;
 mod search;
-mod sheet;
 
 use meshlod_mesh::Mesh;
 
 pub use crate::certified::beyond::{BeyondOptions, FaceBeyond, FacesBeyond, faces_beyond};
+use crate::certified::rounding::Rounding;
 use crate::certified::search::Search;
 use crate::distance::{MeasureError, Place};
 use crate::prepared::PreparedSurface;
@@ -40,6 +40,21 @@ impl Default for CertifiedOptions {
     fn default() -> Self {
         Self { tolerance: 0.01, floor: 1e-5, most_splits: 4_000_000 }
     }
+}
+
+impl CertifiedOptions {
+    /// Returns options by which a distance is told from one of `enough` diagonals, or of the usual
+    /// floor if that is less.
+    pub fn up_to(enough: f64) -> Self {
+        let usual = Self::default();
+        Self { floor: usual.floor.min(enough), ..usual }
+    }
+}
+
+/// Returns the least distance of other surfaces from this one, of about the same extent, that can be
+/// proved, in model units: some roundings of `f64`.
+pub fn least_provable(surface: &PreparedSurface<'_>) -> f64 {
+    4.0 * Rounding::of_points(surface.mesh, surface.mesh)
 }
 
 /// Maximum distance between two surfaces A and B in both directions, each between two bounds.

@@ -4,7 +4,7 @@ use std::mem;
 
 use glam::DVec3;
 use meshlod_mesh::FaceId;
-use meshlod_spatial::Bvh;
+use meshlod_spatial::{Bvh, Sheet};
 use rayon::prelude::*;
 
 use crate::certified::cell::{Cell, Probe};
@@ -21,6 +21,7 @@ const CHUNK: usize = 1024;
 
 /// Branch-and-bound search for the maximum distance in one direction.
 pub(super) struct Search<'s> {
+    to: &'s PreparedSurface<'s>,
     surface: &'s Bvh,
     options: &'s CertifiedOptions,
     rounding: Rounding,
@@ -46,6 +47,7 @@ impl<'s> Search<'s> {
         let used = from.vertices.iter().map(|v| vertices[v.index()]);
         let rounding = Rounding::between(from.mesh, to.mesh);
         let mut search = Self {
+            to,
             surface: &to.bvh,
             options,
             rounding,
@@ -58,10 +60,14 @@ impl<'s> Search<'s> {
         let corners = |face: &FaceId| from.mesh.faces[face.index()].map(|v| vertices[v.index()]);
         let faces = from.bvh.faces_in_leaf_order();
         let enough = search.enough();
-        search.process(faces, |face, surface, into| {
+        search.process(faces, |face, (surface, sheet), into| {
             let mut cell = Cell::new(corners(face), surface, [enough, f64::INFINITY]);
             if cell.upper > enough {
-                into.found(cell.probe_middle(surface, enough));
+                let middle = cell.probe_middle(surface, enough);
+                into.found(middle);
+                if cell.upper > enough {
+                    cell.bound_by_sheet(middle.face, sheet, enough);
+                }
             }
             into.keep(cell, enough);
         });
@@ -84,7 +90,7 @@ impl<'s> Search<'s> {
             }
             let round = self.take_greatest(ROUND.min(room));
             self.splits += round.len();
-            self.process(&round, |cell, surface, into| {
+            self.process(&round, |cell, (surface, _), into| {
                 let (halves, middle) = cell.halves(surface, enough);
                 into.found(middle);
                 halves.into_iter().for_each(|half| into.keep(half, enough));
@@ -123,12 +129,17 @@ impl<'s> Search<'s> {
     }
 
     /// Processes items on all threads, and takes over what they found, in their order.
-    fn process<T: Sync>(&mut self, items: &[T], each: impl Fn(&T, &Bvh, &mut Outcome) + Sync) {
-        let surface = self.surface;
+    fn process<T: Sync>(
+        &mut self,
+        items: &[T],
+        each: impl Fn(&T, (&Bvh, &mut Sheet<'s>), &mut Outcome) + Sync,
+    ) {
+        let (surface, mates) = (self.surface, self.to.mates());
         let start = Outcome { open: Vec::new(), farthest: self.farthest, discarded: 0.0 };
         let outcome = |chunk: &[T]| {
             let mut outcome = start.clone();
-            chunk.iter().for_each(|item| each(item, surface, &mut outcome));
+            let mut sheet = Sheet::new(surface, mates);
+            chunk.iter().for_each(|item| each(item, (surface, &mut sheet), &mut outcome));
             outcome
         };
         let outcomes: Vec<Outcome> = items.par_chunks(CHUNK).map(outcome).collect();

@@ -20,13 +20,6 @@ const MOVES: f64 = 5.0;
 /// Relative difference of two lengths that counts as none: the rounding of their computation.
 const EQUAL: f64 = 1e-9;
 
-/// Part of the diagonal below which an error is not proved, only measured.
-const LEAST_PROVABLE: f64 = 1e-6;
-
-/// Part of the diagonal below which a distance is not told apart from none: simplification rounds to
-/// 32 bits.
-const LEAST_TOLD: f64 = f32::EPSILON as f64;
-
 /// An error asked for, in world units.
 #[derive(Clone, Copy)]
 pub(super) struct BoundToProve {
@@ -45,8 +38,7 @@ pub struct ProvedError {
     /// Upper bound of the distance between the input and what is written, both ways; `None` if
     /// there is none.
     pub proved: Option<f64>,
-    /// True if what was asked for holds: if it is proved, or, for errors too small to be proved, if
-    /// no greater distance was found.
+    /// True if what was asked for is proved.
     pub is_held: bool,
     /// Number of times that contractions were taken back, or the run was repeated, to hold it.
     pub rounds: usize,
@@ -99,19 +91,12 @@ impl BoundToProve {
         level: &[Mesh],
     ) -> ProvedError {
         let level = surface_of(scene, level);
-        let bracket = original.zip(PreparedSurface::new(&level).ok()).map(|(original, level)| {
-            let options = CertifiedOptions::default();
-            certified_surface_distance(original, &level, &options).symmetric()
+        let proved = original.zip(PreparedSurface::new(&level).ok()).map(|(original, level)| {
+            let options = CertifiedOptions::up_to(self.asked / original.diagonal());
+            let bracket = certified_surface_distance(original, &level, &options).symmetric();
+            bracket.upper + self.rounding
         });
-        let proved = bracket.map(|bracket| bracket.upper + self.rounding);
-        // Distances too small to be proved are not told apart from none.
-        let least = bracket.map_or(0.0, |bracket| bracket.lower);
-        let diagonal = original.map_or(0.0, PreparedSurface::diagonal);
-        let is_held = match self.asked < LEAST_PROVABLE * diagonal {
-            true => least <= self.asked.max(LEAST_TOLD * diagonal) + self.rounding,
-            false => self.is_within(proved),
-        };
-        self.with(proved, is_held, 0)
+        self.with(proved, self.is_within(proved), 0)
     }
 
     fn is_within(&self, proved: Option<f64>) -> bool {

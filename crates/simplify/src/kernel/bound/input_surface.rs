@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use meshlod_mesh::{FaceId, Mesh};
-use meshlod_spatial::Bvh;
+use meshlod_spatial::{Bvh, Cover, Mates, Sheet};
 
 use crate::kernel::mesh::local_frame::Frame;
 
@@ -11,11 +11,22 @@ use crate::kernel::mesh::local_frame::Frame;
 /// near too.
 pub(crate) struct InputSurface {
     faces: Bvh,
+    mates: Mates,
     frame: Frame,
     /// Places of all vertices in the frame, copies included.
     places: Vec<Vec3>,
     /// Prominent edges.
     rims: Vec<[u32; 2]>,
+}
+
+/// What the faces of the input that lie over a new face say of its distance.
+pub(crate) enum Covered {
+    /// No point of the face is farther from the input.
+    Within(f32),
+    /// A point is beyond the bound.
+    Beyond,
+    /// Nothing: they do not cover it, or not along its normal.
+    Unknown,
 }
 
 /// Points along edges, grouped by the nearest vertex.
@@ -48,7 +59,8 @@ impl InputSurface {
     ) -> Self {
         let rims = rims(&places, faces);
         let faces = Bvh::new(mesh).expect("the mesh was found valid and has faces");
-        Self { faces, frame, places, rims }
+        let mates = Mates::new(mesh, &faces);
+        Self { faces, mates, frame, places, rims }
     }
 
     /// Returns the position of a vertex in the input.
@@ -72,6 +84,30 @@ impl InputSurface {
         let found = self.faces.near(self.frame.to_model(place), *near, limits)?;
         *near = Some(found.face);
         Some((found.distance_squared.sqrt() / unit) as f32)
+    }
+
+    /// Creates a search for faces of the input that cover new ones.
+    pub(crate) fn sheet(&self) -> Sheet<'_> {
+        Sheet::new(&self.faces, &self.mates)
+    }
+
+    /// Bounds the distances of the points of a new face from the input, by the faces of the input
+    /// that lie over it; `near` is one that is close.
+    pub(crate) fn covered(
+        &self,
+        sheet: &mut Sheet<'_>,
+        face: [Vec3; 3],
+        near: FaceId,
+        max_error: f32,
+    ) -> Covered {
+        let most = f64::from(max_error) * self.frame.unit;
+        match sheet.cover(face.map(|place| self.frame.to_model(place)), near, most) {
+            Cover::Within(bound) => Covered::Within((bound / self.frame.unit) as f32),
+            Cover::High(at) if self.faces.near(at, Some(near), [most; 2]).is_none() => {
+                Covered::Beyond
+            }
+            Cover::High(_) | Cover::Open => Covered::Unknown,
+        }
     }
 
     /// Samples the prominent edges at this spacing, up to a limit on the number of samples.

@@ -9,8 +9,9 @@ pub(crate) mod input_surface;
 pub(crate) mod probe;
 
 use glam::Vec3;
+use meshlod_spatial::Sheet;
 
-use crate::kernel::bound::input_surface::{EdgeSamples, InputSurface};
+use crate::kernel::bound::input_surface::{Covered, EdgeSamples, InputSurface};
 use crate::kernel::bound::probe::{Probe, Probed};
 use crate::kernel::collapse::deviation::FaceFan;
 use crate::kernel::collapse::edge_ring::EdgeRing;
@@ -57,6 +58,7 @@ pub(crate) struct BoundPart<'v> {
     /// Working memory for the faces around an edge, before and after.
     old: FaceFan,
     new: FaceFan,
+    sheet: Sheet<'v>,
 }
 
 impl<'m> ErrorBound<'m> {
@@ -104,6 +106,7 @@ impl<'m> ErrorBound<'m> {
                 parts: own_parts,
                 old: FaceFan::default(),
                 new: FaceFan::default(),
+                sheet: input.sheet(),
             });
             (next, travelled, of_vertices) = (other_next, other_travelled, other_parts);
             base += len as u32;
@@ -175,18 +178,39 @@ impl BoundPart<'_> {
         if step.now.sqrt() > TOO_FAR * self.limit {
             return None;
         }
-        let new_to_input = self.new_faces_to_input(step)?;
         self.old.lay_old(step.edge_ring);
         self.new.lay_new(step.edge_ring, step.displacement);
         if self.old_edges_to_new_faces(step.edge_ring) > self.limit + before {
             return None;
         }
-        Some(new_to_input.max(self.input_to_new_faces(step)?))
+        // Where a step was refused before, this most often sees it at the first point.
+        let input_to_new = self.input_to_new_faces(step)?;
+        Some(input_to_new.max(self.new_faces_to_input(step)?))
+    }
+
+    /// Returns the largest distance of the new faces from the input; `None` if it is beyond the
+    /// bound. Where no faces of the input cover them, it is that of sampled points.
+    fn new_faces_to_input(&mut self, step: &BoundedStep<'_>) -> Option<f32> {
+        let &BoundedStep { edge_ring, from, displacement, .. } = step;
+        let apex = from + displacement;
+        let mut near = None;
+        let at_apex = self.input.distance(apex, &mut near, [0.0, self.limit])?;
+        let (Some(near), mut farthest) = (near, at_apex) else { return self.probe_new_faces(step) };
+        for i in (0..edge_ring.len).filter(|&i| edge_ring.is_face(i)) {
+            let [to, next] = [i, i + 1].map(|i| from + edge_ring.relative(i));
+            match self.input.covered(&mut self.sheet, [apex, to, next], near, self.limit) {
+                Covered::Within(bound) => farthest = farthest.max(bound),
+                Covered::Beyond => return None,
+                Covered::Unknown if self.limit < self.max_error => return None,
+                Covered::Unknown => return self.probe_new_faces(step),
+            }
+        }
+        Some(farthest)
     }
 
     /// Returns the largest distance of sampled points of the new faces from the input; `None` if it
     /// is beyond the bound.
-    fn new_faces_to_input(&self, step: &BoundedStep<'_>) -> Option<f32> {
+    fn probe_new_faces(&self, step: &BoundedStep<'_>) -> Option<f32> {
         let &BoundedStep { edge_ring, from, displacement, .. } = step;
         let is_thorough = self.limit < self.max_error;
         let mut probe = Probe::new(self.input, self.limit, is_thorough);

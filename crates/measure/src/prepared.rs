@@ -1,14 +1,11 @@
 //! Mesh prepared for repeated distance measurements.
 
-pub(crate) mod mates;
-
 use std::sync::OnceLock;
 
 use meshlod_mesh::{FaceId, Frame, Mesh, VertexId};
-use meshlod_spatial::{Bvh, BvhError};
+use meshlod_spatial::{Bvh, BvhError, Mates};
 use thiserror::Error;
 
-use self::mates::Mates;
 use crate::size::triangle_area;
 
 /// Mesh prepared for distance measurements, with a bounding volume hierarchy and a table for
@@ -81,7 +78,7 @@ impl<'m> PreparedSurface<'m> {
 
     /// Returns the faces that share edges, found when they are first asked for.
     pub(crate) fn mates(&self) -> &Mates {
-        self.mates.get_or_init(|| Mates::new(self.mesh))
+        self.mates.get_or_init(|| Mates::new(self.mesh, &self.bvh))
     }
 
     /// Returns the bounding volume hierarchy over the faces of the mesh.

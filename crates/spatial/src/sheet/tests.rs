@@ -1,14 +1,29 @@
 use glam::DVec3;
+use meshlod_fixtures::grid;
 use meshlod_mesh::{Mesh, VertexId};
+use meshlod_samples::{cube, sphere};
 
 use super::*;
-use crate::fixtures::{cube, moved, plane, sphere};
 
 fn bound(triangle: [[f64; 3]; 3], mesh: &Mesh, most: f64) -> Option<f64> {
-    let surface = PreparedSurface::new(mesh).unwrap();
+    let surface = Bvh::new(mesh).unwrap();
+    let mates = Mates::new(mesh, &surface);
     let middle = triangle.into_iter().map(DVec3::from).sum::<DVec3>() / 3.0;
-    let start = surface.bvh().closest(middle.into(), None).face;
-    Sheet::new(&surface, 1e-14).bound(triangle.map(DVec3::from), start, most)
+    let start = surface.closest(middle.into(), None).face;
+    match Sheet::new(&surface, &mates).cover(triangle, start, most) {
+        Cover::Within(bound) => Some(bound),
+        Cover::High(_) | Cover::Open => None,
+    }
+}
+
+fn moved(mesh: &Mesh, change: impl Fn(f64) -> f64) -> Mesh {
+    let positions = mesh.positions.iter().map(|at| at.map(&change)).collect();
+    Mesh::new(positions, mesh.faces.clone())
+}
+
+/// The unit square, divided into n by n squares.
+fn plane(n: u32) -> Mesh {
+    moved(&grid(n), |x| x / f64::from(n))
 }
 
 /// A triangle over most of the unit square at this height.
@@ -18,7 +33,7 @@ fn over(z: f64) -> [[f64; 3]; 3] {
 
 #[test]
 fn faces_that_cover_a_triangle_bound_its_distance_along_the_normal() {
-    let mesh = plane(40, 0.0);
+    let mesh = plane(40);
     for height in [0.0, 1e-9, 0.01] {
         let found = bound(over(height), &mesh, 0.011).unwrap();
         assert!((height..height + 0.02 * 0.011 + 1e-15).contains(&found), "{height} {found}");
@@ -28,7 +43,7 @@ fn faces_that_cover_a_triangle_bound_its_distance_along_the_normal() {
 
 #[test]
 fn a_hole_is_not_covered_but_a_seam_and_a_turned_face_are() {
-    let whole = plane(9, 0.0);
+    let whole = plane(9);
     let mut holed = whole.clone();
     let middle = |face: &[VertexId; 3]| {
         face.iter().map(|v| DVec3::from(whole.positions[v.index()])).sum::<DVec3>() / 3.0
@@ -64,21 +79,23 @@ fn a_fold_does_not_count_twice_and_a_fin_is_no_hole() {
 
 #[test]
 fn no_point_is_farther_than_the_bound() {
-    let mesh = sphere(30, 1.0);
-    let surface = PreparedSurface::new(&mesh).unwrap();
-    let coarse = sphere(7, 1.0);
-    let mut sheet = Sheet::new(&surface, 1e-14);
+    let mesh = sphere(3_000);
+    let surface = Bvh::new(&mesh).unwrap();
+    let mates = Mates::new(&mesh, &surface);
+    let coarse = sphere(200);
+    let mut sheet = Sheet::new(&surface, &mates);
     let mut count = 0;
     for face in &coarse.faces {
         let [a, b, c] = face.map(|v| DVec3::from(coarse.positions[v.index()]));
-        let start = surface.bvh().closest(((a + b + c) / 3.0).into(), None).face;
-        let Some(bound) = sheet.bound([a, b, c], start, 0.3) else { continue };
+        let start = surface.closest(((a + b + c) / 3.0).into(), None).face;
+        let triangle = [a, b, c].map(|at| at.to_array());
+        let Cover::Within(bound) = sheet.cover(triangle, start, 0.3) else { continue };
         count += 1;
         let mut farthest = 0f64;
         for (i, j) in (0..=20).flat_map(|i| (0..=20 - i).map(move |j| (i, j))) {
             let [s, t] = [i, j].map(|k| f64::from(k) / 20.0);
             let at = a + (b - a) * s + (c - a) * t;
-            farthest = farthest.max(surface.bvh().closest(at.into(), None).distance_squared.sqrt());
+            farthest = farthest.max(surface.closest(at.into(), None).distance_squared.sqrt());
         }
         assert!(farthest <= bound && bound < 2.0 * farthest + 0.01, "{farthest} {bound}");
     }
@@ -87,10 +104,11 @@ fn no_point_is_farther_than_the_bound() {
 
 #[test]
 fn beside_an_edge_a_face_is_covered_by_its_own_side() {
-    let mesh = cube();
+    let mesh = moved(&cube(1_000), |x| x + 0.5);
     let side = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]];
     let found = bound(side, &mesh, 1e-9);
     assert!(found.is_some_and(|found| found <= 1e-9), "{found:?}");
-    assert!(bound(side, &moved(&mesh, 1e-10), 1e-9).is_some());
-    assert_eq!(bound(side, &moved(&mesh, 2e-9), 1e-9), None);
+    let by = |offset: f64| moved(&mesh, |x| x + offset);
+    assert!(bound(side, &by(1e-10), 1e-9).is_some());
+    assert_eq!(bound(side, &by(2e-9), 1e-9), None);
 }

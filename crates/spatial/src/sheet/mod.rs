@@ -1,0 +1,160 @@
+//! Bounds the distances in a triangle from a surface that lies over it like a sheet.
+//!
+//! Seen along a direction, faces cover a triangle if none of their free edges crosses it and one
+//! point of it is covered: how often a point is covered, counted with signs, changes at free edges
+//! only. No point of the triangle is then farther from the surface than the faces over it are, along
+//! the direction. Nothing is divided: a plane that two meshes divide in different ways is compared in
+//! a time linear in its faces.
+
+#[cfg(test)]
+mod tests;
+mod view;
+
+use glam::DVec3;
+use meshlod_mesh::FaceId;
+
+use self::view::{Seen, View};
+use crate::mates::Mates;
+use crate::{Bvh, Triangle};
+
+/// Parts of the bound that may go for shrinking the triangle, so that edges along its own do not
+/// cross it: little at first, then as much as coordinates that are rounded may need.
+const INSETS: [f64; 2] = [0.02, 0.5];
+
+/// Rounding of a coordinate in the hierarchy's frame, in which the mesh is about 4 wide.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// Most faces that are crossed on the way from the first one to one over the middle.
+const MOST_STEPS: usize = 64;
+
+/// Search for faces of a surface that cover a triangle, with its memory.
+///
+/// Size: 4 bytes for each face of the surface.
+#[derive(Clone, Debug)]
+pub struct Sheet<'s> {
+    surface: &'s Bvh,
+    mates: &'s Mates,
+    /// Twice the number of the search that found each slot last, plus one if it was turned over.
+    stamps: Vec<u32>,
+    search: u32,
+    /// Slots of faces whose sides have not been looked at, and whether each is turned over.
+    open: Vec<(u32, bool)>,
+}
+
+/// What a [`Sheet`] found of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cover {
+    /// No point is farther from the surface than this.
+    Within(f64),
+    /// Over this point, a face is farther away than is allowed. Another may be near.
+    High([f64; 3]),
+    /// The faces around do not cover it.
+    Open,
+}
+
+impl<'s> Sheet<'s> {
+    /// Creates a search over a surface with its mates.
+    pub fn new(surface: &'s Bvh, mates: &'s Mates) -> Self {
+        Self { surface, mates, stamps: Vec::new(), search: 0, open: Vec::new() }
+    }
+
+    /// Looks for faces that cover a triangle and are nowhere farther from it than `most`, beginning
+    /// at a face near it. Lengths and positions are in model units.
+    ///
+    /// Cost: linear in the number of faces that lie over it.
+    pub fn cover(&mut self, triangle: [[f64; 3]; 3], start: FaceId, most: f64) -> Cover {
+        let frame = &self.surface.frame;
+        let (local, scale) = (triangle.map(|at| frame.local(at)), frame.scale());
+        let most = most * scale - ROUNDING;
+        let start = self.surface.slots[start.index()];
+        for inset in INSETS.map(|part| part * most) {
+            match self.over(local, start, [inset, most]) {
+                Ok(height) => return Cover::Within((height + ROUNDING) / scale),
+                Err(Some(at)) => return Cover::High(frame.model(at)),
+                Err(None) => {}
+            }
+        }
+        Cover::Open
+    }
+
+    /// Returns the bound in the hierarchy's frame, or a point over which a face is too far away.
+    fn over(
+        &mut self,
+        triangle: Triangle,
+        start: u32,
+        [inset, most]: [f64; 2],
+    ) -> Result<f64, Option<DVec3>> {
+        let view = View::of(triangle, self.corners(start), inset).ok_or(None)?;
+        let start = self.walk_to_middle(start, &view);
+        let inside = view.see(self.corners(start)).over(&view).middle().ok_or(None)?;
+        self.begin();
+        self.find(start, false);
+        self.open.push((start, false));
+        let (mut height, mut covered) = (0f64, 0i32);
+        while let Some((slot, is_turned)) = self.open.pop() {
+            let seen = view.see(self.corners(slot));
+            if seen.height() > height {
+                let highest = seen.over(&view).highest();
+                height = height.max(highest.z.abs());
+                if height + view.spent > most {
+                    return Err(Some(view.at(highest)));
+                }
+            }
+            let cover = seen.cover(inside, ROUNDING).ok_or(None)?;
+            covered += if is_turned { -cover } else { cover };
+            self.go_on((slot, is_turned), &seen, &view).ok_or(None)?;
+        }
+        if covered == 0 { Err(None) } else { Ok(height + view.spent) }
+    }
+
+    /// Goes from face to face towards the one over the middle of the triangle, as far as it comes.
+    fn walk_to_middle(&self, mut slot: u32, view: &View) -> u32 {
+        for _ in 0..MOST_STEPS {
+            let Some(side) = view.see(self.corners(slot)).side_towards_middle() else { break };
+            let Some(mate) = self.mates.across(slot, side) else { break };
+            slot = mate.slot;
+        }
+        slot
+    }
+
+    /// Adds the faces across those sides of a face that cross the triangle; `None` if one is a free
+    /// edge, or if the faces around have no two sides.
+    fn go_on(&mut self, (slot, is_turned): (u32, bool), seen: &Seen, view: &View) -> Option<()> {
+        let is_crossed = view.crossed_sides(seen, ROUNDING);
+        for side in (0..3).filter(|&side| is_crossed[side]) {
+            let mate = self.mates.across(slot, side)?;
+            let is_mate_turned = is_turned != mate.is_turned;
+            match self.find(mate.slot, is_mate_turned) {
+                None => self.open.push((mate.slot, is_mate_turned)),
+                Some(before) if before == is_mate_turned => {}
+                Some(_) => return None,
+            }
+        }
+        Some(())
+    }
+
+    /// Begins a search that has found nothing yet.
+    fn begin(&mut self) {
+        const LAST: u32 = u32::MAX / 2;
+        if self.stamps.is_empty() || self.search == LAST {
+            self.stamps = vec![0; self.surface.slots.len()];
+            self.search = 0;
+        }
+        self.search += 1;
+        self.open.clear();
+    }
+
+    /// Notes that a face is found; returns whether it was turned over if it was found before.
+    fn find(&mut self, slot: u32, is_turned: bool) -> Option<bool> {
+        let stamp = &mut self.stamps[slot as usize];
+        if *stamp / 2 == self.search {
+            return Some(*stamp % 2 == 1);
+        }
+        *stamp = 2 * self.search + u32::from(is_turned);
+        None
+    }
+
+    fn corners(&self, slot: u32) -> Triangle {
+        self.surface.triangles[slot as usize]
+    }
+}
