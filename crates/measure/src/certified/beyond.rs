@@ -97,7 +97,9 @@ pub fn faces_beyond(
         }
         let share = left / open;
         let open = examined.par_iter_mut().filter(|face| face.state == State::Open);
-        left -= open.map(|face| decision.divide(face, share)).sum::<usize>();
+        let sheet = || decision.sheet();
+        let divide = |sheet: &mut Sheet<'_>, face| decision.divide(face, share, sheet);
+        left -= open.map_init(sheet, divide).sum::<usize>();
     }
     let beyond = |face: &Examined| (face.state != State::Within).then(|| decision.report(face));
     FacesBeyond {
@@ -139,6 +141,10 @@ enum State {
 }
 
 impl<'d> Decision<'d> {
+    fn sheet(&self) -> Sheet<'d> {
+        Sheet::new(&self.to.bvh, self.to.mates())
+    }
+
     /// Measures the corners and the middles of the faces, and returns those that may be beyond.
     fn start(&self, mesh: &Mesh, faces: &[FaceId]) -> Vec<Examined> {
         let corners = |face: FaceId| mesh.faces[face.index()];
@@ -154,8 +160,7 @@ impl<'d> Decision<'d> {
             let examined = self.examine((face, limit), corners, sheet);
             (examined.state != State::Within).then_some(examined)
         };
-        let sheet = || Sheet::new(&self.to.bvh, self.to.mates());
-        limited.par_iter().map_init(sheet, examine).flatten().collect()
+        limited.par_iter().map_init(|| self.sheet(), examine).flatten().collect()
     }
 
     /// Measures the corners of faces, each once and only as closely as the limits around demand.
@@ -213,14 +218,19 @@ impl<'d> Decision<'d> {
     }
 
     /// Divides an open face until it is decided, or `most` times. Returns the number of divisions.
-    fn divide(&self, examined: &mut Examined, most: usize) -> usize {
+    fn divide(&self, examined: &mut Examined, most: usize, sheet: &mut Sheet<'_>) -> usize {
         let mut splits = 0;
         while splits < most && examined.state == State::Open {
             let Some(cell) = examined.open.pop() else { break };
             splits += 1;
             let enough = self.enough((self.limit)(cell.corners()));
-            let (halves, middle) = cell.halves(self.surface, enough);
+            let (mut halves, middle) = cell.halves(self.surface, enough);
             self.look_at(middle, examined);
+            for half in &mut halves {
+                if examined.state == State::Open && half.is_large(enough) {
+                    half.bound_by_sheet(middle.face, sheet, enough - self.point);
+                }
+            }
             let [mut less, mut more] = halves;
             if less.upper > more.upper {
                 (less, more) = (more, less);

@@ -8,6 +8,9 @@ use meshlod_spatial::{Bvh, Cover, Sheet};
 /// least. CPU time for the dragon and its tenth: 0 5.7 s, .1 5.4, .3 5.0, .5 5.3.
 pub(super) const CALM: f64 = 0.3;
 
+/// Multiple of a bound from which on an edge is long.
+const MANY: f64 = 8.0;
+
 /// Point with its distance from a surface, and the face of it that is closest.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Probe {
@@ -81,6 +84,13 @@ impl Cell {
         if let Cover::Within(bound) = sheet.cover(self.corners(), start, most) {
             self.bound_by(bound);
         }
+    }
+
+    /// Returns true if it takes many divisions until the ways from the corners alone bound the
+    /// distances by `enough`.
+    pub(super) fn is_large(&self, enough: f64) -> bool {
+        let [a, b, _] = self.longest_edge_first();
+        self.upper > enough && a.at.distance(b.at) > MANY * enough
     }
 
     /// Divides the triangle at the middle of its longest edge. Returns both halves and the middle.

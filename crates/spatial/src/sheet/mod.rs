@@ -13,13 +13,17 @@ mod view;
 use glam::DVec3;
 use meshlod_mesh::FaceId;
 
-use self::view::{Seen, View};
+use self::view::{Seen, View, normal};
 use crate::mates::Mates;
 use crate::{Bvh, Triangle};
 
 /// Parts of the bound that may go for shrinking the triangle, so that edges along its own do not
 /// cross it: little at first, then as much as coordinates that are rounded may need.
 const INSETS: [f64; 2] = [0.02, 0.5];
+
+/// Part of the bound up to which a face counts as far as its farthest corner, even one that is not
+/// over the triangle.
+const ROUGH: f64 = 0.5;
 
 /// Rounding of a coordinate in the hierarchy's frame, in which the mesh is about 4 wide.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -67,42 +71,43 @@ impl<'s> Sheet<'s> {
         let (local, scale) = (triangle.map(|at| frame.local(at)), frame.scale());
         let most = most * scale - ROUNDING;
         let start = self.surface.slots[start.index()];
-        for inset in INSETS.map(|part| part * most) {
-            match self.over(local, start, [inset, most]) {
+        // Along its normal, or that of the face: a thin triangle may have any.
+        let [own, other] = [normal(&local), normal(self.corners(start))];
+        let [little, much] = INSETS.map(|part| part * most);
+        let mut high = None;
+        for (direction, inset) in [(own, little), (own, much), (other, much)] {
+            let Some(direction) = direction else { continue };
+            match self.over(&View::along(direction, &local, inset), start, most) {
                 Ok(height) => return Cover::Within((height + ROUNDING) / scale),
-                Err(Some(at)) => return Cover::High(frame.model(at)),
-                Err(None) => {}
+                Err(at) => high = high.or(at),
             }
         }
-        Cover::Open
+        high.map_or(Cover::Open, |at| Cover::High(frame.model(at)))
     }
 
     /// Returns the bound in the hierarchy's frame, or a point over which a face is too far away.
-    fn over(
-        &mut self,
-        triangle: Triangle,
-        start: u32,
-        [inset, most]: [f64; 2],
-    ) -> Result<f64, Option<DVec3>> {
-        let view = View::of(triangle, self.corners(start), inset).ok_or(None)?;
-        let start = self.walk_to_middle(start, &view);
-        let inside = view.see(self.corners(start)).over(&view).middle().ok_or(None)?;
+    fn over(&mut self, view: &View, start: u32, most: f64) -> Result<f64, Option<DVec3>> {
+        let start = self.walk_to_middle(start, view);
+        let inside = view.see(self.corners(start)).point_over(view, ROUNDING).ok_or(None)?;
         self.begin();
         self.find(start, false);
         self.open.push((start, false));
         let (mut height, mut covered) = (0f64, 0i32);
         while let Some((slot, is_turned)) = self.open.pop() {
             let seen = view.see(self.corners(slot));
-            if seen.height() > height {
-                let highest = seen.over(&view).highest();
+            // Below, the corners are close enough.
+            if seen.height() > height.max(ROUGH * most) {
+                let highest = seen.over(view).highest();
                 height = height.max(highest.z.abs());
                 if height + view.spent > most {
                     return Err(Some(view.at(highest)));
                 }
+            } else {
+                height = height.max(seen.height());
             }
             let cover = seen.cover(inside, ROUNDING).ok_or(None)?;
             covered += if is_turned { -cover } else { cover };
-            self.go_on((slot, is_turned), &seen, &view).ok_or(None)?;
+            self.go_on((slot, is_turned), &seen, view).ok_or(None)?;
         }
         if covered == 0 { Err(None) } else { Ok(height + view.spent) }
     }
@@ -154,7 +159,7 @@ impl<'s> Sheet<'s> {
         None
     }
 
-    fn corners(&self, slot: u32) -> Triangle {
-        self.surface.triangles[slot as usize]
+    fn corners(&self, slot: u32) -> &'s Triangle {
+        &self.surface.triangles[slot as usize]
     }
 }

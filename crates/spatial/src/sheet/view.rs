@@ -2,8 +2,11 @@
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
 
-/// Sine of an angle of a triangle below which its plane is not trusted.
-const THIN: f64 = 1e-3;
+use crate::Triangle;
+
+/// Sine of an angle of a triangle below which its plane is not trusted: coordinates that were rounded
+/// to 32 bits turn it.
+const THIN: f64 = 1e-6;
 
 /// Part of a triangle by which it is shrunk at most.
 const MOST_SHRUNK: f64 = 0.9;
@@ -33,10 +36,8 @@ pub(super) struct Piece {
 }
 
 impl View {
-    /// Looks at a triangle along its normal, or that of `other` if it is too thin; `None` if both
-    /// are. Shrinks it by at most `inset`.
-    pub(super) fn of(triangle: [DVec3; 3], other: [DVec3; 3], inset: f64) -> Option<Self> {
-        let direction = normal(triangle).or_else(|| normal(other))?;
+    /// Looks at a triangle along a direction of length one. Shrinks it by at most `inset`.
+    pub(super) fn along(direction: DVec3, triangle: &Triangle, inset: f64) -> Self {
         let (x, y) = direction.any_orthonormal_pair();
         let origin = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
         let reach = triangle.map(|at| at.distance_squared(origin));
@@ -58,7 +59,7 @@ impl View {
             let across = outwards * (to - from).perp().normalize_or_zero();
             (across, across.dot(from))
         });
-        Some(view)
+        view
     }
 
     /// Returns the point of the triangle's plane below a seen one.
@@ -69,7 +70,7 @@ impl View {
 
     /// Returns a triangle as it is seen.
     #[inline]
-    pub(super) fn see(&self, triangle: [DVec3; 3]) -> Seen {
+    pub(super) fn see(&self, triangle: &Triangle) -> Seen {
         let [x, y, z] = self.axes;
         Seen(triangle.map(|at| {
             let at = at - self.origin;
@@ -123,6 +124,15 @@ impl Seen {
             piece = piece.within(line);
         }
         piece
+    }
+
+    /// Returns a point of the inner triangle of a view that this triangle covers: the middle, if that
+    /// is not near its sides; `None` if there is none.
+    pub(super) fn point_over(&self, view: &View, near: f64) -> Option<DVec2> {
+        match self.cover(DVec2::ZERO, near) {
+            Some(1 | -1) => Some(DVec2::ZERO),
+            _ => self.over(view).middle(),
+        }
     }
 
     /// Returns 1 if the triangle covers a point, -1 if it is seen from behind, 0 if it does not
@@ -194,7 +204,7 @@ impl Piece {
 }
 
 /// Returns the unit normal of a triangle; `None` if it is too thin.
-fn normal([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
+pub(super) fn normal(&[a, b, c]: &Triangle) -> Option<DVec3> {
     let [ab, ac, bc] = [b - a, c - a, c - b];
     let across = ab.cross(ac);
     let longest = ab.length_squared().max(ac.length_squared()).max(bc.length_squared());
