@@ -16,6 +16,9 @@ use crate::prepared::PreparedSurface;
 /// Vertices that a task processes in sequence.
 const CHUNK: usize = 256;
 
+/// Divisions that take about as long as a search for faces that cover a part.
+const SPLITS_OF_SHEET: usize = 4;
+
 /// Options for [`faces_beyond`].
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -99,7 +102,7 @@ pub fn faces_beyond(
         let open = examined.par_iter_mut().filter(|face| face.state == State::Open);
         let sheet = || decision.sheet();
         let divide = |sheet: &mut Sheet<'_>, face| decision.divide(face, share, sheet);
-        left -= open.map_init(sheet, divide).sum::<usize>();
+        left = left.saturating_sub(open.map_init(sheet, divide).sum());
     }
     let beyond = |face: &Examined| (face.state != State::Within).then(|| decision.report(face));
     FacesBeyond {
@@ -228,6 +231,7 @@ impl<'d> Decision<'d> {
             self.look_at(middle, examined);
             for half in &mut halves {
                 if examined.state == State::Open && half.is_large(enough) {
+                    splits += SPLITS_OF_SHEET;
                     half.bound_by_sheet(middle.face, sheet, enough - self.point);
                 }
             }

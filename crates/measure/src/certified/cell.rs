@@ -78,10 +78,11 @@ impl Cell {
         middle
     }
 
-    /// Lowers the bound to that by the faces that lie over the triangle, given one of them, if that
-    /// is at most `most`.
-    pub(super) fn bound_by_sheet(&mut self, start: FaceId, sheet: &mut Sheet<'_>, most: f64) {
-        if let Cover::Within(bound) = sheet.cover(self.corners(), start, most) {
+    /// Lowers the bound to that by the faces that lie over the triangle, if that is at most `most`;
+    /// `near` is a face near it, as those at its corners are.
+    pub(super) fn bound_by_sheet(&mut self, near: FaceId, sheet: &mut Sheet<'_>, most: f64) {
+        let [a, b, c] = self.corners.map(|corner| corner.face);
+        if let Cover::Within(bound) = sheet.cover(self.corners(), &[near, a, b, c], most) {
             self.bound_by(bound);
         }
     }

@@ -10,6 +10,8 @@
 mod tests;
 mod view;
 
+use std::cmp::Ordering;
+
 use glam::DVec3;
 use meshlod_mesh::FaceId;
 
@@ -18,8 +20,9 @@ use crate::mates::Mates;
 use crate::{Bvh, Triangle};
 
 /// Parts of the bound that may go for shrinking the triangle, so that edges along its own do not
-/// cross it: little at first, then as much as coordinates that are rounded may need.
-const INSETS: [f64; 2] = [0.02, 0.5];
+/// cross it: little at first, then most of what the height of a face leaves.
+const LITTLE: f64 = 0.02;
+const MUCH: f64 = 0.9;
 
 /// Part of the bound up to which a face counts as far as its farthest corner, even one that is not
 /// over the triangle.
@@ -63,17 +66,26 @@ impl<'s> Sheet<'s> {
     }
 
     /// Looks for faces that cover a triangle and are nowhere farther from it than `most`, beginning
-    /// at a face near it. Lengths and positions are in model units.
+    /// at that of some faces near it which is most nearly parallel. Lengths and positions are in
+    /// model units.
     ///
     /// Cost: linear in the number of faces that lie over it.
-    pub fn cover(&mut self, triangle: [[f64; 3]; 3], start: FaceId, most: f64) -> Cover {
+    pub fn cover(&mut self, triangle: [[f64; 3]; 3], near: &[FaceId], most: f64) -> Cover {
         let frame = &self.surface.frame;
         let (local, scale) = (triangle.map(|at| frame.local(at)), frame.scale());
         let most = most * scale - ROUNDING;
-        let start = self.surface.slots[start.index()];
         // Along its normal, or that of the face: a thin triangle may have any.
-        let [own, other] = [normal(&local), normal(self.corners(start))];
-        let [little, much] = INSETS.map(|part| part * most);
+        let own = normal(&local);
+        let near = near.iter().map(|face| self.surface.slots[face.index()]);
+        let near = near.map(|slot| (slot, normal(self.corners(slot))));
+        let slope = |other: Option<DVec3>| Some(own?.dot(other?).abs());
+        let parallel =
+            near.max_by(|a, b| slope(a.1).partial_cmp(&slope(b.1)).unwrap_or(Ordering::Equal));
+        let Some((start, other)) = parallel else { return Cover::Open };
+        let from = self.corners(start)[0];
+        let height = |direction: DVec3| local.map(|at| direction.dot(at - from).abs());
+        let height = other.map(height).map_or(0.0, |[a, b, c]| a.max(b).max(c));
+        let (little, much) = (LITTLE * most, MUCH * (most - height).max(0.0));
         let mut high = None;
         for (direction, inset) in [(own, little), (own, much), (other, much)] {
             let Some(direction) = direction else { continue };
@@ -92,6 +104,7 @@ impl<'s> Sheet<'s> {
         self.begin();
         self.find(start, false);
         self.open.push((start, false));
+        let most = most - view.spent;
         let (mut height, mut covered) = (0f64, 0i32);
         while let Some((slot, is_turned)) = self.open.pop() {
             let seen = view.see(self.corners(slot));
@@ -99,7 +112,7 @@ impl<'s> Sheet<'s> {
             if seen.height() > height.max(ROUGH * most) {
                 let highest = seen.over(view).highest();
                 height = height.max(highest.z.abs());
-                if height + view.spent > most {
+                if height > most {
                     return Err(Some(view.at(highest)));
                 }
             } else {
