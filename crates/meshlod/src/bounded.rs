@@ -59,13 +59,17 @@ pub(crate) fn run_within<'m>(
         return Ok(report);
     }
     let Ok(input) = PreparedSurface::new(simplifier.input()) else { return Ok(report) };
-    if error < least_provable(&input) {
-        let proved = distance_at_most(&input, &simplifier.level(), error);
-        return Ok(with_proof(report, [error, proved], 0));
-    }
     let (mut rounds, mut runs, mut mends) = (0, 1, 0);
     let whole = simplifier.input();
     let mut comparison = Comparison::new(whole, &input, error);
+    if error < least_provable(&input) {
+        let level = simplifier.level();
+        let proved = match comparison.is_input(&level) {
+            true => 0.0,
+            false => distance_at_most(&input, &level, error),
+        };
+        return Ok(with_proof(report, [error, proved], 0));
+    }
     loop {
         let level = simplifier.level();
         let found = match comparison.with(&level) {

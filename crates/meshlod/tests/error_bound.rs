@@ -95,8 +95,15 @@ fn what_cannot_be_proved_is_told() {
         report.proof.map(|proof| proof.proved)
     };
     let diagonal = ball.bounds().diagonal();
-    assert_eq!([0.0, 0.5e-6 * diagonal].map(proof), [None, None], "too small to be proved");
-    assert_eq!(proof(2e-6 * diagonal), Some(2e-6 * diagonal));
+    assert_eq!(proof(0.0), Some(0.0), "nothing is contracted");
+    for error in [0.5e-6, 2e-6].map(|part| part * diagonal) {
+        assert_eq!(proof(error), Some(error));
+    }
+    let plates = samples::plates(800);
+    let (level, report) = simplify(&plates, Target::Error(1e-300), &Options::default()).unwrap();
+    let proved = report.proof.unwrap().proved;
+    assert_eq!(report.reached, proved <= 1e-300, "{proved} of {} faces", level.faces.len());
+    assert!(proved < 1e-12, "{proved}");
 }
 
 #[test]

@@ -16,8 +16,8 @@ use crate::Bvh;
 /// Size: 12 bytes a face.
 #[derive(Clone, Debug)]
 pub struct Mates {
-    /// Of each slot of the hierarchy, six times the slots beyond its sides, each with twice the side
-    /// there, plus one if that runs the same way. Faces close in space are close in memory.
+    /// Six times the slots of the hierarchy beyond the sides of each, plus twice the side there, plus
+    /// one if that runs the same way. Faces close in space are close in memory.
     of_slot: Vec<[u32; 3]>,
 }
 

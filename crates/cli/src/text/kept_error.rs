@@ -6,7 +6,7 @@ use meshlod::model::Verification;
 use crate::session::model_file;
 use crate::text::numbers::{count, percent, plural, value};
 
-/// Returns a warning if an error was asked for that is not kept, or that nobody knows to be.
+/// Returns a warning if an error was asked for that is not kept.
 pub fn warning(error: &KeptError) -> Option<String> {
     let (asked, part) = match error.asked {
         AskedError::Finest | AskedError::Faces => return None,
@@ -24,8 +24,6 @@ pub fn warning(error: &KeptError) -> Option<String> {
             ": vertices were moved by up to {}, which is more than it leaves",
             value(error.moved)
         )
-    } else if !error.is_whole {
-        " is not proved, as the file is truncated".into()
     } else {
         return None;
     };

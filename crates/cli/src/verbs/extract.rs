@@ -105,11 +105,12 @@ impl Extract {
             ));
         }
         self.query.warn_of_faces(&self.input, report.level_faces, "extracted", session);
+        let missed = kept_error::warning(&report.error);
         if let Some(moves) = report.rounded {
             let moved = format_args!("rounding to f32 moved coordinates by up to {}", value(moves));
-            session.warn(Failure::at(&self.output, moved));
-        }
-        if let Some(warning) = kept_error::warning(&report.error) {
+            let moved = Failure::at(&self.output, moved);
+            if missed.is_some() { session.miss(&moved) } else { session.warn(moved) }
+        } else if let Some(warning) = missed {
             session.miss(&Failure::at(&self.input, warning));
         }
     }

@@ -54,7 +54,7 @@ impl CertifiedOptions {
 /// Returns the least distance of other surfaces from this one, of about the same extent, that can be
 /// proved, in model units: some roundings of `f64`.
 pub fn least_provable(surface: &PreparedSurface<'_>) -> f64 {
-    4.0 * Rounding::of_points(surface.mesh, surface.mesh)
+    Rounding::between(surface.mesh, surface.mesh).least()
 }
 
 /// Maximum distance between two surfaces A and B in both directions, each between two bounds.

@@ -27,6 +27,11 @@ impl Rounding {
         Self { point: Self::of_points(from, to), closest: closest.reduce(|| 0.0, f64::max) }
     }
 
+    /// Returns the least distance that can be proved.
+    pub(super) fn least(&self) -> f64 {
+        4.0 * self.point
+    }
+
     /// Returns the largest error of a point on `from` and of its distance from one face of `to`.
     pub(super) fn of_points(from: &Mesh, to: &Mesh) -> f64 {
         ULPS * f64::EPSILON * largest_coordinate(from).max(largest_coordinate(to))

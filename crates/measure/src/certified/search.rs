@@ -51,7 +51,7 @@ impl<'s> Search<'s> {
             surface: &to.bvh,
             options,
             rounding,
-            floor: rounding.point.max(options.floor * from.diagonal.max(to.diagonal)),
+            floor: rounding.least().max(options.floor * from.diagonal.max(to.diagonal)),
             open: Vec::new(),
             farthest: used.reduce(Probe::farther).expect("a prepared surface has faces"),
             discarded: 0.0,

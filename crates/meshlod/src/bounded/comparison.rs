@@ -71,6 +71,14 @@ impl<'i, 'm> Comparison<'i, 'm> {
         self.last = None;
     }
 
+    /// Returns true if a level has exactly the faces of the input.
+    pub(super) fn is_input(&self, level: &Mesh) -> bool {
+        let corners: Vec<Corners> = level.faces.iter().map(|face| corners(level, face)).collect();
+        self.faces_of_one_only(&corners)
+            .iter()
+            .all(|faces| faces.as_ref().is_some_and(Vec::is_empty))
+    }
+
     /// Compares a level with the input, in both directions.
     pub(super) fn with(&mut self, level: &Mesh) -> Outcome {
         let Ok(surface) = PreparedSurface::new(level) else { return Outcome::NoArea };

@@ -1,4 +1,4 @@
-//! What the levels of a mesh do not have of it.
+//! Parts of a mesh that its levels leave out.
 
 use meshlod_io::Note;
 use meshlod_mesh::Mesh;

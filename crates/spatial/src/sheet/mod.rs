@@ -48,7 +48,7 @@ pub struct Sheet<'s> {
     open: Vec<(u32, bool)>,
 }
 
-/// What a [`Sheet`] found of a triangle.
+/// Distance of a triangle from a surface, as a [`Sheet`] found it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cover {
     /// No point is farther from the surface than this.

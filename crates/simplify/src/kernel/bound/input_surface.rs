@@ -19,7 +19,7 @@ pub(crate) struct InputSurface {
     rims: Vec<[u32; 2]>,
 }
 
-/// What the faces of the input that lie over a new face say of its distance.
+/// Distance of a new face from the input, by the faces that lie over it.
 pub(crate) enum Covered {
     /// No point of the face is farther from the input.
     Within(f32),

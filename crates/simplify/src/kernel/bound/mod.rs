@@ -12,7 +12,7 @@ use glam::Vec3;
 use meshlod_spatial::Sheet;
 
 use crate::kernel::bound::input_surface::{Covered, EdgeSamples, InputSurface};
-use crate::kernel::bound::probe::{Probe, Probed};
+use crate::kernel::bound::probe::Probe;
 use crate::kernel::collapse::deviation::FaceFan;
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::mesh::one_ring::{GHOST, VertexStore};
@@ -189,13 +189,14 @@ impl BoundPart<'_> {
     }
 
     /// Returns the largest distance of the new faces from the input; `None` if it is beyond the
-    /// bound. Where no faces of the input cover them, it is that of sampled points.
+    /// bound. Where no faces of the input cover them, it is that of sampled points, or counts as
+    /// beyond if the bound has not been held before.
     fn new_faces_to_input(&mut self, step: &BoundedStep<'_>) -> Option<f32> {
         let &BoundedStep { edge_ring, from, displacement, .. } = step;
         let apex = from + displacement;
         let mut near = None;
         let at_apex = self.input.distance(apex, &mut near, [0.0, self.limit])?;
-        let (Some(near), mut farthest) = (near, at_apex) else { return self.probe_new_faces(step) };
+        let (near, mut farthest) = (near?, at_apex);
         for i in (0..edge_ring.len).filter(|&i| edge_ring.is_face(i)) {
             let [to, next] = [i, i + 1].map(|i| from + edge_ring.relative(i));
             match self.input.covered(&mut self.sheet, [apex, to, next], near, self.limit) {
@@ -212,8 +213,7 @@ impl BoundPart<'_> {
     /// is beyond the bound.
     fn probe_new_faces(&self, step: &BoundedStep<'_>) -> Option<f32> {
         let &BoundedStep { edge_ring, from, displacement, .. } = step;
-        let is_thorough = self.limit < self.max_error;
-        let mut probe = Probe::new(self.input, self.limit, is_thorough);
+        let mut probe = Probe::new(self.input, self.limit);
         let apex = (from + displacement, probe.at(from + displacement)?);
         for i in 0..edge_ring.len {
             let to = from + edge_ring.relative(i);
@@ -227,9 +227,6 @@ impl BoundPart<'_> {
             if edge_ring.is_face(i) {
                 let next = from + edge_ring.relative(i + 1);
                 probe.along([apex, (to.midpoint(next), at_end)])?;
-                if is_thorough {
-                    probe_outer(&mut probe, apex, [to, next])?;
-                }
             }
         }
         Some(probe.farthest())
@@ -298,21 +295,4 @@ impl BoundPart<'_> {
     fn slot(&self, v: u32) -> usize {
         (v - self.base) as usize
     }
-}
-
-/// Measures distances along the outer edge of a new face, and along rays to its quarters; `None` if
-/// one is beyond the bound.
-fn probe_outer(probe: &mut Probe<'_>, apex: Probed, [from, to]: [Vec3; 2]) -> Option<()> {
-    let mut before = (from, probe.at(from)?);
-    for quarter in [0.25, 0.5, 0.75] {
-        let place = from.lerp(to, quarter);
-        let probed = (place, probe.at(place)?);
-        probe.along([before, probed])?;
-        if quarter != 0.5 {
-            probe.along([apex, probed])?;
-        }
-        before = probed;
-    }
-    let last = (to, probe.at(to)?);
-    probe.along([before, last])
 }

@@ -5,8 +5,8 @@ use meshlod_mesh::FaceId;
 
 use crate::kernel::bound::input_surface::InputSurface;
 
-/// Largest number of times that a segment is halved, and where the bound has not been held before.
-const HALVINGS: [u32; 2] = [4, 8];
+/// Largest number of times that a segment is halved.
+const HALVINGS: u32 = 4;
 
 /// A segment is halved while a point on it may exceed the bound by more than this factor.
 const OVER: f32 = 1.1;
@@ -20,8 +20,6 @@ const CALM: f32 = 0.4;
 pub(crate) struct Probe<'v> {
     input: &'v InputSurface,
     max_error: f32,
-    /// True where the bound has not been held before.
-    is_thorough: bool,
     near: Option<FaceId>,
     farthest: f32,
 }
@@ -30,10 +28,9 @@ pub(crate) struct Probe<'v> {
 pub(crate) type Probed = (Vec3, f32);
 
 impl<'v> Probe<'v> {
-    /// Starts measuring distances with this error bound, in the frame's units; thoroughly, if it
-    /// has not been held before.
-    pub(crate) fn new(input: &'v InputSurface, max_error: f32, is_thorough: bool) -> Self {
-        Self { input, max_error, is_thorough, near: None, farthest: 0.0 }
+    /// Starts measuring distances with this error bound, in the frame's units.
+    pub(crate) fn new(input: &'v InputSurface, max_error: f32) -> Self {
+        Self { input, max_error, near: None, farthest: 0.0 }
     }
 
     /// Returns the largest distance measured so far.
@@ -44,8 +41,7 @@ impl<'v> Probe<'v> {
     /// Returns an upper bound on the distance of a position from the input; `None` if it is beyond
     /// the error bound.
     pub(crate) fn at(&mut self, place: Vec3) -> Option<f32> {
-        let enough = if self.is_thorough { 0.0 } else { CALM * self.max_error };
-        let limits = [enough, self.max_error];
+        let limits = [CALM * self.max_error, self.max_error];
         let apart = self.input.distance(place, &mut self.near, limits)?;
         self.farthest = self.farthest.max(apart);
         Some(apart)
@@ -53,20 +49,19 @@ impl<'v> Probe<'v> {
 
     /// Measures distances at points between two positions; `None` if one is beyond the error bound.
     pub(crate) fn along(&mut self, ends: [Probed; 2]) -> Option<()> {
-        self.halve(ends, HALVINGS[usize::from(self.is_thorough)])
+        self.halve(ends, HALVINGS)
     }
 
     fn halve(&mut self, [a, b]: [Probed; 2], times: u32) -> Option<()> {
         // The distance is 1-Lipschitz.
         let highest = (a.1 + b.1 + a.0.distance(b.0)) / 2.0;
-        let over = if self.is_thorough { 1.0 } else { OVER };
-        if times == 0 || highest <= over * self.max_error {
+        if times == 0 || highest <= OVER * self.max_error {
             return Some(());
         }
         let place = a.0.midpoint(b.0);
         let middle = (place, self.at(place)?);
-        let is_calm = !self.is_thorough && a.1.max(b.1).max(middle.1) <= CALM * self.max_error;
-        if is_calm && times < HALVINGS[0] {
+        let is_calm = a.1.max(b.1).max(middle.1) <= CALM * self.max_error;
+        if is_calm && times < HALVINGS {
             return Some(());
         }
         self.halve([a, middle], times - 1)?;
