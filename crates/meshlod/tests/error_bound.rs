@@ -99,11 +99,11 @@ fn what_cannot_be_proved_is_told() {
     for error in [0.5e-6, 2e-6].map(|part| part * diagonal) {
         assert_eq!(proof(error), Some(error));
     }
-    let plates = samples::plates(800);
+    // Places are rounded to 32 bits on the way.
+    let plates = samples::plates(200);
     let (level, report) = simplify(&plates, Target::Error(1e-300), &Options::default()).unwrap();
-    let proved = report.proof.unwrap().proved;
-    assert_eq!(report.reached, proved <= 1e-300, "{proved} of {} faces", level.faces.len());
-    assert!(proved < 1e-12, "{proved}");
+    assert!(level.faces.len() < plates.faces.len() && !report.reached);
+    assert!(report.proof.unwrap().proved > 0.0);
 }
 
 #[test]

@@ -29,7 +29,7 @@ impl Rounding {
 
     /// Returns the least distance that can be proved.
     pub(super) fn least(&self) -> f64 {
-        4.0 * self.point
+        16.0 * self.point
     }
 
     /// Returns the largest error of a point on `from` and of its distance from one face of `to`.
