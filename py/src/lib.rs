@@ -5,6 +5,13 @@
 //! GIL, while the calling thread looks after Ctrl-C and progress. Copies of whole meshes are made
 //! without the GIL too, but for arrays that come in, which others may change, and views of meshes
 //! with seams, which are made once.
+//!
+//! | files, in reading order | hold |
+//! |---|---|
+//! | `arrays`, `numpy_views`, `mesh`, `scene` | what Python has |
+//! | `work`, `lent_out`, `errors` | how work is done |
+//! | `files`, `simplify`, `verbs`, `model`, `query`, `cut` | what is done |
+//! | `report`, `command` | answers, and the command |
 
 mod arrays;
 mod command;

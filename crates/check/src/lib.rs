@@ -4,6 +4,14 @@
 //! [`check`](check()) reports [`Finding`]s by kind, [`repair`](repair()) mends what can be mended
 //! safely, [`imprint`](imprint()) and [`fuse`](fuse()) treat components that pass through each
 //! other, and [`locks`](locks()) holds vertices at contacts and boundaries.
+//!
+//! | files, in reading order | hold |
+//! |---|---|
+//! | `finding`, `place`, `kinds`, `summary` | a finding, and counts of them |
+//! | `check`, `zero_area`, `unique_positions`, `intersect` | the search for defects |
+//! | `objects`, `object_octree`, `box_blocks` | objects, and where they may meet |
+//! | `repair`, `locks` | repair, and vertices to keep |
+//! | `imprint`, `fuse` | components that pass through each other |
 #![forbid(unsafe_code)]
 
 mod box_blocks;

@@ -1,4 +1,12 @@
 //! Repair: removes defects that can be removed safely, step by step.
+//!
+//! | files, in reading order | hold |
+//! |---|---|
+//! | `edit`, `report` | a mesh being repaired, and what was done |
+//! | `invalid`, `duplicate`, `degenerate`, `attributes` | what is dropped |
+//! | `split`, `pair_sides`, `orient`, `reverse` | non-manifold edges, and orientation |
+//! | `stitch`, `holes`, `triangulate`, `intersecting` | borders and holes |
+//! | `outward` | closed shells |
 
 mod attributes;
 mod degenerate;

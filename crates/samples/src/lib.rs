@@ -8,6 +8,13 @@
 //! ulp between platforms. Faces do not differ, except in the gyroid, where a lattice point within
 //! an ulp of the surface could fall on the other side.
 //!
+//! | files, in reading order | hold |
+//! |---|---|
+//! | `sphere`, `torus`, `knot`, `gyroid`, `tetrahedra` | smooth shapes |
+//! | `plate`, `blocks`, `prism` | hard ones |
+//! | `terrain`, `fish` | natural ones |
+//! | `grid`, `random` | what they share |
+//!
 //! ```
 //! let mesh = meshlod_samples::by_name("knot", Some(20_000)).expect("a knot is known");
 //! assert!(mesh.faces.len().abs_diff(20_000) < 200);

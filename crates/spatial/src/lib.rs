@@ -1,8 +1,16 @@
-//! Spatial search over triangle meshes: closest points by a bounding volume hierarchy ([`Bvh`]), an
-//! octree of triangles ([`Octree`]), faces that cover a triangle ([`Sheet`]) and sorting along a space-filling curve ([`curve_order`]).
+//! Spatial search over triangle meshes: closest points by a bounding volume hierarchy ([`Bvh`]),
+//! faces that cover a triangle ([`Sheet`]), an octree of triangles ([`Octree`]) and sorting along a
+//! space-filling curve ([`curve_order`]).
 //!
 //! The hierarchy's boxes are compact and rounded outwards. Answers are computed from the triangles
 //! in `f64` and do not depend on the tree, the hint or the number of threads.
+//!
+//! | files, in reading order | hold |
+//! |---|---|
+//! | `triangle`, `box3`, `sum` | geometry |
+//! | `bvh`, `build`, `closest`, `within_box`, `labelled` | the hierarchy and its queries |
+//! | `mates`, `sheet` | faces over a triangle |
+//! | `octree`, `curve` | other orders |
 //!
 //! ```
 //! use meshlod_mesh::{FaceId, Mesh, VertexId};

@@ -5,6 +5,13 @@
 //! simplifies it by one method and measures a [`Level`](chain::Level) at every size; a
 //! [`SubjectRenderer`](renderer::SubjectRenderer) draws the pictures. [`columns`] is the table of
 //! figures that pages, terminal and marks for the best share. The rest is markup.
+//!
+//! | files, in reading order | hold |
+//! |---|---|
+//! | `subject`, `chain`, `level_figures` | a mesh, its levels and their figures |
+//! | `columns`, `figures`, `facts`, `counts`, `refine` | what the figures say |
+//! | `renderer`, `picture_row`, `heat`, `key` | pictures |
+//! | `document`, `table`, `chart`, `inline_picture`, `style` | markup |
 
 pub mod chain;
 pub mod chart;

@@ -1,4 +1,13 @@
 //! Commands of the program, one per file: arguments, work, answer.
+//!
+//! | files, in reading order | hold |
+//! |---|---|
+//! | `simplify`, `lods` | levels |
+//! | `build`, `extract` | all levels in one file |
+//! | `strip`, `compress`, `decompress`, `convert` | other forms |
+//! | `check`, `repair`, `measure`, `info` | what a mesh is |
+//! | `render`, `view`, `flock` | pictures |
+//! | `batch`, `run`, `sample` | many files, recipes, samples |
 
 pub mod batch;
 pub mod build;

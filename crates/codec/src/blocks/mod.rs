@@ -1,5 +1,11 @@
 //! Vertex positions in blocks of 32, each block with a frame and cell sizes that follow the
 //! surface.
+//!
+//! | files, in reading order | hold |
+//! |---|---|
+//! | `frame`, `layout`, `header`, `stored` | a block, and its bits |
+//! | `fit`, `assign_cells`, `move_cost`, `refine` | the choice of cells |
+//! | `original`, `deviation`, `reference`, `report` | what it costs |
 
 mod assign_cells;
 mod deviation;

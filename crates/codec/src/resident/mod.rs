@@ -1,5 +1,12 @@
 //! Meshes that stay compressed in memory: positions by one of three schemes, faces in patches or
 //! strips, attributes in the same rows.
+//!
+//! | files, in reading order | hold |
+//! |---|---|
+//! | `stored`, `file` | the mesh as it is kept |
+//! | `positions`, `faces`, `strips`, `face_labels` | its parts |
+//! | `nodes`, `wedge_vertices`, `weld_parts` | corners and their vertices |
+//! | `target`, `encode`, `decode`, `error` | there and back |
 
 mod decode;
 mod encode;

@@ -1,4 +1,12 @@
 //! A cut that follows a sequence of queries, refined and coarsened only where the query has moved.
+//!
+//! | files, in reading order | hold |
+//! |---|---|
+//! | `triangles`, `each_triangle` | the triangles |
+//! | `split_stars`, `split_wedges`, `coarse_wedges` | what an update changes |
+//! | `schedule`, `inspect`, `refine`, `force`, `meter` | following a query |
+//! | `locate` | places |
+//! | `certificate`, `to_forest`, `unpack_wedges` | proofs, and the way back |
 
 mod certificate;
 mod coarse_wedges;

@@ -14,6 +14,13 @@
 //! | 4 | level and wings |
 //!
 //! The [compact form](Implicit::compacted) takes 12 bytes for positions and 10 for the rest.
+//!
+//! | files, in reading order | hold |
+//! |---|---|
+//! | `order`, `updates`, `splits`, `positions`, `wedges` | what is stored |
+//! | `from_forest`, `assemble`, `compact`, `with_normals` | how it is made |
+//! | `dependencies`, `saturated` | what an update needs |
+//! | `faces`, `extractor`, `budget` | single meshes |
 
 mod assemble;
 mod budget;

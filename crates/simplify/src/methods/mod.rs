@@ -1,6 +1,13 @@
 //! The methods as sets of policies, each started from its own file.
 //!
 //! What else the code asks about a method is in its row of the table of [`Method`].
+//!
+//! | files, in reading order | hold |
+//! |---|---|
+//! | `lindstrom_turk`, `qem`, `qem_variants`, `spr`, `pm`, `kim_jang` | methods that contract edges |
+//! | `lee_jang`, `wu`, `face_order`, `creases` | methods that contract faces |
+//! | `quadric`, `attribute_quadrics`, `attribute_metric`, `channels`, `slopes` | costs |
+//! | `volume`, `fan`, `samples` | places and distances |
 
 mod attribute_metric;
 mod attribute_quadrics;

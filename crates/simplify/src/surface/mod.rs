@@ -3,6 +3,13 @@
 //! The star of a vertex, the faces around it, is a contiguous range of one shared array, so that
 //! its faces load side by side. Position, star and flags of a vertex form one record because they
 //! are needed together. The surface need not be manifold.
+//!
+//! | files, in reading order | hold |
+//! |---|---|
+//! | `neighbourhood`, `contracted`, `candidate_states` | a candidate |
+//! | `rims`, `feature_edges` | where the surface ends or changes |
+//! | `wedges`, `charts`, `nearest`, `interpolate` | attributes |
+//! | `ties`, `tied`, `level` | ties, and the result |
 
 pub(crate) mod candidate_states;
 pub(crate) mod charts;

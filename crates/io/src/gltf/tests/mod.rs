@@ -1,4 +1,11 @@
 //! Reader and writers together, on documents built here and on the shared meshes.
+//!
+//! | files, in reading order | hold |
+//! |---|---|
+//! | `shared`, `carried`, `instances` | what stays |
+//! | `broken`, `lacking`, `mutated` | bad documents |
+//! | `packed`, `draco`, `small`, `posed`, `animated` | compressed ones |
+//! | `animations`, `skeleton`, `levels` | poses and levels |
 
 mod animated;
 mod animations;

@@ -5,6 +5,13 @@
 //! nodes, materials, skins, animations and images. Of that mesh the levels are made, or it is
 //! compressed. [`ModelScene`] takes a level, or the decoded mesh, apart again. docs/formats/mlod.md
 //! specifies the bytes.
+//!
+//! | files, in reading order | hold |
+//! |---|---|
+//! | `place`, `placement`, `slots`, `split`, `selector` | a scene on its way in |
+//! | `head`, `resources`, `parts`, `image_versions`, `weights` | what is stored of it |
+//! | `restore`, `take_back`, `layout` | a scene on its way out |
+//! | `instance_query`, `counts`, `limits` | questions about it |
 
 mod counts;
 mod head;
