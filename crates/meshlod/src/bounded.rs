@@ -44,20 +44,20 @@ const FACTOR: [f64; 2] = [0.5, 0.93];
 ///
 /// What is proved is in the report; nothing is if the mesh has no area, if the error is infinite, or
 /// if the observer wants to see contractions, which then cannot be taken back. An error below the
-/// [rounding of `f64`](least_provable) is not held but for what it comes to. `again` is the mesh with its option `vanish_below`, if the run may be
-/// repeated.
+/// [rounding of `f64`](least_provable) cannot be held unless nothing changes; the report then says
+/// what is proved. `again` is the mesh with its option `vanish_below`, if the run may be repeated.
 pub(crate) fn run_within<'m>(
     again: Option<(&'m ConditionedMesh<'_>, Option<f64>)>,
     simplifier: &mut Simplifier<'m>,
     error: f64,
     observer: &mut dyn Observe,
 ) -> Result<Report, SimplifyError> {
-    // What a face may exceed when it is compared is kept free.
+    if observer.needs_surface() || error == f64::INFINITY {
+        return simplifier.run(Target::Error(error), observer);
+    }
+    // The slack by which a face may exceed the limit of a comparison is kept free.
     let mut bound = error / (1.0 + SLACK);
     let mut report = simplifier.run(Target::Error(bound), observer)?;
-    if observer.needs_surface() || error == f64::INFINITY {
-        return Ok(report);
-    }
     let Ok(input) = PreparedSurface::new(simplifier.input()) else { return Ok(report) };
     let (mut rounds, mut runs, mut mends) = (0, 1, 0);
     let whole = simplifier.input();

@@ -23,8 +23,8 @@ impl Random {
     }
 }
 
-/// Returns a mesh turned about the origin, in any direction alike, so that no plane of it is on an
-/// axis any more.
+/// Returns a mesh rotated about the origin by a uniformly random rotation, so that no plane of it is
+/// at right angles to an axis any more.
 ///
 /// # References
 /// [Sho92], Uniform Random Rotations.

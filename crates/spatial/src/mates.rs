@@ -32,17 +32,31 @@ pub(crate) struct Mate {
 /// Stands for no mate.
 const NONE: u32 = u32::MAX;
 
+/// Most faces whose sides can be told by 32 bits; more have no mates.
+const MOST_FACES: usize = u32::MAX as usize / 6 - 1;
+
+/// Most faces along one edge of which two may be mates.
+const MOST_SHARED: usize = 64;
+
 impl Mates {
     /// Finds the mates of the faces of a mesh, given the hierarchy over it.
     ///
     /// Cost: linear, but for vertices with very many faces.
     pub fn new(mesh: &Mesh, surface: &Bvh) -> Self {
+        if mesh.faces.len() > MOST_FACES {
+            return Self { of_slot: vec![[NONE; 3]; mesh.faces.len()] };
+        }
         let sides = 3 * mesh.faces.len() as u32;
         let mut rings = Rings { mesh, next: (0..sides).collect() };
         let all: Vec<u32> = (0..sides).filter(|&side| !has_one_vertex_twice(mesh, side)).collect();
         rings.link(&all, |v| v);
         let is_free = |rings: &Rings<'_>, side: u32| rings.next[side as usize] == side;
-        let free: Vec<u32> = all.into_iter().filter(|&side| is_free(&rings, side)).collect();
+        let has_length = |side: u32| {
+            let [from, to] = ends(mesh, side).map(|v| bits(mesh, v));
+            from != to
+        };
+        let is_free = |&side: &u32| is_free(&rings, side) && has_length(side);
+        let free: Vec<u32> = all.into_iter().filter(is_free).collect();
         if !free.is_empty() {
             let heirs = heirs(mesh, &free);
             rings.link(&free, |v| heirs[&bits(mesh, v)]);
@@ -108,16 +122,22 @@ impl Rings<'_> {
         pair.map_or(NONE, |mate| 2 * mate + u32::from(self.along(side).dot(self.along(mate)) > 0.0))
     }
 
-    /// Returns the side of the face that goes on most straightly from that of `side`.
+    /// Returns the side of the face that goes on most straightly from that of `side`; of several, the
+    /// one of the face with the lowest id.
     fn straightest(&self, side: u32) -> Option<u32> {
         let first = self.next[side as usize];
         if first == side || self.next[first as usize] == side {
             return (first != side).then_some(first);
         }
+        // Single precision, in which a copy of a face is as straight as the face.
         let own = self.inwards(side);
         let ring = std::iter::successors(Some(first), |&at| Some(self.next[at as usize]));
-        let bend = |&at: &u32| own.dot(self.inwards(at));
-        ring.take_while(|&at| at != side).min_by(|a, b| bend(a).total_cmp(&bend(b)))
+        let bend = |&at: &u32| own.dot(self.inwards(at)) as f32;
+        let others = ring.take_while(|&at| at != side);
+        if others.clone().nth(MOST_SHARED).is_some() {
+            return None;
+        }
+        others.min_by(|a, b| bend(a).total_cmp(&bend(b)).then(a.cmp(b)))
     }
 
     fn along(&self, side: u32) -> DVec3 {

@@ -21,7 +21,7 @@ pub fn warning(error: &KeptError) -> Option<String> {
         )
     } else if error.is_kept() == Some(false) {
         format!(
-            ": vertices were moved by up to {}, which is more than it leaves",
+            ": vertices were moved by up to {}, which is more than that leaves room for",
             value(error.moved)
         )
     } else {

@@ -106,11 +106,16 @@ impl Extract {
         }
         self.query.warn_of_faces(&self.input, report.level_faces, "extracted", session);
         let missed = kept_error::warning(&report.error);
+        let is_below = report.error.below_rounding().is_some();
         if let Some(moves) = report.rounded {
             let moved = format_args!("rounding to f32 moved coordinates by up to {}", value(moves));
             let moved = Failure::at(&self.output, moved);
-            if missed.is_some() { session.miss(&moved) } else { session.warn(moved) }
-        } else if let Some(warning) = missed {
+            if missed.is_some() && !is_below {
+                return session.miss(&moved);
+            }
+            session.warn(moved);
+        }
+        if let Some(warning) = missed {
             session.miss(&Failure::at(&self.input, warning));
         }
     }

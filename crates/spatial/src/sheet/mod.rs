@@ -19,8 +19,8 @@ use self::view::{Seen, View, normal};
 use crate::mates::Mates;
 use crate::{Bvh, Triangle};
 
-/// Parts of the bound that may go for shrinking the triangle, so that edges along its own do not
-/// cross it: little at first, then most of what the height of a face leaves.
+/// Fractions of the bound that may be spent on shrinking the triangle, so that edges running along
+/// its own sides do not cross it: little at first, then most of what the height of a face leaves.
 const LITTLE: f64 = 0.02;
 const MUCH: f64 = 0.9;
 
@@ -55,7 +55,7 @@ pub enum Cover {
     Within(f64),
     /// Over this point, a face is farther away than is allowed. Another may be near.
     High([f64; 3]),
-    /// The faces around do not cover it.
+    /// No faces were found that cover it.
     Open,
 }
 
@@ -74,6 +74,9 @@ impl<'s> Sheet<'s> {
         let frame = &self.surface.frame;
         let (local, scale) = (triangle.map(|at| frame.local(at)), frame.scale());
         let most = most * scale - ROUNDING;
+        if most.is_nan() || most <= 0.0 {
+            return Cover::Open;
+        }
         // Along its normal, or that of the face: a thin triangle may have any.
         let own = normal(&local);
         let near = near.iter().map(|face| self.surface.slots[face.index()]);
@@ -91,7 +94,8 @@ impl<'s> Sheet<'s> {
             let Some(direction) = direction else { continue };
             match self.over(&View::along(direction, &local, inset), start, most) {
                 Ok(height) => return Cover::Within((height + ROUNDING) / scale),
-                Err(at) => high = high.or(at),
+                // Along another direction than its own, a point is not one of the triangle.
+                Err(at) => high = high.or(at.filter(|_| Some(direction) == own)),
             }
         }
         high.map_or(Cover::Open, |at| Cover::High(frame.model(at)))
@@ -99,6 +103,9 @@ impl<'s> Sheet<'s> {
 
     /// Returns the bound in the hierarchy's frame, or a point over which a face is too far away.
     fn over(&mut self, view: &View, start: u32, most: f64) -> Result<f64, Option<DVec3>> {
+        if view.spent >= most {
+            return Err(None);
+        }
         let start = self.walk_to_middle(start, view);
         let inside = view.see(self.corners(start)).point_over(view, ROUNDING).ok_or(None)?;
         self.begin();
@@ -110,7 +117,7 @@ impl<'s> Sheet<'s> {
             let seen = view.see(self.corners(slot));
             // Below, the corners are close enough.
             if seen.height() > height.max(ROUGH * most) {
-                let highest = seen.over(view).highest();
+                let highest = seen.over(view).ok_or(None)?.highest();
                 height = height.max(highest.z.abs());
                 if height > most {
                     return Err(Some(view.at(highest)));
@@ -125,7 +132,7 @@ impl<'s> Sheet<'s> {
         if covered == 0 { Err(None) } else { Ok(height + view.spent) }
     }
 
-    /// Goes from face to face towards the one over the middle of the triangle, as far as it comes.
+    /// Goes from face to face towards the one over the middle of the triangle, as far as it gets.
     fn walk_to_middle(&self, mut slot: u32, view: &View) -> u32 {
         for _ in 0..MOST_STEPS {
             let Some(side) = view.see(self.corners(slot)).side_towards_middle() else { break };
@@ -136,7 +143,7 @@ impl<'s> Sheet<'s> {
     }
 
     /// Adds the faces across those sides of a face that cross the triangle; `None` if one is a free
-    /// edge, or if the faces around have no two sides.
+    /// edge, or if the faces are not orientable.
     fn go_on(&mut self, (slot, is_turned): (u32, bool), seen: &Seen, view: &View) -> Option<()> {
         let is_crossed = view.crossed_sides(seen, ROUNDING);
         for side in (0..3).filter(|&side| is_crossed[side]) {

@@ -112,3 +112,25 @@ fn beside_an_edge_a_face_is_covered_by_its_own_side() {
     assert!(bound(side, &by(1e-10), 1e-9).is_some());
     assert_eq!(bound(side, &by(2e-9), 1e-9), None);
 }
+
+#[test]
+fn a_surface_that_is_there_twice_covers_as_one() {
+    let mut twice = plane(9);
+    let behind: Vec<_> = twice.faces.iter().map(|&[a, b, c]| [c, b, a]).collect();
+    twice.faces.extend(behind);
+    assert!(bound(over(0.0), &twice, 0.01).is_some());
+}
+
+#[test]
+fn a_hundred_thousand_faces_at_one_point_are_no_trouble() {
+    let mut mesh = plane(9);
+    let first = mesh.positions.len();
+    mesh.positions.extend(std::iter::repeat_n([0.5; 3], 300_000));
+    let face = |i: usize| [0, 1, 2].map(|k| VertexId::new(first + 3 * i + k));
+    mesh.faces.extend((0..100_000).map(face));
+    assert!(bound(over(0.0), &mesh, 0.01).is_some());
+    assert!(bound([[0.2, 0.2, 0.0]; 3], &mesh, 0.01).is_some());
+    for most in [0.0, -1.0, f64::NAN] {
+        assert_eq!(bound(over(0.0), &mesh, most), None);
+    }
+}

@@ -42,7 +42,7 @@ impl View {
         let origin = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
         let reach = triangle.map(|at| at.distance_squared(origin));
         let reach = reach.into_iter().fold(0.0, f64::max).sqrt();
-        let part = (inset / reach).clamp(0.0, MOST_SHRUNK);
+        let part = if reach > 0.0 { (inset / reach).clamp(0.0, MOST_SHRUNK) } else { 0.0 };
         let mut view = Self {
             origin,
             axes: [x, y, direction],
@@ -116,14 +116,15 @@ impl Seen {
         (left[least] < 0.0).then_some(least)
     }
 
-    /// Returns the part over the inner triangle of a view.
-    pub(super) fn over(&self, view: &View) -> Piece {
+    /// Returns the part over the inner triangle of a view; `None` if rounding gives it more corners
+    /// than there can be.
+    pub(super) fn over(&self, view: &View) -> Option<Piece> {
         let mut piece = Piece { corners: [DVec3::ZERO; 6], count: 3 };
         piece.corners[..3].copy_from_slice(&self.0);
         for line in view.lines {
-            piece = piece.within(line);
+            piece = piece.within(line)?;
         }
-        piece
+        Some(piece)
     }
 
     /// Returns a point of the inner triangle of a view that this triangle covers: the middle, if that
@@ -131,7 +132,7 @@ impl Seen {
     pub(super) fn point_over(&self, view: &View, near: f64) -> Option<DVec2> {
         match self.cover(DVec2::ZERO, near) {
             Some(1 | -1) => Some(DVec2::ZERO),
-            _ => self.over(view).middle(),
+            _ => self.over(view)?.middle(),
         }
     }
 
@@ -179,27 +180,26 @@ impl Piece {
     }
 
     /// Returns the part on the inner side of a line.
-    fn within(&self, (across, distance): (DVec2, f64)) -> Self {
+    fn within(&self, (across, distance): (DVec2, f64)) -> Option<Self> {
         let outside = |at: &DVec3| across.dot(at.xy()) - distance;
         let mut inside = Self { corners: [DVec3::ZERO; 6], count: 0 };
         let mut add = |at: DVec3| {
-            if let Some(slot) = inside.corners.get_mut(inside.count) {
-                *slot = at;
-                inside.count += 1;
-            }
+            *inside.corners.get_mut(inside.count)? = at;
+            inside.count += 1;
+            Some(())
         };
         let corners = self.corners();
         for (i, a) in corners.iter().enumerate() {
             let b = &corners[(i + 1) % corners.len()];
             let [of_a, of_b] = [outside(a), outside(b)];
             if of_a <= 0.0 {
-                add(*a);
+                add(*a)?;
             }
             if (of_a > 0.0) != (of_b > 0.0) {
-                add(a.lerp(*b, of_a / (of_a - of_b)));
+                add(a.lerp(*b, of_a / (of_a - of_b)))?;
             }
         }
-        inside
+        Some(inside)
     }
 }
 

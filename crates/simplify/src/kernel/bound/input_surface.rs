@@ -25,7 +25,7 @@ pub(crate) enum Covered {
     Within(f32),
     /// A point is beyond the bound.
     Beyond,
-    /// Nothing: they do not cover it, or not along its normal.
+    /// Undecided: they do not cover it, or are not near along its normal.
     Unknown,
 }
 

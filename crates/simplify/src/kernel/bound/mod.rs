@@ -196,17 +196,18 @@ impl BoundPart<'_> {
         let apex = from + displacement;
         let mut near = None;
         let at_apex = self.input.distance(apex, &mut near, [0.0, self.limit])?;
-        let (near, mut farthest) = (near?, at_apex);
+        let (near, mut farthest, mut is_unknown) = (near?, at_apex, false);
         for i in (0..edge_ring.len).filter(|&i| edge_ring.is_face(i)) {
             let [to, next] = [i, i + 1].map(|i| from + edge_ring.relative(i));
             match self.input.covered(&mut self.sheet, [apex, to, next], near, self.limit) {
                 Covered::Within(bound) => farthest = farthest.max(bound),
                 Covered::Beyond => return None,
                 Covered::Unknown if self.limit < self.max_error => return None,
-                Covered::Unknown => return self.probe_new_faces(step),
+                Covered::Unknown => is_unknown = true,
             }
         }
-        Some(farthest)
+        let probed = if is_unknown { self.probe_new_faces(step)? } else { 0.0 };
+        Some(farthest.max(probed))
     }
 
     /// Returns the largest distance of sampled points of the new faces from the input; `None` if it
