@@ -3,7 +3,8 @@
 //! The estimate of how far the surface has moved adds squares, which misses steps that all go the
 //! same way. So the distances travelled are also added as lengths. Where their sum comes near the
 //! bound, the surface is compared with the input: the input vertices merged into the vertices
-//! around with the new faces, and points of the new faces with the input.
+//! around with the new faces, and the new faces with the faces of the input that lie over them, or
+//! at points where there are none.
 
 pub(crate) mod input_surface;
 pub(crate) mod probe;
