@@ -15,7 +15,7 @@ use std::cmp::Ordering;
 use glam::DVec3;
 use meshlod_mesh::FaceId;
 
-use self::view::{Seen, View, normal};
+use self::view::{View, normal};
 use crate::mates::Mates;
 use crate::{Bvh, Triangle};
 
@@ -92,7 +92,7 @@ impl<'s> Sheet<'s> {
         let mut high = None;
         for (direction, inset) in [(own, little), (own, much), (other, much)] {
             let Some(direction) = direction else { continue };
-            match self.over(&View::along(direction, &local, inset), start, most) {
+            match self.over(&View::along(direction, &local, [inset, ROUNDING]), start, most) {
                 Ok(height) => return Cover::Within((height + ROUNDING) / scale),
                 // Along another direction than its own, a point is not one of the triangle.
                 Err(at) => high = high.or(at.filter(|_| Some(direction) == own)),
@@ -107,7 +107,6 @@ impl<'s> Sheet<'s> {
             return Err(None);
         }
         let start = self.walk_to_middle(start, view);
-        let inside = view.see(self.corners(start)).point_over(view, ROUNDING).ok_or(None)?;
         self.begin();
         self.find(start, false);
         self.open.push((start, false));
@@ -115,9 +114,10 @@ impl<'s> Sheet<'s> {
         let (mut height, mut covered) = (0f64, 0i32);
         while let Some((slot, is_turned)) = self.open.pop() {
             let seen = view.see(self.corners(slot));
+            let overlap = view.compare(&seen);
             // Below, the corners are close enough.
             if seen.height() > height.max(ROUGH * most) {
-                let highest = seen.over(view).ok_or(None)?.highest();
+                let highest = overlap.highest();
                 height = height.max(highest.z.abs());
                 if height > most {
                     return Err(Some(view.at(highest)));
@@ -125,9 +125,9 @@ impl<'s> Sheet<'s> {
             } else {
                 height = height.max(seen.height());
             }
-            let cover = seen.cover(inside, ROUNDING).ok_or(None)?;
+            let cover = overlap.cover().ok_or(None)?;
             covered += if is_turned { -cover } else { cover };
-            self.go_on((slot, is_turned), &seen, view).ok_or(None)?;
+            self.go_on((slot, is_turned), overlap.crossed_sides()).ok_or(None)?;
         }
         if covered == 0 { Err(None) } else { Ok(height + view.spent) }
     }
@@ -144,8 +144,7 @@ impl<'s> Sheet<'s> {
 
     /// Adds the faces across those sides of a face that cross the triangle; `None` if one is a free
     /// edge, or if the faces are not orientable.
-    fn go_on(&mut self, (slot, is_turned): (u32, bool), seen: &Seen, view: &View) -> Option<()> {
-        let is_crossed = view.crossed_sides(seen, ROUNDING);
+    fn go_on(&mut self, (slot, is_turned): (u32, bool), is_crossed: [bool; 3]) -> Option<()> {
         for side in (0..3).filter(|&side| is_crossed[side]) {
             let mate = self.mates.across(slot, side)?;
             let is_mate_turned = is_turned != mate.is_turned;

@@ -11,6 +11,10 @@ const THIN: f64 = 1e-6;
 /// Part of a triangle by which it is shrunk at most.
 const MOST_SHRUNK: f64 = 0.9;
 
+/// Weights of the corners at the point that is counted: no number that sides of regular grids run
+/// through.
+const INSIDE: [f64; 3] = [0.318_309_886, 0.367_879_441, 0.313_810_673];
+
 /// A triangle, and the direction at right angles to it, along which others are seen.
 pub(super) struct View {
     /// Middle of the triangle.
@@ -24,20 +28,32 @@ pub(super) struct View {
     /// Bound on the distance of a point of the triangle from that of the inner one over which it is
     /// seen.
     pub(super) spent: f64,
+    /// Rounding of a coordinate.
+    rounding: f64,
 }
 
 /// A triangle as it is seen: two coordinates across the direction, and the height along it.
 pub(super) struct Seen([DVec3; 3]);
 
-/// Part of a seen triangle.
-pub(super) struct Piece {
-    corners: [DVec3; 6],
-    count: usize,
+/// How a seen triangle and the inner one of the view lie over each other.
+pub(super) struct Overlap<'s> {
+    seen: &'s Seen,
+    rounding: f64,
+    /// Distance of each corner beyond each line of the inner triangle: lines, then corners.
+    beyond: [[f64; 3]; 3],
+    /// Twice the area, signed, between each side and each corner of the inner triangle, and its
+    /// rounding.
+    left: [[f64; 3]; 3],
+    near: [f64; 3],
 }
 
 impl View {
     /// Looks at a triangle along a direction of length one. Shrinks it by at most `inset`.
-    pub(super) fn along(direction: DVec3, triangle: &Triangle, inset: f64) -> Self {
+    pub(super) fn along(
+        direction: DVec3,
+        triangle: &Triangle,
+        [inset, rounding]: [f64; 2],
+    ) -> Self {
         let (x, y) = direction.any_orthonormal_pair();
         let origin = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
         let reach = triangle.map(|at| at.distance_squared(origin));
@@ -49,6 +65,7 @@ impl View {
             inner: [DVec2::ZERO; 3],
             lines: [(DVec2::ZERO, 0.0); 3],
             spent: part * reach,
+            rounding,
         };
         let seen = view.see(triangle);
         view.spent += seen.height();
@@ -69,38 +86,41 @@ impl View {
     }
 
     /// Returns a triangle as it is seen.
-    #[inline]
+    #[inline(always)]
     pub(super) fn see(&self, triangle: &Triangle) -> Seen {
         let [x, y, z] = self.axes;
-        Seen(triangle.map(|at| {
+        let see = |at: DVec3| {
             let at = at - self.origin;
             DVec3::new(at.dot(x), at.dot(y), at.dot(z))
-        }))
+        };
+        let [a, b, c] = *triangle;
+        Seen([see(a), see(b), see(c)])
     }
 
-    /// Returns which sides of a seen triangle cross the inner one, or come nearer than `near`. A side
-    /// without length does not.
-    #[inline]
-    pub(super) fn crossed_sides(&self, seen: &Seen, near: f64) -> [bool; 3] {
-        let corners = seen.0.map(|at| at.xy());
-        let is_outside =
-            self.lines.map(|(across, distance)| corners.map(|at| across.dot(at) - distance > near));
-        [0, 1, 2].map(|i| {
-            let k = (i + 1) % 3;
-            if is_outside.iter().any(|corner| corner[i] && corner[k]) || seen.0[i] == seen.0[k] {
-                return false;
+    /// Compares a seen triangle with the inner one.
+    #[inline(always)]
+    pub(super) fn compare<'s>(&self, seen: &'s Seen) -> Overlap<'s> {
+        let (mut beyond, mut left, mut near) = ([[0.0; 3]; 3], [[0.0; 3]; 3], [0.0; 3]);
+        for i in 0..3 {
+            let (across, distance) = self.lines[i];
+            let from = seen.0[i].xy();
+            let along = seen.0[NEXT[i]].xy() - from;
+            for k in 0..3 {
+                beyond[i][k] = across.dot(seen.0[k].xy()) - distance;
+                left[i][k] = along.perp_dot(self.inner[k] - from);
             }
-            let along = corners[k] - corners[i];
-            let sides = self.inner.map(|at| along.perp_dot(at - corners[i]));
-            let near = near * (along.x.abs() + along.y.abs());
-            !(sides.iter().all(|&side| side > near) || sides.iter().all(|&side| side < -near))
-        })
+            near[i] = self.rounding * (along.x.abs() + along.y.abs());
+        }
+        Overlap { seen, rounding: self.rounding, beyond, left, near }
     }
 }
 
+/// The next corner of a triangle.
+const NEXT: [usize; 3] = [1, 2, 0];
+
 impl Seen {
     /// Returns the largest height, above or below.
-    #[inline]
+    #[inline(always)]
     pub(super) fn height(&self) -> f64 {
         let [a, b, c] = &self.0;
         a.z.abs().max(b.z.abs()).max(c.z.abs())
@@ -108,99 +128,121 @@ impl Seen {
 
     /// Returns the side beyond which the middle of the view is, farthest in proportion; `None` if the
     /// triangle covers it.
+    #[inline(always)]
     pub(super) fn side_towards_middle(&self) -> Option<usize> {
-        let [a, b, c] = self.0.map(|at| at.xy());
+        let [a, b, c] = [self.0[0].xy(), self.0[1].xy(), self.0[2].xy()];
         let turn = (b - a).perp_dot(c - a).signum();
-        let left = [[a, b], [b, c], [c, a]].map(|[from, to]| turn * from.perp_dot(to - from));
-        let least = (0..3).min_by(|&i, &k| left[i].total_cmp(&left[k]))?;
-        (left[least] < 0.0).then_some(least)
-    }
-
-    /// Returns the part over the inner triangle of a view; `None` if rounding gives it more corners
-    /// than there can be.
-    pub(super) fn over(&self, view: &View) -> Option<Piece> {
-        let mut piece = Piece { corners: [DVec3::ZERO; 6], count: 3 };
-        piece.corners[..3].copy_from_slice(&self.0);
-        for line in view.lines {
-            piece = piece.within(line)?;
+        let left = [a.perp_dot(b - a), b.perp_dot(c - b), c.perp_dot(a - c)];
+        let (mut least, mut side) = (0.0, None);
+        for (i, left) in left.into_iter().enumerate() {
+            if turn * left < least {
+                (least, side) = (turn * left, Some(i));
+            }
         }
-        Some(piece)
-    }
-
-    /// Returns a point of the inner triangle of a view that this triangle covers: the middle, if that
-    /// is not near its sides; `None` if there is none.
-    pub(super) fn point_over(&self, view: &View, near: f64) -> Option<DVec2> {
-        match self.cover(DVec2::ZERO, near) {
-            Some(1 | -1) => Some(DVec2::ZERO),
-            _ => self.over(view)?.middle(),
-        }
-    }
-
-    /// Returns 1 if the triangle covers a point, -1 if it is seen from behind, 0 if it does not
-    /// cover it, and `None` if the point is too near its sides to tell.
-    #[inline]
-    pub(super) fn cover(&self, at: DVec2, near: f64) -> Option<i32> {
-        let [a, b, c] = self.0.map(|corner| corner.xy());
-        let (least, most) = (a.min(b).min(c), a.max(b).max(c));
-        if (least - at).max(at - most).max_element() > near {
-            return Some(0);
-        }
-        let (mut left, mut right) = (0, 0);
-        for [from, to] in [[a, b], [b, c], [c, a]] {
-            let along = to - from;
-            let side = along.perp_dot(at - from);
-            let near = near * (along.x.abs() + along.y.abs());
-            left += i32::from(side > near);
-            right += i32::from(side < -near);
-        }
-        match (left, right) {
-            (3, _) => Some(1),
-            (_, 3) => Some(-1),
-            (1.., 1..) => Some(0),
-            _ => None,
-        }
+        side
     }
 }
 
-impl Piece {
-    /// Returns the middle of the corners; `None` if there are none.
-    pub(super) fn middle(&self) -> Option<DVec2> {
-        let sum: DVec2 = self.corners().iter().map(|at| at.xy()).sum();
-        (self.count > 0).then(|| sum / self.count as f64)
+impl Overlap<'_> {
+    /// Returns which sides cross the inner triangle, or come near it. A side without length does not.
+    #[inline(always)]
+    pub(super) fn crossed_sides(&self) -> [bool; 3] {
+        let Self { seen: Seen(corners), rounding, beyond, left, near } = self;
+        let mut is_crossed = [false; 3];
+        for i in 0..3 {
+            let k = NEXT[i];
+            let is_outside = |line: &[f64; 3]| (line[i] > *rounding) & (line[k] > *rounding);
+            let is_outside =
+                is_outside(&beyond[0]) | is_outside(&beyond[1]) | is_outside(&beyond[2]);
+            let [a, b, c] = left[i];
+            let (least, most) = (a.min(b).min(c), a.max(b).max(c));
+            let is_beside = (least > near[i]) | (most < -near[i]);
+            is_crossed[i] = !is_outside & !is_beside & (corners[i] != corners[k]);
+        }
+        is_crossed
     }
 
-    /// Returns the corner that is highest, above or below.
+    /// Returns 1 if the triangle covers a point inside the inner one, -1 if it is seen from behind,
+    /// 0 if it does not cover it, and `None` if the point is too near its sides to tell.
+    #[inline(always)]
+    pub(super) fn cover(&self) -> Option<i32> {
+        let (mut above, mut below) = (0, 0);
+        for i in 0..3 {
+            let [a, b, c] = self.left[i];
+            let left = INSIDE[0] * a + INSIDE[1] * b + INSIDE[2] * c;
+            above += i32::from(left > self.near[i]);
+            below += i32::from(left < -self.near[i]);
+        }
+        match (above, below) {
+            (3, _) => Some(1),
+            (_, 3) => Some(-1),
+            (1.., 1..) => Some(0),
+            _ => self.is_apart().then_some(0),
+        }
+    }
+
+    /// Returns true if all corners are beyond one line of the inner triangle.
+    fn is_apart(&self) -> bool {
+        self.beyond.iter().any(|line| line.iter().all(|&at| at > self.rounding))
+    }
+
+    /// Returns a highest point, above or below, of the part over the inner triangle, up to rounding
+    /// not below the true one: a corner of either triangle, or a place where their sides cross.
     pub(super) fn highest(&self) -> DVec3 {
-        let higher = |a: DVec3, b: DVec3| if b.z.abs() > a.z.abs() { b } else { a };
-        self.corners().iter().copied().fold(DVec3::ZERO, higher)
-    }
-
-    fn corners(&self) -> &[DVec3] {
-        &self.corners[..self.count]
-    }
-
-    /// Returns the part on the inner side of a line.
-    fn within(&self, (across, distance): (DVec2, f64)) -> Option<Self> {
-        let outside = |at: &DVec3| across.dot(at.xy()) - distance;
-        let mut inside = Self { corners: [DVec3::ZERO; 6], count: 0 };
+        let Seen(corners) = self.seen;
+        let is_inside = |at: [f64; 3]| at.into_iter().all(|beyond| beyond <= self.rounding);
+        let mut highest = DVec3::ZERO;
         let mut add = |at: DVec3| {
-            *inside.corners.get_mut(inside.count)? = at;
-            inside.count += 1;
-            Some(())
-        };
-        let corners = self.corners();
-        for (i, a) in corners.iter().enumerate() {
-            let b = &corners[(i + 1) % corners.len()];
-            let [of_a, of_b] = [outside(a), outside(b)];
-            if of_a <= 0.0 {
-                add(*a)?;
+            if at.z.abs() > highest.z.abs() {
+                highest = at;
             }
-            if (of_a > 0.0) != (of_b > 0.0) {
-                add(a.lerp(*b, of_a / (of_a - of_b)))?;
+        };
+        for (k, &corner) in corners.iter().enumerate() {
+            if is_inside(self.beyond.map(|line| line[k])) {
+                add(corner);
             }
         }
-        Some(inside)
+        for line in &self.beyond {
+            for (i, k) in [(0, 1), (1, 2), (2, 0)] {
+                if (line[i] > 0.0) == (line[k] > 0.0) {
+                    continue;
+                }
+                let part = line[i] / (line[i] - line[k]);
+                let between = |from: f64, to: f64| from + (to - from) * part;
+                if is_inside(self.beyond.map(|line| between(line[i], line[k]))) {
+                    let room = self.rounding / (line[i] - line[k]).abs();
+                    add(raised(
+                        corners[i].lerp(corners[k], part),
+                        [corners[i].z, corners[k].z],
+                        room,
+                    ));
+                }
+            }
+        }
+        for of_inner in 0..3 {
+            let weights = [1, 2, 0].map(|side: usize| self.left[side][of_inner]);
+            let near = [1, 2, 0].map(|side: usize| self.near[side]);
+            let is_over =
+                (0..3).all(|k| weights[k] >= -near[k]) || (0..3).all(|k| weights[k] <= near[k]);
+            if is_over {
+                let [a, b, c] = *corners;
+                let sum: f64 = weights.iter().sum();
+                let at = (a * weights[0] + b * weights[1] + c * weights[2]) / sum;
+                let heights = [a.z.min(b.z).min(c.z), a.z.max(b.z).max(c.z)];
+                let room = near.iter().sum::<f64>() / sum.abs();
+                let at = if at.is_finite() { at } else { a };
+                add(raised(at, heights, room));
+            }
+        }
+        highest
     }
+}
+
+/// Raises a point between two heights by this part of their difference, but not beyond them.
+fn raised(at: DVec3, [a, b]: [f64; 2], part: f64) -> DVec3 {
+    let most = a.abs().max(b.abs());
+    let height = (at.z.abs() + part * (b - a).abs()).min(most);
+    at.with_z(if height.is_nan() { most } else { height })
 }
 
 /// Returns the unit normal of a triangle; `None` if it is too thin.

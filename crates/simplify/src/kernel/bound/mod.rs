@@ -263,9 +263,15 @@ impl BoundPart<'_> {
             loop {
                 let here = [self.input.place(at)];
                 for &place in here.iter().chain(self.between.of(at)) {
-                    let apart = self.new.squared(place - from);
+                    let place = place - from;
+                    if self.new.is_far_from(place, max_error)
+                        && self.old.is_far_from(place, max_error)
+                    {
+                        continue;
+                    }
+                    let apart = self.new.squared(place);
                     if apart > max_error {
-                        if self.old.squared(place - from) <= max_error {
+                        if self.old.squared(place) <= max_error {
                             self.put_first(head, last, at);
                             return None;
                         }

@@ -7,7 +7,7 @@
 use glam::Vec3;
 
 use crate::kernel::collapse::edge_ring::{EdgeRing, ROOM, Spokes, row3};
-use crate::kernel::simd::{LANES, Row3, TINY, select_max, select_min};
+use crate::kernel::simd::{LANES, Row, Row3, SimdTask, TINY, select_max, select_min, widest};
 
 impl EdgeRing {
     /// Returns the square of the largest of the three distances. `place` is relative to `v0`; the
@@ -87,36 +87,47 @@ impl EdgeRing {
 
 /// Faces around an edge, laid out for distance queries of many points.
 #[derive(Default)]
-pub(crate) struct FaceFan(Vec<FaceRows>);
+pub(crate) struct FaceFan {
+    rows: Vec<FaceRows>,
+    /// Least and greatest coordinates of all corners, relative to `v0`.
+    extent: [Vec3; 2],
+}
 
-/// Eight faces: the apex relative to `v0`, the other corners relative to the apex, and the normal.
+/// Eight faces: the apex relative to `v0`, and what [`CornerFace`] knows of each.
 struct FaceRows {
     apex: Row3,
     a: Row3,
     b: Row3,
     normal: Row3,
+    aa: Row,
+    bb: Row,
+    ab: Row,
+    to_a: Row,
+    nn: Row,
+    to_unit: Row,
 }
 
 impl FaceFan {
     /// Lays out the faces with the new vertex, from the last [`EdgeRing::try_place`]. `place` is
     /// relative to `v0`.
     pub(crate) fn lay_new(&mut self, edge_ring: &EdgeRing, place: Vec3) {
-        self.0.clear();
+        self.clear([place; 2]);
         self.lay(edge_ring, &edge_ring.new, |_| place);
     }
 
     /// Lays out the old faces, including those that the contraction removes.
     pub(crate) fn lay_old(&mut self, edge_ring: &EdgeRing) {
-        self.0.clear();
+        self.clear([Vec3::ZERO.min(edge_ring.along), Vec3::ZERO.max(edge_ring.along)]);
         self.lay(edge_ring, &edge_ring.old, |of_v1| edge_ring.along * of_v1);
-        let [first, [a, b, normal]] = edge_ring.dying_faces();
-        let (a, b, normal) = (Row3::all(a), Row3::all(b), Row3::all(normal));
-        let mut faces = FaceRows { apex: Row3::ZERO, a, b, normal };
-        let [a, b, normal] = first;
-        faces.a.set(0, a);
-        faces.b.set(0, b);
-        faces.normal.set(0, normal);
-        self.0.push(faces);
+        let [first, last] = edge_ring.dying_faces();
+        // A face that is there twice is as near as once.
+        let face = |lane| if lane == 0 { first } else { last };
+        self.rows.push(FaceRows::new(|lane| (Vec3::ZERO, face(lane))));
+    }
+
+    fn clear(&mut self, extent: [Vec3; 2]) {
+        self.rows.clear();
+        self.extent = extent;
     }
 
     fn lay(
@@ -126,31 +137,95 @@ impl FaceFan {
         apex: impl Fn(f32) -> Vec3,
     ) {
         for start in edge_ring.lane_starts() {
-            let Spokes { mut a, mut b, of_v1 } = edge_ring.spokes(start);
-            let mut apices = Row3::ZERO;
-            for lane in 0..LANES {
+            let (Spokes { a, b, of_v1 }, normal) = (edge_ring.spokes(start), row3(normals, start));
+            self.rows.push(FaceRows::new(|lane| {
                 let apex = apex(of_v1[lane]);
-                a.set(lane, a.get(lane) - apex);
-                b.set(lane, b.get(lane) - apex);
-                apices.set(lane, apex);
-            }
-            self.0.push(FaceRows { apex: apices, a, b, normal: row3(normals, start) });
+                (apex, [a.get(lane) - apex, b.get(lane) - apex, normal.get(lane)])
+            }));
         }
+        let [least, most] = &mut self.extent;
+        for i in 0..edge_ring.len {
+            (*least, *most) = (least.min(edge_ring.relative(i)), most.max(edge_ring.relative(i)));
+        }
+    }
+
+    /// Returns true if all faces are farther than this from a point given relative to `v0`; `squared`
+    /// is a squared distance. Not always if they are.
+    #[inline]
+    pub(crate) fn is_far_from(&self, point: Vec3, squared: f32) -> bool {
+        let [least, most] = self.extent;
+        let apart = (least - point).max(point - most).max(Vec3::ZERO);
+        apart.length_squared() > FAR * squared
     }
 
     /// Returns the squared distance from the faces to a point given relative to `v0`.
     #[inline]
     pub(crate) fn squared(&self, point: Vec3) -> f32 {
+        widest(Nearest { rows: &self.rows, point })
+    }
+}
+
+/// Factor on a squared distance that leaves room for rounding.
+const FAR: f32 = 1.0001;
+
+/// SIMD task of [`FaceFan::squared`].
+struct Nearest<'f> {
+    rows: &'f [FaceRows],
+    point: Vec3,
+}
+
+impl SimdTask for Nearest<'_> {
+    type Output = f32;
+
+    #[inline(always)]
+    fn work(self) -> f32 {
         let mut nearest = [f32::INFINITY; LANES];
-        for FaceRows { apex, a, b, normal } in &self.0 {
+        for rows in self.rows {
             for lane in 0..LANES {
-                let face = CornerFace::new(a.get(lane), b.get(lane), normal.get(lane));
-                let relative = point - apex.get(lane);
-                let squared = select_min(face.squared(relative), face.squared_of_rim(relative));
+                let (face, point) = (rows.face(lane), self.point - rows.apex.get(lane));
+                let squared = select_min(face.squared(point), face.squared_of_rim(point));
                 nearest[lane] = select_min(squared, nearest[lane]);
             }
         }
         nearest.into_iter().fold(f32::INFINITY, select_min)
+    }
+}
+
+impl FaceRows {
+    /// Lays out faces given by apex, the other corners relative to it, and normal.
+    #[inline(always)]
+    fn new(faces: impl Fn(usize) -> (Vec3, [Vec3; 3])) -> Self {
+        let none = [0.0; LANES];
+        let [apex, a, b, normal] = [Row3::ZERO; 4];
+        let [aa, bb, ab, to_a, nn, to_unit] = [none; 6];
+        let mut rows = Self { apex, a, b, normal, aa, bb, ab, to_a, nn, to_unit };
+        for lane in 0..LANES {
+            let (apex, [a, b, normal]) = faces(lane);
+            let face = CornerFace::new(a, b, normal);
+            rows.apex.set(lane, apex);
+            rows.a.set(lane, a);
+            rows.b.set(lane, b);
+            rows.normal.set(lane, normal);
+            (rows.aa[lane], rows.bb[lane], rows.ab[lane]) = (face.aa, face.bb, face.ab);
+            (rows.to_a[lane], rows.nn[lane], rows.to_unit[lane]) =
+                (face.to_a, face.nn, face.to_unit);
+        }
+        rows
+    }
+
+    #[inline(always)]
+    fn face(&self, lane: usize) -> CornerFace {
+        CornerFace {
+            a: self.a.get(lane),
+            b: self.b.get(lane),
+            normal: self.normal.get(lane),
+            aa: self.aa[lane],
+            bb: self.bb[lane],
+            ab: self.ab[lane],
+            to_a: self.to_a[lane],
+            nn: self.nn[lane],
+            to_unit: self.to_unit[lane],
+        }
     }
 }
 
