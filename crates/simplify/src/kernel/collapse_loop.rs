@@ -112,6 +112,32 @@ struct PricedEdge {
     bucket: u16,
 }
 
+/// A priced edge with its new vertex placed.
+struct PlacedEdge {
+    priced: PricedEdge,
+    /// Old place of the vertex that stays, and the new one.
+    from: Vec3,
+    place: Vec3,
+    /// Square of the distance by which the step would move the surface.
+    now: f32,
+}
+
+impl PlacedEdge {
+    /// Returns the squared distance of all steps together.
+    #[inline(always)]
+    fn moved(&self, vertices: &Vertices<'_>) -> f32 {
+        let Ends { v0, v1, .. } = self.priced.ends;
+        self.now + vertices.get(v0).moved.max(vertices.get(v1).moved)
+    }
+
+    #[inline(always)]
+    fn step<'a>(&self, edge_ring: &'a EdgeRing) -> BoundedStep<'a> {
+        let Ends { v0, v1, .. } = self.priced.ends;
+        let &Self { from, place, now, .. } = self;
+        BoundedStep { edge_ring, ends: [v0, v1], from, displacement: place - from, now }
+    }
+}
+
 impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     pub(crate) fn new(
         vertices: Vertices<'v>,
@@ -214,6 +240,9 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         }
         self.prefetch();
         self.recost_batch();
+        if self.ties.is_none() && self.within.as_mut().is_some_and(|within| within.looks_ahead()) {
+            self.look_ahead();
+        }
         true
     }
 
@@ -254,6 +283,25 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
                 self.queue.push(v, bucket);
             }
         }
+    }
+
+    /// Measures the steps of the batch side by side, before each is tried in its turn.
+    #[cold]
+    fn look_ahead(&mut self) {
+        let (taken, front) = self.queue.next();
+        let (mut next, len) = ([0; BATCH_LEN], taken.len());
+        next[..len].copy_from_slice(taken);
+        for &v in &next[..len] {
+            let target = if self.is_due(v, front) { self.target(v) } else { None };
+            let Some(target) = target else { continue };
+            let Ok(placed) = self.place(v, target, front) else { continue };
+            let moved = placed.moved(&self.vertices);
+            if self.deferral.delay(moved, placed.priced.bucket).is_none() {
+                let step = placed.step(self.edge_ring);
+                self.within.iter_mut().for_each(|within| within.plan(&step));
+            }
+        }
+        self.within.iter_mut().for_each(|within| within.look_ahead());
     }
 
     /// Tries the cheapest edge of a vertex, and requeues the vertex accordingly.
@@ -345,25 +393,24 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         }
     }
 
-    /// Contracts an edge after all checks. Returns the vertex that stays.
+    /// Places the new vertex of an edge whose cost is within the slack of the front.
     #[inline(always)]
-    fn contract(&mut self, v: u32, target: u32, front: u16) -> Result<u32, Rejection> {
-        let PricedEdge { ends, quadric, from_middle, bucket } = self.price(v, target, front)?;
-        let Ends { v0, v1, mobility, .. } = ends;
-        let Self { vertices, model, edge_ring, deferral, room, .. } = self;
-        let (end0, end1) = (vertices.get(v0), vertices.get(v1));
+    fn place(&mut self, v: u32, target: u32, front: u16) -> Result<PlacedEdge, Rejection> {
+        let priced = self.price(v, target, front)?;
+        let PricedEdge { ends, quadric, from_middle, bucket } = priced;
+        let Self { vertices, edge_ring, room, .. } = self;
         let refused = |refusal| Rejection::Refused(refusal, bucket);
         let is_far = from_middle.length_squared() > f64::from(edge_ring.reach());
         // The place as it is stored, so that the normals are those of the actual faces.
-        let from = end0.place();
-        let mut place = match mobility {
+        let from = vertices.get(ends.v0).place();
+        let mut place = match ends.mobility {
             Mobility::Fixed => from,
             Mobility::AlongNormal if is_far => from,
             Mobility::Free if is_far => return Err(refused(Refusal::Volume)),
             _ => within::<A::Metric>(*room, from.as_dvec3() + quadric.half + from_middle),
         };
         if let Err(refusal) = edge_ring.try_place(place - from) {
-            if mobility != Mobility::AlongNormal || place == from {
+            if ends.mobility != Mobility::AlongNormal || place == from {
                 return Err(refused(refusal));
             }
             place = from;
@@ -374,12 +421,24 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         let mean_square =
             quadric.at(from_middle).max(0.0) / quadric.weight().max(f64::MIN_POSITIVE);
         let now = edge_ring.deviation(place - from).max(mean_square as f32);
-        let mut moved = now + end0.moved.max(end1.moved);
+        Ok(PlacedEdge { priced, from, place, now })
+    }
+
+    /// Contracts an edge after all checks. Returns the vertex that stays.
+    #[inline(always)]
+    fn contract(&mut self, v: u32, target: u32, front: u16) -> Result<u32, Rejection> {
+        let placed = self.place(v, target, front)?;
+        let mut moved = placed.moved(&self.vertices);
+        let PlacedEdge { priced: PricedEdge { ends, ref quadric, bucket, .. }, from, place, now } =
+            placed;
+        let Self { vertices, model, edge_ring, deferral, room, .. } = self;
+        let refused = |refusal| Rejection::Refused(refusal, bucket);
         if let Some(bucket) = deferral.wait(now, moved, front) {
             return Err(Rejection::Deferred(bucket));
         }
-        let collapse =
-            Collapse { ends, half: quadric.half, from_middle, place, displacement: place - from };
+        let displacement = place - from;
+        let from_middle = displacement.as_dvec3() - quadric.half;
+        let collapse = Collapse { ends, half: quadric.half, from_middle, place, displacement };
         if is_out_of_proportion(now, self.error as f32, *room) {
             return Err(refused(Refusal::Disproportion));
         }
@@ -389,12 +448,11 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
             return Err(Rejection::Deferred(later));
         }
         if let Some(within) = &mut self.within {
-            let step =
-                BoundedStep { edge_ring, ends: [v0, v1], from, displacement: place - from, now };
+            let step = placed.step(edge_ring);
             moved = within.admit(&step, moved).ok_or_else(|| refused(Refusal::Error))?;
         }
-        self.commit(&collapse, &quadric, moved, front);
-        Ok(v0)
+        self.commit(&collapse, quadric, moved, front);
+        Ok(ends.v0)
     }
 
     /// Carries out a contraction that has passed all checks, and records it.

@@ -436,12 +436,12 @@ impl CostStep {
         stop: usize,
     ) -> usize {
         if let [collapse_loop] = loops {
-            return run(
-                collapse_loop,
-                live,
-                stop.max(live.saturating_sub(FACES_PER_REPORT)),
-                self.last,
-            );
+            let stop = stop.max(live.saturating_sub(FACES_PER_REPORT));
+            if collapse_loop.within.is_none() {
+                return run(collapse_loop, live, stop, self.last);
+            }
+            // Where other threads help, the loop is one of them.
+            return rayon::scope(|_| run(collapse_loop, live, stop, self.last));
         }
         if live - stop <= loops.len() * SERIAL_FACES_PER_PART {
             let loops = loops.iter_mut();

@@ -26,11 +26,6 @@ impl Row3 {
     pub(crate) const ZERO: Self = Self { x: [0.0; LANES], y: [0.0; LANES], z: [0.0; LANES] };
 
     #[inline(always)]
-    pub(crate) fn all(v: Vec3) -> Self {
-        Self { x: [v.x; LANES], y: [v.y; LANES], z: [v.z; LANES] }
-    }
-
-    #[inline(always)]
     pub(crate) fn get(&self, lane: usize) -> Vec3 {
         Vec3::new(self.x[lane], self.y[lane], self.z[lane])
     }

@@ -24,6 +24,7 @@ pub(crate) const ROOM: usize = MAX_RING + 2 * LANES;
 const MIN_COSINE: f32 = 0.2;
 
 /// One-ring of an edge, with positions relative to its end `v0`.
+#[derive(Clone)]
 pub(crate) struct EdgeRing {
     /// Vertices of the ring.
     pub(crate) ids: [u32; ROOM],

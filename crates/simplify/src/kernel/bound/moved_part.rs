@@ -1,0 +1,102 @@
+//! What is known of a part of the surface that has moved: which input vertices are merged where, and
+//! how far it has gone.
+
+use glam::Vec3;
+
+use crate::kernel::bound::BoundedStep;
+use crate::kernel::bound::gauge::{Beyond, Measured};
+use crate::kernel::bound::input_surface::{EdgeSamples, InputSurface};
+
+/// Part of the surface, and the input that its distance is measured from.
+pub(crate) struct MovedPart<'v> {
+    pub(crate) input: &'v InputSurface,
+    pub(crate) between: &'v EdgeSamples,
+    /// The bound where none is lower, in the frame's units.
+    pub(crate) max_error: f32,
+    /// Id of the first vertex.
+    pub(crate) base: u32,
+    /// As in [`ErrorBound`](crate::kernel::bound::ErrorBound).
+    pub(crate) next: &'v mut [u32],
+    pub(crate) travelled: &'v mut [f32],
+    pub(crate) parts: &'v mut [f32],
+}
+
+/// An input vertex with its predecessor in the ring of `head`.
+#[derive(Clone, Copy)]
+pub(crate) struct Merged {
+    pub(crate) head: u32,
+    pub(crate) last: u32,
+    pub(crate) at: u32,
+}
+
+impl MovedPart<'_> {
+    /// Returns the bound that holds at all of some vertices, in the frame's units.
+    pub(crate) fn limit_at(&self, vertices: &[u32]) -> f32 {
+        if self.parts.is_empty() {
+            return self.max_error;
+        }
+        let of = |part: f32, &v: &u32| part.min(self.parts[self.slot(v)]);
+        self.max_error * vertices.iter().fold(1.0, of)
+    }
+
+    /// Returns the distance travelled before a step, at its ends.
+    pub(crate) fn travelled_before(&self, step: &BoundedStep<'_>) -> f32 {
+        let [v0, v1] = step.ends.map(|v| self.travelled[self.slot(v)]);
+        v0.max(v1)
+    }
+
+    /// Returns the distance travelled with a step.
+    pub(crate) fn travelled_with(&self, step: &BoundedStep<'_>) -> f32 {
+        let now = step.now.max(step.edge_ring.off_planes(step.displacement)).sqrt();
+        self.travelled_before(step) + now
+    }
+
+    /// Counts a step as carried out, with the total distance travelled.
+    pub(crate) fn carry_out(&mut self, ends: [u32; 2], travelled: f32) {
+        let [v0, v1] = ends.map(|v| self.slot(v));
+        self.travelled[v0] = travelled;
+        self.next.swap(v0, v1);
+        if !self.parts.is_empty() {
+            self.parts[v0] = self.parts[v0].min(self.parts[v1]);
+        }
+    }
+
+    /// Returns the input vertices that are merged into a vertex, itself first.
+    pub(crate) fn merged(&self, head: u32) -> impl Iterator<Item = Merged> {
+        let next = move |last: u32| {
+            let at = self.next[self.slot(last)];
+            (at != head).then_some(Merged { head, last, at })
+        };
+        let first = Merged { head, last: head, at: head };
+        std::iter::successors(Some(first), move |merged| next(merged.at))
+    }
+
+    /// Returns the places that must stay near the surface for an input vertex: its own, and samples
+    /// of edges around.
+    pub(crate) fn places(&self, v: u32) -> impl Iterator<Item = Vec3> {
+        std::iter::once(self.input.place(v)).chain(self.between.of(v).iter().copied())
+    }
+
+    /// Moves the input vertex that a step was refused for to directly after the head of its ring:
+    /// what was too far once will most often be so again.
+    pub(crate) fn remember(&mut self, found: &Measured) {
+        let Err(Beyond::Input(Merged { head, last, at })) = *found else { return };
+        let [of_head, of_last, own] = [head, last, at].map(|v| self.slot(v));
+        // Another step may have been refused for one of the ring in between.
+        if last != head && at != head && self.next[of_last] == at {
+            self.next[of_last] = self.next[own];
+            self.next[own] = self.next[of_head];
+            self.next[of_head] = at;
+        }
+    }
+
+    #[inline(always)]
+    fn slot(&self, v: u32) -> usize {
+        (v - self.base) as usize
+    }
+
+    /// Returns the distance that the surface has travelled at a vertex.
+    pub(crate) fn travelled_at(&self, v: u32) -> f32 {
+        self.travelled[self.slot(v)]
+    }
+}
