@@ -32,7 +32,9 @@ use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
 use crate::kernel::metric::{Metric, seam_price};
 use crate::kernel::schedule::batch::Batch;
-use crate::kernel::schedule::bucket_queue::{BATCH_LEN, BucketQueue, NONE, bucket, last_bucket};
+use crate::kernel::schedule::bucket_queue::{
+    BATCH_LEN, BOUNDED_BATCH_LEN, BucketQueue, NONE, bucket, last_bucket,
+};
 use crate::kernel::schedule::deferral::Deferral;
 use crate::kernel::schedule::edge_costs::{Cheapest, cheapest};
 use crate::kernel::simd::{SimdTask, widest};
@@ -229,8 +231,9 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         if !next.is_empty() {
             return front <= last;
         }
+        let len = if self.within.is_some() { BOUNDED_BATCH_LEN } else { BATCH_LEN };
         loop {
-            let (is_taken, is_all) = (self.queue.take(last), last >= last_bucket());
+            let (is_taken, is_all) = (self.queue.take(last, len), last >= last_bucket());
             let front = if is_taken { self.queue.next().1 } else { NONE };
             match is_taken || is_all {
                 true if self.release_seams(front) => {}
@@ -251,9 +254,10 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     #[inline(always)]
     fn recost_batch(&mut self) {
         let (taken, front) = self.queue.next();
-        let (mut next, len) = ([0; BATCH_LEN], taken.len());
+        let (mut next, len) = ([0; BOUNDED_BATCH_LEN], taken.len());
         next[..len].copy_from_slice(taken);
-        let (mut changed, mut risen, mut count) = (Batch::<BATCH_LEN>::new(), [0; BATCH_LEN], 0);
+        let (mut changed, mut risen, mut count) =
+            (Batch::<BOUNDED_BATCH_LEN>::new(), [0; BOUNDED_BATCH_LEN], 0);
         for &v in &next[..len] {
             if !self.is_due(v, front) {
                 continue;
@@ -289,7 +293,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     #[cold]
     fn look_ahead(&mut self) {
         let (taken, front) = self.queue.next();
-        let (mut next, len) = ([0; BATCH_LEN], taken.len());
+        let (mut next, len) = ([0; BOUNDED_BATCH_LEN], taken.len());
         next[..len].copy_from_slice(taken);
         for &v in &next[..len] {
             let target = if self.is_due(v, front) { self.target(v) } else { None };

@@ -18,6 +18,10 @@ pub(crate) const NONE: u16 = u16::MAX;
 /// Number of vertices taken in one batch and made ready before the first is tried.
 pub(crate) const BATCH_LEN: usize = 16;
 
+/// Number in a batch within an error bound, where steps are measured side by side: a thread that has
+/// gone to sleep takes as long to wake up as a dozen take to be measured.
+pub(crate) const BOUNDED_BATCH_LEN: usize = 64;
+
 /// Vertices by the bucket of their cost.
 pub(crate) struct BucketQueue {
     buckets: Vec<Vec<u32>>,
@@ -51,7 +55,7 @@ impl Default for BucketQueue {
         Self {
             buckets: vec![Vec::new(); BUCKETS],
             lowest: BUCKETS,
-            next: Vec::with_capacity(BATCH_LEN),
+            next: Vec::with_capacity(BOUNDED_BATCH_LEN),
             front: 0,
         }
     }
@@ -78,15 +82,15 @@ impl BucketQueue {
         }
     }
 
-    /// Takes the next batch, once the one before is used up. Returns false if all entries are
-    /// behind `last`.
+    /// Takes the next batch, of at most `len`, once the one before is used up. Returns false if all
+    /// entries are behind `last`.
     #[inline(always)]
-    pub(crate) fn take(&mut self, last: u16) -> bool {
+    pub(crate) fn take(&mut self, last: u16, len: usize) -> bool {
         while self.lowest <= last as usize {
             let Some(list) = self.buckets.get_mut(self.lowest) else { return false };
             if !list.is_empty() {
                 self.front = self.lowest as u16;
-                self.next.extend(list.drain(list.len().saturating_sub(BATCH_LEN)..));
+                self.next.extend(list.drain(list.len().saturating_sub(len)..));
                 return true;
             }
             self.lowest += 1;
@@ -140,7 +144,7 @@ mod tests {
     use super::*;
 
     fn next(queue: &mut BucketQueue) -> Option<u32> {
-        queue.pop().or_else(|| if queue.take(NONE) { queue.pop() } else { None })
+        queue.pop().or_else(|| if queue.take(NONE, BATCH_LEN) { queue.pop() } else { None })
     }
 
     #[test]
@@ -159,7 +163,7 @@ mod tests {
     fn buckets_are_last_in_first_out_and_a_batch_can_be_put_back() {
         let mut queue = BucketQueue::default();
         (0..BATCH_LEN as u32 + 3).for_each(|v| queue.push(v, 9));
-        assert!(!queue.take(8) && queue.take(9));
+        assert!(!queue.take(8, BATCH_LEN) && queue.take(9, BATCH_LEN));
         assert_eq!((queue.next().0.len(), queue.pop()), (BATCH_LEN, Some(18)));
         queue.put_back();
         queue.push(40, 4);
@@ -174,7 +178,7 @@ mod tests {
             assert_eq!(bucket(cost), NONE);
             queue.push(0, bucket(cost));
         }
-        assert!(!queue.take(NONE));
+        assert!(!queue.take(NONE, BATCH_LEN));
     }
 
     #[test]
