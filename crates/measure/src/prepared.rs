@@ -1,6 +1,6 @@
 //! Mesh prepared for repeated distance measurements.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use meshlod_mesh::{FaceId, Frame, Mesh, VertexId};
 use meshlod_spatial::{Bvh, BvhError, Mates};
@@ -13,13 +13,13 @@ use crate::size::triangle_area;
 #[derive(Clone, Debug)]
 pub struct PreparedSurface<'m> {
     pub(crate) mesh: &'m Mesh,
-    pub(crate) bvh: Bvh,
+    pub(crate) bvh: Arc<Bvh>,
     /// Cumulative area up to and including each face, in leaf order and in local units.
     pub(crate) area_up_to: Vec<f64>,
     /// Vertices used by faces, in leaf order.
     pub(crate) vertices: Vec<VertexId>,
     pub(crate) diagonal: f64,
-    mates: OnceLock<Mates>,
+    mates: OnceLock<Arc<Mates>>,
 }
 
 /// Reason why distances to or from a mesh cannot be measured.
@@ -49,7 +49,26 @@ impl<'m> PreparedSurface<'m> {
     /// # Errors
     /// No faces, invalid faces or positions, zero area, or an extent near the limits of `f64`.
     pub fn new(mesh: &'m Mesh) -> Result<Self, SurfaceError> {
-        let bvh = Bvh::new(mesh)?;
+        Self::over(mesh, Arc::new(Bvh::new(mesh)?))
+    }
+
+    /// Prepares a mesh whose hierarchy and mates are known, as a
+    /// run within an error leaves them.
+    ///
+    /// Cost: O(n), n = faces.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_hierarchy(
+        mesh: &'m Mesh,
+        (bvh, mates): (Arc<Bvh>, Arc<Mates>),
+    ) -> Result<Self, SurfaceError> {
+        let mut prepared = Self::over(mesh, bvh)?;
+        prepared.mates = OnceLock::from(mates);
+        Ok(prepared)
+    }
+
+    fn over(mesh: &'m Mesh, bvh: Arc<Bvh>) -> Result<Self, SurfaceError> {
         let bounds = mesh.bounds();
         let frame = Frame::of(&bounds);
         let mut total = 0.0;
@@ -78,7 +97,7 @@ impl<'m> PreparedSurface<'m> {
 
     /// Returns the faces that share edges, found when they are first asked for.
     pub(crate) fn mates(&self) -> &Mates {
-        self.mates.get_or_init(|| Mates::new(self.mesh, &self.bvh))
+        self.mates.get_or_init(|| Arc::new(Mates::new(self.mesh, &self.bvh)))
     }
 
     /// Returns the bounding volume hierarchy over the faces of the mesh.

@@ -1,6 +1,9 @@
 //! The interface of both engines to [`Simplifier`](crate::Simplifier).
 
+use std::sync::Arc;
+
 use meshlod_mesh::Mesh;
+use meshlod_spatial::{Bvh, Mates};
 
 use crate::engine::policy::{Observe, Stop};
 use crate::excess::Excess;
@@ -32,6 +35,11 @@ pub(crate) trait Run {
     /// contractions owe, and the volume repaid, in cubic model units.
     fn settled_level(&self, mesh: &Mesh) -> (Mesh, f64) {
         (self.level(mesh), 0.0)
+    }
+    /// Returns the hierarchy over the faces of the input, and which of them share edges, if an error
+    /// was measured by them.
+    fn hierarchy(&self) -> Option<(Arc<Bvh>, Arc<Mates>)> {
+        None
     }
     fn tally(&self) -> Tally;
     /// Chooses the contractions to take back because of faces that are too far away; `None` if that

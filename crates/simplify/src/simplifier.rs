@@ -1,6 +1,9 @@
 //! Incremental simplification: runs to a target, returns the level, and can continue from there.
 
+use std::sync::Arc;
+
 use meshlod_mesh::{Bounds, Mesh, VertexId};
+use meshlod_spatial::{Bvh, Mates};
 
 use crate::clean;
 use crate::engine::locks;
@@ -63,6 +66,12 @@ impl<'m> Simplifier<'m> {
     /// Returns the mesh that is being simplified, as it was given.
     pub fn input(&self) -> &'m Mesh {
         self.mesh
+    }
+
+    /// Returns the hierarchy over the faces of the input, and which of them share edges, if a run
+    /// within an error has measured distances by them.
+    pub fn hierarchy(&self) -> Option<(Arc<Bvh>, Arc<Mates>)> {
+        self.engine.hierarchy()
     }
 
     /// Contracts edges or faces until the target is reached or no contraction is allowed any more.

@@ -32,7 +32,7 @@ pub struct Simplify {
     /// File to write, or -
     #[arg(value_name = "OUT")]
     output: PathBuf,
-    /// Measure the result, as is always done with --error
+    /// Measure the mean, RMS and greatest distance of the result from the input
     #[arg(long)]
     measured: bool,
     #[command(flatten)]
@@ -105,7 +105,7 @@ impl Simplify {
             boundary: self.method.boundary,
             constraints: self.method.constraints.constraints(&input)?,
             exact_volume: self.volume.exact_volume,
-            measured: self.measured || self.target.error.is_some(),
+            measured: self.measured,
             near_borders: true,
             written_as: Some(self.writing.in_format(format)),
         })

@@ -15,7 +15,6 @@ fn number(value: &Value) -> f64 {
 fn check(run: &Run, report: &Value, files: [&str; 2]) {
     let [asked, proved] = ["error_asked", "error_proved"].map(|field| number(&report[field]));
     assert!(report["reached"] == true && proved <= asked * (1.0 + 1e-9), "{report}");
-    assert!(number(&report["error_measured"]["max"]) <= proved, "{report}");
     let measured = run.json(&["measure", files[0], files[1], "--certified", "--samples", "10"]);
     let [lower, upper] =
         ["lower", "upper"].map(|bound| number(&measured["certified"][bound]) / asked);

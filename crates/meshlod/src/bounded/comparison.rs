@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 /// Relative slack: faces are compared with a limit lowered by this much, so that none exceeds the
 /// error itself. A smaller slack saves more faces and makes the proof more expensive.
-pub(super) const SLACK: f64 = 0.01;
+const SLACK: f64 = 0.002;
 
 /// Limit on the divisions of faces in each direction. Where errors are far below a thousandth of a
 /// percent of the diagonal and large flats are divided into other faces, more would be needed.

@@ -1,8 +1,10 @@
 //! A run of the kernel, as [`Simplifier`](crate::Simplifier) drives it.
 
 use std::cell::OnceCell;
+use std::sync::Arc;
 
 use meshlod_mesh::{Mesh, VertexId};
+use meshlod_spatial::{Bvh, Mates};
 
 use crate::clean;
 use crate::engine::policy::{Observe, Stop};
@@ -271,6 +273,10 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
     fn into_surface(self: Box<Self>) -> Surface {
         self.surface();
         self.surface.into_inner().expect("it was made just now")
+    }
+
+    fn hierarchy(&self) -> Option<(Arc<Bvh>, Arc<Mates>)> {
+        self.input.get().map(InputSurface::hierarchy)
     }
 
     fn tally(&self) -> Tally {

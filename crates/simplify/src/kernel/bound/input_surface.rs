@@ -1,5 +1,7 @@
 //! The input surface, as the error bound measures distances from it.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 use meshlod_mesh::{FaceId, Mesh};
 use meshlod_spatial::{Bvh, Cover, Mates, Sheet};
@@ -10,8 +12,8 @@ use crate::kernel::mesh::local_frame::Frame;
 /// samples along prominent edges, where the surface ends or is sharp. What lies between is then
 /// near too.
 pub(crate) struct InputSurface {
-    faces: Bvh,
-    mates: Mates,
+    faces: Arc<Bvh>,
+    mates: Arc<Mates>,
     frame: Frame,
     /// Places of all vertices in the frame, copies included.
     places: Vec<Vec3>,
@@ -58,9 +60,14 @@ impl InputSurface {
         faces: impl Iterator<Item = [u32; 3]> + Clone,
     ) -> Self {
         let rims = rims(&places, faces);
-        let faces = Bvh::new(mesh).expect("the mesh was found valid and has faces");
-        let mates = Mates::new(mesh, &faces);
+        let faces = Arc::new(Bvh::new(mesh).expect("the mesh was found valid and has faces"));
+        let mates = Arc::new(Mates::new(mesh, &faces));
         Self { faces, mates, frame, places, rims }
+    }
+
+    /// Returns the hierarchy over the faces, and which of them share edges.
+    pub(crate) fn hierarchy(&self) -> (Arc<Bvh>, Arc<Mates>) {
+        (self.faces.clone(), self.mates.clone())
     }
 
     /// Returns the position of a vertex in the input.
