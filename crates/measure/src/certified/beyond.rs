@@ -210,7 +210,7 @@ impl<'d> Decision<'d> {
             let middle = cell.probe_middle(self.surface, enough);
             self.look_at(middle, &mut examined);
             if cell.upper > enough && examined.state == State::Open {
-                cell.bound_by_sheet(middle.face, sheet, enough - self.point);
+                cell.bound_by_sheet(middle.face, sheet, [enough - self.point; 2]);
             }
         }
         if examined.state == State::Open {
@@ -232,7 +232,7 @@ impl<'d> Decision<'d> {
             for half in &mut halves {
                 if examined.state == State::Open && half.is_large(enough) {
                     splits += SPLITS_OF_SHEET;
-                    half.bound_by_sheet(middle.face, sheet, enough - self.point);
+                    half.bound_by_sheet(middle.face, sheet, [enough - self.point; 2]);
                 }
             }
             let [mut less, mut more] = halves;

@@ -78,11 +78,17 @@ impl Cell {
         middle
     }
 
-    /// Lowers the bound to that by the faces that lie over the triangle, if that is at most `most`;
-    /// `near` is a face near it, as those at its corners are.
-    pub(super) fn bound_by_sheet(&mut self, near: FaceId, sheet: &mut Sheet<'_>, most: f64) {
+    /// Lowers the bound to that by the faces that lie over the triangle, if that is at most `most`,
+    /// and no closer than `enough`; `near` is a face near it, as those at its corners are.
+    pub(super) fn bound_by_sheet(
+        &mut self,
+        near: FaceId,
+        sheet: &mut Sheet<'_>,
+        [enough, most]: [f64; 2],
+    ) {
         let [a, b, c] = self.corners.map(|corner| corner.face);
-        if let Cover::Within(bound) = sheet.cover(self.corners(), &[near, a, b, c], most) {
+        if let Cover::Within(bound) = sheet.cover(self.corners(), &[near, a, b, c], [enough, most])
+        {
             self.bound_by(bound);
         }
     }

@@ -66,7 +66,7 @@ impl<'s> Search<'s> {
                 let middle = cell.probe_middle(surface, enough);
                 into.found(middle);
                 if cell.upper > enough {
-                    cell.bound_by_sheet(middle.face, sheet, enough);
+                    cell.bound_by_sheet(middle.face, sheet, [0.5 * enough, enough]);
                 }
             }
             into.keep(cell, enough);

@@ -24,10 +24,6 @@ use crate::{Bvh, Triangle};
 const LITTLE: f64 = 0.02;
 const MUCH: f64 = 0.9;
 
-/// Part of the bound up to which a face counts as far as its farthest corner, even one that is not
-/// over the triangle.
-const ROUGH: f64 = 0.5;
-
 /// Rounding of a coordinate in the hierarchy's frame, in which the mesh is about 4 wide.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
@@ -66,14 +62,20 @@ impl<'s> Sheet<'s> {
     }
 
     /// Looks for faces that cover a triangle and are nowhere farther from it than `most`, beginning
-    /// at that of some faces near it which is most nearly parallel. Lengths and positions are in
-    /// model units.
+    /// at that of some faces near it which is most nearly parallel. Up to `enough`, a face may count
+    /// as far as its farthest corner, even one that is not over the triangle. Lengths and positions
+    /// are in model units.
     ///
     /// Cost: linear in the number of faces that lie over it.
-    pub fn cover(&mut self, triangle: [[f64; 3]; 3], near: &[FaceId], most: f64) -> Cover {
+    pub fn cover(
+        &mut self,
+        triangle: [[f64; 3]; 3],
+        near: &[FaceId],
+        [enough, most]: [f64; 2],
+    ) -> Cover {
         let frame = &self.surface.frame;
         let (local, scale) = (triangle.map(|at| frame.local(at)), frame.scale());
-        let most = most * scale - ROUNDING;
+        let [enough, most] = [enough, most].map(|limit| limit * scale - ROUNDING);
         if most.is_nan() || most <= 0.0 {
             return Cover::Open;
         }
@@ -92,7 +94,11 @@ impl<'s> Sheet<'s> {
         let mut high = None;
         for (direction, inset) in [(own, little), (own, much), (other, much)] {
             let Some(direction) = direction else { continue };
-            match self.over(&View::along(direction, &local, [inset, ROUNDING]), start, most) {
+            match self.over(
+                &View::along(direction, &local, [inset, ROUNDING]),
+                start,
+                [enough, most],
+            ) {
                 Ok(height) => return Cover::Within((height + ROUNDING) / scale),
                 // Along another direction than its own, a point is not one of the triangle.
                 Err(at) => high = high.or(at.filter(|_| Some(direction) == own)),
@@ -102,7 +108,12 @@ impl<'s> Sheet<'s> {
     }
 
     /// Returns the bound in the hierarchy's frame, or a point over which a face is too far away.
-    fn over(&mut self, view: &View, start: u32, most: f64) -> Result<f64, Option<DVec3>> {
+    fn over(
+        &mut self,
+        view: &View,
+        start: u32,
+        [enough, most]: [f64; 2],
+    ) -> Result<f64, Option<DVec3>> {
         if view.spent >= most {
             return Err(None);
         }
@@ -110,20 +121,20 @@ impl<'s> Sheet<'s> {
         self.begin();
         self.find(start, false);
         self.open.push((start, false));
-        let most = most - view.spent;
+        let [enough, most] = [enough, most].map(|limit| limit - view.spent);
         let (mut height, mut covered) = (0f64, 0i32);
         while let Some((slot, is_turned)) = self.open.pop() {
             let seen = view.see(self.corners(slot));
             let overlap = view.compare(&seen);
-            // Below, the corners are close enough.
-            if seen.height() > height.max(ROUGH * most) {
+            let by_corners = seen.height();
+            if by_corners <= enough {
+                height = height.max(by_corners);
+            } else if by_corners > height {
                 let highest = overlap.highest();
                 height = height.max(highest.z.abs());
                 if height > most {
                     return Err(Some(view.at(highest)));
                 }
-            } else {
-                height = height.max(seen.height());
             }
             let cover = overlap.cover().ok_or(None)?;
             covered += if is_turned { -cover } else { cover };

@@ -10,7 +10,7 @@ fn bound(triangle: [[f64; 3]; 3], mesh: &Mesh, most: f64) -> Option<f64> {
     let mates = Mates::new(mesh, &surface);
     let middle = triangle.into_iter().map(DVec3::from).sum::<DVec3>() / 3.0;
     let start = surface.closest(middle.into(), None).face;
-    match Sheet::new(&surface, &mates).cover(triangle, &[start], most) {
+    match Sheet::new(&surface, &mates).cover(triangle, &[start], [0.5 * most, most]) {
         Cover::Within(bound) => Some(bound),
         Cover::High(_) | Cover::Open => None,
     }
@@ -89,7 +89,7 @@ fn no_point_is_farther_than_the_bound() {
         let [a, b, c] = face.map(|v| DVec3::from(coarse.positions[v.index()]));
         let start = surface.closest(((a + b + c) / 3.0).into(), None).face;
         let triangle = [a, b, c].map(|at| at.to_array());
-        let Cover::Within(bound) = sheet.cover(triangle, &[start], 0.3) else { continue };
+        let Cover::Within(bound) = sheet.cover(triangle, &[start], [0.15, 0.3]) else { continue };
         count += 1;
         let mut farthest = 0f64;
         for (i, j) in (0..=20).flat_map(|i| (0..=20 - i).map(move |j| (i, j))) {

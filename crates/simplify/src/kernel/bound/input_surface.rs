@@ -108,7 +108,7 @@ impl InputSurface {
         max_error: f32,
     ) -> Covered {
         let most = f64::from(max_error) * self.frame.unit;
-        match sheet.cover(face.map(|place| self.frame.to_model(place)), &[near], most) {
+        match sheet.cover(face.map(|place| self.frame.to_model(place)), &[near], [most; 2]) {
             Cover::Within(bound) => Covered::Within((bound / self.frame.unit) as f32),
             Cover::High(at) if self.faces.near(at, Some(near), [most; 2]).is_none() => {
                 Covered::Beyond
