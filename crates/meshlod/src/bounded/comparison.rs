@@ -1,13 +1,10 @@
 //! Comparison of successive levels with one input.
 
-use std::collections::HashSet;
-
 use glam::DVec3;
 use meshlod_measure::{BeyondOptions, FaceBeyond, PreparedSurface, faces_beyond};
 use meshlod_mesh::{FaceId, Mesh, VertexId};
 use meshlod_simplify::{Excess, ExcessFace};
-use meshlod_spatial::Bvh;
-use rayon::prelude::*;
+use rustc_hash::FxHashSet;
 
 /// Relative slack: faces are compared with a limit lowered by this much, so that none exceeds the
 /// error itself. A smaller slack saves more faces and makes the proof more expensive.
@@ -21,6 +18,10 @@ const MOST_SPLITS: usize = 32_000_000;
 /// them. A mesh of few faces that cannot be proved is given up after a few seconds.
 const SPLITS_PER_FACE: usize = 1000;
 const SPLITS: [usize; 2] = [1 << 23, 1 << 28];
+
+/// Part of the error, with room for rounding, within which a face of the input may have been near one
+/// that is gone.
+const REACH: f64 = 1.000_001;
 
 /// Result of the comparison of a level with the input.
 pub(super) enum Outcome {
@@ -51,7 +52,7 @@ struct Compared {
     /// Corners of all faces of the level.
     corners: Vec<Corners>,
     /// Corners of the faces that are near enough.
-    near: HashSet<Corners>,
+    near: FxHashSet<Corners>,
     /// Faces of the input that are too far away.
     far: Vec<FaceId>,
 }
@@ -98,7 +99,7 @@ impl<'i, 'm> Comparison<'i, 'm> {
         };
         let of_level = far(&surface, self.input, of_level);
         let of_input = far(self.input, &surface, of_input);
-        let mut near: HashSet<Corners> = corners.iter().copied().collect();
+        let mut near: FxHashSet<Corners> = corners.iter().copied().collect();
         of_level.iter().for_each(|far| _ = near.remove(&corners[far.face.index()]));
         let faces = of_input.iter().map(|far| far.face).collect();
         self.last = Some(Compared { corners, near, far: faces });
@@ -124,7 +125,7 @@ impl<'i, 'm> Comparison<'i, 'm> {
         let input: Vec<Corners> =
             self.mesh.faces.iter().map(|face| corners(self.mesh, face)).collect();
         let missing = |of: &[Corners], from: &[Corners]| {
-            let from: HashSet<&Corners> = from.iter().collect();
+            let from: FxHashSet<&Corners> = from.iter().collect();
             let is_missing = |face: &FaceId| !from.contains(&of[face.index()]);
             Some((0..of.len()).map(FaceId::new).filter(is_missing).collect())
         };
@@ -134,24 +135,16 @@ impl<'i, 'm> Comparison<'i, 'm> {
     /// Returns the faces of the input that may be too far from a level with these faces: those that
     /// were too far from the last one, and those that come near a face that it has no more.
     fn doubtful(&self, last: &Compared, now: &[Corners]) -> Vec<FaceId> {
-        let now: HashSet<&Corners> = now.iter().collect();
-        let gone: Vec<Corners> =
-            last.corners.iter().filter(|face| !now.contains(face)).copied().collect();
-        let Ok(gone) = Bvh::new(&mesh_of(&gone)) else { return last.far.clone() };
-        let comes_near = |face: &FaceId| {
-            let [a, b, c] =
-                self.mesh.faces[face.index()].map(|v| DVec3::from(self.mesh.positions[v.index()]));
-            let middle = (a + b + c) / 3.0;
-            let radius = [a, b, c].map(|at| at.distance(middle)).into_iter().fold(0.0, f64::max);
-            let reach = 1.000_001 * (self.error + radius);
-            gone.near(middle.into(), None, [reach, reach]).is_some()
-        };
-        let mut doubtful: Vec<FaceId> = (0..self.mesh.faces.len())
-            .into_par_iter()
-            .map(FaceId::new)
-            .filter(comes_near)
-            .collect();
-        doubtful.extend(&last.far);
+        let now: FxHashSet<&Corners> = now.iter().collect();
+        let mut doubtful = last.far.clone();
+        for face in last.corners.iter().filter(|face| !now.contains(face)) {
+            let [a, b, c] = face.map(|at| DVec3::from(at.map(f64::from_bits)));
+            let least = a.min(b).min(c) - REACH * self.error;
+            let most = a.max(b).max(c) + REACH * self.error;
+            self.input
+                .bvh()
+                .faces_near_box([least.into(), most.into()], |near| doubtful.push(near));
+        }
         doubtful.sort_unstable();
         doubtful.dedup();
         doubtful
@@ -168,13 +161,6 @@ impl Compared {
 
 fn corners(mesh: &Mesh, face: &[VertexId; 3]) -> Corners {
     face.map(|v| mesh.positions[v.index()].map(f64::to_bits))
-}
-
-/// Returns a mesh of faces that share no vertices.
-fn mesh_of(faces: &[Corners]) -> Mesh {
-    let positions = faces.iter().flatten().map(|at| at.map(f64::from_bits)).collect();
-    let face = |i: usize| [3 * i, 3 * i + 1, 3 * i + 2].map(VertexId::new);
-    Mesh::new(positions, (0..faces.len()).map(face).collect())
 }
 
 #[cfg(test)]

@@ -43,6 +43,10 @@ pub(crate) struct EdgeSamples {
 /// points .55 %.
 const SHARP: f32 = 0.97;
 
+/// Part of the bound up to which faces that lie over a new one need not be closer: the surface then
+/// counts as having travelled as far, and is measured again at the next step.
+const ROUGH: f64 = 0.5;
+
 /// The edges of a closed ring sum to zero, up to rounding errors below this fraction of their
 /// length.
 const CLOSED: f32 = 1e-3;
@@ -108,7 +112,11 @@ impl InputSurface {
         max_error: f32,
     ) -> Covered {
         let most = f64::from(max_error) * self.frame.unit;
-        match sheet.cover(face.map(|place| self.frame.to_model(place)), &[near], [most; 2]) {
+        match sheet.cover(
+            face.map(|place| self.frame.to_model(place)),
+            &[near],
+            [ROUGH * most, most],
+        ) {
             Cover::Within(bound) => Covered::Within((bound / self.frame.unit) as f32),
             Cover::High(at) if self.faces.near(at, Some(near), [most; 2]).is_none() => {
                 Covered::Beyond
