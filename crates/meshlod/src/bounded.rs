@@ -26,7 +26,7 @@ use crate::conditioned::ConditionedMesh;
 const RUN: f64 = 0.99;
 
 /// Largest number of times that contractions are taken back before the whole run is repeated.
-const MOST_MENDS: usize = 12;
+const MOST_MENDS: usize = 24;
 
 /// Largest number of times that the whole run is repeated.
 const MOST_RUNS: usize = 16;

@@ -24,7 +24,7 @@ use crate::refusal::Refusals;
 const CAUTION: f32 = 0.98;
 
 /// Limits of the factor by which a bound is lowered where it was not held.
-const FACTOR: [f32; 2] = [0.5, 0.97];
+const FACTOR: [f32; 2] = [0.02, 0.97];
 
 /// Factor by which a bound is lowered further where it was not held again.
 const AGAIN: f32 = 0.7;

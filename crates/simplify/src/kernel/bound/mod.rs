@@ -21,12 +21,6 @@ use crate::kernel::bound::moved_part::MovedPart;
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::mesh::one_ring::VertexStore;
 
-/// Fraction of the bound up to which the sum of distances is trusted. Distances are taken at
-/// vertices and planes only, and are sometimes larger in between. Greatest distances of the bunny,
-/// fandisk-32k and the sample `fish` relative to a bound of .1 % of the diagonal: .5 1.00, 1.00,
-/// 1.00; .7 1.40, 1.09, 1.40.
-const SURE: f32 = 0.5;
-
 /// Bound on the distance between surface and input, for the whole surface.
 pub(crate) struct ErrorBound<'m> {
     input: &'m InputSurface,
@@ -134,7 +128,7 @@ impl BoundPart<'_> {
     /// [`Self::admit`].
     pub(crate) fn check(&mut self, step: &BoundedStep<'_>, estimate: f32) -> Option<(f32, f32)> {
         let travelled = self.moved.travelled_with(step);
-        if travelled <= SURE * self.moved.limit_at(&step.ends) {
+        if self.moved.is_sure(step, travelled) {
             return Some((travelled, estimate));
         }
         let found = self.ahead.take(step).unwrap_or_else(|| {
@@ -160,7 +154,7 @@ impl BoundPart<'_> {
     /// Plans a step, to be measured by [`Self::look_ahead`] if it has to be measured at all.
     pub(crate) fn plan(&mut self, step: &BoundedStep<'_>) {
         let travelled = self.moved.travelled_with(step);
-        if travelled > SURE * self.moved.limit_at(&step.ends) {
+        if !self.moved.is_sure(step, travelled) {
             self.ahead.plan(step);
         }
     }

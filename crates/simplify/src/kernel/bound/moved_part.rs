@@ -7,6 +7,12 @@ use crate::kernel::bound::BoundedStep;
 use crate::kernel::bound::gauge::{Beyond, Measured};
 use crate::kernel::bound::input_surface::{EdgeSamples, InputSurface};
 
+/// Fraction of the bound up to which the sum of distances is trusted. Distances are taken at
+/// vertices and planes only, and are sometimes larger in between. Greatest distances of the bunny,
+/// fandisk-32k and the sample `fish` relative to a bound of .1 % of the diagonal: .5 1.00, 1.00,
+/// 1.00; .7 1.40, 1.09, 1.40.
+const SURE: f32 = 0.5;
+
 /// Part of the surface, and the input that its distance is measured from.
 pub(crate) struct MovedPart<'v> {
     pub(crate) input: &'v InputSurface,
@@ -49,6 +55,12 @@ impl MovedPart<'_> {
     pub(crate) fn travelled_with(&self, step: &BoundedStep<'_>) -> f32 {
         let now = step.now.max(step.edge_ring.off_planes(step.displacement)).sqrt();
         self.travelled_before(step) + now
+    }
+
+    /// Returns true if a step need not be measured, given the distance travelled with it: where the
+    /// bound has not been held before, sums have been wrong, be they zero.
+    pub(crate) fn is_sure(&self, step: &BoundedStep<'_>, travelled: f32) -> bool {
+        self.limit_at(&step.ends) == self.max_error && travelled <= SURE * self.max_error
     }
 
     /// Counts a step as carried out, with the total distance travelled.
