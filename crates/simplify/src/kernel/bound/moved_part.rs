@@ -112,3 +112,34 @@ impl MovedPart<'_> {
         self.travelled[self.slot(v)]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::collapse::edge_ring::EdgeRing;
+    use crate::kernel::mesh::local_frame::Frame;
+
+    #[test]
+    fn where_the_bound_was_not_held_no_distance_is_sure() {
+        let mesh = meshlod_fixtures::grid(2);
+        let frame = Frame::new(&mesh, &mesh.bounds());
+        let places: Vec<Vec3> = mesh.positions.iter().map(|&at| frame.to_local(at)).collect();
+        let count = places.len();
+        let faces = mesh.faces.iter().map(|face| face.map(|v| v.0));
+        let input = &InputSurface::new(&mesh, frame, places, faces);
+        let between = &input.between(1.0);
+        let (edge_ring, ends) = (&EdgeRing::new(1.0), [0, 1]);
+        let is_sure = |now: f32, parts: &mut [f32]| {
+            let (next, travelled) = (&mut vec![0; count][..], &mut vec![0.0; count][..]);
+            let moved =
+                MovedPart { input, between, max_error: 1.0, base: 0, next, travelled, parts };
+            let (from, displacement) = (Vec3::ZERO, Vec3::ZERO);
+            let step = BoundedStep { edge_ring, ends, from, displacement, now };
+            moved.is_sure(&step, moved.travelled_with(&step))
+        };
+        assert!(is_sure(0.0, &mut []) && is_sure(0.2, &mut []) && !is_sure(0.3, &mut []));
+        for part in [0.0, 0.5] {
+            assert!(!is_sure(0.0, &mut vec![part; count]));
+        }
+    }
+}
