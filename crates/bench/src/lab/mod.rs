@@ -8,12 +8,14 @@
 //! | `table`, `plot` | tables in Markdown, plots in SVG |
 //! | `command`, `folders`, `machine` | the program that is measured, where, and on what |
 //! | `accuracy`, `volume`, `constriction`, `textured`, `parts` | what levels are like |
-//! | `speed`, `memory`, `reading` | what they cost |
+//! | `bounds` | what levels within a proved error are like, and cost |
+//! | `speed`, `memory`, `reading` | what levels cost |
 //! | `check`, `contacts` | defects and contacts |
 //! | `levels`, `strips`, `compression`, `flock` | one section for each of the other crates |
 //! | `compare` | meshoptimizer in alternating rounds, by the verb of this name alone |
 
 mod accuracy;
+mod bounds;
 mod check;
 mod command;
 mod compare;

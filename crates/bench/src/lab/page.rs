@@ -4,14 +4,14 @@ use anyhow::{Context, Result, bail};
 
 use crate::lab::folders::root;
 use crate::lab::{
-    accuracy, check, compression, constriction, contacts, flock, levels, machine, memory, parts,
-    reading, speed, strips, textured, volume,
+    accuracy, bounds, check, compression, constriction, contacts, flock, levels, machine, memory,
+    parts, reading, speed, strips, textured, volume,
 };
 
 type Section = fn() -> Result<String>;
 
 /// Sections and their titles, in the order of the page.
-const SECTIONS: [(&str, Section); 15] = [
+const SECTIONS: [(&str, Section); 16] = [
     // First, while this process is still small: see the module.
     ("Memory and determinism", memory::section),
     ("Accuracy", accuracy::section),
@@ -21,6 +21,7 @@ const SECTIONS: [(&str, Section); 15] = [
     ("Textured", textured::section),
     ("Many parts", parts::section),
     ("Speed of simplification", speed::section),
+    ("Bounds", bounds::section),
     ("Check", check::section),
     ("Contacts", contacts::section),
     ("All levels", levels::section),
