@@ -5,10 +5,10 @@ use std::sync::Mutex;
 use glam::Vec3;
 use meshlod_spatial::Sheet;
 
-use crate::kernel::bound::BoundedStep;
 use crate::kernel::bound::input_surface::{Covered, InputSurface};
-use crate::kernel::bound::moved_part::{Merged, MovedPart};
+use crate::kernel::bound::moved_part::{Beyond, Measured, MovedPart};
 use crate::kernel::bound::probe::Probe;
+use crate::kernel::bound::step::BoundedStep;
 use crate::kernel::collapse::deviation::FaceFan;
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::mesh::one_ring::GHOST;
@@ -31,18 +31,6 @@ pub(crate) struct Gauge<'v> {
 pub(crate) struct Gauges<'v> {
     input: &'v InputSurface,
     free: Mutex<Vec<Box<Gauge<'v>>>>,
-}
-
-/// Largest distance between surface and input around a step, or what is beyond the bound.
-pub(crate) type Measured = Result<f32, Beyond>;
-
-/// What a step would bring beyond the bound.
-#[derive(Clone, Copy)]
-pub(crate) enum Beyond {
-    /// An input vertex, or a sample of an edge beside it.
-    Input(Merged),
-    /// A point of the new faces, or of the old edges.
-    Surface,
 }
 
 impl<'v> Gauges<'v> {

@@ -8,8 +8,8 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-use crate::kernel::bound::BoundedStep;
-use crate::kernel::bound::gauge::Measured;
+use crate::kernel::bound::moved_part::Measured;
+use crate::kernel::bound::step::BoundedStep;
 use crate::kernel::collapse::edge_ring::EdgeRing;
 
 /// Number of steps measured since the last batch from which on it pays to look ahead.

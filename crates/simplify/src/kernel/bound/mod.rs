@@ -5,20 +5,29 @@
 //! bound, the surface is compared with the input: the input vertices merged into the vertices
 //! around with the new faces, and the new faces with the faces of the input that lie over them, or
 //! at points where there are none.
+//!
+//! Read in this order:
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `step` | a contraction that is asked for |
+//! | `input_surface` | the input, its sharp edges, and which of its faces lie over a new one |
+//! | `moved_part` | the surface as it has moved, and what of the input is merged where |
+//! | `gauge`, `probe` | the measurement of a step |
+//! | `look_ahead` | measurements of the next steps, side by side |
 
 mod gauge;
 pub(crate) mod input_surface;
 mod look_ahead;
 mod moved_part;
 pub(crate) mod probe;
-
-use glam::Vec3;
+mod step;
 
 use crate::kernel::bound::gauge::Gauges;
 use crate::kernel::bound::input_surface::{EdgeSamples, InputSurface};
 use crate::kernel::bound::look_ahead::LookAhead;
 use crate::kernel::bound::moved_part::MovedPart;
-use crate::kernel::collapse::edge_ring::EdgeRing;
+pub(crate) use crate::kernel::bound::step::BoundedStep;
 use crate::kernel::mesh::one_ring::VertexStore;
 
 /// Bound on the distance between surface and input, for the whole surface.
@@ -92,21 +101,6 @@ impl<'m> ErrorBound<'m> {
         }
         parts
     }
-}
-
-/// A contraction to be checked against the error bound.
-#[derive(Clone, Copy)]
-pub(crate) struct BoundedStep<'a> {
-    /// Ring of the edge, with the new vertex placed.
-    pub(crate) edge_ring: &'a EdgeRing,
-    /// Ends of the edge: `v1` is contracted into `v0`.
-    pub(crate) ends: [u32; 2],
-    /// Old place of `v0`.
-    pub(crate) from: Vec3,
-    /// New place relative to the old place of `v0`.
-    pub(crate) displacement: Vec3,
-    /// Squared deviation by this step alone.
-    pub(crate) now: f32,
 }
 
 impl BoundPart<'_> {

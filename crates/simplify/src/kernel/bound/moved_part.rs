@@ -1,11 +1,10 @@
-//! What is known of a part of the surface that has moved: which input vertices are merged where, and
-//! how far it has gone.
+//! A part of the surface that has moved: which input vertices are merged where, and how far it has
+//! gone.
 
 use glam::Vec3;
 
-use crate::kernel::bound::BoundedStep;
-use crate::kernel::bound::gauge::{Beyond, Measured};
 use crate::kernel::bound::input_surface::{EdgeSamples, InputSurface};
+use crate::kernel::bound::step::BoundedStep;
 
 /// Fraction of the bound up to which the sum of distances is trusted. Distances are taken at
 /// vertices and planes only, and are sometimes larger in between. Greatest distances of the bunny,
@@ -29,10 +28,22 @@ pub(crate) struct MovedPart<'v> {
 
 /// An input vertex with its predecessor in the ring of `head`.
 #[derive(Clone, Copy)]
-pub(crate) struct Merged {
+pub(crate) struct MergedVertex {
     pub(crate) head: u32,
     pub(crate) last: u32,
     pub(crate) at: u32,
+}
+
+/// Largest distance between surface and input around a step, or what is beyond the bound.
+pub(crate) type Measured = Result<f32, Beyond>;
+
+/// Reason why a step would bring the surface beyond the bound.
+#[derive(Clone, Copy)]
+pub(crate) enum Beyond {
+    /// An input vertex, or a sample of an edge beside it.
+    Input(MergedVertex),
+    /// A point of the new faces, or of the old edges.
+    Surface,
 }
 
 impl MovedPart<'_> {
@@ -74,12 +85,12 @@ impl MovedPart<'_> {
     }
 
     /// Returns the input vertices that are merged into a vertex, itself first.
-    pub(crate) fn merged(&self, head: u32) -> impl Iterator<Item = Merged> {
+    pub(crate) fn merged(&self, head: u32) -> impl Iterator<Item = MergedVertex> {
         let next = move |last: u32| {
             let at = self.next[self.slot(last)];
-            (at != head).then_some(Merged { head, last, at })
+            (at != head).then_some(MergedVertex { head, last, at })
         };
-        let first = Merged { head, last: head, at: head };
+        let first = MergedVertex { head, last: head, at: head };
         std::iter::successors(Some(first), move |merged| next(merged.at))
     }
 
@@ -92,7 +103,7 @@ impl MovedPart<'_> {
     /// Moves the input vertex that a step was refused for to directly after the head of its ring:
     /// what was too far once will most often be so again.
     pub(crate) fn remember(&mut self, found: &Measured) {
-        let Err(Beyond::Input(Merged { head, last, at })) = *found else { return };
+        let Err(Beyond::Input(MergedVertex { head, last, at })) = *found else { return };
         let [of_head, of_last, own] = [head, last, at].map(|v| self.slot(v));
         // Another step may have been refused for one of the ring in between.
         if last != head && at != head && self.next[of_last] == at {

@@ -161,7 +161,7 @@ impl FaceFan {
     /// Returns the squared distance from the faces to a point given relative to `v0`.
     #[inline]
     pub(crate) fn squared(&self, point: Vec3) -> f32 {
-        widest(Nearest { rows: &self.rows, point })
+        widest(NearestInFan { rows: &self.rows, point })
     }
 }
 
@@ -169,12 +169,12 @@ impl FaceFan {
 const FAR: f32 = 1.0001;
 
 /// SIMD task of [`FaceFan::squared`].
-struct Nearest<'f> {
+struct NearestInFan<'f> {
     rows: &'f [FaceRows],
     point: Vec3,
 }
 
-impl SimdTask for Nearest<'_> {
+impl SimdTask for NearestInFan<'_> {
     type Output = f32;
 
     #[inline(always)]
