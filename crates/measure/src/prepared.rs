@@ -52,17 +52,21 @@ impl<'m> PreparedSurface<'m> {
         Self::over(mesh, Arc::new(Bvh::new(mesh)?))
     }
 
-    /// Prepares a mesh whose hierarchy and mates are known, as a
-    /// run within an error leaves them.
+    /// Prepares a mesh whose hierarchy and mates are known, as a run within an error leaves them. They
+    /// must be those of this mesh: with others, distances and proofs are wrong.
     ///
     /// Cost: O(n), n = faces.
     ///
     /// # Errors
     /// As [`Self::new`].
+    ///
+    /// # Panics
+    /// The hierarchy has another number of faces.
     pub fn with_hierarchy(
         mesh: &'m Mesh,
         (bvh, mates): (Arc<Bvh>, Arc<Mates>),
     ) -> Result<Self, SurfaceError> {
+        assert_eq!(bvh.faces_in_leaf_order().len(), mesh.faces.len(), "faces of the hierarchy");
         let mut prepared = Self::over(mesh, bvh)?;
         prepared.mates = OnceLock::from(mates);
         Ok(prepared)

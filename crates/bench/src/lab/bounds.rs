@@ -40,8 +40,8 @@ pub fn section() -> Result<String> {
     let folder = tempfile::tempdir()?;
     let text = format!(
         "Whole commands, files included, best of {ROUNDS} by turns. *times*: relative to `simplify \
-         --faces` to as many faces; *used*: the upper bound of `measure --certified` in parts of the \
-         error; *cut*: faces of `extract --error` from `build`'s file, relative to those of \
+         --faces` to as many faces; *used*: the part of the error that is used, the lower bound of \
+         `measure --certified`, which encloses it to 1 %; *cut*: faces of `extract --error` from `build`'s file, relative to those of \
          `simplify`.\n\n"
     );
     let levels = levels(&program, folder.path())?;
@@ -68,7 +68,7 @@ fn levels(program: &Program, folder: &Path) -> Result<String> {
                 alternate(program, [&within[..], &to_faces[..], &extract[..]])?;
             let cut = number(&program.answer(extract)?, "faces")?;
             let used = program.answer(["measure", &mesh, &level, "--certified", "--samples=1"])?;
-            let used = number(&used["certified"], "upper")? / number(&report, "error_asked")?;
+            let used = number(&used["certified"], "lower")? / number(&report, "error_asked")?;
             table.row([
                 format!("{}, {error}", stem(name)),
                 faces.to_string(),

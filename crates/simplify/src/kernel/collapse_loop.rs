@@ -1,9 +1,10 @@
 //! The loop: contracts edges, the cheapest first.
 //!
-//! 1. Take a batch of up to sixteen vertices from the cheapest bucket of the queue
-//!    ([`CollapseLoop::take_batch`]).
+//! 1. Take a batch of up to sixteen vertices, within an error bound sixty-four, from the cheapest
+//!    bucket of the queue ([`CollapseLoop::take_batch`]).
 //! 2. Recost those whose edge is stale; requeue those that have become too expensive
 //!    ([`CollapseLoop::recost_batch`]).
+//!    Within a bound, measure the steps of the batch side by side ([`CollapseLoop::look_ahead`]).
 //! 3. Try the cheapest edge of the next vertex ([`CollapseLoop::contract`]): gather the one-ring of
 //!    the edge, compute its cost and the optimal place ([`CollapseLoop::price`]), and put the new
 //!    vertex there.
@@ -243,7 +244,8 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         }
         self.prefetch();
         self.recost_batch();
-        if self.ties.is_none() && self.within.as_mut().is_some_and(|within| within.looks_ahead()) {
+        let is_alone = self.ties.is_none();
+        if self.within.as_mut().is_some_and(|within| within.looks_ahead()) && is_alone {
             self.look_ahead();
         }
         true
@@ -302,10 +304,14 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
             let moved = placed.moved(&self.vertices);
             if self.deferral.delay(moved, placed.priced.bucket).is_none() {
                 let step = placed.step(self.edge_ring);
-                self.within.iter_mut().for_each(|within| within.plan(&step));
+                if let Some(within) = &mut self.within {
+                    within.plan(&step);
+                }
             }
         }
-        self.within.iter_mut().for_each(|within| within.look_ahead());
+        if let Some(within) = &mut self.within {
+            within.look_ahead();
+        }
     }
 
     /// Tries the cheapest edge of a vertex, and requeues the vertex accordingly.

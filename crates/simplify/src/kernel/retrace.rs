@@ -23,8 +23,9 @@ use crate::refusal::Refusals;
 /// Safety factor on the lowered bound, since the new contraction may err elsewhere.
 const CAUTION: f32 = 0.98;
 
-/// Limits of the factor by which a bound is lowered where it was not held.
-const FACTOR: [f32; 2] = [0.02, 0.97];
+/// Largest factor by which a bound is lowered where it was not held. Ten times too far away is no
+/// want of precision: a face lies over a hole, say. Nothing moves there again.
+const MOST_FACTOR: f32 = 0.97;
 
 /// Factor by which a bound is lowered further where it was not held again.
 const AGAIN: f32 = 0.7;
@@ -83,7 +84,7 @@ impl Retrace {
             };
             let all = || own.iter().chain(corners);
             let least = all().map(|&v| before[v as usize]).fold(1.0, f32::min);
-            let factor = (CAUTION / *ratio as f32).clamp(FACTOR[0], FACTOR[1]);
+            let factor = (CAUTION / *ratio as f32).min(MOST_FACTOR);
             let lower = if least < 1.0 { least * factor.min(AGAIN) } else { factor };
             let lower = if lower < LEAST_PART { 0.0 } else { lower };
             all().for_each(|&v| parts[v as usize] = parts[v as usize].min(lower));

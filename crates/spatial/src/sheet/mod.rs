@@ -15,7 +15,7 @@ use std::cmp::Ordering;
 use glam::DVec3;
 use meshlod_mesh::FaceId;
 
-use self::view::{View, normal};
+use self::view::{ROUNDING, View, normal};
 use crate::mates::Mates;
 use crate::{Bvh, Triangle};
 
@@ -23,9 +23,6 @@ use crate::{Bvh, Triangle};
 /// its own sides do not cross it: little at first, then most of what the height of a face leaves.
 const LITTLE: f64 = 0.02;
 const MUCH: f64 = 0.9;
-
-/// Rounding of a coordinate in the hierarchy's frame, in which the mesh is about 4 wide.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Most faces that are crossed on the way from the first one to one over the middle.
 const MOST_STEPS: usize = 64;
@@ -94,11 +91,7 @@ impl<'s> Sheet<'s> {
         let mut high = None;
         for (direction, inset) in [(own, little), (own, much), (other, much)] {
             let Some(direction) = direction else { continue };
-            match self.over(
-                &View::along(direction, &local, [inset, ROUNDING]),
-                start,
-                [enough, most],
-            ) {
+            match self.over(&View::along(direction, &local, inset), start, [enough, most]) {
                 Ok(height) => return Cover::Within((height + ROUNDING) / scale),
                 // Along another direction than its own, a point is not one of the triangle.
                 Err(at) => high = high.or(at.filter(|_| Some(direction) == own)),

@@ -11,9 +11,12 @@ const THIN: f64 = 1e-6;
 /// Part of a triangle by which it is shrunk at most.
 const MOST_SHRUNK: f64 = 0.9;
 
-/// Weights of the corners at the point that is counted: no number that sides of regular grids run
-/// through.
-const INSIDE: [f64; 3] = [0.318_309_886, 0.367_879_441, 0.313_810_673];
+/// Weights of the corners at the point that is counted: no simple fractions, so that edges of regular
+/// grids do not pass through it.
+const INSIDE: [f64; 3] = [0.311_830_913, 0.367_387_944, 0.320_781_143];
+
+/// Rounding of a coordinate in the hierarchy's frame, in which the mesh is about 4 wide.
+pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// A triangle, and the direction at right angles to it, along which others are seen.
 pub(super) struct View {
@@ -28,8 +31,6 @@ pub(super) struct View {
     /// Bound on the distance of a point of the triangle from that of the inner one over which it is
     /// seen.
     pub(super) spent: f64,
-    /// Rounding of a coordinate.
-    rounding: f64,
 }
 
 /// A triangle as it is seen: two coordinates across the direction, and the height along it.
@@ -38,7 +39,7 @@ pub(super) struct Seen([DVec3; 3]);
 /// How a seen triangle and the inner one of the view lie over each other.
 pub(super) struct Overlap<'s> {
     seen: &'s Seen,
-    rounding: f64,
+    inner: &'s [DVec2; 3],
     /// Distance of each corner beyond each line of the inner triangle: lines, then corners.
     beyond: [[f64; 3]; 3],
     /// Twice the area, signed, between each side and each corner of the inner triangle, and its
@@ -49,11 +50,7 @@ pub(super) struct Overlap<'s> {
 
 impl View {
     /// Looks at a triangle along a direction of length one. Shrinks it by at most `inset`.
-    pub(super) fn along(
-        direction: DVec3,
-        triangle: &Triangle,
-        [inset, rounding]: [f64; 2],
-    ) -> Self {
+    pub(super) fn along(direction: DVec3, triangle: &Triangle, inset: f64) -> Self {
         let (x, y) = direction.any_orthonormal_pair();
         let origin = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
         let reach = triangle.map(|at| at.distance_squared(origin));
@@ -65,7 +62,6 @@ impl View {
             inner: [DVec2::ZERO; 3],
             lines: [(DVec2::ZERO, 0.0); 3],
             spent: part * reach,
-            rounding,
         };
         let seen = view.see(triangle);
         view.spent += seen.height();
@@ -99,7 +95,7 @@ impl View {
 
     /// Compares a seen triangle with the inner one.
     #[inline(always)]
-    pub(super) fn compare<'s>(&self, seen: &'s Seen) -> Overlap<'s> {
+    pub(super) fn compare<'s>(&'s self, seen: &'s Seen) -> Overlap<'s> {
         let (mut beyond, mut left, mut near) = ([[0.0; 3]; 3], [[0.0; 3]; 3], [0.0; 3]);
         for i in 0..3 {
             let (across, distance) = self.lines[i];
@@ -109,9 +105,9 @@ impl View {
                 beyond[i][k] = across.dot(seen.0[k].xy()) - distance;
                 left[i][k] = along.perp_dot(self.inner[k] - from);
             }
-            near[i] = self.rounding * (along.x.abs() + along.y.abs());
+            near[i] = ROUNDING * (along.x.abs() + along.y.abs());
         }
-        Overlap { seen, rounding: self.rounding, beyond, left, near }
+        Overlap { seen, inner: &self.inner, beyond, left, near }
     }
 }
 
@@ -147,11 +143,11 @@ impl Overlap<'_> {
     /// Returns which sides cross the inner triangle, or come near it. A side without length does not.
     #[inline(always)]
     pub(super) fn crossed_sides(&self) -> [bool; 3] {
-        let Self { seen: Seen(corners), rounding, beyond, left, near } = self;
+        let Self { seen: Seen(corners), beyond, left, near, .. } = self;
         let mut is_crossed = [false; 3];
         for i in 0..3 {
             let k = NEXT[i];
-            let is_outside = |line: &[f64; 3]| (line[i] > *rounding) & (line[k] > *rounding);
+            let is_outside = |line: &[f64; 3]| (line[i] > ROUNDING) & (line[k] > ROUNDING);
             let is_outside =
                 is_outside(&beyond[0]) | is_outside(&beyond[1]) | is_outside(&beyond[2]);
             let [a, b, c] = left[i];
@@ -183,14 +179,18 @@ impl Overlap<'_> {
 
     /// Returns true if all corners are beyond one line of the inner triangle.
     fn is_apart(&self) -> bool {
-        self.beyond.iter().any(|line| line.iter().all(|&at| at > self.rounding))
+        self.beyond.iter().any(|line| line.iter().all(|&at| at > ROUNDING))
     }
 
-    /// Returns a highest point, above or below, of the part over the inner triangle, up to rounding
-    /// not below the true one: a corner of either triangle, or a place where their sides cross.
+    /// Returns a highest point, above or below, of the part over the inner triangle: a corner of either
+    /// triangle, or a place where their sides cross.
+    ///
+    /// Where a side runs along one of the inner triangle to within rounding, a crossing may be missed.
+    /// The face across that side is as high there: of all faces that cross each other's sides over the
+    /// triangle, the highest is not below the true one, up to rounding.
     pub(super) fn highest(&self) -> DVec3 {
         let Seen(corners) = self.seen;
-        let is_inside = |at: [f64; 3]| at.into_iter().all(|beyond| beyond <= self.rounding);
+        let is_inside = |at: [f64; 3]| at.into_iter().all(|beyond| beyond <= ROUNDING);
         let mut highest = DVec3::ZERO;
         let mut add = |at: DVec3| {
             if at.z.abs() > highest.z.abs() {
@@ -210,7 +210,7 @@ impl Overlap<'_> {
                 let part = line[i] / (line[i] - line[k]);
                 let between = |from: f64, to: f64| from + (to - from) * part;
                 if is_inside(self.beyond.map(|line| between(line[i], line[k]))) {
-                    let room = self.rounding / (line[i] - line[k]).abs();
+                    let room = ROUNDING / (line[i] - line[k]).abs();
                     add(raised(
                         corners[i].lerp(corners[k], part),
                         [corners[i].z, corners[k].z],
@@ -225,13 +225,12 @@ impl Overlap<'_> {
             let is_over =
                 (0..3).all(|k| weights[k] >= -near[k]) || (0..3).all(|k| weights[k] <= near[k]);
             if is_over {
-                let [a, b, c] = *corners;
+                let [a, b, c] = [0, 1, 2].map(|k| corners[k].z);
                 let sum: f64 = weights.iter().sum();
-                let at = (a * weights[0] + b * weights[1] + c * weights[2]) / sum;
-                let heights = [a.z.min(b.z).min(c.z), a.z.max(b.z).max(c.z)];
+                let z = (a * weights[0] + b * weights[1] + c * weights[2]) / sum;
+                let heights = [a.min(b).min(c), a.max(b).max(c)];
                 let room = near.iter().sum::<f64>() / sum.abs();
-                let at = if at.is_finite() { at } else { a };
-                add(raised(at, heights, room));
+                add(raised(self.inner[of_inner].extend(z), heights, room));
             }
         }
         highest

@@ -30,7 +30,7 @@ pub(crate) struct Gauge<'v> {
 /// Gauges for all threads that measure side by side.
 pub(crate) struct Gauges<'v> {
     input: &'v InputSurface,
-    free: Mutex<Vec<Box<Gauge<'v>>>>,
+    free: Mutex<Vec<Gauge<'v>>>,
 }
 
 impl<'v> Gauges<'v> {
@@ -41,10 +41,11 @@ impl<'v> Gauges<'v> {
     /// Lends a gauge.
     pub(crate) fn with<T>(&self, work: impl FnOnce(&mut Gauge<'v>) -> T) -> T {
         let free = || self.free.lock().expect("no holder of the lock panics");
-        let (old, new) = (FaceFan::default(), FaceFan::default());
         let lent = free().pop();
-        let mut gauge =
-            lent.unwrap_or_else(|| Box::new(Gauge { old, new, sheet: self.input.sheet() }));
+        let mut gauge = lent.unwrap_or_else(|| {
+            let (old, new) = (FaceFan::default(), FaceFan::default());
+            Gauge { old, new, sheet: self.input.sheet() }
+        });
         let result = work(&mut gauge);
         free().push(gauge);
         result

@@ -18,7 +18,7 @@ const WORTH: usize = 4;
 /// Steps that are planned, and what was found of them.
 #[derive(Default)]
 pub(crate) struct LookAhead {
-    steps: Vec<Box<PlannedStep>>,
+    steps: Vec<PlannedStep>,
     /// Vertices that remained of edges contracted since the steps were planned.
     changed: Vec<u32>,
     /// Number of steps measured since then.
@@ -57,7 +57,7 @@ impl LookAhead {
     }
 
     pub(crate) fn plan(&mut self, step: &BoundedStep<'_>) {
-        self.steps.push(Box::new(PlannedStep::of(step)));
+        self.steps.push(PlannedStep::of(step));
     }
 
     /// Measures all planned steps.
@@ -74,12 +74,15 @@ impl LookAhead {
     /// Returns what was found of a step, if it was planned and still holds. Counts it.
     pub(crate) fn take(&mut self, step: &BoundedStep<'_>) -> Option<Measured> {
         self.measured += 1;
+        if self.steps.is_empty() {
+            return None;
+        }
         let BoundedStep { edge_ring, ends, from, displacement, .. } = step;
         let is_changed = |v: &u32| ends.contains(v) || edge_ring.ids().contains(v);
         if self.changed.iter().any(is_changed) {
             return None;
         }
-        let is_same = |planned: &&Box<PlannedStep>| {
+        let is_same = |planned: &&PlannedStep| {
             planned.ends == *ends && (planned.from, planned.displacement) == (*from, *displacement)
         };
         self.steps.iter().find(is_same)?.found
@@ -87,6 +90,40 @@ impl LookAhead {
 
     /// Notes that an edge was contracted into a vertex.
     pub(crate) fn forget_around(&mut self, kept: u32) {
-        self.changed.push(kept);
+        if !self.steps.is_empty() {
+            self.changed.push(kept);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_planned_step_is_measured_once_unless_something_changes_around_it() {
+        let mut edge_ring = EdgeRing::new(1.0);
+        (edge_ring.ids[0], edge_ring.len) = (7, 1);
+        let step = |v0: u32| BoundedStep {
+            edge_ring: &edge_ring,
+            ends: [v0, 2],
+            from: Vec3::ZERO,
+            displacement: Vec3::X,
+            now: 0.5,
+        };
+        let mut ahead = LookAhead::default();
+        (0..WORTH).for_each(|_| assert!(ahead.take(&step(1)).is_none()));
+        rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap().install(|| {
+            assert!(ahead.begin() && !ahead.begin());
+            ahead.plan(&step(1));
+            ahead.measure(|step| Ok(step.now));
+        });
+        assert_eq!(ahead.found().count(), 1);
+        assert!(matches!(ahead.take(&step(1)), Some(Ok(0.5))));
+        assert!(ahead.take(&step(3)).is_none(), "not planned");
+        ahead.forget_around(4);
+        assert!(ahead.take(&step(1)).is_some(), "far away");
+        ahead.forget_around(7);
+        assert!(ahead.take(&step(1)).is_none(), "of its ring");
     }
 }

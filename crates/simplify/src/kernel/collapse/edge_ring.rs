@@ -12,7 +12,7 @@ use std::ops::Range;
 
 use glam::{DVec3, Vec3, Vec4};
 
-use crate::kernel::mesh::one_ring::{GHOST, MAX_RING, Vertices, index_in, index_in_ring};
+use crate::kernel::mesh::one_ring::{GHOST, LONG, MAX_RING, Vertices, index_in, index_in_ring};
 use crate::kernel::mesh::vertex::{RING, VertexFlags, VertexQuadric, per_square};
 use crate::kernel::simd::{LANES, Row, Row3, select_max, sum_of, transpose, transpose_back};
 use crate::refusal::Refusal;
@@ -145,10 +145,9 @@ impl EdgeRing {
             let copy_of_end = |w: &u32| vertices.origin(*w) == vertices.origin(end);
             let new = self.ids[others].iter().filter(|&&w| w != GHOST);
             for &w in new {
-                // Also not between copies, another of which may have the edge, and not to a hub,
-                // whose list may contain dead vertices.
-                let vertex = vertices.get(w);
-                let unclear = vertices.is_split(w) || vertex.flags.any(VertexFlags::BARRED);
+                // Also not between copies, another of which may have the edge, and not to a vertex
+                // with a long ring, which may contain dead ones.
+                let unclear = vertices.is_split(w) || vertices.get(w).len == LONG;
                 if unclear || vertices.neighbours(w).iter().any(copy_of_end) {
                     return Err(Refusal::NonManifold);
                 }
