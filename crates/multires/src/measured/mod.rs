@@ -75,9 +75,10 @@ impl Forest {
     /// leaves as vertices; distances up to `noise` count as none.
     pub(crate) fn measure_against(&mut self, input: &Mesh, noise: f64) {
         let Ok(bvh) = Bvh::new(input) else { return };
-        let measure = Measure::new(self, AtNodes(self), (input, &bvh), noise);
+        let measure = Measure::new(self, AtNodes(self), input, noise);
         let rounded = Length16::up(noise);
-        let errors = measure.replay(|u| (Length16(0), self.updates[u].error.min(rounded)));
+        let known = |u: usize| (Length16(0), self.updates[u].error.min(rounded));
+        let errors = measure.replay(Probes::new(&bvh, self), known);
         self.set_errors(errors);
         if let Some(posing) = self.posing.clone() {
             self.measure_poses(&*posing, input, noise);
@@ -95,9 +96,10 @@ impl Forest {
                 return vec![Length16::INFINITE; self.updates.len()];
             };
             let corners = table.corners(self, posing, pose);
-            let measure = Measure::new(self, corners, (&input, &bvh), noise);
+            let measure = Measure::new(self, corners, &input, noise);
             // Only what is farther away than in the pose of the mesh counts.
-            measure.replay(|u| (self.updates[u].error, self.updates[u].error))
+            let known = |u: usize| (self.updates[u].error, self.updates[u].error);
+            measure.replay(Probes::new(&bvh, self), known)
         };
         let greatest = |mut all: Vec<Length16>, more: Vec<Length16>| {
             all.iter_mut().zip(more).for_each(|(error, more)| *error = (*error).max(more));
@@ -108,73 +110,126 @@ impl Forest {
     }
 }
 
+/// Number of updates that are replayed together: enough to be worth sharing out.
+const BLOCK: usize = 1024;
+
 /// Replay of the contractions that measures distances.
 struct Measure<'f, C> {
     forest: &'f Forest,
     stars: Stars,
     corners: C,
     handed_on: HandedOn,
-    probes: Probes<'f>,
-    /// Coarse side of the current update: faces, by number and corners.
-    coarse: Vec<CoarseFace>,
+    /// Errors by the points of the input alone.
+    from_input: MonotoneErrors,
     noise: f64,
+}
+
+/// Updates that have been replayed, but not probed.
+#[derive(Debug, Default)]
+struct Block {
+    first: usize,
+    /// By update: the distance of the input's points, and the least that matters.
+    apart: Vec<[f64; 2]>,
+    /// By update: the end of its coarse side.
+    ends: Vec<usize>,
+    coarse: Vec<CoarseFace>,
 }
 
 /// Face of a coarse side, with its corners rotated so that the new node's comes first.
 #[derive(Clone, Copy, Debug)]
 struct CoarseFace {
     face: u32,
-    nodes: [u32; 3],
     corners: [DVec3; 3],
 }
 
-impl<'f, C: Corners> Measure<'f, C> {
-    fn new(forest: &'f Forest, corners: C, (input, bvh): (&Mesh, &'f Bvh), noise: f64) -> Self {
+impl Block {
+    /// Returns the coarse side of the update at this place.
+    fn coarse(&self, i: usize) -> &[CoarseFace] {
+        let start = i.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.coarse[start..self.ends[i]]
+    }
+}
+
+impl<'f, C: Corners + Send> Measure<'f, C> {
+    fn new(forest: &'f Forest, corners: C, input: &Mesh, noise: f64) -> Self {
         Self {
             forest,
             stars: Stars::new(forest),
             corners,
             handed_on: HandedOn::new(input),
-            probes: Probes::new(bvh, forest.positions.len()),
-            coarse: Vec::new(),
+            from_input: MonotoneErrors::new(forest),
             noise,
         }
     }
 
     /// Replays all updates and returns their errors. `known(u)` gives a lower bound of u's error,
     /// and its error if all distances are below the noise.
-    fn replay(mut self, known: impl Fn(usize) -> (Length16, Length16)) -> Vec<Length16> {
-        let mut errors = MonotoneErrors::new(self.forest);
-        for u in 0..self.forest.updates.len() {
+    ///
+    /// While a block is replayed, which goes step by step, the one before it is probed.
+    fn replay(
+        mut self,
+        mut probes: Probes<'_>,
+        known: impl Fn(usize) -> (Length16, Length16) + Sync,
+    ) -> Vec<Length16> {
+        let (forest, noise) = (self.forest, self.noise);
+        let own = |u: usize, apart: f64| {
             let (known, without) = known(u);
-            let apart = self.contract(u, errors.least(self.forest).max(known).get());
-            let own = if apart > self.noise { Length16::up(apart).max(known) } else { without };
-            errors.push(self.forest, own);
+            if apart > noise { Length16::up(apart).max(known) } else { without }
+        };
+        let mut errors = MonotoneErrors::new(forest);
+        let mut block = Block::default();
+        loop {
+            let next = block.first + block.ends.len();
+            let (replayed, found) = rayon::join(
+                || self.block(next, |u| known(u).0, own),
+                || probes.farthest(forest, &block),
+            );
+            for (i, &(apart, near)) in found.iter().enumerate() {
+                errors.push(forest, own(block.first + i, apart));
+                probes.note(forest.node(block.first + i), near);
+            }
+            if replayed.ends.is_empty() {
+                return errors.finish();
+            }
+            block = replayed;
         }
-        errors.finish()
     }
 
-    /// Replays an update. Returns the greatest distance found, or anything up to `least` or the
-    /// noise if it is no greater.
-    fn contract(&mut self, u: usize, least: f64) -> f64 {
+    /// Replays the next updates, from the `first` one on.
+    fn block(
+        &mut self,
+        first: usize,
+        known: impl Fn(usize) -> Length16,
+        own: impl Fn(usize, f64) -> Length16,
+    ) -> Block {
+        let mut block = Block { first, ..Block::default() };
+        for u in (first..self.forest.updates.len()).take(BLOCK) {
+            let start = block.coarse.len();
+            self.contract(u, &mut block.coarse);
+            let least = self.from_input.least(self.forest).max(known(u)).get().max(self.noise);
+            let apart = match &block.coarse[start..] {
+                [] => f64::INFINITY,
+                coarse => self.handed_on.pass(self.stars.changed(), coarse, least),
+            };
+            self.from_input.push(self.forest, own(u, apart));
+            block.apart.push([apart, least]);
+            block.ends.push(block.coarse.len());
+        }
+        block
+    }
+
+    /// Replays an update, and appends its coarse side.
+    fn contract(&mut self, u: usize, coarse: &mut Vec<CoarseFace>) {
         let node = self.forest.node(u) as u32;
         self.stars.contract(self.forest.updates[u].children, node);
         self.corners.contract(&self.stars, node);
-        self.coarse.clear();
         for &face in self.stars.changed() {
-            let Some(mut nodes) = self.stars.face(face) else { continue };
+            let Some(nodes) = self.stars.face(face) else { continue };
             let first = nodes.iter().position(|&corner| corner == node).unwrap_or(0);
             let mut corners =
                 std::array::from_fn(|corner| self.corners.at(face, corner, nodes[corner]));
-            nodes.rotate_left(first);
             corners.rotate_left(first);
-            self.coarse.push(CoarseFace { face, nodes, corners });
+            coarse.push(CoarseFace { face, corners });
         }
-        if self.coarse.is_empty() {
-            return f64::INFINITY;
-        }
-        let least = least.max(self.noise);
-        let farthest = self.handed_on.pass(self.stars.changed(), &self.coarse, least);
-        farthest.max(self.probes.farthest(&self.coarse, farthest.max(least)))
     }
 }

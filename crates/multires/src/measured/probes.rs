@@ -1,10 +1,12 @@
-//! Distances of points from the input.
+//! Distances of points of new faces from the input.
 
 use glam::DVec3;
 use meshlod_mesh::FaceId;
 use meshlod_spatial::Bvh;
+use rayon::prelude::*;
 
-use super::CoarseFace;
+use super::{Block, CoarseFace};
+use crate::forest::Forest;
 
 /// Distances of points from the input, near points that were asked for before.
 #[derive(Debug)]
@@ -15,41 +17,71 @@ pub(super) struct Probes<'b> {
 }
 
 impl<'b> Probes<'b> {
-    pub(super) fn new(input: &'b Bvh, nodes: usize) -> Self {
-        Self { input, near: vec![None; nodes] }
+    pub(super) fn new(input: &'b Bvh, forest: &Forest) -> Self {
+        let mut near = vec![None; forest.positions.len()];
+        for (i, face) in forest.faces.iter().enumerate() {
+            face.iter().for_each(|&leaf| near[leaf as usize] = Some(FaceId::new(i)));
+        }
+        Self { input, near }
+    }
+
+    /// Notes a face of the input near a node.
+    pub(super) fn note(&mut self, node: usize, near: Option<FaceId>) {
+        self.near[node] = near;
+    }
+
+    /// Returns for each update of a block the greatest distance known of its coarse side and the
+    /// input, or anything up to the least that matters if it is no greater; and a face of the input
+    /// near its node.
+    pub(super) fn farthest(&self, forest: &Forest, block: &Block) -> Vec<(f64, Option<FaceId>)> {
+        let of_update = |i: usize| {
+            let [apart, least] = block.apart[i];
+            let hint = self.hint(forest, block.first + i);
+            match block.coarse(i) {
+                [] => (apart, hint),
+                coarse => self.of_coarse(coarse, hint, apart.max(least)),
+            }
+        };
+        (0..block.ends.len()).into_par_iter().map(of_update).collect()
     }
 
     /// Returns the greatest distance of the new node and of the middles of the new edges from the
-    /// input, or anything up to `least` if it is no greater.
-    pub(super) fn farthest(&mut self, coarse: &[CoarseFace], least: f64) -> f64 {
-        let CoarseFace { nodes: [node, other, _], corners: [apex, ..], .. } = coarse[0];
-        let hint = self.near[other as usize];
+    /// input, or anything up to `least` if it is no greater; with the face near the node.
+    fn of_coarse(
+        &self,
+        coarse: &[CoarseFace],
+        hint: Option<FaceId>,
+        least: f64,
+    ) -> (f64, Option<FaceId>) {
+        let apex = coarse[0].corners[0];
         let (mut farthest, near) = self.distance(apex, hint, least);
-        self.near[node as usize] = Some(near);
-        for corner in coarse.iter().flat_map(|face| &face.nodes[1..]) {
-            self.near[*corner as usize].get_or_insert(near);
-        }
+        farthest = farthest.max(least);
         for &CoarseFace { corners: [own, b, _], .. } in coarse {
             if own != apex {
                 // A pose may tear the node's wedges apart.
-                farthest = farthest.max(self.at(own, node, farthest.max(least)));
+                farthest = farthest.max(self.distance(own, near, farthest).0);
             }
-            farthest = farthest.max(self.at(own.midpoint(b), node, farthest.max(least)));
+            farthest = farthest.max(self.distance(own.midpoint(b), near, farthest).0);
         }
-        farthest
+        (farthest, near)
     }
 
-    /// Returns the distance of a point near a node from the input, or anything up to `least` if it
-    /// is no greater.
-    fn at(&self, at: DVec3, node: u32, least: f64) -> f64 {
-        self.distance(at, self.near[node as usize], least).0
+    /// Returns a face of the input near an update: one that was found near the closest node below.
+    fn hint(&self, forest: &Forest, u: usize) -> Option<FaceId> {
+        let mut node = forest.updates[u].children[0];
+        loop {
+            match (self.near[node as usize], forest.update_of(node)) {
+                (None, Some(below)) => node = forest.updates[below].children[0],
+                (near, _) => return near,
+            }
+        }
     }
 
     /// Returns the distance of a point from the input with a face of it as near, or any within
     /// `enough`.
-    fn distance(&self, at: DVec3, hint: Option<FaceId>, enough: f64) -> (f64, FaceId) {
+    fn distance(&self, at: DVec3, hint: Option<FaceId>, enough: f64) -> (f64, Option<FaceId>) {
         let near = self.input.near(at.to_array(), hint, [enough, f64::INFINITY]);
         let near = near.expect("there is no limit");
-        (near.distance_squared.sqrt(), near.face)
+        (near.distance_squared.sqrt(), Some(near.face))
     }
 }

@@ -5,7 +5,7 @@ use meshlod_mesh::{Bounds, FaceId, Mesh, VertexId};
 use meshlod_multires::{Cut, Implicit, Limits, SlotMesh, Surroundings};
 
 /// Part of a limit by which a face that passes may still exceed it, which the limits make up for.
-const SLACK: f64 = 0.01;
+const SLACK: f64 = 0.002;
 
 /// Part of a limit that is left for positions to be rounded in when they are written.
 pub(super) const RESERVE: f64 = 1e-3;
