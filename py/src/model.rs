@@ -4,7 +4,9 @@ use std::fs::File;
 use std::path::{Path, PathBuf, absolute};
 
 use meshlod::io::write_file;
-use meshlod::jobs::{self, BuildRequest, ExtractReport, ExtractRequest, JobError, KnownError};
+use meshlod::jobs::{
+    self, BuildRequest, ExtractReport, ExtractRequest, JobError, KnownError, LevelOrder,
+};
 use meshlod::multires::{ErrorKind, FileError, ModelFile};
 use meshlod::{IoError, Scene};
 use pyo3::prelude::*;
@@ -35,6 +37,7 @@ pub fn build(
     path: PathBuf,
     lossless: bool,
     errors: &str,
+    order: &str,
 ) -> PyResult<Vec<String>> {
     let errors = match errors {
         "estimate" => ErrorKind::Estimate,
@@ -45,7 +48,12 @@ pub fn build(
             return Err(raised(format_args!("errors must be {names}, not {errors}")));
         }
     };
-    let request = BuildRequest { lossless, errors, ..BuildRequest::default() };
+    let order = match order {
+        "cost" => LevelOrder::Cost,
+        "error" => LevelOrder::Error,
+        _ => return Err(raised(format_args!("order must be cost or error, not {order}"))),
+    };
+    let request = BuildRequest { lossless, errors, order, ..BuildRequest::default() };
     let scene = scene.shared();
     // The folder of the process may change while the work runs.
     let target = absolute(&path)?;

@@ -235,17 +235,27 @@ class Mesh(Immutable):
             warn(f"{name}: the target was not met")
         return size
 
-    def build(self, path: Path, *, lossless: bool = False, errors: str = "measured") -> Model:
+    def build(
+        self,
+        path: Path,
+        *,
+        lossless: bool = False,
+        errors: str = "measured",
+        order: str = "cost",
+    ) -> Model:
         """Writes all levels to a ``.mlod`` file, and opens it.
 
-        ``errors`` are ``"estimate"``, ``"measured"``, or ``"bound"``, which are proved. Ctrl-C
-        leaves a file that was there as it was.
+        ``errors`` are ``"estimate"``, ``"measured"``, or ``"bound"``, which are proved. ``order`` is
+        that of the contractions: ``"cost"``, or ``"error"``, by which levels within an error have a
+        fifth to a third fewer faces, and building takes about ten times as long. Ctrl-C leaves a file
+        that was there as it was.
         """
         from ._model import Model
 
         name = _asked.path_name(path)
         scene = _native.NativeScene.of("", self._native)
-        _native.build(scene, name, bool(lossless), _asked.word("errors", errors))
+        words = _asked.word("errors", errors), _asked.word("order", order)
+        _native.build(scene, name, bool(lossless), *words)
         return Model(name)
 
     def render(

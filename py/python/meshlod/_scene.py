@@ -117,18 +117,25 @@ class Scene(Immutable):
         for note in _native.save(self._native, name, word):
             warn(f"{name}: {note}")
 
-    def build(self, path: Path, *, lossless: bool = False, errors: str = "measured") -> Model:
+    def build(
+        self,
+        path: Path,
+        *,
+        lossless: bool = False,
+        errors: str = "measured",
+        order: str = "cost",
+    ) -> Model:
         """Writes all levels to a ``.mlod`` file, with the rest of the scene, and opens it.
 
         ``errors`` are ``"estimate"``, ``"measured"``, or ``"bound"``, which are proved. Measured
-        errors also hold in up to 64 poses of the scene's animations. A
-        :class:`MeshlodWarning` says what the file lacks.
+        errors also hold in up to 64 poses of the scene's animations. ``order`` is that of
+        :meth:`Mesh.build`. A :class:`MeshlodWarning` says what the file lacks.
         """
         from ._model import Model
 
         name = _asked.path_name(path)
-        word = _asked.word("errors", errors)
-        for note in _native.build(self._native, name, bool(lossless), word):
+        words = _asked.word("errors", errors), _asked.word("order", order)
+        for note in _native.build(self._native, name, bool(lossless), *words):
             warn(f"{name}: {note}")
         return Model(name)
 

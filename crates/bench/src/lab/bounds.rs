@@ -42,22 +42,33 @@ pub fn section() -> Result<String> {
         "Whole commands, files included, best of {ROUNDS} by turns. *times*: relative to `simplify \
          --faces` to as many faces; *used*: the part of the error that is used, the lower bound of \
          `measure --certified`, which encloses it to 1 %; *cut*: faces of `extract --error` from `build`'s file, relative to those of \
-         `simplify`.\n\n"
+         `simplify`; *by error*: from a file of `build --order error`.\n\n"
     );
     let levels = levels(&program, folder.path())?;
     Ok(text + &levels + &flats(&program, folder.path())?)
 }
 
 fn levels(program: &Program, folder: &Path) -> Result<String> {
-    let headings =
-        ["mesh, error", "faces", "rounds", "s", "plain, s", "times", "used", "extract, s", "cut"];
+    let headings = [
+        "mesh, error",
+        "faces",
+        "rounds",
+        "s",
+        "plain, s",
+        "times",
+        "used",
+        "extract, s",
+        "cut",
+        "by error",
+    ];
     let mut table = Table::new(headings);
-    let [level, plain, file] =
-        ["level.ply", "plain.ply", "levels.mlod"].map(|name| path_in(folder, name));
+    let [level, plain, file, by_error] =
+        ["level.ply", "plain.ply", "cost.mlod", "error.mlod"].map(|name| path_in(folder, name));
     for name in MESHES {
         let Some(mesh) = crate::shared_mesh(name) else { continue };
         let mesh = mesh.display().to_string();
         program.answer(["build", &mesh, &file])?;
+        program.answer(["build", &mesh, &by_error, "--order", "error"])?;
         for error in ERRORS.map(|error| format!("{error}%")) {
             let within = ["simplify", &mesh, &level, "--error", &error];
             let report = program.answer(within)?;
@@ -66,7 +77,11 @@ fn levels(program: &Program, folder: &Path) -> Result<String> {
             let extract = ["extract", &file, &plain, "--error", &error];
             let [proved, simplified, extracted] =
                 alternate(program, [&within[..], &to_faces[..], &extract[..]])?;
-            let cut = number(&program.answer(extract)?, "faces")?;
+            let cuts = [&file, &by_error].map(|file| -> Result<String> {
+                let cut = program.answer(["extract", file, &plain, "--error", &error])?;
+                Ok(format!("{:.2}", number(&cut, "faces")? / faces))
+            });
+            let [by_cost, by_error] = cuts;
             let used = program.answer(["measure", &mesh, &level, "--certified", "--samples=1"])?;
             let used = number(&used["certified"], "lower")? / number(&report, "error_asked")?;
             table.row([
@@ -78,7 +93,8 @@ fn levels(program: &Program, folder: &Path) -> Result<String> {
                 format!("{:.1}", proved / simplified),
                 format!("{used:.3}"),
                 format!("{extracted:.2}"),
-                format!("{:.2}", cut / faces),
+                by_cost?,
+                by_error?,
             ]);
         }
     }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
-use meshlod::jobs::{self, BuildRequest, LevelModel};
+use meshlod::jobs::{self, BuildRequest, LevelModel, LevelOrder};
 use meshlod::multires::ErrorKind;
 use meshlod::{Constraints, Method};
 
@@ -42,6 +42,9 @@ pub struct Build {
     #[arg(long, value_name = "NAME", default_value = Method::LindstromTurk.name(),
         help = parse::methods())]
     method: Method,
+    /// What puts the contractions in order
+    #[arg(long, value_name = "ORDER", default_value = "cost")]
+    order: OrderArg,
     /// Compute proven error bounds in place of measured errors
     ///
     /// Levels of the same error have two to six times as many faces. The errors of right triangles
@@ -50,7 +53,7 @@ pub struct Build {
     bounds: bool,
     /// Keep estimates in place of measured errors: faster
     ///
-    /// Building is two to three times faster. Cuts that go by the stored errors, such as those of
+    /// Building is about twice as fast. Cuts that go by the stored errors, such as those of
     /// extract --unverified, are then off by up to three times as much.
     #[arg(long, conflicts_with = "bounds")]
     estimates: bool,
@@ -97,6 +100,15 @@ enum ModelArg {
     RightTriangles,
 }
 
+#[derive(Clone, Copy, ValueEnum)]
+enum OrderArg {
+    /// Their cost: quick
+    Cost,
+    /// The error they need: a fifth to a third fewer faces within the same error, for about ten
+    /// times the time
+    Error,
+}
+
 impl Build {
     pub fn run(mut self, session: &Session) -> Result<Answer, Failure> {
         model_file::check_output(&self.output)?;
@@ -129,6 +141,10 @@ impl Build {
             model: match self.model {
                 ModelArg::Contractions => LevelModel::Contractions,
                 ModelArg::RightTriangles => LevelModel::RightTriangles,
+            },
+            order: match self.order {
+                OrderArg::Cost => LevelOrder::Cost,
+                OrderArg::Error => LevelOrder::Error,
             },
             errors: match (self.bounds, self.estimates) {
                 (true, _) => ErrorKind::Bound,

@@ -44,7 +44,9 @@ mod watch;
 mod written_as;
 
 #[cfg(feature = "multires")]
-pub use build::{BuildReport, BuildRequest, BuiltLevels, ErrorPoses, LevelModel, build};
+pub use build::{
+    BuildReport, BuildRequest, BuiltLevels, ErrorPoses, LevelModel, LevelOrder, build,
+};
 #[cfg(feature = "check")]
 pub use check::{
     CONTACT_KINDS, CheckReport, CheckRequest, Contacts, Grade, Group, ObjectPair, Ownership, check,

@@ -1,5 +1,6 @@
 //! Levels by the contractions of a mesh, with the rest of its scene.
 
+use std::iter::successors;
 use std::sync::Arc;
 
 use meshlod_io::Scene;
@@ -8,12 +9,21 @@ use meshlod_mesh::{AttributeBounds, Mesh, closed_faces};
 use meshlod_multires::{
     Archive, BuildError, Certificate, ErrorKind, Forest, Recorder, Storage, StoredErrors,
 };
-use meshlod_simplify::{ExactVolumeError, Held, Options, Simplifier, Target};
+use meshlod_simplify::{
+    ExactVolumeError, Held, Observe, Options, Report, Simplifier, SimplifyError, Target,
+};
 
-use super::{BuildReport, BuildRequest, BuiltLevels, ErrorPoses, LevelModel};
+use super::{BuildReport, BuildRequest, BuiltLevels, ErrorPoses, LevelModel, LevelOrder};
 use crate::jobs::unused::{unused_parts, used_vertices};
 use crate::jobs::{About, Contractions, JobError, Remark, Watch, end_if_cancelled};
 use crate::model::{PackedScene, PlacedScene, PoseCounts, model_limits, place_scene};
+
+/// Errors within which contractions are made one after another, in parts of the diagonal: twice the
+/// default rounding first, and each greater by this factor. Bunny within .3, .1 and .03 %, and seconds
+/// of building: 1.3 1,367, 5,561, 26,076 faces, 3.6 s; 2 1,741, 5,813, 28,237 faces, 2.7 s.
+const FIRST_ERROR: f64 = 1e-4;
+const NEXT_ERROR: f64 = 1.3;
+const LAST_ERROR: f64 = 2e-2;
 
 /// Recorded contractions with their errors, ready to be written.
 struct Recorded {
@@ -100,7 +110,7 @@ fn record(
     watch.stage("contracting");
     let recorder = if lossless { Recorder::lossless } else { Recorder::new };
     let mut both = (recorder(&simplifier), Contractions::new(watch, Some(mesh.faces.len())));
-    let report = simplifier.run(Target::Faces(0), &mut both);
+    let report = contract(&mut simplifier, request.order, &mut both, watch);
     let held = report.map_err(|error| failed(error.into()))?.held;
     let mut forest = both.0.into_forest().map_err(failed)?;
     watch.stage("measuring errors");
@@ -111,6 +121,27 @@ fn record(
         ErrorKind::Estimate | ErrorKind::Measured => forest.smooth_errors(),
     }
     Ok(Recorded { forest, held, poses })
+}
+
+/// Contracts a mesh to nothing, in this order.
+///
+/// A run within an error leaves what would break it for a later run. So no contraction that needs a
+/// greater error is below one that needs less, as happens by cost, and a cut need not undo both.
+fn contract(
+    simplifier: &mut Simplifier<'_>,
+    order: LevelOrder,
+    observer: &mut dyn Observe,
+    watch: &dyn Watch,
+) -> Result<Report, SimplifyError> {
+    if order == LevelOrder::Error {
+        let diagonal = simplifier.input().bounds().diagonal();
+        let parts = successors(Some(FIRST_ERROR), |part| Some(part * NEXT_ERROR));
+        for part in parts.take_while(|part| *part < LAST_ERROR) {
+            simplifier.run(Target::Error(part * diagonal), observer)?;
+            end_if_cancelled(watch);
+        }
+    }
+    simplifier.run(Target::Faces(0), observer)
 }
 
 /// Has errors measured in the poses of the scene's animations, where they are measured and the
@@ -171,6 +202,7 @@ fn levels(
         poses: recorded.poses.measured(),
         model: LevelModel::Contractions,
         method: request.method,
+        order: request.order,
         lossless: archive.is_lossless(),
         updates: archive.update_count(),
         base_faces: archive.base_faces(),

@@ -3,11 +3,12 @@ use std::sync::Mutex;
 use meshlod_fixtures::folding_strip;
 use meshlod_io::Weld;
 use meshlod_mesh::{Connectivity, VertexId};
-use meshlod_multires::ModelFile;
+use meshlod_multires::{ModelFile, Query};
 use meshlod_samples as samples;
 
 use super::*;
 use crate::jobs::{About, ExtractRequest, Remark, extract};
+use crate::model::verified::extract_verified;
 
 fn built(mesh: Mesh, request: &BuildRequest) -> (ModelFile<Vec<u8>>, BuildReport) {
     let (bytes, report) = build(Scene::from_mesh("", mesh), request, &()).unwrap();
@@ -20,7 +21,7 @@ fn finest(file: &ModelFile<Vec<u8>>) -> Mesh {
 }
 
 fn coarsest(file: &ModelFile<Vec<u8>>) -> Mesh {
-    file.extract_at_most(0, &meshlod_multires::Query::finest()).unwrap().level.mesh()
+    file.extract_at_most(0, &Query::finest()).unwrap().level.mesh()
 }
 
 /// Returns the bits of all positions, in a fixed order.
@@ -104,6 +105,7 @@ fn right_triangles_refuse_what_they_cannot_keep() {
     for (field, request) in [
         ("exact_volume", BuildRequest { exact_volume: true, ..plain.clone() }),
         ("lossless", BuildRequest { lossless: true, ..plain.clone() }),
+        ("order", BuildRequest { order: LevelOrder::Error, ..plain.clone() }),
         ("lock_boundary", BuildRequest { constraints, ..plain.clone() }),
     ] {
         let scene = Scene::from_mesh("", samples::terrain(100));
@@ -150,4 +152,19 @@ fn a_job_that_cannot_be_done_says_why() {
     assert!(matches!(rounded, Err(JobError::Input(_))));
     let cancelled = build(scene, &BuildRequest::default(), &Cancelled);
     assert!(matches!(cancelled, Err(JobError::Cancelled)));
+}
+
+#[test]
+fn levels_in_the_order_of_errors_have_fewer_faces_within_one() {
+    let mesh = samples::gyroid(6000);
+    let tolerance = 3e-3 * mesh.bounds().diagonal();
+    let faces = [LevelOrder::Cost, LevelOrder::Error].map(|order| {
+        let request = BuildRequest { order, ..Default::default() };
+        let (bytes, _) = build(Scene::from_mesh("", mesh.clone()), &request, &()).unwrap();
+        let file = ModelFile::open(bytes).unwrap();
+        let found = extract_verified(&file, &Query::uniform(tolerance)).unwrap();
+        assert!(found.verification.holds, "{order:?}");
+        found.extract.level.mesh().faces.len()
+    });
+    assert!(10 * faces[1] < 9 * faces[0], "{faces:?}");
 }
