@@ -16,6 +16,9 @@ const PREAMBLE: usize = HEADER + 4;
 /// meaning.
 const FACET: usize = 50;
 
+/// Counts of writers that stream facets before they know how many there are.
+const UNKNOWN: [usize; 2] = [0, u32::MAX as usize];
+
 /// Reports whether the length of the file matches its count of facets exactly.
 pub(super) fn has_fitting_length(bytes: &[u8]) -> bool {
     claimed(bytes).is_some_and(|count| {
@@ -37,6 +40,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<(Mesh, Vec<Note>), ParseError> {
     };
     let body = &bytes[PREAMBLE..];
     let there = body.len() / FACET;
+    let is_unknown = UNKNOWN.contains(&claimed) && there > 0;
+    let claimed = if is_unknown { there } else { claimed };
     if there < claimed {
         let reason = format!("the file ends inside facet {there} of {claimed}");
         return Err(ParseError::byte(bytes.len(), reason));
@@ -64,6 +69,11 @@ pub(super) fn read(bytes: &[u8]) -> Result<(Mesh, Vec<Note>), ParseError> {
             "attributes of facets, such as their colours",
         )
         .remedied("export colours as .ply, .obj or .glb"),
+        Note::changed(
+            usize::from(is_unknown),
+            "number of facets taken from the length of the file",
+            "numbers of facets taken from the length of the file",
+        ),
         Note::left_out(
             body.len() - claimed * FACET,
             "byte behind the last facet",

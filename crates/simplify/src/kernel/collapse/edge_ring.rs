@@ -142,6 +142,10 @@ impl EdgeRing {
             if !vertices.is_split(end) {
                 continue;
             }
+            // The other end's only face would come between the wings, where a copy may have one.
+            if others.is_empty() {
+                return Err(Refusal::NonManifold);
+            }
             let copy_of_end = |w: &u32| vertices.origin(*w) == vertices.origin(end);
             let new = self.ids[others].iter().filter(|&&w| w != GHOST);
             for &w in new {
