@@ -78,7 +78,7 @@ pub fn read_all(path: &Path) -> Result<Vec<u8>, Failure> {
 /// format.
 pub fn check_output(path: &Path, session: &Session) -> Result<Format, Failure> {
     if !is_pipe(path) {
-        let format = Format::of_path(path).map_err(|error| unknown_output(path, &error))?;
+        let format = Format::of_output(path).map_err(|error| unknown_output(path, &error))?;
         return check_place(path).map(|()| format);
     }
     check_stdout(session)?;

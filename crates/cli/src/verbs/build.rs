@@ -42,7 +42,7 @@ pub struct Build {
     #[arg(long, value_name = "NAME", default_value = Method::LindstromTurk.name(),
         help = parse::methods())]
     method: Method,
-    /// What puts the contractions in order
+    /// Order of the contractions
     #[arg(long, value_name = "ORDER", default_value = "cost")]
     order: OrderArg,
     /// Compute proven error bounds in place of measured errors

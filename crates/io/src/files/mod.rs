@@ -72,7 +72,7 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Scene, IoEr
 /// new file is left.
 pub fn write(path: impl AsRef<Path>, scene: &Scene, options: &WriteOptions) -> Result<(), IoError> {
     let path = path.as_ref();
-    let format = Format::of_path(path)?;
+    let format = Format::of_output(path)?;
     match format.stores().holds {
         Holds::Document => write_lods(path, scene, &[], LodLayout::default()),
         Holds::Library => write_obj(path, scene, options.precision),
@@ -96,7 +96,7 @@ pub fn write_lods(
 ) -> Result<(), IoError> {
     let path = path.as_ref();
     let unsupported = |error| IoError::unsupported(path, error);
-    match Format::of_path(path)? {
+    match Format::of_output(path)? {
         Format::Glb => {
             let bytes = gltf::write_lods_glb(scene, levels, layout).map_err(unsupported)?;
             write_one(path, |out| out.write_all(&bytes))
@@ -125,7 +125,7 @@ pub fn write_strips(
 ) -> Result<(), IoError> {
     let path = path.as_ref();
     let unsupported = |error| IoError::unsupported(path, error);
-    match Format::of_path(path)? {
+    match Format::of_output(path)? {
         Format::Glb => {
             let bytes = gltf::write_strips_glb(scene, strips).map_err(unsupported)?;
             write_one(path, |out| out.write_all(&bytes))
@@ -158,7 +158,7 @@ pub fn write_compressed(
 ) -> Result<gltf::CompressionReport, IoError> {
     let path = path.as_ref();
     let unsupported = |error| IoError::unsupported(path, error);
-    match Format::of_path(path)? {
+    match Format::of_output(path)? {
         Format::Glb => {
             let (bytes, report) =
                 gltf::write_compressed_glb(scene, &[], compression).map_err(unsupported)?;

@@ -12,12 +12,12 @@ use std::sync::LazyLock;
 
 use meshlod_mesh::UnknownName;
 
-use crate::error::IoError;
+use crate::error::{IoError, Unsupported};
 use crate::precision::Precision;
 pub use facts::StoredDigits;
 use facts::{Coordinates, FormatFacts, Holds, Stores, VertexSharing};
 pub use table::Format;
-use table::TABLE;
+use table::{READ_ALONE, TABLE};
 
 /// Suffixes of all formats, each with its dot, separated by spaces.
 static SUFFIXES: LazyLock<String> = LazyLock::new(|| {
@@ -54,6 +54,19 @@ impl Format {
             path: path.to_owned(),
             known: Self::suffixes(),
         })
+    }
+
+    /// Returns the format of a file to be written, determined by the suffix of its path.
+    ///
+    /// # Errors
+    /// Those of [`of_path`](Self::of_path); also suffixes of files that are only read, such as b3dm.
+    pub fn of_output(path: &Path) -> Result<Self, IoError> {
+        let format = Self::of_path(path)?;
+        if path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case(READ_ALONE)) {
+            let reason = "b3dm is read only; write .glb, which 3D Tiles 1.1 holds as it is";
+            return Err(IoError::unsupported(path, Unsupported::new("file", reason)));
+        }
+        Ok(format)
     }
 
     /// Returns the suffixes of all formats, as in `.ply .obj`.
@@ -123,11 +136,19 @@ mod tests {
     }
 
     #[test]
+    fn a_tile_is_read_and_not_written() {
+        let path = Path::new("tile.B3dm");
+        assert_eq!(Format::of_path(path).unwrap(), Format::Glb);
+        let message = Format::of_output(path).unwrap_err().to_string();
+        assert!(message.contains("write .glb"), "{message}");
+    }
+
+    #[test]
     fn an_unknown_suffix_is_answered_by_the_known_ones() {
         for path in ["bunny", "bunny.fbx", ".ply"] {
             let message = Format::of_path(Path::new(path)).unwrap_err().to_string();
             assert!(Format::ALL.iter().all(|(suffix, _)| message.contains(suffix)), "{message}");
-            assert!(message.contains(".gltf .glb .vrm"), "{message}");
+            assert!(message.contains(".gltf .glb .vrm .b3dm"), "{message}");
         }
     }
 }

@@ -33,6 +33,9 @@ pub enum Format {
     Glb,
 }
 
+/// Suffix of files that are read and not written.
+pub(crate) const READ_ALONE: &str = "b3dm";
+
 /// Facts about the formats, in the order of [`Format`].
 pub(crate) const TABLE: &[FormatFacts] = &[
     FormatFacts {
@@ -100,8 +103,9 @@ pub(crate) const TABLE: &[FormatFacts] = &[
     },
     FormatFacts {
         format: Format::Glb,
-        // VRM files, avatars of people, are GLB files with extensions of their own.
-        suffixes: &["glb", "vrm"],
+        // VRM files, avatars of people, are GLB files with extensions of their own; b3dm, tiles of 3D
+        // Tiles 1.0, are read alone.
+        suffixes: &["glb", "vrm", READ_ALONE],
         read: gltf::read,
         write: write_glb,
         stores: DOCUMENT,

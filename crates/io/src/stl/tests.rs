@@ -77,6 +77,21 @@ fn a_binary_file_may_begin_with_solid() {
 }
 
 #[test]
+fn an_open_count_is_that_of_the_facets_there() {
+    let mesh = tetrahedron();
+    for count in [0u32, u32::MAX] {
+        let mut bytes = binary(&mesh);
+        bytes[80..84].copy_from_slice(&count.to_le_bytes());
+        let scene = read_scene(&bytes).unwrap();
+        assert_eq!(scene.meshes[0].mesh.faces.len(), mesh.faces.len());
+        let note = scene.notes[0].to_string();
+        assert!(note.contains("taken from the length of the file"), "{note}");
+        let none = message(&bytes[..84]);
+        assert!(none.contains("facet"), "{none}");
+    }
+}
+
+#[test]
 fn empty_solids_are_noted_and_unnamed_ones_count() {
     let text = format!(
         "SOLID\n{FACET}endsolid\nsolid nothing\nendsolid nothing\nsolid b\n{FACET}ENDSOLID b"
@@ -171,8 +186,8 @@ fn errors_name_the_line_or_the_byte() {
     assert!(
         message(&bytes).starts_with("byte 134: facet 1 of 4 has a coordinate that is not finite")
     );
-    bytes[80..84].fill(0xff);
-    assert_eq!(message(&bytes), "byte 284: the file ends inside facet 4 of 4294967295");
+    bytes[80..84].fill(0x7f);
+    assert_eq!(message(&bytes), "byte 284: the file ends inside facet 4 of 2139062143");
 }
 
 #[test]

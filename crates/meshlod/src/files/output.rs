@@ -29,11 +29,13 @@ impl Output {
     /// Creates an output, and checks that a file can be there, before any work is done.
     ///
     /// # Errors
-    /// An unknown suffix, a path that is a folder, and a folder that is a file.
+    /// An unknown suffix, one of files that are only read, a path that is a folder, and a folder that is a file.
     pub fn new(path: impl Into<PathBuf>) -> Result<Self, IoError> {
         let path = path.into();
         check_place(&path)?;
-        Ok(Self { kind: FileKind::of_path(&path)?, path: Some(path) })
+        let own = FileKind::own_of_path(&path);
+        let kind = own.map_or_else(|| Format::of_output(&path).map(FileKind::Mesh), Ok)?;
+        Ok(Self { kind, path: Some(path) })
     }
 
     /// Creates standard output, to which a scene goes in this format.

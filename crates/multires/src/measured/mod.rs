@@ -126,7 +126,7 @@ struct Measure<'f, C> {
 
 /// Updates that have been replayed, but not probed.
 #[derive(Debug, Default)]
-struct Block {
+struct Replayed {
     first: usize,
     /// By update: the distance of the input's points, and the least that matters.
     apart: Vec<[f64; 2]>,
@@ -142,7 +142,7 @@ struct CoarseFace {
     corners: [DVec3; 3],
 }
 
-impl Block {
+impl Replayed {
     /// Returns the coarse side of the update at this place.
     fn coarse(&self, i: usize) -> &[CoarseFace] {
         let start = i.checked_sub(1).map_or(0, |before| self.ends[before]);
@@ -177,7 +177,7 @@ impl<'f, C: Corners + Send> Measure<'f, C> {
             if apart > noise { Length16::up(apart).max(known) } else { without }
         };
         let mut errors = MonotoneErrors::new(forest);
-        let mut block = Block::default();
+        let mut block = Replayed::default();
         loop {
             let next = block.first + block.ends.len();
             let (replayed, found) = rayon::join(
@@ -201,8 +201,8 @@ impl<'f, C: Corners + Send> Measure<'f, C> {
         first: usize,
         known: impl Fn(usize) -> Length16,
         own: impl Fn(usize, f64) -> Length16,
-    ) -> Block {
-        let mut block = Block { first, ..Block::default() };
+    ) -> Replayed {
+        let mut block = Replayed { first, ..Replayed::default() };
         for u in (first..self.forest.updates.len()).take(BLOCK) {
             let start = block.coarse.len();
             self.contract(u, &mut block.coarse);

@@ -5,7 +5,7 @@ use meshlod_mesh::FaceId;
 use meshlod_spatial::Bvh;
 use rayon::prelude::*;
 
-use super::{Block, CoarseFace};
+use super::{CoarseFace, Replayed};
 use crate::forest::Forest;
 
 /// Distances of points from the input, near points that were asked for before.
@@ -33,7 +33,7 @@ impl<'b> Probes<'b> {
     /// Returns for each update of a block the greatest distance known of its coarse side and the
     /// input, or anything up to the least that matters if it is no greater; and a face of the input
     /// near its node.
-    pub(super) fn farthest(&self, forest: &Forest, block: &Block) -> Vec<(f64, Option<FaceId>)> {
+    pub(super) fn farthest(&self, forest: &Forest, block: &Replayed) -> Vec<(f64, Option<FaceId>)> {
         let of_update = |i: usize| {
             let [apart, least] = block.apart[i];
             let hint = self.hint(forest, block.first + i);

@@ -1,5 +1,6 @@
 //! GLB container: a JSON chunk and a binary chunk in one file.
 
+use super::extensions::OLD;
 use crate::error::{ParseError, Unsupported};
 
 const MAGIC: &[u8; 4] = b"glTF";
@@ -16,7 +17,10 @@ pub(crate) fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ParseError> 
     if version != 2 {
         return Err(ParseError::byte(
             4,
-            format!("GLB version {version}; only version 2 is supported"),
+            match version {
+                1 => format!("a GLB of glTF 1.0; only 2.0 is supported{OLD}"),
+                _ => format!("GLB version {version}; only version 2 is supported"),
+            },
         ));
     }
     let length = word(bytes, 8)?;

@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use super::entries::extend;
 use super::schema;
 use crate::error::ParseError;
+use crate::gltf::read::tiles::RTC;
 
 /// Extensions for meshopt streams; the second adds a version and a filter to the first.
 pub(crate) const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
@@ -24,11 +25,15 @@ pub(crate) const EMISSIVE_STRENGTH: &str = "KHR_materials_emissive_strength";
 /// Extension for textures whose image is a WebP.
 pub(crate) const WEBP: &str = "EXT_texture_webp";
 
+/// Advice for glTF 1.0.
+pub(super) const OLD: &str = "; convert it first, as gltf-pipeline does";
+
 /// Rejects other versions of glTF and unknown required extensions.
 pub(crate) fn check_head(json: &Value) -> Result<(), ParseError> {
     let version = json.pointer("/asset/version").and_then(Value::as_str).unwrap_or("");
     if !version.starts_with("2.") {
-        let reason = format!("glTF version {version:?}; only 2.0 is supported");
+        let advice = if version.starts_with("1.") { OLD } else { "" };
+        let reason = format!("glTF version {version:?}; only 2.0 is supported{advice}");
         return Err(ParseError::part("asset", reason));
     }
     let required: Vec<String> = schema::array(json, "extensionsRequired", "extensionsRequired")?;
@@ -44,8 +49,8 @@ pub(crate) fn check_head(json: &Value) -> Result<(), ParseError> {
 
 /// Reports whether an extension is supported or leaves the geometry alone.
 fn is_understood(name: &str) -> bool {
-    const GEOMETRY: [&str; 5] =
-        ["KHR_mesh_quantization", "MSFT_lod", INSTANCING, MESHOPT[0], MESHOPT[1]];
+    const GEOMETRY: [&str; 6] =
+        ["KHR_mesh_quantization", "MSFT_lod", INSTANCING, MESHOPT[0], MESHOPT[1], RTC];
     const OTHERS: [&str; 12] = [
         "KHR_materials_",
         "KHR_texture_",

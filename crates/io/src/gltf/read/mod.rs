@@ -1,16 +1,18 @@
 //! Reading glTF and GLB files.
 //!
 //! Reading order: [`read`], then `mesh`, `materials`, `images`, `nodes` and `instancing`.
-//! `meshopt_views` decompresses before; `gltf_only` lists what only glTF can hold.
+//! `meshopt_views` decompresses and `mended` mends before; `gltf_only` lists what only glTF can hold.
 
 pub(crate) mod gltf_only;
 pub(crate) mod images;
 pub(crate) mod instancing;
 pub(crate) mod materials;
+mod mended;
 pub(crate) mod mesh;
 pub(crate) mod meshopt_views;
 pub(crate) mod nodes;
 pub(crate) mod primitive_rows;
+pub(crate) mod tiles;
 
 use std::sync::Arc;
 
@@ -28,7 +30,7 @@ use crate::remarks;
 use crate::scene::{Scene, SceneMesh};
 use images::read_images;
 
-/// Parses a glTF or GLB file, recognised by its first bytes; `resolve` loads its buffers and
+/// Parses a glTF or GLB file, or a b3dm tile around a GLB, recognised by its first bytes; `resolve` loads its buffers and
 /// images.
 ///
 /// Every mesh of the document becomes a mesh of the scene. Its material labels are the primitives
@@ -40,7 +42,10 @@ use images::read_images;
 /// `KHR_mesh_quantization`; `EXT_meshopt_compression` and `KHR_meshopt_compression`, which are
 /// decompressed and removed, as is `KHR_draco_mesh_compression` with the feature `draco`;
 /// `EXT_mesh_gpu_instancing`; `MSFT_lod`, with the finest level shown. Carried through but not
-/// applied to texture coordinates: `KHR_texture_transform`.
+/// applied to texture coordinates: `KHR_texture_transform`. Left out with a note: extensions of
+/// primitives that may name vertices, such as `CESIUM_primitive_outline`. A node that a scene lists
+/// although it is another's child is shown once, with a note. The centre of a tile, or of
+/// `CESIUM_RTC`, becomes a node.
 ///
 /// # Errors
 /// The location (`accessor 7`, `bufferView 3`) and the reason. Draco streams without the feature,
@@ -49,7 +54,8 @@ use images::read_images;
 /// # References
 /// [Kap20]; [KS21] and [KSL25], in [`crate::meshopt`].
 pub fn read(bytes: &[u8], resolve: Resolve<'_>, weld: Weld) -> Result<Scene, ParseError> {
-    let (text, chunk) = container::split(bytes)?;
+    let tile = tiles::unwrap(bytes)?;
+    let (text, chunk) = container::split(tile.gltf)?;
     let mut json: Value = serde_json::from_slice(text)
         .map_err(|error| ParseError::part("JSON", error.to_string()))?;
     check_head(&json)?;
@@ -59,6 +65,9 @@ pub fn read(bytes: &[u8], resolve: Resolve<'_>, weld: Weld) -> Result<Scene, Par
     let decoded = draco::decompress(&mut json, &mut buffers)?;
     let mut scene = Scene::default();
     scene.notes.extend((decoded.count > 0).then_some(decoded));
+    scene.notes.extend(tile.apply_to(&mut json));
+    scene.notes.extend(mended::part_roots_from_children(&mut json));
+    scene.notes.extend(mended::drop_vertex_names(&mut json));
     let document = Document::new(&json, &buffers)?;
     scene.images = read_images(&document, resolve)?;
     scene.materials = materials::materials(&json, scene.images.len())?;

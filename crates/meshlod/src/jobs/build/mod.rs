@@ -23,7 +23,7 @@ pub struct BuildRequest {
     pub method: Method,
     /// Kind of model, by which the levels are made.
     pub model: LevelModel,
-    /// What puts the contractions in order. Right triangles are always in the order of their errors.
+    /// Order of the contractions. Right triangles are always in the order of their errors.
     pub order: LevelOrder,
     /// Whether the stored errors are estimates, measured, or proven bounds. Measuring takes several
     /// times as long as estimates. The errors of right triangles are bounds in any case.
@@ -58,7 +58,7 @@ pub enum LevelModel {
     RightTriangles,
 }
 
-/// What puts the contractions of a file in order.
+/// Order of the contractions of a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]

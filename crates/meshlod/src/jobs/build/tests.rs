@@ -168,3 +168,24 @@ fn levels_in_the_order_of_errors_have_fewer_faces_within_one() {
     });
     assert!(10 * faces[1] < 9 * faces[0], "{faces:?}");
 }
+
+#[test]
+fn a_card_seen_from_both_sides_passes_its_own_check() {
+    // Its sides are cut along different diagonals, turned the same way at two edges, and have uvs of
+    // their own.
+    let places = [[0.0, 0.0, 0.1], [1.0, 0.0, 0.0], [1.0, 1.0, 0.1], [0.0, 1.0, 0.0]];
+    let faces = [[0, 3, 2], [0, 1, 3], [2, 0, 1], [1, 2, 3]];
+    let corner = |k: usize| faces[k / 3][k % 3];
+    let obj = places.map(|[x, y, z]| format!("v {x} {y} {z}\n")).concat()
+        + &(0..12).map(|k| format!("vt .{} .{}\n", 10 + k, 10 + k % 5)).collect::<String>()
+        + &(0..12)
+            .map(|k| {
+                let start = if k % 3 == 0 { "\nf" } else { "" };
+                format!("{start} {}/{}", corner(k) + 1, k + 1)
+            })
+            .collect::<String>();
+    let scene = meshlod_io::obj::read(obj.as_bytes(), &mut |_| None).unwrap();
+    let (bytes, report) = build(scene, &BuildRequest::default(), &()).unwrap();
+    let file = ModelFile::open(bytes).unwrap();
+    assert_eq!((report.faces, finest(&file).faces.len()), (4, 4));
+}

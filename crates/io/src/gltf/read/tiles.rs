@@ -1,0 +1,154 @@
+//! Contents of 3D tiles: a batched model (b3dm) around a GLB, and centres far from the origin.
+
+use serde_json::{Value, json};
+
+use super::mended::parents;
+use crate::error::ParseError;
+use crate::gltf::document::entries::extend;
+use crate::gltf::document::extensions::{drop_entry, forget_names};
+use crate::notes::Note;
+
+/// Extension for a centre far from the origin.
+pub(crate) const RTC: &str = "CESIUM_RTC";
+
+/// Bytes before the tables of a batched model: its name, its version, its length, and the lengths of
+/// a feature table and a batch table, each in JSON and binary.
+const HEADER: usize = 28;
+
+/// A GLB, with what a batched model has around it.
+#[derive(Debug, PartialEq)]
+pub(super) struct Tile<'b> {
+    pub(super) gltf: &'b [u8],
+    /// Position of its origin, with z up.
+    center: Option<[f64; 3]>,
+    has_batches: bool,
+}
+
+/// Takes the GLB out of a batched model; any other file stays whole.
+///
+/// # Errors
+/// A header that does not fit, and other kinds of tiles.
+pub(super) fn unwrap(bytes: &[u8]) -> Result<Tile<'_>, ParseError> {
+    let other = |kind: &str| {
+        let reason = format!("a 3D tile of kind {kind}, which is not supported; b3dm and GLB are");
+        Err(ParseError::byte(0, reason))
+    };
+    match bytes.get(..4) {
+        Some(b"b3dm") => batched(bytes),
+        Some(b"i3dm") => other("i3dm (instances)"),
+        Some(b"pnts") => other("pnts (points)"),
+        Some(b"cmpt") => other("cmpt (several tiles)"),
+        _ => Ok(Tile { gltf: bytes, center: None, has_batches: false }),
+    }
+}
+
+fn batched(bytes: &[u8]) -> Result<Tile<'_>, ParseError> {
+    let word = |at: usize| {
+        let word = bytes.get(at..at + 4)?.try_into().ok()?;
+        Some(u32::from_le_bytes(word) as usize)
+    };
+    let ends = || ParseError::byte(bytes.len(), "the file ends inside a b3dm header");
+    let lengths: Option<Vec<usize>> = (0..4).map(|i| word(12 + 4 * i)).collect();
+    let lengths = lengths.ok_or_else(ends)?;
+    let start = lengths.iter().try_fold(HEADER, |sum, &length| sum.checked_add(length));
+    let gltf = start.and_then(|start| bytes.get(start..)).ok_or_else(ends)?;
+    if !gltf.starts_with(b"glTF") {
+        let reason = "no GLB follows the tables of the b3dm";
+        return Err(ParseError::byte(bytes.len() - gltf.len(), reason));
+    }
+    let features = &bytes[HEADER..HEADER + lengths[0]];
+    let features: Value = match features.trim_ascii() {
+        [] => Value::Null,
+        text => serde_json::from_slice(text)
+            .map_err(|error| ParseError::part("feature table", error.to_string()))?,
+    };
+    let has_batches = lengths[2] > 0;
+    Ok(Tile { gltf, center: features.get("RTC_CENTER").and_then(numbers), has_batches })
+}
+
+impl Tile<'_> {
+    /// Moves the nodes of its document to their centre, and notes what is left out.
+    pub(super) fn apply_to(&self, json: &mut Value) -> Option<Note> {
+        let own = json.pointer("/extensions/CESIUM_RTC/center").and_then(numbers);
+        drop_entry(json, RTC);
+        forget_names(json, &[RTC]);
+        for center in [self.center, own].into_iter().flatten() {
+            move_to(json, center);
+        }
+        let note = Note::left_out(1, "batch table of a 3D tile", "batch tables of 3D tiles");
+        self.has_batches.then_some(note)
+    }
+}
+
+/// Puts the nodes of the scene that is shown under one at a center, given with z up.
+fn move_to(json: &mut Value, [x, y, z]: [f64; 3]) {
+    let shown = json.get("scene").and_then(Value::as_u64).unwrap_or(0) as usize;
+    if json.get("scenes").is_none() {
+        // Then all nodes are shown.
+        let parents = parents(json);
+        let roots: Vec<usize> = (0..parents.len()).filter(|&i| parents[i].is_none()).collect();
+        json["scenes"] = json!([{ "nodes": roots }]);
+    }
+    let Some(roots) = json.pointer_mut(&format!("/scenes/{shown}/nodes")).map(Value::take) else {
+        return;
+    };
+    let count = json.get("nodes").and_then(Value::as_array).map_or(0, Vec::len);
+    extend(json, "nodes", vec![json!({ "translation": [x, z, -y], "children": roots })]);
+    json["scenes"][shown]["nodes"] = json!([count]);
+}
+
+fn numbers(value: &Value) -> Option<[f64; 3]> {
+    let numbers: Vec<f64> = value.as_array()?.iter().filter_map(Value::as_f64).collect();
+    numbers.try_into().ok().filter(|all: &[f64; 3]| all.iter().all(|x| x.is_finite()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tile(features: &str, batches: &str, gltf: &[u8]) -> Vec<u8> {
+        let mut bytes = b"b3dm\x01\0\0\0".to_vec();
+        let lengths = [0, features.len(), 0, batches.len(), 0];
+        bytes.extend(lengths.iter().flat_map(|&length| (length as u32).to_le_bytes()));
+        [&bytes, features.as_bytes(), batches.as_bytes(), gltf].concat()
+    }
+
+    #[test]
+    fn a_tile_is_moved_to_its_center() {
+        let bytes = tile(r#"{"RTC_CENTER": [1.5, 2, 3]}  "#, "{}", b"glTF rest");
+        let found = unwrap(&bytes).unwrap();
+        assert_eq!(found.gltf, b"glTF rest");
+        let mut json = json!({
+            "extensionsRequired": [RTC], "extensions": {RTC: {"center": [10, 20, 30]}},
+            "scenes": [{"nodes": [0]}], "nodes": [{}],
+        });
+        assert!(found.apply_to(&mut json).is_some());
+        let expected = json!({
+            "scenes": [{"nodes": [2]}],
+            "nodes": [
+                {},
+                {"translation": [1.5, 3.0, -2.0], "children": [0]},
+                {"translation": [10.0, 30.0, -20.0], "children": [1]},
+            ],
+        });
+        assert_eq!(json, expected);
+    }
+
+    #[test]
+    fn damaged_tiles_are_errors() {
+        let whole = tile("{}", "", b"glTF");
+        assert!(unwrap(&whole).is_ok());
+        for (bytes, part) in [
+            (&whole[..20], "ends inside"),
+            (&tile("{}", "", b"")[..], "no GLB"),
+            (&tile("{", "", b"glTF")[..], "feature table"),
+            (b"i3dm", "instances"),
+        ] {
+            let message = unwrap(bytes).unwrap_err().to_string();
+            assert!(message.contains(part), "{message}");
+        }
+        let mut long = whole.clone();
+        long[12..16].fill(0xff);
+        assert!(unwrap(&long).is_err());
+    }
+}
