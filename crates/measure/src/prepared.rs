@@ -93,6 +93,11 @@ impl<'m> PreparedSurface<'m> {
         Ok(Self { mesh, bvh, area_up_to, vertices, diagonal, mates: OnceLock::new() })
     }
 
+    /// Returns the mesh.
+    pub fn mesh(&self) -> &'m Mesh {
+        self.mesh
+    }
+
     /// Returns the length of the diagonal of the mesh's bounding box, in model units; unused
     /// vertices do not count.
     pub fn diagonal(&self) -> f64 {

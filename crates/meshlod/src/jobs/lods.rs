@@ -1,15 +1,16 @@
 //! A chain of coarser levels from one run, each measured against the original.
 
+use std::cell::OnceCell;
 use std::time::Duration;
 
 use meshlod_io::Scene;
 use meshlod_io::gltf::Level;
 use meshlod_measure::{Distance, DistanceOptions, PreparedSurface};
-use meshlod_mesh::{Conditioning, NearBorders};
+use meshlod_mesh::{Conditioning, Mesh, NearBorders};
 use meshlod_simplify::{AttributeWeights, Method, Report, Target};
 
 use crate::Constraints;
-use crate::jobs::scene_run::{self, RunChoice, SceneRun};
+use crate::jobs::scene_run::{self, Original, RunChoice, SceneRun};
 use crate::jobs::written_as::digits;
 use crate::jobs::{About, JobError, Remark, SwitchCamera, Watch, WrittenAs, cancellable};
 use crate::scene::FuseReport;
@@ -148,9 +149,8 @@ fn made(
     let LodsRequest { method, weights, boundary, ref constraints, .. } = *request;
     let choice = RunChoice { method, weights, boundary, constraints };
     let (ready, time) = choice.condition(scene, watch)?;
-    let original = request.measured.then(|| scene_run::own_surface(scene));
-    let surface = original.as_ref().and_then(|original| ready_to_measure(original, watch));
-    let surface = surface.as_ref().map(|surface| (surface, chain_samples(surface)));
+    let whole = OnceCell::new();
+    let original = request.measured.then(|| ready_to_measure(scene, &whole, watch)).flatten();
     let digits = digits(request.written_as.map(|as_| as_.of(scene)));
     let mut run = SceneRun::start(&ready, time, watch)?;
     check_order(&request.levels, run.input_faces())?;
@@ -163,9 +163,9 @@ fn made(
             true => scene_run::restore_volumes(&ready, &mut meshes, digits, watch),
             false => None,
         };
-        let measured = surface.as_ref().and_then(|(surface, options)| {
-            scene_run::measure((surface, options), scene, &meshes, watch)
-        });
+        let measured = original
+            .as_ref()
+            .and_then(|original| original.measure(&samples_for(original.faces()), &meshes, watch));
         let finer = reports.last().map_or(1.0, |level| level.screen_coverage);
         let coverage = measured.as_ref().map(|measured| request.camera.screen_coverage(measured));
         let screen_coverage = coverage.unwrap_or(finer).min(finer);
@@ -195,10 +195,11 @@ fn made(
 }
 
 fn ready_to_measure<'m>(
-    original: &'m meshlod_mesh::Mesh,
+    scene: &'m Scene,
+    whole: &'m OnceCell<Mesh>,
     watch: &dyn Watch,
-) -> Option<PreparedSurface<'m>> {
-    let ready = PreparedSurface::new(original);
+) -> Option<Original<'m>> {
+    let ready = Original::new(scene, whole);
     let told = ready.inspect_err(|error| {
         watch.remark(&Remark::new(About::Input, format_args!("not measured: {error}")));
     });
@@ -214,8 +215,11 @@ const CHAIN_SAMPLES: [usize; 2] = [50_000, 500_000];
 /// Returns options for measuring many levels, with as many samples as the size of the original calls
 /// for.
 pub fn chain_samples(original: &PreparedSurface<'_>) -> DistanceOptions {
+    samples_for(original.mesh().faces.len())
+}
+
+fn samples_for(faces: usize) -> DistanceOptions {
     let [least, most] = CHAIN_SAMPLES;
-    let faces = original.bvh().faces_in_leaf_order().len();
     let samples = faces.saturating_mul(SAMPLES_PER_FACE).clamp(least, most);
     DistanceOptions { samples, ..DistanceOptions::default() }
 }

@@ -16,6 +16,7 @@ mod check;
 #[cfg(feature = "codec")]
 mod compress;
 mod convert;
+mod copies;
 mod error;
 #[cfg(feature = "multires")]
 mod extract;

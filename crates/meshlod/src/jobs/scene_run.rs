@@ -1,14 +1,18 @@
 //! Parts shared by the jobs that simplify a scene: preparation, a run, and how far it went.
 
+use std::cell::OnceCell;
 use std::time::{Duration, Instant};
 
 use meshlod_io::{Scene, SceneMesh};
-use meshlod_measure::{Distance, DistanceOptions, MeasureError, PreparedSurface, surface_distance};
+use meshlod_measure::{
+    Distance, DistanceOptions, MeasureError, PreparedSurface, SurfaceError, surface_distance,
+};
 use meshlod_mesh::Mesh;
 use meshlod_simplify::{
     AttributeWeights, Digits, ExactVolumeError, Method, Options, Report, SimplifyError, Target,
 };
 
+use crate::jobs::copies::{Copies, Surfaces};
 use crate::jobs::{About, Contractions, JobError, Remark, Watch};
 use crate::scene::{ConditionedScene, FuseReport, SceneError, SceneSimplifier, conserve_volumes};
 use crate::{Constraints, VertexLocking};
@@ -185,21 +189,78 @@ pub(super) fn own_surface(scene: &Scene) -> Mesh {
     surface_of(scene, scene.meshes.iter().map(|mesh| &mesh.mesh))
 }
 
-/// Measures the distance of a level from the original; remarks and returns `None` if that is not
-/// possible.
-pub(super) fn measure(
-    (original, options): (&PreparedSurface<'_>, &DistanceOptions),
-    scene: &Scene,
-    level: &[Mesh],
-    watch: &dyn Watch,
-) -> Option<Distance> {
-    watch.stage("measuring");
-    let level = surface_of(scene, level);
-    let ready = PreparedSurface::new(&level).map_err(MeasureError::Second);
-    ready
-        .and_then(|level| surface_distance(original, &level, options))
-        .inspect_err(|error| {
-            watch.remark(&Remark::new(About::Job, format_args!("not measured: {error}")));
-        })
-        .ok()
+/// A scene from which levels are measured.
+pub(super) struct Original<'m> {
+    scene: &'m Scene,
+    surface: OriginalSurface<'m>,
+}
+
+enum OriginalSurface<'m> {
+    /// All that the scene shows, in world space.
+    Whole(PreparedSurface<'m>),
+    /// Meshes that the scene shows many times.
+    Copies(Copies<'m>, Surfaces<'m>),
+}
+
+impl<'m> Original<'m> {
+    /// Prepares a scene. `whole` keeps the surface that it shows, if that is needed.
+    ///
+    /// # Errors
+    /// A surface that cannot be measured.
+    pub fn new(scene: &'m Scene, whole: &'m OnceCell<Mesh>) -> Result<Self, SurfaceError> {
+        let copies = Copies::of(scene);
+        let surfaces = copies.as_ref().and_then(|copies| copies.prepare(|i| &scene.meshes[i].mesh));
+        let surface = match copies.zip(surfaces) {
+            Some((copies, surfaces)) => OriginalSurface::Copies(copies, surfaces),
+            None => {
+                let whole = whole.get_or_init(|| own_surface(scene));
+                OriginalSurface::Whole(PreparedSurface::new(whole)?)
+            }
+        };
+        Ok(Self { scene, surface })
+    }
+
+    /// Returns the number of faces that are measured.
+    pub fn faces(&self) -> usize {
+        match &self.surface {
+            OriginalSurface::Whole(surface) => surface.mesh().faces.len(),
+            OriginalSurface::Copies(_, surfaces) => {
+                surfaces.iter().flatten().map(|surface| surface.mesh().faces.len()).sum()
+            }
+        }
+    }
+
+    /// Measures the distance of a level; remarks and returns `None` if that is not possible.
+    pub fn measure(
+        &self,
+        options: &DistanceOptions,
+        level: &[Mesh],
+        watch: &dyn Watch,
+    ) -> Option<Distance> {
+        watch.stage("measuring");
+        self.apart(options, level)
+            .inspect_err(|error| {
+                watch.remark(&Remark::new(About::Job, format_args!("not measured: {error}")));
+            })
+            .ok()
+    }
+
+    fn apart(&self, options: &DistanceOptions, level: &[Mesh]) -> Result<Distance, MeasureError> {
+        let whole = |original: &PreparedSurface<'_>| {
+            let level = surface_of(self.scene, level);
+            let level = PreparedSurface::new(&level).map_err(MeasureError::Second)?;
+            surface_distance(original, &level, options)
+        };
+        match &self.surface {
+            OriginalSurface::Whole(original) => whole(original),
+            OriginalSurface::Copies(copies, original) => match copies.prepare(|i| &level[i]) {
+                Some(level) => copies.apart([original, &level], options),
+                // Where nothing is left of a mesh, others are the closest.
+                None => {
+                    let original = own_surface(self.scene);
+                    whole(&PreparedSurface::new(&original).map_err(MeasureError::First)?)
+                }
+            },
+        }
+    }
 }

@@ -9,6 +9,7 @@ use meshlod_measure::{
 };
 use meshlod_mesh::{Connectivity, Mesh};
 
+use crate::jobs::copies::Copies;
 use crate::jobs::scene_run::own_surface;
 use crate::jobs::{JobError, Watch, begin};
 
@@ -73,6 +74,9 @@ pub struct MeasureReport {
 /// Measures the distance between the surfaces of two scenes in both directions, and the change of
 /// area and volume from A to B.
 ///
+/// Meshes that A shows many times and B in the same places are measured once, each against its own
+/// level.
+///
 /// With [`poses`](MeasureRequest::poses), B must be a level of A: both are posed alike, and
 /// measured in the pose in which they are farthest apart.
 ///
@@ -100,6 +104,9 @@ pub fn measure(
     watch: &dyn Watch,
 ) -> Result<MeasureReport, JobError> {
     begin(watch, "measuring")?;
+    if let Some(report) = of_copies([a, b], request, watch)? {
+        return Ok(report);
+    }
     let (surfaces, pose) = match request.poses {
         None => ([a, b].map(own_surface), None),
         Some(most) => farthest::pose([a, b], most, request, watch)
@@ -116,7 +123,49 @@ pub fn measure(
         }
     };
     drop(ready);
-    Ok(report(&surfaces, (distance, certified), pose))
+    Ok(report(surfaces.each_ref().map(Sizes::of), (distance, certified), pose))
+}
+
+/// Measures two scenes that show as many meshes in the same places, each many times; `None` for
+/// others.
+fn of_copies(
+    scenes: [&Scene; 2],
+    request: &MeasureRequest,
+    watch: &dyn Watch,
+) -> Result<Option<MeasureReport>, JobError> {
+    let copies = Copies::of(scenes[0]).filter(|copies| copies.are_those_of(scenes[1]));
+    let Some(copies) = copies.filter(|_| request.poses.is_none()) else { return Ok(None) };
+    let meshes = scenes.map(|scene| |i: usize| &scene.meshes[i].mesh);
+    let [Some(a), Some(b)] = meshes.map(|of| copies.prepare(of)) else { return Ok(None) };
+    let options = DistanceOptions { samples: request.samples, seed: request.seed };
+    let distance = copies.apart([&a, &b], &options);
+    let distance = distance.map_err(|error| JobError::request("", error))?;
+    let certified = match request.certified {
+        false => None,
+        true => {
+            begin(watch, "certifying")?;
+            copies.certified([&a, &b])
+        }
+    };
+    let sizes = meshes.map(|of| Sizes {
+        area: copies.sum(|i| area(of(i)), 2),
+        volume: copies.sum(|i| volume(of(i)), 3),
+        is_closed: copies.all(|i| is_closed(of(i))),
+    });
+    Ok(Some(report(sizes, (distance, certified), None)))
+}
+
+/// Area and volume of a surface.
+struct Sizes {
+    area: f64,
+    volume: f64,
+    is_closed: bool,
+}
+
+impl Sizes {
+    fn of(mesh: &Mesh) -> Self {
+        Self { area: area(mesh), volume: volume(mesh), is_closed: is_closed(mesh) }
+    }
 }
 
 /// Prepares the surfaces of A and B.
@@ -135,23 +184,21 @@ fn apart(
 }
 
 fn report(
-    surfaces: &[Mesh; 2],
+    [a, b]: [Sizes; 2],
     (distance, certified): (Distance, Option<CertifiedDistance>),
     pose: Option<FarthestPose>,
 ) -> MeasureReport {
-    let [areas, volumes] = [area, volume].map(|size| surfaces.each_ref().map(size));
-    let closed = surfaces.each_ref().map(is_closed);
     MeasureReport {
         distance,
         certified,
-        area_a: areas[0],
-        volume_a: volumes[0],
-        closed_a: closed[0],
-        area_b: areas[1],
-        volume_b: volumes[1],
-        closed_b: closed[1],
-        area_change: relative(areas),
-        volume_change: relative(volumes).filter(|_| closed == [true; 2]),
+        area_a: a.area,
+        volume_a: a.volume,
+        closed_a: a.is_closed,
+        area_b: b.area,
+        volume_b: b.volume,
+        closed_b: b.is_closed,
+        area_change: relative([a.area, b.area]),
+        volume_change: relative([a.volume, b.volume]).filter(|_| a.is_closed && b.is_closed),
         pose,
     }
 }
@@ -180,6 +227,53 @@ mod tests {
 
     fn torus() -> Scene {
         Scene::from_mesh("torus", samples::torus(400))
+    }
+
+    /// A scene of a mesh and copies of it, scaled and far apart.
+    fn flock(faces: usize) -> Scene {
+        let mut scene = Scene::from_mesh("torus", samples::torus(faces));
+        let node = scene.nodes[0].clone();
+        for i in 1..6u8 {
+            let (scale, x) = (f64::from(i), 100.0 * f64::from(i));
+            let transform = [
+                [0.0, scale, 0.0, 0.0],
+                [-scale, 0.0, 0.0, 0.0],
+                [0.0, 0.0, scale, 0.0],
+                [x, 0.0, 0.0, 1.0],
+            ];
+            scene.roots.push(scene.nodes.len());
+            scene.nodes.push(meshlod_io::Node { transform, ..node.clone() });
+        }
+        scene
+    }
+
+    #[test]
+    fn copies_are_measured_once_and_as_they_are_shown() {
+        let [a, b] = [2_000, 200].map(flock);
+        let [merged_a, merged_b] = [&a, &b].map(|scene| Scene::from_mesh("", scene.flatten()));
+        let request = MeasureRequest { samples: 50_000, certified: true, ..Default::default() };
+        let once = measure(&a, &b, &request, &()).unwrap();
+        let all = measure(&merged_a, &merged_b, &request, &()).unwrap();
+        let near = |a: f64, b: f64, within: f64| assert!((a / b - 1.0).abs() < within, "{a} {b}");
+        near(once.distance.diagonal, all.distance.diagonal, 1e-9);
+        near(once.distance.forward.max, all.distance.forward.max, 0.02);
+        near(once.distance.backward.max, all.distance.backward.max, 0.02);
+        near(once.distance.mean(), all.distance.mean(), 0.02);
+        near(once.distance.rms(), all.distance.rms(), 0.02);
+        let [own, merged] = [once, all.clone()].map(|report| {
+            let bracket = report.certified.unwrap().symmetric();
+            [bracket.lower, bracket.upper]
+        });
+        assert!(own[0] <= merged[1] && merged[0] <= own[1], "{own:?} {merged:?}");
+        let once = measure(&a, &b, &request, &()).unwrap();
+        near(once.area_b, all.area_b, 1e-9);
+        near(once.volume_a, all.volume_a, 1e-9);
+        let place = once.distance.forward.place;
+        assert_eq!(merged_b.meshes[0].mesh.faces.len(), 6 * b.meshes[0].mesh.faces.len());
+        let face = merged_b.meshes[0].mesh.faces[place.face.index()];
+        let triangle = merged_b.meshes[0].mesh.triangle(face);
+        let there = meshlod_spatial::closest_point(place.to.into(), &triangle);
+        assert!(there.distance(place.to.into()) < 1e-6, "{place:?}");
     }
 
     #[test]

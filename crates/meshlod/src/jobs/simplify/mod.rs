@@ -4,6 +4,7 @@ mod proved_error;
 mod report;
 mod request;
 
+use std::cell::OnceCell;
 use std::time::Instant;
 
 use meshlod_io::Scene;
@@ -11,7 +12,7 @@ use meshlod_measure::{Distance, DistanceOptions, PreparedSurface};
 use meshlod_mesh::Mesh;
 use meshlod_simplify::{Report, Target};
 
-use crate::jobs::scene_run::{self, RunChoice, SceneRun};
+use crate::jobs::scene_run::{self, Original, RunChoice, SceneRun, own_surface};
 use crate::jobs::simplify::proved_error::BoundToProve;
 use crate::jobs::written_as::digits;
 use crate::jobs::{JobError, Watch, WrittenAs, cancellable};
@@ -159,18 +160,20 @@ impl Task<'_> {
         if !self.request.measured && (self.asked.is_none() || proved.is_some()) {
             return Ok((None, proved));
         }
-        let original = scene_run::own_surface(self.scene);
-        let surface = match PreparedSurface::new(&original) {
-            Ok(surface) => Some(surface),
+        let whole = OnceCell::new();
+        let original = match Original::new(self.scene, &whole) {
+            Ok(original) => Some(original),
             Err(error) if self.asked.is_none() => return Err(JobError::input(error)),
             Err(_) => None,
         };
         let options = DistanceOptions::default();
-        let measured = surface.as_ref().filter(|_| self.request.measured).and_then(|surface| {
-            scene_run::measure((surface, &options), self.scene, level, self.watch)
-        });
-        let by_measuring =
-            |asked: BoundToProve| asked.by_measuring(surface.as_ref(), self.scene, level);
+        let wanted = original.as_ref().filter(|_| self.request.measured);
+        let measured = wanted.and_then(|original| original.measure(&options, level, self.watch));
+        let by_measuring = |asked: BoundToProve| {
+            let whole = original.as_ref().map(|_| whole.get_or_init(|| own_surface(self.scene)));
+            let whole = whole.and_then(|whole| PreparedSurface::new(whole).ok());
+            asked.by_measuring(whole.as_ref(), self.scene, level)
+        };
         Ok((measured, proved.or_else(|| self.asked.map(by_measuring))))
     }
 }
