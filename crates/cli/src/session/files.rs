@@ -8,6 +8,7 @@ use meshlod::io::{IoError, write_file};
 use meshlod::{AnyFile, AnyFileError, FileKind, Format, Output, Scene};
 
 use crate::options::args::ReadArgs;
+use crate::options::doubt;
 use crate::session::Session;
 use crate::session::failure::Failure;
 
@@ -28,7 +29,11 @@ pub fn stem(path: &Path) -> String {
 
 /// Reads a scene from a file or standard input; of our own formats, the finest level.
 pub fn read(path: &Path, reading: &ReadArgs, session: &Session) -> Result<Scene, Failure> {
-    scene_of(open(path, reading, session)?, session)
+    let scene = scene_of(open(path, reading, session)?, session)?;
+    if let Some(length) = reading.weld() {
+        doubt::warn_of_length("--weld", length, path, &scene, session);
+    }
+    Ok(scene)
 }
 
 /// Returns the scene in a file, with its notes; of all levels, the finest one.
@@ -40,6 +45,11 @@ pub fn scene_of(file: AnyFile, session: &Session) -> Result<Scene, Failure> {
     let others = scene.notes.iter().filter(|note| !of_file.contains(note)).cloned();
     session.note(&path, &others.collect::<Vec<_>>())?;
     Ok(scene)
+}
+
+/// Returns the format of a mesh to read by its suffix, that of standard input by `--format`.
+pub fn format_of(path: &Path, session: &Session) -> Option<Format> {
+    if is_pipe(path) { session.format } else { Format::of_path(path).ok() }
 }
 
 /// Opens a file of any kind, or standard input.

@@ -10,6 +10,7 @@ use meshlod::scene::world_bounds;
 use meshlod::{Format, Scene, Topology};
 
 use crate::options::args::{ReadArgs, WriteArgs};
+use crate::options::doubt;
 use crate::options::locks::InputScene;
 use crate::options::method::MethodArgs;
 use crate::options::parse::{self, LevelSize};
@@ -65,6 +66,7 @@ impl Lods {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         let (format, layout) = self.check_files(session)?;
         let scene = files::read_surface(&self.input, &self.reading, session)?;
+        doubt::warn_of_levels(&self.levels, &self.input, &scene, session);
         let request = self.request(&scene, format)?;
         let hearing = Hearing::new(session, &self.input, &self.output);
         let done = jobs::lods(scene, &request, &hearing);
