@@ -27,12 +27,13 @@ use crate::batch::report::{FileReport, Status, table};
 use crate::batch::workers::{Crew, run_jobs};
 use crate::command::VerbLine;
 use crate::options::args::GlobalArgs;
-use crate::recipe::{Recipe, one_line};
+use crate::recipe::Recipe;
 use crate::session::Session;
 use crate::session::answer::{Answer, Outcome};
 use crate::session::failure::Failure;
 use crate::session::files;
 use crate::text::numbers::{count, plural, value};
+use crate::usage::one_line;
 use crate::verbs::batch::Batch;
 
 /// Does what the verb `batch` asks for.

@@ -20,6 +20,7 @@ pub use crate::recipe::text::Syntax;
 use crate::recipe::text::{Fault, entries};
 use crate::session::failure::Failure;
 use crate::session::files;
+use crate::usage::{explain, one_line};
 
 /// Largest file that is read as a recipe.
 const MAX_BYTES: u64 = 1 << 16;
@@ -116,7 +117,9 @@ impl Recipe {
     /// # Errors
     /// What the parser says, in one line.
     pub fn line(&self, paths: &[PathBuf]) -> Result<VerbLine, Failure> {
-        VerbLine::try_parse_from(self.arguments(paths)).map_err(|error| self.failure(&error))
+        let arguments = self.arguments(paths);
+        VerbLine::try_parse_from(&arguments)
+            .map_err(|error| self.failure(&explain(error, &arguments)))
     }
 
     /// Returns the recipe as arguments, beginning with the name of the program, with these
@@ -175,12 +178,4 @@ impl Recipe {
             Source::File { path, .. } => files::name(path),
         }
     }
-}
-
-/// Returns the reason of a usage error, without its hints.
-pub fn one_line(error: &clap::Error) -> String {
-    let text = error.render().to_string();
-    let reason = text.split("\n\n").next().unwrap_or_default();
-    let words: Vec<&str> = reason.split_whitespace().collect();
-    words.join(" ").replacen("error: ", "", 1)
 }
