@@ -30,7 +30,7 @@ pub fn warn(input: &Path, doubt: Option<String>, session: &Session) {
 /// Warns of sizes of levels that are probably percentages.
 pub fn warn_of_levels(levels: &[LevelSize], input: &Path, scene: &Scene, session: &Session) {
     let faces = scene.meshes.iter().map(|mesh| mesh.mesh.faces.len()).sum();
-    warn(input, of_levels(levels, faces), session);
+    warn(input, of_commas(levels).or_else(|| of_levels(levels, faces)), session);
 }
 
 /// Warns of a length that is large for a model, by an option that takes no percentages.
@@ -69,6 +69,16 @@ pub fn of_part(option: &str, bound: Bound) -> Option<String> {
              faces is written --ratio {bound}"
         )
     })
+}
+
+/// Doubts two sizes that may be one with a comma: `12,500`.
+fn of_commas(levels: &[LevelSize]) -> Option<String> {
+    let halves = |pair: &[LevelSize]| match *pair {
+        [LevelSize::Faces(a), LevelSize::Faces(b @ 100..1000)] if a <= b => Some((a, b)),
+        _ => None,
+    };
+    let (a, b) = levels.windows(2).find_map(halves)?;
+    Some(format!("--levels {a},{b} are two sizes; one of {a}{b} faces is written without a comma"))
 }
 
 /// Doubts sizes of levels that are all numbers of few faces.
@@ -112,6 +122,8 @@ mod tests {
         assert!(of_levels(&few, 4212).unwrap().ends_with("written 50%,25%,10%"));
         assert!(of_levels(&one, 4212).unwrap().ends_with("written 50%,25%,10%"));
         assert_eq!((of_levels(&few, 200), of_levels(&more, 4212)), (None, None));
+        let comma = of_commas(&[LevelSize::Faces(12), LevelSize::Faces(500)]).unwrap();
+        assert!(comma.contains("one of 12500 faces") && of_commas(&more).is_none());
         assert_eq!(of_levels(&[LevelSize::Ratio(0.5)], 4212), None);
     }
 }

@@ -75,7 +75,9 @@ impl QueryArgs {
     pub fn check_target(&self) -> Result<(), Failure> {
         match self.target.error.is_some() || self.target.faces.is_some() {
             true => Ok(()),
-            false => Err(Failure::usage("a multiresolution file needs --error or --faces")),
+            false => Err(Failure::usage(
+                "a multiresolution file needs --error or --faces, such as --error 0.1% or --faces 5k",
+            )),
         }
     }
 

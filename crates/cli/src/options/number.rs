@@ -62,6 +62,9 @@ fn finite(text: &str) -> Option<f64> {
 }
 
 fn not_a_number(text: &str) -> String {
+    if text.trim().is_empty() {
+        return "a number is missing".into();
+    }
     match finite(&text.replacen(',', ".", 1)) {
         Some(number) => format!("write it with a point: {number}"),
         None => format!("{text:?} is not a number"),

@@ -229,6 +229,7 @@ fn names() -> String {
 
 /// Parses a suffix, such as `ply`.
 pub fn suffix(text: &str) -> Result<Suffix, String> {
+    let text = &*text.trim_start_matches('.').to_ascii_lowercase();
     let meshes = Format::ALL.map(|(suffix, _)| suffix);
     match Format::of_suffix(text) {
         None if !OTHER_SUFFIXES.contains(&text) => {

@@ -63,7 +63,7 @@ impl Recipe {
         let syntax = match suffix.to_str() {
             Some("toml") => Syntax::Toml,
             Some("json") => Syntax::Json,
-            _ => return Err(Failure::at(path, "a recipe must end in .toml or .json")),
+            _ => return Err(no_recipe(path)),
         };
         let mut text = String::new();
         File::open(path)
@@ -177,5 +177,14 @@ impl Recipe {
             Source::CommandLine => self.verb.clone(),
             Source::File { path, .. } => files::name(path),
         }
+    }
+}
+
+/// Makes the failure of a path that is none of a recipe.
+fn no_recipe(path: &Path) -> Failure {
+    let name = files::name(path);
+    match VerbOptions::named(&name) {
+        Some(_) => Failure::at(path, format_args!("is a verb: meshlod {name}, without run")),
+        None => Failure::at(path, "a recipe must end in .toml or .json"),
     }
 }

@@ -64,7 +64,10 @@ fn by_table(name: &str, line: &Line) -> Option<String> {
             let option = options.iter().find(|option| line.option(option).is_some())?;
             Some(format!("did you mean --{option}?"))
         }
-        Meant::Place => {
+        Meant::Out if line.option("out").is_some() => {
+            Some(format!("did you mean {}?", line.option("out")?))
+        }
+        Meant::Place | Meant::Out => {
             let form = line.form().unwrap_or_else(|| "meshlod simplify <IN> <OUT>".into());
             Some(format!("files have no option, only a place: {form}"))
         }

@@ -35,12 +35,12 @@ fn split_value(word: &str, line: &Line) -> Option<String> {
 /// A file for the JSON.
 fn report(word: &str, line: &Line) -> Option<String> {
     let is_report = line.before(word)? == "--json";
-    is_report.then(|| format!("--json prints to standard output: --json > {word}"))
+    is_report.then(|| format!("--json prints to standard output: write --json > {word}"))
 }
 
 /// A number without its option, or one of a list with spaces.
 fn value(word: &str, line: &Line) -> Option<String> {
-    let size = parse::size(word).ok()?;
+    let size = parse::size(word.trim_end_matches(',')).ok()?;
     let of_list = |arg: &Arg| matches!(arg.get_value_delimiter(), Some(','));
     let list = line.words.iter().rposition(|other| {
         other.strip_prefix("--").and_then(|name| line.option(name)).is_some_and(of_list)

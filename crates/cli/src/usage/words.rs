@@ -6,21 +6,21 @@ pub enum Meant {
     Option(&'static [&'static str]),
     /// The place of a file.
     Place,
+    /// The option `--out`, if the verb has it, else the place of a file.
+    Out,
     /// What there is instead of an option.
     Text(&'static str),
 }
 
-use Meant::{Option, Place, Text};
+use Meant::{Option, Out, Place, Text};
 
 /// Options of other programs.
 pub const OPTIONS: &[(&[&str], Meant)] = &[
-    (
-        &["i", "in", "input", "o", "out", "output", "outfile", "out-file", "outdir", "out-dir"],
-        Place,
-    ),
+    (&["i", "in", "input"], Place),
+    (&["o", "out", "output", "outfile", "out-file", "outdir", "out-dir", "report", "save"], Out),
     (
         &["ratio", "percent", "percentage", "factor", "fraction", "reduction", "keep", "r"],
-        Option(&["ratio", "levels"]),
+        Option(&["ratio", "levels", "faces"]),
     ),
     (
         &[
@@ -68,14 +68,23 @@ pub const OPTIONS: &[(&[&str], Meant)] = &[
     (&["ext", "extension", "output-format", "type", "to"], Option(&["format"])),
     (&["resolution", "width", "height", "res"], Option(&["size"])),
     (&["max-distance", "hausdorff"], Option(&["measured"])),
+    (
+        &["draco", "meshopt", "quantize", "quantise", "compress"],
+        Text("meshlod compress writes .glb with EXT_meshopt_compression"),
+    ),
+    (
+        &["scale", "rotate", "translate", "center", "centre", "transform"],
+        Text("a mesh stays where it is: scale, turn and move it in a program such as Blender"),
+    ),
     (&["holes", "fill-holes", "close-holes"], Option(&["holes"])),
     (
         &["recursive", "recurse", "R"],
         Text("a folder, or a pattern such as 'in/**/*.glb', has batch look in folders below, too"),
     ),
     (&["overwrite", "y", "yes"], Text("files that are there are replaced, so leave it out")),
+    (&["v"], Text("-V prints the version; warnings and progress are always shown")),
     (
-        &["verbose", "v", "debug", "verbosity"],
+        &["verbose", "debug", "verbosity"],
         Text("warnings and progress are always shown, and --json has all figures"),
     ),
     (

@@ -61,6 +61,7 @@ impl Extract {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         let format = files::check_output(&self.output, session)?;
         files::check_apart(&self.output, &[&self.input])?;
+        model_file::check_input(&self.input)?;
         self.query.check_target()?;
         let start = Instant::now();
         let file = model_file::open(&self.input, session)?;

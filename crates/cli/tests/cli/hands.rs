@@ -12,6 +12,9 @@ fn folder() -> Run {
     run
 }
 
+/// Keys of an answer that those of several files have once.
+const HEAD: [&str; 3] = ["format", "version", "verb"];
+
 /// Splits a line into arguments at spaces.
 fn line(run: &Run, line: &str) -> Done {
     run.run(&line.split(' ').collect::<Vec<_>>())
@@ -119,4 +122,183 @@ fn lengths_with_units_are_read_where_the_file_has_one() {
         ("extract x.mlod x.ply -e 1mm", "whose unit is the metre, 0.001"),
     ];
     refused(&run, 2, &cases);
+}
+
+#[test]
+fn unknown_options_name_the_one_that_was_meant() {
+    let cases = [
+        ("simplify in.ply out.ply --mode qem -r 10%", "did you mean --method?"),
+        ("simplify in.ply out.ply --rato 10%", "did you mean --ratio?"),
+        ("simplify in.ply out.ply --target-faces 500", "did you mean --faces?"),
+        ("simplify in.ply out.ply --tolerance 1%", "did you mean --error?"),
+        ("batch in.ply out --triangles 500", "did you mean --faces?"),
+        ("lods in.ply out.glb --ratio 50%", "did you mean --levels?"),
+        ("lods in.ply out.glb -r 50%", "did you mean --levels?"),
+        ("simplify in.ply out.ply --levels 50%", "--levels is an option of lods and strip"),
+        ("simplify in.ply -o out.ply -r 10%", "only a place: meshlod simplify <IN> <OUT>"),
+        ("check in.ply --output report", "did you mean --out <DIR>?"),
+        ("check in.ply --fix", "meshlod repair does that"),
+        ("simplify in.ply out.ply -r 10% --overwrite", "files that are there are replaced"),
+        ("simplify in.ply out.glb -r 10% --draco", "meshlod compress writes"),
+        ("simplify in.ply out.ply -ratio 10%", "two hyphens: --ratio"),
+        ("simplify in.ply out.ply –ratio 10%", "two hyphens, not a dash: --ratio"),
+        ("--ratio 10% in.ply out.ply", "name the verb first"),
+        ("--simplify in.ply out.ply", "a verb has no hyphens: meshlod simplify"),
+    ];
+    let run = folder();
+    refused(&run, 2, &cases);
+    for (arguments, _) in cases {
+        assert!(!line(&run, arguments).err.contains("as a value"), "{arguments}");
+    }
+    let json = line(&run, "simplify in.ply out.ply --rato 10% --json").json();
+    let message = "unexpected argument '--rato' found; did you mean --ratio?";
+    assert_eq!(json["failure"]["message"], message);
+}
+
+#[test]
+fn words_without_a_place_are_told_theirs() {
+    let run = folder();
+    fs::copy(run.path("in.ply"), run.path("my mesh.ply")).unwrap();
+    let cases = [
+        ("simplify in.ply in.glb out.ply -r 10%", "several: meshlod batch <IN>... <OUT FOLDER>"),
+        ("convert in.ply in.glb out.ply", "--recipe '{\"verb\": \"convert\"}'"),
+        ("compare in.ply in.glb", "meshlod measure in.ply in.glb"),
+        ("simplify my mesh.ply out.ply -r 10%", "needs quotes: \"my mesh.ply\""),
+        ("simplify in.ply out.ply -r 10 %", "without a space: 10%"),
+        ("simplify in.ply out.ply -e 1 mm", "without a space: 1mm"),
+        ("simplify in.ply out.ply 10%", "did you mean --ratio 10%?"),
+        ("simplify in.ply out.ply 500", "did you mean --faces 500?"),
+        ("lods in.ply out.glb 50%", "did you mean --levels 50%?"),
+        ("lods in.ply out.glb --levels 50% 25% 10%", "--levels 50%,25%,10%"),
+        ("lods in.ply out.glb --levels 50%, 25%", "--levels 50%,25%"),
+        ("lods in.ply out.glb --levels 50%,", "a number is missing"),
+        ("simplify in.ply", "say how far, such as --ratio 10%"),
+        ("simplify in.ply -r 10%", "name the file to write after in.ply"),
+        ("measure in.ply", "meshlod measure in.ply <B>"),
+        ("batch in.ply", "the last path is the folder to write to"),
+    ];
+    refused(&run, 2, &cases);
+    let done = line(&run, "simplify in.ply out.ply -r 10% --json out.json");
+    assert!(done.err.contains("write --json > out.json"), "{done:?}");
+}
+
+#[test]
+fn a_line_without_a_verb_is_told_which() {
+    let cases = [
+        ("in.ply out.ply", "name a verb first: meshlod simplify in.ply out.ply --ratio 10%"),
+        ("in.ply out.glb", "meshlod convert in.ply out.glb, or meshlod simplify"),
+        ("in.ply out.mlod", "meshlod build in.ply out.mlod"),
+        ("in.ply", "meshlod info in.ply"),
+        ("decimate in.ply out.ply", "did you mean simplify?"),
+        ("simplfy in.ply out.ply", "did you mean simplify?"),
+        ("validate in.ply", "did you mean check?"),
+    ];
+    refused(&folder(), 2, &cases);
+}
+
+#[test]
+fn keys_and_verbs_of_recipes_are_told_like_options() {
+    let run = folder();
+    let cases = [
+        ("{\"verb\": \"simplify\", \"rato\": 0.1}", "no option \"rato\"; did you mean ratio?"),
+        ("{\"verb\": \"simplify\", \"mode\": \"qem\"}", "did you mean method?"),
+        ("{\"verb\": \"simplify\", \"lock_boundary\": true}", "did you mean lock-boundary?"),
+        ("{\"verb\": \"decimate\"}", "did you mean simplify?"),
+        ("{\"verb\": \"simplify\"}", "say how far, such as --ratio 10%"),
+        ("{\"verb\": \"lods\", \"levels\": \"10,000\"}", "write 10000, not 10,000"),
+        ("simplify", "is a verb: meshlod simplify, without run"),
+    ];
+    for (recipe, words) in cases {
+        let done = run.run(&["run", recipe, "in.ply", "out.ply"]);
+        assert!(done.code == 1 && done.only_line().contains(words), "{recipe}: {done:?}");
+    }
+}
+
+#[test]
+fn files_that_are_not_read_name_a_way() {
+    let run = folder();
+    fs::create_dir(run.path("out")).unwrap();
+    let cases = [
+        ("info in.fbx", "in.fbx: .fbx is not read: open it in Blender and export .glb"),
+        ("info in.3mf", "export .stl from a slicer"),
+        ("simplify in.usdz out.glb -r 10%", "which imports USD, and export .glb"),
+        ("simplify in.STEP out.glb -r 10%", ".step is not read: it holds CAD surfaces"),
+        ("info in.ply.gz", "unpack it first"),
+        ("info in.mtl", "name the .obj or .gltf"),
+        (
+            "extract in.ply out.ply",
+            "is no .mlod file; make one first: meshlod build in.ply in.mlod",
+        ),
+        ("decompress in.ply out.ply", "use meshlod convert in.ply out.ply"),
+        ("info in.obj", "did you mean in.glb?"),
+        ("info IN.ply", "did you mean in.ply?"),
+        ("simplify *.ply out.ply -r 10%", "meshlod batch '*.ply' OUT"),
+        ("info https://example.com/a.glb", "download it first"),
+        ("simplify in.ply out -r 10%", "name a file to write, such as out/out.glb"),
+        ("simplify in.ply new/ -r 10%", "name a file to write, such as new/out.glb"),
+        ("batch none out2 -r 10%", "none: there is no such file or folder"),
+        (
+            "simplify in.ply out.ply -r 10% --locks in.ply",
+            "written by meshlod check IN --locks FILE",
+        ),
+    ];
+    refused(&run, 1, &cases);
+    let cases = [
+        ("convert in.ply out.usdz", ".usdz is not written: write .glb"),
+        ("lods in.ply out.fbx", ".fbx is not written: write .glb"),
+        ("convert in.ply new", "did you mean new.glb?"),
+        ("build in.ply out.glb", "levels in .glb are written by meshlod lods"),
+        ("batch in.ply out.ply -r 10%", "the last path of a batch is the folder to write to"),
+        ("batch in.ply in.glb -r 10%", "the last path of a batch is the folder to write to"),
+    ];
+    refused(&run, 2, &cases);
+}
+
+#[test]
+fn a_folder_gets_the_levels_of_a_chain() {
+    let run = folder();
+    let report = run.json(&["lods", "in.ply", "new/", "--levels", "50%"]);
+    assert_eq!(report["layout"], "files");
+    fs::create_dir(run.path("there")).unwrap();
+    run.json(&["lods", "in.ply", "there", "--levels", "50%", "--format", "obj"]);
+    run.json(&["lods", "in.ply", "there", "--levels", "50%", "--layout", "scene"]);
+    for file in ["new/in_LOD0.ply", "new/in_LOD1.ply", "new/in.lods.json", "there/in_LOD1.obj"] {
+        assert!(run.path(file).exists(), "{file}");
+    }
+    assert!(run.path("there/in.glb").exists());
+}
+
+#[test]
+fn info_and_check_take_several_files() {
+    let run = folder();
+    for verb in ["info", "check"] {
+        let all = run.json(&[verb, "in.ply", "in.glb"]);
+        for (at, file) in ["in.ply", "in.glb"].into_iter().enumerate() {
+            let mut one = run.json(&[verb, file]);
+            one.as_object_mut().unwrap().retain(|key, _| !HEAD.contains(&&**key));
+            assert_eq!(all["files"][at], one);
+        }
+        let pattern = run.json(&[verb, "in.*"]);
+        let names: Vec<_> =
+            pattern["files"].as_array().unwrap().iter().map(|f| &f["file"]).collect();
+        assert_eq!(names, ["in.glb", "in.ply"]);
+        let done = line(&run, &format!("{verb} in.ply none.ply in.glb"));
+        assert!(done.code == 1 && done.only_line().contains("none.ply: "), "{done:?}");
+        assert!(done.text().contains("in.ply") && done.text().contains("in.glb"), "{done:?}");
+        let json = line(&run, &format!("{verb} none.ply in.glb --json")).json();
+        assert_eq!(
+            (&json["files"][0]["exit"], json["files"].as_array().unwrap().len()),
+            (&1.into(), 2)
+        );
+    }
+    refused(&run, 2, &[("check in.ply in.glb --out page", "--locks and --out are for one file")]);
+}
+
+#[test]
+fn a_defect_in_one_of_several_files_is_an_exit_code() {
+    let run = folder();
+    let faces = "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 2\n";
+    fs::write(run.path("twice.off"), faces).unwrap();
+    let code = |files: &str| line(&run, &format!("check {files}")).code;
+    assert_eq!((code("in.ply in.glb"), code("twice.off"), code("twice.off in.ply")), (0, 3, 3));
 }
