@@ -57,7 +57,7 @@ def test_recipes_are_files_or_dictionaries(tmp_path):
         meshlod.batch(tmp_path / "in", tmp_path / "out", {"rato": "10%"})
     with pytest.raises(meshlod.MeshlodError, match="recipe: "):
         meshlod.batch(tmp_path / "in", tmp_path / "out", {"ratio": object()})
-    with pytest.raises(meshlod.MeshlodError, match="no file of a format that is read"):
+    with pytest.raises(meshlod.MeshlodError, match="there is no such file or folder"):
         meshlod.batch(tmp_path / "none", tmp_path / "out", TEN)
     with pytest.raises(meshlod.MeshlodError, match="at least one path"):
         meshlod.batch([], tmp_path / "out", TEN)

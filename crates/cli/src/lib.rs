@@ -16,6 +16,7 @@ mod page;
 mod recipe;
 mod session;
 mod text;
+mod usage;
 mod verbs;
 mod view;
 
@@ -43,7 +44,7 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
     let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
     let (mut verb, cli) = match parse(&arguments) {
         Ok(parsed) => parsed,
-        Err(usage) => return refuse(&usage, arguments.iter().any(|argument| argument == "--json")),
+        Err(wrong) => return refuse(&wrong, arguments.iter().any(|argument| argument == "--json")),
     };
     let mut session = Session::new(cli.global.clone());
     let done = perform(&mut verb, cli, &mut session);
@@ -66,21 +67,23 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
 /// Parses the arguments, and returns the name of the verb with them.
 fn parse(arguments: &[OsString]) -> Result<(String, Cli), clap::Error> {
     let mut command = Cli::command();
-    let matches = command.try_get_matches_from_mut(arguments)?;
+    let matches = command
+        .try_get_matches_from_mut(arguments)
+        .map_err(|error| usage::explain(error, arguments))?;
     let verb = matches.subcommand_name().unwrap_or_default().to_owned();
     let cli = Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut command))?;
     Ok((verb, cli))
 }
 
 /// Prints wrong usage, or the help or version that was asked for, and returns the exit code.
-fn refuse(usage: &clap::Error, json: bool) -> u8 {
+fn refuse(wrong: &clap::Error, json: bool) -> u8 {
     // If the stream is closed, nobody is left to tell.
-    let _ = usage.print();
-    if json && usage.use_stderr() {
-        let failure = Failure::usage(recipe::one_line(usage));
+    let _ = wrong.print();
+    if json && wrong.use_stderr() {
+        let failure = Failure::usage(usage::one_line(wrong));
         session::answer::print_json(&session::report_head::of_failure(None, &failure));
     }
-    u8::try_from(usage.exit_code()).unwrap_or(2)
+    u8::try_from(wrong.exit_code()).unwrap_or(2)
 }
 
 /// Runs the command with these arguments as [`run`] does, but prints nothing, and returns the JSON
@@ -95,7 +98,7 @@ pub fn answer_of<A: Into<OsString> + Clone>(
     listener: impl Fn(usize, usize) + Send + Sync + 'static,
 ) -> Result<String, String> {
     let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
-    let (mut verb, cli) = parse(&arguments).map_err(|usage| recipe::one_line(&usage))?;
+    let (mut verb, cli) = parse(&arguments).map_err(|wrong| usage::one_line(&wrong))?;
     let progress = Progress::told(Box::new(listener));
     let mut session = Session::heard(cli.global.clone(), progress);
     let done = perform(&mut verb, cli, &mut session).map_err(|failure| failure.to_string())?;

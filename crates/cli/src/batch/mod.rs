@@ -22,17 +22,19 @@ use meshlod::io::{remove_abandoned, write_file};
 use serde_json::json;
 
 use crate::batch::journal::Journal;
+pub use crate::batch::plan::files_of;
 use crate::batch::plan::{FileJob, Plan};
 use crate::batch::report::{FileReport, Status, table};
 use crate::batch::workers::{Crew, run_jobs};
 use crate::command::VerbLine;
 use crate::options::args::GlobalArgs;
-use crate::recipe::{Recipe, one_line};
+use crate::recipe::Recipe;
 use crate::session::Session;
 use crate::session::answer::{Answer, Outcome};
 use crate::session::failure::Failure;
 use crate::session::files;
 use crate::text::numbers::{count, plural, value};
+use crate::usage::one_line;
 use crate::verbs::batch::Batch;
 
 /// Does what the verb `batch` asks for.

@@ -8,6 +8,7 @@ use glob::{MatchOptions, Pattern, glob_with};
 use meshlod::FileKind;
 
 use crate::options::parse::Suffix;
+use crate::session::absent::is_pattern;
 use crate::session::failure::Failure;
 use crate::session::files;
 
@@ -44,7 +45,7 @@ impl Plan {
         folder: &Path,
         suffix: Option<&Suffix>,
     ) -> Result<Self, Failure> {
-        files::check_folder(folder)?;
+        check_folder(folder)?;
         let mut plan = Self { jobs: Vec::new(), others: 0 };
         let mut seen = BTreeSet::new();
         for pattern in patterns {
@@ -81,6 +82,24 @@ impl Plan {
     }
 }
 
+/// Fails if the output folder is a mesh, which was meant as an input or as the output of one file.
+fn check_folder(folder: &Path) -> Result<(), Failure> {
+    if FileKind::of_path(folder).is_err() || folder.is_dir() {
+        return files::check_folder(folder);
+    }
+    let reason = "the last path of a batch is the folder to write to, not a mesh; one file is written by \
+                  meshlod simplify";
+    Err(Failure::usage(format_args!("{}: {reason}", files::name(folder))).about(folder))
+}
+
+/// Returns the files that a pattern matches.
+///
+/// # Errors
+/// If it matches nothing.
+pub fn files_of(pattern: &Path) -> Result<Vec<PathBuf>, Failure> {
+    Ok(Found::of(pattern, Path::new(""))?.files)
+}
+
 /// Files that one pattern matches.
 struct Found {
     /// Folder that the pattern fixes.
@@ -94,6 +113,9 @@ impl Found {
         if pattern.is_file() {
             let base = pattern.parent().unwrap_or(Path::new("")).to_owned();
             return Ok(Self { base, files: vec![pattern.to_owned()], others: 0 });
+        }
+        if !pattern.exists() && !is_pattern(pattern) {
+            return Err(Failure::at(pattern, "there is no such file or folder"));
         }
         let text = pattern.to_str().ok_or_else(|| Failure::at(pattern, "is not Unicode"))?;
         let (base, text) = match pattern.is_dir() {

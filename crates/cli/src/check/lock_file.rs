@@ -167,7 +167,9 @@ fn mesh_json(rows: &[VertexId], VertexLocks { locks, reasons }: &VertexLocks) ->
 pub fn read(path: &Path, scene: &Scene, rows: &FileRows) -> Result<Vec<Locks>, Failure> {
     let wrong = |reason: String| Failure::at(path, reason);
     let bytes = files::read_all(path)?;
-    let json: Value = serde_json::from_slice(&bytes).map_err(|error| wrong(error.to_string()))?;
+    let json: Value = serde_json::from_slice(&bytes).map_err(|error| {
+        wrong(format!("{error}; --locks takes a file written by meshlod check IN --locks FILE"))
+    })?;
     if json["format"] != FORMAT {
         return Err(wrong("is not a lock file; meshlod check IN --locks FILE writes one".into()));
     }

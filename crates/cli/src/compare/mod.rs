@@ -66,11 +66,11 @@ pub struct Compare {
 #[group(required = true, multiple = false)]
 struct Sizes {
     /// Target ratios of the faces: 10%,1%
-    #[arg(short, long, value_name = "RATIOS", value_delimiter = ',', value_parser = parse::ratio,
+    #[arg(short, long, value_name = "RATIOS", value_delimiter = ',', value_parser = parse::ratio_of_faces,
         allow_hyphen_values = true)]
     ratio: Vec<f64>,
     /// Target numbers of faces: 5000,500
-    #[arg(short, long, value_name = "NUMBERS", value_delimiter = ',', value_parser = parse::whole,
+    #[arg(short, long, value_name = "NUMBERS", value_delimiter = ',', value_parser = parse::faces,
         allow_negative_numbers = true)]
     faces: Vec<usize>,
 }

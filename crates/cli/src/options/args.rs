@@ -77,6 +77,11 @@ impl ReadArgs {
         self.no_weld || self.weld.is_some()
     }
 
+    /// Returns the value of `--weld`.
+    pub fn weld(&self) -> Option<f64> {
+        self.weld
+    }
+
     /// Takes the value of `--weld` for a command that welds by itself, so that reading the file
     /// does not.
     pub fn take_weld(&mut self) -> Option<f64> {
@@ -122,7 +127,7 @@ impl WriteArgs {
 #[command(next_help_heading = "Attributes")]
 pub struct AttributeErrorArgs {
     /// Largest error of normals and tangents, in degrees
-    #[arg(long, value_name = "DEGREES", value_parser = parse::length, allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEGREES", value_parser = parse::degrees, allow_hyphen_values = true)]
     pub normal_error: Option<f64>,
     /// Largest error of texture coordinates, where 1 is the whole texture
     #[arg(long, value_name = "BOUND", value_parser = parse::length, allow_hyphen_values = true)]

@@ -2,11 +2,14 @@
 
 pub mod args;
 pub mod constraints;
+pub mod doubt;
 pub mod fuse;
 pub mod locks;
 pub mod method;
 pub mod model_query;
+pub mod number;
 pub mod parse;
 pub mod query_args;
+pub mod tolerance;
 pub mod topology;
 pub mod volume;

@@ -3,9 +3,11 @@
 use std::path::Path;
 
 use clap::{Args, ValueEnum};
+use meshlod::AnyFile;
 use meshlod::jobs::{FocusRequest, QueryRequest, QueryTarget};
-use meshlod::multires::ViewCamera;
+use meshlod::multires::{ModelFile, ViewCamera};
 
+use crate::options::doubt;
 use crate::options::parse;
 use crate::options::query_args::{self, ErrorLimit};
 use crate::session::Session;
@@ -73,7 +75,9 @@ impl QueryArgs {
     pub fn check_target(&self) -> Result<(), Failure> {
         match self.target.error.is_some() || self.target.faces.is_some() {
             true => Ok(()),
-            false => Err(Failure::usage("a multiresolution file needs --error or --faces")),
+            false => Err(Failure::usage(
+                "a multiresolution file needs --error or --faces, such as --error 0.1% or --faces 5k",
+            )),
         }
     }
 
@@ -102,6 +106,13 @@ impl QueryArgs {
     /// Returns the query for another error than the options have.
     pub fn request_for(&self, limit: ErrorLimit) -> QueryRequest {
         QueryRequest { target: QueryTarget::Error(limit), ..self.request() }
+    }
+
+    /// Warns of an error that is probably meant as a percentage.
+    pub fn warn_of_error(&self, file: &AnyFile, session: &Session) {
+        let Some(ErrorLimit::Length(bound)) = self.target.error else { return };
+        let diagonal = file.levels().map_or(0.0, ModelFile::diagonal);
+        doubt::warn(file.path(), doubt::of_bound("--error", bound, diagonal), session);
     }
 
     /// Warns if a cut has more faces than asked for, since nothing is coarser. `done` says what is

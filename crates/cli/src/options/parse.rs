@@ -5,7 +5,9 @@ use std::fmt;
 pub use meshlod::Bound;
 use meshlod::{Format, Method, Target};
 
-use crate::text::numbers::{count, plural};
+use crate::options::number::{is_end_of_thousands, metres, without_separators};
+pub use crate::options::number::{number, whole};
+use crate::text::numbers::{count, plural, value};
 
 /// Requested size of a simplified mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +23,14 @@ impl LevelSize {
         match self {
             Self::Faces(faces) => Target::Faces(faces),
             Self::Ratio(ratio) => Target::Ratio(ratio),
+        }
+    }
+
+    /// Returns the number of faces, if that is what is asked for.
+    pub fn faces(&self) -> Option<usize> {
+        match self {
+            Self::Faces(faces) => Some(*faces),
+            Self::Ratio(_) => None,
         }
     }
 
@@ -69,15 +79,40 @@ const MAX_SAMPLES: usize = 100_000_000;
 
 /// Parses a ratio: `10%` or `0.1`.
 pub fn ratio(text: &str) -> Result<f64, String> {
-    let ratio = match text.strip_suffix('%') {
+    let ratio = match text.trim().strip_suffix('%') {
         Some(percent) => number(percent)? / 100.0,
         None => number(text)?,
     };
     match ratio {
         _ if (0.0..=1.0).contains(&ratio) => Ok(ratio),
         _ if text.ends_with('%') => Err("it must be between 0% and 100%".into()),
-        _ => Err(format!("it must be between 0 and 1; did you mean {text}%?")),
+        _ if (1.0..=100.0).contains(&ratio) => {
+            Err(format!("it must be between 0 and 1; did you mean {}%?", text.trim()))
+        }
+        _ => Err("it must be between 0 and 1, or between 0% and 100%".into()),
     }
+}
+
+/// Parses a ratio of the faces; says where a number of faces belongs.
+pub fn ratio_of_faces(text: &str) -> Result<f64, String> {
+    ratio(text).map_err(|reason| match whole(text) {
+        Ok(faces) if faces > 100 => {
+            format!("it is a ratio of the faces; did you mean --faces {text}?")
+        }
+        Err(_) if number(text.trim_end_matches('%')).is_err() => {
+            format!("{reason}; a ratio is written 10% or 0.1")
+        }
+        _ => reason,
+    })
+}
+
+/// Parses a number of faces; says where a ratio belongs.
+pub fn faces(text: &str) -> Result<usize, String> {
+    whole(text).map_err(|reason| match ratio(text) {
+        _ if is_end_of_thousands(text) || without_separators(text).is_some() => reason,
+        Ok(_) => format!("it is a number of faces; did you mean --ratio {text}?"),
+        Err(_) => reason,
+    })
 }
 
 /// Parses a length: `0.5` in model units, or `0.1%` of the diagonal.
@@ -90,18 +125,39 @@ pub fn bound(text: &str) -> Result<Bound, String> {
 
 /// Parses a level size: `50%` or `0.5` of the faces, or `5000` faces.
 pub fn size(text: &str) -> Result<LevelSize, String> {
-    match text.parse() {
-        Ok(faces) => Ok(LevelSize::Faces(faces)),
-        Err(_) => ratio(text).map(LevelSize::Ratio),
+    match (whole(text), ratio(text)) {
+        (Ok(faces), _) => Ok(LevelSize::Faces(faces)),
+        (Err(reason), _) if is_end_of_thousands(text) => Err(reason),
+        (_, Ok(ratio)) => Ok(LevelSize::Ratio(ratio)),
+        (Err(reason), _) if without_separators(text).is_some() => Err(reason),
+        (_, Err(reason)) => Err(reason),
     }
 }
 
 /// Parses a finite length of at least 0.
 pub fn length(text: &str) -> Result<f64, String> {
-    match number(text)? {
-        length if length >= 0.0 => Ok(length),
-        _ => Err("it must be at least 0".into()),
+    match number(text) {
+        Ok(length) if length >= 0.0 => Ok(length),
+        Ok(_) => Err("it must be at least 0".into()),
+        Err(reason) => Err(unit_of_length(text).unwrap_or(reason)),
     }
+}
+
+/// Says what to give in place of a length with a unit that is not read.
+fn unit_of_length(text: &str) -> Option<String> {
+    if let Some(metres) = metres(text) {
+        let metres = value(metres);
+        return Some(format!("give it in model units; in glTF, whose unit is the metre, {metres}"));
+    }
+    let px = text.strip_suffix("px")?;
+    number(px)
+        .is_ok()
+        .then(|| "a length has no pixels: give a percentage of the diagonal, such as 0.1%".into())
+}
+
+/// Parses an angle of at least 0 in degrees: `5`, `5deg` or `5°`.
+pub fn degrees(text: &str) -> Result<f64, String> {
+    length(text.trim_end_matches("deg").trim_end_matches('°'))
 }
 
 /// Parses a weight of at least 0.
@@ -109,22 +165,18 @@ pub fn weight(text: &str) -> Result<f64, String> {
     length(text)
 }
 
-/// Parses a whole number of at least 0.
-pub fn whole(text: &str) -> Result<usize, String> {
-    text.parse().map_err(|_| "it must be a whole number of at least 0".into())
-}
-
 /// Parses a whole number of at least 1.
 pub fn positive(text: &str) -> Result<usize, String> {
-    match text.parse() {
+    match whole(text) {
         Ok(number) if number > 0 => Ok(number),
+        Err(reason) if without_separators(text).is_some() => Err(reason),
         _ => Err("it must be a whole number of at least 1".into()),
     }
 }
 
 /// Parses the value of `--threads`.
 pub fn threads(text: &str) -> Result<usize, String> {
-    at_most(MAX_THREADS, text)
+    at_most(MAX_THREADS, text).map_err(|reason| format!("{reason}; all cores are the default"))
 }
 
 /// Parses the value of `--samples`.
@@ -134,7 +186,8 @@ pub fn samples(text: &str) -> Result<usize, String> {
 
 /// Parses a picture size in pixels: `640x480`.
 pub fn pixels(text: &str) -> Result<[u32; 2], String> {
-    let sides = text.split_once('x').map(|(width, height)| (width.parse(), height.parse()));
+    let sides =
+        text.split_once(['x', 'X', '*']).map(|(width, height)| (width.parse(), height.parse()));
     let allowed = 1..=meshlod::picture::MAX_SIDE;
     match sides {
         Some((Ok(w), Ok(h))) if allowed.contains(&w) && allowed.contains(&h) => Ok([w, h]),
@@ -176,6 +229,7 @@ fn names() -> String {
 
 /// Parses a suffix, such as `ply`.
 pub fn suffix(text: &str) -> Result<Suffix, String> {
+    let text = &*text.trim_start_matches('.').to_ascii_lowercase();
     let meshes = Format::ALL.map(|(suffix, _)| suffix);
     match Format::of_suffix(text) {
         None if !OTHER_SUFFIXES.contains(&text) => {
@@ -189,14 +243,6 @@ fn at_most(most: usize, text: &str) -> Result<usize, String> {
     match positive(text)? {
         number if number <= most => Ok(number),
         _ => Err(format!("it must be at most {}", count(most))),
-    }
-}
-
-/// Parses a finite number.
-pub fn number(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok(number),
-        _ => Err(format!("{text:?} is not a number")),
     }
 }
 
@@ -214,6 +260,24 @@ mod tests {
     }
 
     #[test]
+    fn a_number_for_the_other_option_is_told_which() {
+        let reason = |parsed: Result<String, String>| parsed.unwrap_err();
+        let ratio = |text| reason(ratio_of_faces(text).map(|ratio| ratio.to_string()));
+        let faces = |text| reason(faces(text).map(|faces| faces.to_string()));
+        assert!(ratio("10k").contains("--faces 10k") && ratio("5000").contains("--faces 5000"));
+        assert!(ratio("10").ends_with("10%?") && ratio("1/10").contains("10% or 0.1"));
+        assert!(faces("10%").contains("--ratio 10%") && faces("0.1").contains("--ratio 0.1"));
+        assert!(faces("10,000").contains("10000") && faces("ten").contains("5k"));
+    }
+
+    #[test]
+    fn lengths_with_units_are_told_their_number() {
+        assert!(length("1mm").unwrap_err().ends_with("metre, 0.001"));
+        assert!(bound("2px").unwrap_err().contains("0.1%"));
+        assert_eq!((degrees("5deg"), degrees("5°"), degrees("5")), (Ok(5.0), Ok(5.0), Ok(5.0)));
+    }
+
+    #[test]
     fn bounds_are_lengths_or_parts_of_the_diagonal() {
         assert_eq!(bound("0.5").unwrap().length(20.0), 0.5);
         assert_eq!(bound("0.1%").unwrap().length(20.0), 0.02);
@@ -228,6 +292,10 @@ mod tests {
         assert_eq!(size("5000").unwrap().to_string(), "5000 faces");
         assert_eq!(size("1").unwrap().to_string(), "1 face");
         assert_eq!(size("0.25"), Ok(LevelSize::Ratio(0.25)));
+        assert_eq!(size(" 5k"), Ok(LevelSize::Faces(5000)));
+        assert_eq!(size("1.000"), Ok(LevelSize::Ratio(1.0)));
+        assert!(size("000").unwrap_err().contains("commas separate"));
+        assert!(size("10.000").unwrap_err().contains("10000"));
     }
 
     #[test]

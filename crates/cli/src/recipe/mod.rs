@@ -20,6 +20,7 @@ pub use crate::recipe::text::Syntax;
 use crate::recipe::text::{Fault, entries};
 use crate::session::failure::Failure;
 use crate::session::files;
+use crate::usage::{explain, one_line};
 
 /// Largest file that is read as a recipe.
 const MAX_BYTES: u64 = 1 << 16;
@@ -62,7 +63,7 @@ impl Recipe {
         let syntax = match suffix.to_str() {
             Some("toml") => Syntax::Toml,
             Some("json") => Syntax::Json,
-            _ => return Err(Failure::at(path, "a recipe must end in .toml or .json")),
+            _ => return Err(no_recipe(path)),
         };
         let mut text = String::new();
         File::open(path)
@@ -116,7 +117,9 @@ impl Recipe {
     /// # Errors
     /// What the parser says, in one line.
     pub fn line(&self, paths: &[PathBuf]) -> Result<VerbLine, Failure> {
-        VerbLine::try_parse_from(self.arguments(paths)).map_err(|error| self.failure(&error))
+        let arguments = self.arguments(paths);
+        VerbLine::try_parse_from(&arguments)
+            .map_err(|error| self.failure(&explain(error, &arguments)))
     }
 
     /// Returns the recipe as arguments, beginning with the name of the program, with these
@@ -177,10 +180,11 @@ impl Recipe {
     }
 }
 
-/// Returns the reason of a usage error, without its hints.
-pub fn one_line(error: &clap::Error) -> String {
-    let text = error.render().to_string();
-    let reason = text.split("\n\n").next().unwrap_or_default();
-    let words: Vec<&str> = reason.split_whitespace().collect();
-    words.join(" ").replacen("error: ", "", 1)
+/// Makes the failure of a path that is none of a recipe.
+fn no_recipe(path: &Path) -> Failure {
+    let name = files::name(path);
+    match VerbOptions::named(&name) {
+        Some(_) => Failure::at(path, format_args!("is a verb: meshlod {name}, without run")),
+        None => Failure::at(path, "a recipe must end in .toml or .json"),
+    }
 }

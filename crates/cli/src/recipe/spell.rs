@@ -11,6 +11,7 @@ use clap::{Arg, ArgAction, ArgMatches, Command, CommandFactory};
 use crate::command::VerbLine;
 use crate::recipe::Recipe;
 use crate::recipe::text::{Entry, Given};
+use crate::usage::{tip_for_key, tip_for_verb};
 
 /// An option with its value, as it is given on the command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -64,7 +65,11 @@ impl VerbOptions {
         named.ok_or_else(|| {
             let all = VerbLine::command();
             let names: Vec<&str> = all.get_subcommands().map(Command::get_name).collect();
-            format!("verb must be one of {}", names.join(", "))
+            let tip = match verb {
+                Given::Text(name) => tip_for_verb(name),
+                _ => None,
+            };
+            with_tip(format!("verb must be one of {}", names.join(", ")), tip)
         })
     }
 
@@ -103,7 +108,8 @@ impl VerbOptions {
         }
         let arg = self.options().find(|arg| arg.get_long() == Some(&entry.key));
         let Some(arg) = arg else {
-            return Err(format!("{} has no option {:?}", self.verb, entry.key));
+            let reason = format!("{} has no option {:?}", self.verb, entry.key);
+            return Err(with_tip(reason, tip_for_key(&self.verb, &entry.key)));
         };
         let values =
             values(arg, &entry.value).map_err(|reason| format!("{} {reason}", entry.key))?;
@@ -146,6 +152,10 @@ impl VerbOptions {
         };
         self.command.get_arguments().filter(acts).filter(|arg| !arg.is_positional())
     }
+}
+
+fn with_tip(reason: String, tip: Option<String>) -> String {
+    tip.into_iter().fold(reason, |reason, tip| format!("{reason}; {tip}"))
 }
 
 /// Returns the values of an option in turn, `None` for a flag without one.

@@ -8,8 +8,10 @@ use meshlod::io::{IoError, write_file};
 use meshlod::{AnyFile, AnyFileError, FileKind, Format, Output, Scene};
 
 use crate::options::args::ReadArgs;
+use crate::options::doubt;
 use crate::session::Session;
 use crate::session::failure::Failure;
+use crate::session::{absent, foreign};
 
 /// Returns true if a path is `-`, which stands for standard input or output.
 pub fn is_pipe(path: &Path) -> bool {
@@ -28,7 +30,11 @@ pub fn stem(path: &Path) -> String {
 
 /// Reads a scene from a file or standard input; of our own formats, the finest level.
 pub fn read(path: &Path, reading: &ReadArgs, session: &Session) -> Result<Scene, Failure> {
-    scene_of(open(path, reading, session)?, session)
+    let scene = scene_of(open(path, reading, session)?, session)?;
+    if let Some(length) = reading.weld() {
+        doubt::warn_of_length("--weld", length, path, &scene, session);
+    }
+    Ok(scene)
 }
 
 /// Returns the scene in a file, with its notes; of all levels, the finest one.
@@ -40,6 +46,11 @@ pub fn scene_of(file: AnyFile, session: &Session) -> Result<Scene, Failure> {
     let others = scene.notes.iter().filter(|note| !of_file.contains(note)).cloned();
     session.note(&path, &others.collect::<Vec<_>>())?;
     Ok(scene)
+}
+
+/// Returns the format of a mesh to read by its suffix, that of standard input by `--format`.
+pub fn format_of(path: &Path, session: &Session) -> Option<Format> {
+    if is_pipe(path) { session.format } else { Format::of_path(path).ok() }
 }
 
 /// Opens a file of any kind, or standard input.
@@ -98,11 +109,19 @@ pub fn output(path: &Path, session: &Session) -> Result<Output, Failure> {
     })
 }
 
+/// Reports whether a path is that of a folder, which may be missing: it ends like one then.
+pub fn is_folder(path: &Path) -> bool {
+    path.is_dir() || path.to_string_lossy().ends_with(std::path::is_separator)
+}
+
 /// Makes the failure of a mesh whose suffix is unknown.
 fn unknown_input(path: &Path, error: &IoError) -> Failure {
     match path.is_dir() {
         true => Failure::at(path, "is a folder; name a file to read"),
-        false => Failure::new(format_args!("{error} .mlod .mlq .mlz")).about(path),
+        false => match foreign::way_from(path) {
+            Some(way) => Failure::at(path, way),
+            None => Failure::new(format_args!("{error} .mlod .mlq .mlz")).about(path),
+        },
     }
 }
 
@@ -111,7 +130,7 @@ impl From<AnyFileError> for Failure {
         let path = error.path().to_owned();
         match error {
             AnyFileError::Io(error @ IoError::UnknownFormat { .. }) => unknown_input(&path, &error),
-            AnyFileError::Io(error) => error.into(),
+            AnyFileError::Io(error) => absent::failure(error),
             error @ AnyFileError::Weld(_) => {
                 Self::new(error.to_string().replace(": weld:", ": --weld:")).about(&path)
             }
@@ -123,10 +142,21 @@ impl From<AnyFileError> for Failure {
 /// Makes the failure of an output whose suffix is not that of a mesh: says which verb writes it.
 fn unknown_output(path: &Path, error: &IoError) -> Failure {
     let verb = match FileKind::own_of_path(path) {
-        _ if path.is_dir() => return Failure::at(path, "is a folder; name a file to write"),
+        _ if is_folder(path) => {
+            let file = path.join("out.glb");
+            let reason = format_args!("is a folder; name a file to write, such as {}", name(&file));
+            return Failure::at(path, reason);
+        }
         Some(FileKind::Levels) => "build",
         Some(_) => "compress",
-        None => return Failure::usage(error).about(path),
+        None => {
+            let reason = match (foreign::way_to(path), path.extension()) {
+                (Some(way), _) => format!("{}: {way}", name(path)),
+                (None, None) => format!("{error}; did you mean {}.glb?", name(path)),
+                (None, Some(_)) => error.to_string(),
+            };
+            return Failure::usage(reason).about(path);
+        }
     };
     Failure::usage(format_args!("{}: only `meshlod {verb}` writes such files", name(path)))
         .about(path)

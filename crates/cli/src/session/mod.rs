@@ -3,15 +3,18 @@
 //! [`Session`] is what every verb gets. Read on in [`answer`] and [`failure`] for how a verb ends,
 //! and in [`files`], [`scene_files`] and [`own_files`] for what it reads and writes.
 
+pub mod absent;
 pub mod answer;
 pub mod failure;
 pub mod files;
+pub mod foreign;
 pub mod hearing;
 pub mod model_file;
 pub mod own_files;
 pub mod progress;
 pub mod report_head;
 pub mod scene_files;
+pub mod several;
 
 use std::fmt;
 use std::io::Write;

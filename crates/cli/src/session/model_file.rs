@@ -4,7 +4,7 @@ use std::path::Path;
 
 use meshlod::model::PoseCounts;
 use meshlod::multires::{Archive, Certificate, ErrorKind, FileError, Fit, ModelFile, Source};
-use meshlod::{AnyFile, FileBytes, ReadOptions};
+use meshlod::{AnyFile, FileBytes, FileKind, ReadOptions};
 
 use crate::session::Session;
 use crate::session::failure::Failure;
@@ -21,8 +21,12 @@ pub fn is_model(path: &Path) -> bool {
 /// Fails if a multiresolution file cannot be written, before any work is done.
 pub fn check_output(path: &Path) -> Result<(), Failure> {
     if !is_model(path) {
+        let levels = match FileKind::of_path(path).map(FileKind::format) {
+            Ok(Some(format)) => format!("; levels in .{format} are written by meshlod lods"),
+            _ => String::new(),
+        };
         return Err(Failure::usage(format_args!(
-            "{}: a multiresolution file must end in .{SUFFIX}",
+            "{}: a multiresolution file must end in .{SUFFIX}{levels}",
             files::name(path)
         )));
     }
@@ -36,10 +40,21 @@ pub fn open(path: &Path, session: &Session) -> Result<AnyFile, Failure> {
             "-: a multiresolution file is read in parts and cannot be a pipe; name a file",
         ));
     }
+    check_input(path)?;
     session.progress.stage(&format!("reading {}", files::name(path)));
     let file = AnyFile::open(path, &ReadOptions::default())?;
     session.note(path, &file.notes())?;
     Ok(file)
+}
+
+/// Fails if a file is of another kind by its suffix, with how a multiresolution file is made of it.
+pub fn check_input(path: &Path) -> Result<(), Failure> {
+    if is_model(path) || FileKind::of_path(path).is_err() {
+        return Ok(());
+    }
+    let (name, model) = (files::name(path), files::name(&path.with_extension(SUFFIX)));
+    let reason = format_args!("is no .{SUFFIX} file; make one first: meshlod build {name} {model}");
+    Err(Failure::at(path, reason))
 }
 
 /// Returns the levels in a file, or says how such a file is made.

@@ -8,12 +8,14 @@ use std::time::Instant;
 use clap::{Args, ValueEnum};
 use meshlod::jobs::{self, BuildRequest, LevelModel, LevelOrder};
 use meshlod::multires::ErrorKind;
-use meshlod::{Constraints, Method};
+use meshlod::scene::world_bounds;
+use meshlod::{Bound, Constraints, Method};
 
 use crate::options::args::{AttributeErrorArgs, ReadArgs};
 use crate::options::constraints::ConstraintArgs;
 use crate::options::locks::InputScene;
-use crate::options::parse::{self, Bound};
+use crate::options::parse;
+use crate::options::tolerance::Tolerance;
 use crate::session::Session;
 use crate::session::answer::Answer;
 use crate::session::failure::Failure;
@@ -61,9 +63,9 @@ pub struct Build {
     ///
     /// A length is in model units, a percentage relative to the diagonal. Vertices move by a cell
     /// or two more where a triangle would lose its area.
-    #[arg(long, value_name = "BOUND", value_parser = parse::bound, default_value = "0.005%",
+    #[arg(long, value_name = "BOUND", value_parser = Tolerance::parse, default_value = "0.005%",
         allow_hyphen_values = true)]
-    rounding: Bound,
+    rounding: Tolerance,
     /// Keep the vertices of the mesh bit for bit
     ///
     /// Then extract --error 0 restores all its faces. Vertices of coarser levels move by about
@@ -121,12 +123,14 @@ impl Build {
         }
         let hearing = Hearing::new(session, &self.input, &self.output);
         let failed = |error| hearing.failure(error);
-        self.request(Constraints::default()).validate().map_err(failed)?;
+        let rounding = self.rounding.bound("--rounding", &self.input, session)?;
+        self.request(rounding, Constraints::default()).validate().map_err(failed)?;
         let (scene, fused) = self.constraints.read_fused(&self.input, &self.reading, session)?;
+        self.rounding.doubt("--rounding", &self.input, world_bounds(&scene).diagonal(), session);
         let input = InputScene { scene: &scene, path: &self.input, reading: &self.reading };
         // The scene is fused already.
         let constraints = Constraints { fuse: false, ..self.constraints.constraints(&input)? };
-        let request = self.request(constraints);
+        let request = self.request(rounding, constraints);
         let start = Instant::now();
         let (bytes, report) = jobs::build(scene, &request, &hearing).map_err(failed)?;
         scene_files::write_encoded(&self.output, &report.notes, &bytes, session)?;
@@ -135,7 +139,7 @@ impl Build {
         Ok(Answer::new(report::figures(&self.output, &report, fused, time), text))
     }
 
-    fn request(&self, constraints: Constraints) -> BuildRequest {
+    fn request(&self, rounding: Bound, constraints: Constraints) -> BuildRequest {
         BuildRequest {
             method: self.method,
             model: match self.model {
@@ -151,7 +155,7 @@ impl Build {
                 (false, true) => ErrorKind::Estimate,
                 (false, false) => ErrorKind::Measured,
             },
-            rounding: self.rounding,
+            rounding,
             lossless: self.lossless,
             exact_volume: self.exact_volume,
             in_chunk: self.in_chunk,

@@ -24,14 +24,15 @@ use crate::session::failure::Failure;
 use crate::session::files;
 use crate::session::hearing::Hearing;
 use crate::session::model_file;
+use crate::session::several;
 use meshlod::jobs::Grade;
 
 /// Find defects of a mesh and contacts between its objects; exit with 3 on errors
 #[derive(Args)]
 pub struct Check {
-    /// Mesh to read, or -; or a .mlod file, to prove that none of its cuts has a crack
-    #[arg(value_name = "IN")]
-    input: PathBuf,
+    /// Meshes to read, or -; or .mlod files, to prove that none of their cuts has a crack
+    #[arg(id = "input", value_name = "IN", required = true)]
+    inputs: Vec<PathBuf>,
     /// Definition of an object
     ///
     /// With auto it is a named object if there are two or more, else a component.
@@ -88,32 +89,39 @@ enum Deny {
 
 impl Check {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
-        if model_file::is_model(&self.input) {
+        if self.inputs.len() > 1 && (self.locks.is_some() || self.out.is_some()) {
+            return Err(Failure::usage("--locks and --out are for one file at a time"));
+        }
+        several::answer(&self.inputs, session, |path| self.one(path, session))
+    }
+
+    fn one(&self, path: &Path, session: &Session) -> Result<Answer, Failure> {
+        if model_file::is_model(path) {
             if self.locks.is_some() || self.out.is_some() {
                 return Err(Failure::usage("--locks and --out need a mesh, not a .mlod file"));
             }
-            return proof::prove(&self.input, session);
+            return proof::prove(path, session);
         }
-        self.refuse_early()?;
-        let scene = files::read(&self.input, &self.reading, session)?;
+        self.refuse_early(path)?;
+        let scene = files::read(path, &self.reading, session)?;
         let mut written = Vec::new();
-        if let Some(path) = &self.locks {
+        if let Some(locks) = &self.locks {
             session.progress.stage("finding locks");
-            written.push(self.write_locks(path, &scene)?);
+            written.push(self.write_locks(path, locks, &scene)?);
         }
         let sites = Sites::of(&scene);
         let request = CheckRequest { options: self.options(), limit: self.limit };
-        let hearing = Hearing::new(session, &self.input, &self.input);
+        let hearing = Hearing::new(session, path, path);
         let inspection = Inspection::of(scene.into_mesh(), &request, self.out.is_some(), &hearing)
             .map_err(|error| hearing.failure(error))?;
         if let Some(folder) = &self.out {
             session.progress.stage("drawing the page");
-            written.push(page::write(folder, &files::name(&self.input), &inspection, &sites)?);
+            written.push(page::write(folder, &files::name(path), &inspection, &sites)?);
         }
         let mut json = report::json(&inspection, &sites);
-        json["file"] = files::name(&self.input).into();
+        json["file"] = files::name(path).into();
         json["written"] = written.clone().into();
-        let mut text = format!("{}: {}", files::name(&self.input), text::text(&inspection, &sites));
+        let mut text = format!("{}: {}", files::name(path), text::text(&inspection, &sites));
         for file in written {
             text += &format!("{file}\n");
         }
@@ -124,17 +132,17 @@ impl Check {
     }
 
     /// Refuses outputs that cannot be written, before any work is done.
-    fn refuse_early(&self) -> Result<(), Failure> {
+    fn refuse_early(&self, input: &Path) -> Result<(), Failure> {
         if let Some(path) = &self.locks {
-            if files::is_pipe(&self.input) || files::is_pipe(path) {
+            if files::is_pipe(input) || files::is_pipe(path) {
                 return Err(Failure::usage(
                     "--locks: neither file can be standard input or output",
                 ));
             }
             files::check_place(path)?;
             let page = self.out.as_ref().map(|folder| folder.join("index.html"));
-            let others = [Some(&self.input), self.out.as_ref(), page.as_ref()];
-            let others: Vec<&Path> = others.into_iter().flatten().map(PathBuf::as_path).collect();
+            let others = [Some(input), self.out.as_deref(), page.as_deref()];
+            let others: Vec<&Path> = others.into_iter().flatten().collect();
             files::check_apart(path, &others)?;
         }
         self.out.as_deref().map_or(Ok(()), files::make_folder)
@@ -159,12 +167,12 @@ impl Check {
         CheckOptions { kinds, objects, broad_phase }
     }
 
-    fn write_locks(&self, path: &Path, scene: &Scene) -> Result<String, Failure> {
-        let rows = FileRows::of(&self.input, scene, self.reading.options().weld)?;
+    fn write_locks(&self, input: &Path, path: &Path, scene: &Scene) -> Result<String, Failure> {
+        let rows = FileRows::of(input, scene, self.reading.options().weld)?;
         let boundary = if self.lock_boundary { Lock::Locked } else { Lock::Free };
         let lockings =
             scene_locks(scene, &LockOptions { contacts: Some(ContactPolicy::Tie), boundary });
-        let json = lock_file::to_json(&self.input, scene, &rows, &lockings);
+        let json = lock_file::to_json(input, scene, &rows, &lockings);
         write_file(path, format!("{json}\n").as_bytes())?;
         Ok(files::name(path))
     }

@@ -4,14 +4,16 @@ mod locks;
 mod packing;
 mod report;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use meshlod::jobs::{self, CompressRequest, CompressTarget};
+use meshlod::scene::world_bounds;
 
 use crate::options::args::{AttributeErrorArgs, ReadArgs};
 use crate::options::constraints::ConstraintArgs;
-use crate::options::parse::{self, Bound};
+use crate::options::parse;
+use crate::options::tolerance::Tolerance;
 use crate::session::Session;
 use crate::session::answer::Answer;
 use crate::session::failure::Failure;
@@ -53,7 +55,7 @@ pub struct Compress {
     ///
     /// At any time of an animation; translations and scales may err by the arc of this angle at the
     /// largest of their track.
-    #[arg(long, value_name = "DEGREES", value_parser = parse::length, allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEGREES", value_parser = parse::degrees, allow_hyphen_values = true)]
     animation_error: Option<f64>,
     #[command(flatten)]
     target: CompressTargetArgs,
@@ -74,9 +76,9 @@ struct CompressTargetArgs {
     #[arg(long, value_name = "BITS", allow_negative_numbers = true)]
     bits: Option<u32>,
     /// Mean distance between the surfaces: 0.005% of the diagonal, or 0.1 in model units
-    #[arg(short, long, value_name = "BOUND", value_parser = parse::bound,
+    #[arg(short, long, value_name = "BOUND", value_parser = Tolerance::parse,
         allow_hyphen_values = true)]
-    error: Option<Bound>,
+    error: Option<Tolerance>,
     /// Reduction of positions against three f32 per vertex: 70%
     #[arg(long, value_name = "RATIO", value_parser = parse::ratio, allow_hyphen_values = true)]
     reduction: Option<f64>,
@@ -95,11 +97,14 @@ enum SchemeArg {
 impl Compress {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         let hearing = Hearing::new(session, &self.input, &self.output);
-        let request = self.request()?;
+        let request = self.request(session)?;
         request.check().map_err(|error| hearing.failure(error))?;
         files::check_place(&self.output)?;
         files::check_apart(&self.output, &[&self.input])?;
         let scene = files::read_surface(&self.input, &self.reading, session)?;
+        if let Some(error) = &self.target.error {
+            error.doubt("--error", &self.input, world_bounds(&scene).diagonal(), session);
+        }
         let done = jobs::compress(scene, &request, &hearing);
         let (bytes, report) = done.map_err(|error| hearing.failure(error))?;
         if !report.reached {
@@ -114,10 +119,10 @@ impl Compress {
         Ok(Answer::new(report::figures(&self.output, &report), text))
     }
 
-    fn request(&self) -> Result<CompressRequest, Failure> {
+    fn request(&self, session: &Session) -> Result<CompressRequest, Failure> {
         Ok(CompressRequest {
             packing: self.packing()?,
-            target: self.target.target(),
+            target: self.target.target(&self.input, session)?,
             fuse: self.constraints.fuse.fuse,
             lock_contacts: self.ties_contacts()?,
             name: files::stem(&self.input),
@@ -126,12 +131,12 @@ impl Compress {
 }
 
 impl CompressTargetArgs {
-    fn target(&self) -> CompressTarget {
-        match (self.bits, self.error, self.reduction) {
-            (_, Some(error), _) => CompressTarget::Error(error),
+    fn target(&self, input: &Path, session: &Session) -> Result<CompressTarget, Failure> {
+        Ok(match (self.bits, &self.error, self.reduction) {
+            (_, Some(error), _) => CompressTarget::Error(error.bound("--error", input, session)?),
             (_, _, Some(part)) => CompressTarget::Reduction(part),
             (Some(bits), ..) => CompressTarget::Bits(bits),
             _ => CompressTarget::default(),
-        }
+        })
     }
 }

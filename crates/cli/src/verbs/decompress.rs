@@ -35,6 +35,7 @@ impl Decompress {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         files::check_output(&self.output, session)?;
         files::check_apart(&self.output, &[&self.input])?;
+        self.check_input()?;
         session.progress.stage(&format!("reading {}", files::name(&self.input)));
         let bytes = files::read_all(&self.input)?;
         let start = Instant::now();
@@ -61,5 +62,18 @@ impl Decompress {
         let decoded = format!("decode_seconds: {}", value(seconds));
         let text = format!("{name}: {}{shown}\n{decoded}\n", faces(of_meshes));
         Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
+    }
+
+    /// Fails if the input is of another kind by its suffix, with the verb that reads it.
+    fn check_input(&self) -> Result<(), Failure> {
+        let (verb, options) = match FileKind::of_path(&self.input) {
+            Ok(FileKind::Mesh(_)) => ("convert", ""),
+            Ok(FileKind::Levels) => ("extract", " --error 0"),
+            _ => return Ok(()),
+        };
+        let [input, output] = [&self.input, &self.output].map(|path| files::name(path));
+        let reason =
+            format_args!("is no .mlq or .mlz file; use meshlod {verb} {input} {output}{options}");
+        Err(Failure::at(&self.input, reason))
     }
 }

@@ -61,9 +61,11 @@ impl Extract {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         let format = files::check_output(&self.output, session)?;
         files::check_apart(&self.output, &[&self.input])?;
+        model_file::check_input(&self.input)?;
         self.query.check_target()?;
         let start = Instant::now();
         let file = model_file::open(&self.input, session)?;
+        self.query.warn_of_error(&file, session);
         let hearing = Hearing::new(session, &self.input, &self.output);
         let done = jobs::extract(model_file::levels(&file)?, &self.request(format), &hearing);
         let (scene, report) = done.map_err(|error| hearing.failure(error))?;

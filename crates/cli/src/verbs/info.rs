@@ -2,7 +2,7 @@
 
 mod contents;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use meshlod::measure::{area, volume};
@@ -17,6 +17,7 @@ use crate::session::answer::Answer;
 use crate::session::failure::Failure;
 use crate::session::files;
 use crate::session::own_files;
+use crate::session::several;
 use crate::text::numbers::{coordinate, count, faces, value};
 use crate::text::table::aligned;
 use crate::verbs::info::contents::Contents;
@@ -27,27 +28,31 @@ use crate::verbs::info::contents::Contents;
 /// and bytes.
 #[derive(Args)]
 pub struct Info {
-    /// Mesh to read, or -
-    #[arg(value_name = "IN")]
-    input: PathBuf,
+    /// Meshes to read, or -
+    #[arg(id = "input", value_name = "IN", required = true)]
+    inputs: Vec<PathBuf>,
     #[command(flatten)]
     reading: ReadArgs,
 }
 
 impl Info {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
-        let file = files::open(&self.input, &self.reading, session)?;
+        several::answer(&self.inputs, session, |path| self.one(path, session))
+    }
+
+    fn one(&self, path: &Path, session: &Session) -> Result<Answer, Failure> {
+        let file = files::open(path, &self.reading, session)?;
         let stored = own_files::stored(&file).transpose()?;
         let scene = files::scene_of(file, session)?;
         session.progress.stage("inspecting");
         let meshes = scene.meshes.len();
-        let file = (!files::is_pipe(&self.input)).then(|| std::fs::metadata(&self.input));
+        let file = (!files::is_pipe(path)).then(|| std::fs::metadata(path));
         let file_bytes = file.and_then(Result::ok).map(|file| file.len());
         let contents = Contents::of(&scene, file_bytes, stored.is_some());
         let faces_once = faces_of_meshes(&scene);
         let mesh = scene.into_mesh();
         let facts = Facts::of(&mesh);
-        let mut text = format!("{}\n{}{}", files::name(&self.input), facts.text(), contents.text());
+        let mut text = format!("{}\n{}{}", files::name(path), facts.text(), contents.text());
         if let Some(stored) = &stored {
             text += &match faces_once == mesh.faces.len() {
                 true => "stored as\n".to_owned(),
@@ -58,7 +63,7 @@ impl Info {
         }
         let figures = InfoFigures {
             facts,
-            file: files::name(&self.input),
+            file: files::name(path),
             meshes,
             contents,
             stored: stored.map(|stored| StoredFigures { form: stored.json, faces: faces_once }),

@@ -10,6 +10,7 @@ use meshlod::scene::world_bounds;
 use meshlod::{Format, Scene, Topology};
 
 use crate::options::args::{ReadArgs, WriteArgs};
+use crate::options::doubt;
 use crate::options::locks::InputScene;
 use crate::options::method::MethodArgs;
 use crate::options::parse::{self, LevelSize};
@@ -36,7 +37,7 @@ pub struct Lods {
     /// Mesh to read, or -
     #[arg(value_name = "IN")]
     input: PathBuf,
-    /// File to write
+    /// File to write, or a folder for one file a level
     ///
     /// With one file a level, these are NAME_LOD0, NAME_LOD1, … beside it. NAME.lods.json has the
     /// measured error of each level and the distance from which it is fine enough.
@@ -62,9 +63,11 @@ pub struct Lods {
 }
 
 impl Lods {
-    pub fn run(self, session: &Session) -> Result<Answer, Failure> {
+    pub fn run(mut self, session: &Session) -> Result<Answer, Failure> {
+        self.name_in_folder(session)?;
         let (format, layout) = self.check_files(session)?;
         let scene = files::read_surface(&self.input, &self.reading, session)?;
+        doubt::warn_of_levels(&self.levels, &self.input, &scene, session);
         let request = self.request(&scene, format)?;
         let hearing = Hearing::new(session, &self.input, &self.output);
         let done = jobs::lods(scene, &request, &hearing);

@@ -10,6 +10,7 @@ use meshlod::check::{HoleLimits, RepairOptions, RepairStep, Stitch};
 use meshlod::jobs::{self, RepairRequest, SceneRepair};
 
 use crate::options::args::{ReadArgs, WriteArgs};
+use crate::options::doubt;
 use crate::options::fuse::FuseArgs;
 use crate::options::parse;
 use crate::session::Session;
@@ -100,12 +101,16 @@ impl StepArgs {
 impl Repair {
     pub fn run(mut self, session: &Session) -> Result<Answer, Failure> {
         let format = files::check_output(&self.output, session)?;
+        let weld = self.reading.take_weld();
         let request = RepairRequest {
-            steps: self.steps.options(self.reading.take_weld()),
+            steps: self.steps.options(weld),
             fuse: self.fuse.fuse,
             written_as: Some(self.writing.in_format(format)),
         };
         let scene = files::read(&self.input, &self.reading, session)?;
+        for (option, length) in [("--weld", weld.unwrap_or(0.0)), ("--stitch", self.steps.stitch)] {
+            doubt::warn_of_length(option, length, &self.input, &scene, session);
+        }
         let hearing = Hearing::new(session, &self.input, &self.output);
         let done = jobs::repair(scene, &request, &hearing);
         let (scene, report) = done.map_err(|error| hearing.failure(error))?;

@@ -2,16 +2,19 @@
 
 mod report;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use meshlod::jobs::{self, Aim, SimplifyReport, SimplifyRequest};
+use meshlod::scene::world_bounds;
 use meshlod::{Format, Scene};
 
 use crate::options::args::{ReadArgs, WriteArgs};
+use crate::options::doubt;
 use crate::options::locks::InputScene;
 use crate::options::method::MethodArgs;
 use crate::options::parse::{self, Bound};
+use crate::options::tolerance::Tolerance;
 use crate::options::topology;
 use crate::options::volume::ExactVolumeArgs;
 use crate::session::Session;
@@ -52,30 +55,41 @@ pub struct Simplify {
 #[command(next_help_heading = "Target, one of")]
 #[group(required = true, multiple = false)]
 struct TargetArgs {
-    /// Target number of faces
-    #[arg(short, long, value_name = "N", value_parser = parse::whole,
+    /// Target number of faces: 5000, 5k or 1.5M
+    #[arg(short, long, value_name = "N", value_parser = parse::faces,
         allow_negative_numbers = true)]
     faces: Option<usize>,
     /// Target ratio of the faces: 10% or 0.1
-    #[arg(short, long, value_name = "RATIO", value_parser = parse::ratio,
+    #[arg(short, long, value_name = "RATIO", value_parser = parse::ratio_of_faces,
         allow_hyphen_values = true)]
     ratio: Option<f64>,
     /// Largest distance from the input: 0.1% or a length, proved
     ///
-    /// A length is in model units, a percentage relative to the diagonal. The bound holds for every
+    /// A length is in model units, a percentage relative to the diagonal; 1mm is read for glTF, whose
+    /// unit is the metre. The bound holds for every
     /// point of both surfaces, as written, and faces that are farther away are mended; methods
     /// other than lindstrom-turk and qem start again with a lower bound.
-    #[arg(short, long, value_name = "BOUND", value_parser = parse::bound,
+    #[arg(short, long, value_name = "BOUND", value_parser = Tolerance::parse,
         allow_hyphen_values = true)]
-    error: Option<Bound>,
+    error: Option<Tolerance>,
 }
 
 impl TargetArgs {
-    fn aim(&self) -> Aim {
-        match (self.faces, self.ratio, self.error) {
+    fn aim(&self, input: &Path, session: &Session) -> Result<Aim, Failure> {
+        Ok(match (self.faces, self.ratio, &self.error) {
             (Some(faces), ..) => Aim::Faces(faces),
             (_, Some(ratio), _) => Aim::Ratio(ratio),
-            (_, _, bound) => Aim::Error(bound.unwrap_or(Bound::Length(0.0))),
+            (_, _, Some(error)) => Aim::Error(error.bound("--error", input, session)?),
+            (None, None, None) => Aim::Error(Bound::Length(0.0)),
+        })
+    }
+
+    /// Warns of an error that is probably meant as a percentage, or as a ratio.
+    fn doubt(&self, input: &Path, scene: &Scene, session: &Session) {
+        let Some(error) = &self.error else { return };
+        error.doubt("--error", input, world_bounds(scene).diagonal(), session);
+        if let Tolerance::Bound(bound) = error {
+            doubt::warn(input, doubt::of_part("--error", *bound), session);
         }
     }
 }
@@ -83,8 +97,10 @@ impl TargetArgs {
 impl Simplify {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         let format = files::check_output(&self.output, session)?;
+        let target = self.target.aim(&self.input, session)?;
         let scene = files::read_surface(&self.input, &self.reading, session)?;
-        let request = self.request(&scene, format)?;
+        self.target.doubt(&self.input, &scene, session);
+        let request = self.request(&scene, target, format)?;
         let hearing = Hearing::new(session, &self.input, &self.output);
         let done = jobs::simplify(scene, &request, &hearing);
         let (scene, report) = done.map_err(|error| hearing.failure(error))?;
@@ -96,10 +112,15 @@ impl Simplify {
         Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..answer })
     }
 
-    fn request(&self, scene: &Scene, format: Format) -> Result<SimplifyRequest, Failure> {
+    fn request(
+        &self,
+        scene: &Scene,
+        target: Aim,
+        format: Format,
+    ) -> Result<SimplifyRequest, Failure> {
         let input = InputScene { scene, path: &self.input, reading: &self.reading };
         Ok(SimplifyRequest {
-            target: self.target.aim(),
+            target,
             method: self.method.method,
             weights: self.method.weights(),
             boundary: self.method.boundary,

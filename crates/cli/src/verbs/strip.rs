@@ -15,6 +15,7 @@ use meshlod::strip::StripQuality;
 
 use crate::options::args::ReadArgs;
 use crate::options::constraints::ConstraintArgs;
+use crate::options::doubt;
 use crate::options::locks::InputScene;
 use crate::options::model_query::QueryArgs;
 use crate::options::parse::{self, LevelSize};
@@ -98,6 +99,7 @@ impl Strip {
             files::read_surface(&self.input, &self.reading, session)?
         };
         let hearing = Hearing::new(session, &self.input, &self.input);
+        doubt::warn_of_levels(&self.levels, &self.input, &scene, session);
         let request = self.request(&scene)?;
         let done = jobs::strip(scene, &request, &hearing);
         let (stripped, report) = done.map_err(|error| hearing.failure(error))?;

@@ -155,7 +155,7 @@ fn nothing_is_done_where_outputs_collide() {
         (&["in/*.ply", "other/*.ply", "out"], "out/s.ply: would be the output of both"),
         (&["in/*.ply", "in"], "in/s.ply: would overwrite the input in/s.ply"),
         (&["none/*.ply", "out"], "none/*.ply: no file of a format that is read"),
-        (&["in/none.ply", "out"], "in/none.ply: no file of a format that is read"),
+        (&["in/none.ply", "out"], "in/none.ply: there is no such file or folder"),
         (&["in/a***b", "out"], "in/a***b: "),
     ];
     for (arguments, reason) in cases {

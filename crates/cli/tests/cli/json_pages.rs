@@ -131,7 +131,7 @@ const TWICE: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[
         "uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
 
 /// Lines to run, in an order in which each has its input.
-const LINES: [&str; 50] = [
+const LINES: [&str; 52] = [
     "sample knot in.ply --faces 2000",
     "info in.ply",
     "check in.ply --locks locks.json",
@@ -141,6 +141,8 @@ const LINES: [&str; 50] = [
     "simplify in.ply out.ply -e 1%",
     "simplify in.ply out.ply -r 20%",
     "convert in.ply in.obj",
+    "info in.ply in.obj",
+    "check in.ply in.obj",
     "lods in.ply levels.glb",
     "check twice.gltf",
     "build in.ply in.mlod",

@@ -14,6 +14,7 @@ mod documents;
 mod error_bound;
 mod finest;
 mod flock;
+mod hands;
 mod help;
 mod hostile;
 mod info;

@@ -93,7 +93,7 @@ fn what_could_not_be_done_is_1_and_one_line() {
     folders.iter().for_each(|name| std::fs::create_dir(run.path(name)).unwrap());
     let cases: [(&[&str], &str); 10] = [
         (&["info", "none.ply"], "none.ply: "),
-        (&["info", "in.fbx"], "in.fbx: unknown suffix"),
+        (&["info", "in.abc"], "in.abc: unknown suffix"),
         (&["simplify", "none.ply", "in.ply/no/a.ply", "--faces", "9"], "in.ply/no/a.ply: "),
         (&["simplify", "none.ply", "in.ply/out.ply", "--faces", "9"], "in.ply/out.ply: "),
         (&["lods", "none.ply", "in.ply/out.off"], "in.ply/out.off: "),
@@ -133,7 +133,7 @@ fn an_output_of_another_verb_is_told_which() {
 fn an_input_of_no_known_kind_is_told_all_kinds() {
     let run = Run::new();
     std::fs::create_dir(run.path("folder")).unwrap();
-    let done = run.run(&["info", "in.fbx"]);
+    let done = run.run(&["info", "in.abc"]);
     for suffix in [".ply", ".glb", ".mlod", ".mlq", ".mlz"] {
         assert!(done.only_line().contains(suffix), "{done:?}");
     }

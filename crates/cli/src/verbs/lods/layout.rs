@@ -6,6 +6,7 @@ use clap::ValueEnum;
 use meshlod::Format;
 
 use super::Lods;
+use crate::session::Session;
 use crate::session::failure::Failure;
 use crate::session::files;
 
@@ -44,6 +45,29 @@ impl ChainLayout {
 }
 
 impl Lods {
+    /// Names the files of a chain after the input if the output is a folder, with its suffix.
+    ///
+    /// # Errors
+    /// If the input has no name.
+    pub(super) fn name_in_folder(&mut self, session: &Session) -> Result<(), Failure> {
+        let is_named = Format::of_path(&self.output).is_ok() || files::is_pipe(&self.output);
+        if is_named || !files::is_folder(&self.output) {
+            return Ok(());
+        }
+        if files::is_pipe(&self.input) {
+            let folder = files::name(&self.output);
+            return Err(Failure::usage(format_args!("{folder}: is a folder; name a file in it")));
+        }
+        let of_input = Format::of_path(&self.input).ok();
+        let format = session.format.or(of_input);
+        let is_fit = |format: &Format| ChainLayout::of(self.layout, *format).is_ok();
+        let suffix = format.filter(is_fit).unwrap_or(Format::Glb);
+        let stem = files::stem(&self.input);
+        self.output = self.output.join(format!("{stem}.{suffix}"));
+        self.layout.get_or_insert(ChainLayout::Files);
+        Ok(())
+    }
+
     /// Returns the path of the file that says when to show each level.
     pub(super) fn guide_file(&self) -> PathBuf {
         self.output.with_extension("lods.json")

@@ -46,6 +46,7 @@ impl Strip {
     pub(super) fn read_cut(&self, session: &Session) -> Result<CutScene, Failure> {
         self.query.check_target()?;
         let file = model_file::open(&self.input, session)?;
+        self.query.warn_of_error(&file, session);
         let hearing = Hearing::new(session, &self.input, &self.input);
         let done = jobs::extract(model_file::levels(&file)?, &self.cut_request(), &hearing);
         let (scene, report) = done.map_err(|error| hearing.failure(error))?;
