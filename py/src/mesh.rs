@@ -3,7 +3,8 @@
 use std::sync::{Arc, OnceLock};
 
 use meshlod::Mesh;
-use meshlod::mesh::{Labels, LayerKind, MeshArrays, VertexId};
+use meshlod::io::transform;
+use meshlod::mesh::{Bounds, Labels, LayerKind, MeshArrays, VertexId};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
@@ -116,9 +117,18 @@ impl NativeMesh {
 
     /// Least and greatest coordinates of the vertices that faces use; `None` if there are none.
     fn bounds(&self) -> Option<[[f64; 3]; 2]> {
-        let bounds = self.mesh.bounds();
-        let all = [bounds.min, bounds.max];
-        all.as_flattened().iter().all(|x| x.is_finite()).then_some(all)
+        corners(&self.mesh.bounds())
+    }
+
+    /// Returns a mesh moved by an affine matrix, given by its columns. Normals turn with it, and a
+    /// matrix that mirrors flips the faces.
+    fn transformed(&self, py: Python<'_>, columns: [[f64; 4]; 4]) -> PyResult<Self> {
+        let moved = py.detach(|| {
+            let mut mesh = Mesh::clone(&self.mesh);
+            transform(&mut mesh, &columns);
+            mesh.validate().map(|()| mesh)
+        });
+        Self::new(moved.map_err(raised)?)
     }
 
     /// Points, faces and attributes as arrays of their own, which the caller may change.
@@ -168,6 +178,12 @@ pub fn from_arrays<'py>(
     let vertices = vertices.map(|vertices| vertices.into_iter().map(|v| v.0).collect());
     let vertices = vertices.map(|vertices| PyArray1::from_vec(py, vertices));
     Ok((NativeMesh::new(mesh.map_err(raised)?)?, vertices))
+}
+
+/// Returns the least and greatest coordinates of bounds; `None` if they are empty.
+pub fn corners(bounds: &Bounds) -> Option<[[f64; 3]; 2]> {
+    let all = [bounds.min, bounds.max];
+    all.as_flattened().iter().all(|x| x.is_finite()).then_some(all)
 }
 
 /// Returns labels of faces for Python.

@@ -76,6 +76,11 @@ impl NativeModel {
         Ok(this)
     }
 
+    /// Returns the diagonal of the bounding box of the finest level.
+    fn diagonal(&self) -> PyResult<f64> {
+        Ok(self.open()?.diagonal())
+    }
+
     /// Extracts a mesh: within an error in model units or, with a camera, in pixels; of at most
     /// `faces` faces; fine in a ball or a box alone. Returns it with its report.
     #[pyo3(signature = (error, faces, camera, sphere, corners, verify, crop))]

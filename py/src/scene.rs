@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
+use meshlod::scene::world_bounds;
 use meshlod::{Mesh, Scene};
 use pyo3::prelude::*;
 
 use crate::files::texts;
-use crate::mesh::NativeMesh;
+use crate::mesh::{NativeMesh, corners};
 
 /// A scene that never changes.
 #[pyclass(frozen, module = "meshlod._native")]
@@ -52,6 +53,11 @@ impl NativeScene {
     /// Names of the materials.
     fn materials(&self) -> Vec<String> {
         self.0.materials.iter().map(|material| material.name.clone()).collect()
+    }
+
+    /// Least and greatest coordinates of the placed meshes in world space; `None` without faces.
+    fn bounds(&self, py: Python<'_>) -> Option<[[f64; 3]; 2]> {
+        corners(&py.detach(|| world_bounds(&self.0)))
     }
 
     /// Merges all placed meshes into one, in world space.

@@ -77,10 +77,7 @@ def test_a_precision_that_is_none_is_refused_as_written(tmp_path):
 
 
 def test_the_fields_are_those_of_the_command_as_written():
-    level, fields = _native.simplify(
-        meshlod.Mesh(*torus(30, 20))._native,
-        meshlod._asked.asked(
-            "error", 0.01, method="qem", topology="free", lock_boundary=False, progress=None
-        ),
-    )
+    native = meshlod.Mesh(*torus(30, 20))._native
+    options = {"method": "qem", "topology": "free", "lock_boundary": False}
+    _, fields = _native.simplify(native, meshlod._asked.asked(native, "error", 0.01, **options))
     assert {"error_asked", "error_proved", "error_rounds", "split_vertices"} <= set(fields)

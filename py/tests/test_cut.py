@@ -119,6 +119,15 @@ def test_limits_stop_an_update(model):
     assert model.cut().update(error=0.0, seconds=1e300).done
 
 
+def test_an_error_has_two_names_and_may_be_a_percentage(model):
+    by_length, by_part = model.cut(), model.cut()
+    by_length.update(error=0.01 * np.linalg.norm(model.extract().extents))
+    by_part.update(max_error="1%")
+    assert by_part.face_count == by_length.face_count
+    by_part.update(max_error=0.0)
+    assert by_part.face_count > by_length.face_count
+
+
 def test_threads_share_a_cut(model):
     cut, cameras = model.cut(), list(views(40))
     failed = []
@@ -145,6 +154,8 @@ def test_what_is_wrong_is_told(model, tmp_path):
     for arguments, text in [
         ({"error": -1.0}, "at least 0"),
         ({"error": "fine"}, "error must be a number"),
+        ({"max_error": "1%", "camera": next(views())}, "max_error is in pixels where there is a"),
+        ({"max_error": 1.0, "error": 1.0}, "error is another name of max_error"),
         ({"camera": 3}, "camera must be a Camera"),
         ({"focus": 3}, "focus must be"),
         ({"changes": -1}, "changes must be between 0"),

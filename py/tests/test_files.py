@@ -70,6 +70,9 @@ def test_compressed_files(tmp_path, suffix):
     found = meshlod.load(path)
     assert len(found.faces) == len(mesh.faces)
     assert found.measure(mesh, samples=10_000).max < 0.005
+    # A mean distance, as a length and as a percentage of the diagonal.
+    by_length = mesh.compress(path, max_error=0.001 * np.linalg.norm(mesh.extents))
+    assert mesh.compress(path, max_error="0.1%") == by_length < size
 
 
 def test_scenes_keep_their_nodes_and_materials(tmp_path):
@@ -83,6 +86,10 @@ def test_scenes_keep_their_nodes_and_materials(tmp_path):
     scene = meshlod.Scene.load(path)
     assert scene.face_count == 2 * 576 and repr(scene) == "Scene(1 mesh, 1152 faces)"
     assert scene.instances[1][1][:3, 3].tolist() == [5, 0, 0]
+    assert np.allclose(scene.bounds, [[-2.7, -2.7, -0.7], [7.7, 2.7, 0.7]], atol=0.1)
+    assert np.array_equal(scene.extents, scene.bounds[1] - scene.bounds[0])
+    _, report = scene.simplify(max_error="1%", return_report=True)
+    assert report.error_asked == pytest.approx(0.01 * np.linalg.norm(scene.extents))
     level, report = scene.simplify(0.5, return_report=True)
     assert report.reached and level.face_count <= 576 < scene.face_count
     level.save(tmp_path / "level.glb")
@@ -97,9 +104,12 @@ def test_models_have_all_levels(tmp_path):
     model = mesh.build(tmp_path / "torus.mlod", lossless=True)
     assert len(model.extract().faces) == len(mesh.faces)
     assert len(model.extract(faces=300).faces) <= 300
-    within = model.extract(error=0.02)
+    within = model.extract(max_error=0.02)
     assert len(within.faces) < len(mesh.faces)
     assert within.measure(mesh, samples=10_000).max <= 0.02
+    assert len(model.extract(error=0.02).faces) == len(within.faces), "its old name"
+    part = f"{2 / np.linalg.norm(mesh.extents)}%"
+    assert len(model.extract(max_error=part).faces) == len(within.faces)
     camera = meshlod.Camera(eye=(0, 0, 40), look=(0, 0, 0))
     assert len(model.extract(camera=camera).faces) < len(mesh.faces)
     ball = model.extract(error=0.0, focus=((2.7, 0, 0), 0.3), verify=False)

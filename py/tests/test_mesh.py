@@ -3,7 +3,9 @@
 import meshlod
 import numpy as np
 import pytest
-from shapes import edges, sheet, torus, unrolled, welded
+from shapes import edges, sheet, torus, unrolled, welded, write_gltf
+
+TETRA = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
 
 
 def test_arrays_come_back():
@@ -35,7 +37,94 @@ def test_sizes_are_those_of_the_torus():
     assert mesh.area == pytest.approx(4 * np.pi**2 * 2 * 0.7, rel=0.01)
     assert mesh.volume == pytest.approx(2 * np.pi**2 * 2 * 0.7**2, rel=0.01)
     assert np.allclose(mesh.bounds, [[-2.7, -2.7, -0.7], [2.7, 2.7, 0.7]])
-    assert np.isnan(meshlod.Mesh([], []).bounds).all()
+    assert np.array_equal(mesh.extents, mesh.bounds[1] - mesh.bounds[0])
+    empty = meshlod.Mesh([], [])
+    assert np.isnan(empty.bounds).all() and np.isnan(empty.extents).all()
+
+
+def test_closed_and_open_surfaces_are_told_apart():
+    points, faces = torus()
+    whole, holed = meshlod.Mesh(points, faces), meshlod.Mesh(points, faces[1:])
+    assert whole.is_watertight and whole.euler_number == 0
+    assert not holed.is_watertight and holed.euler_number == -1
+    two = meshlod.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]] * 2, [*TETRA, *(TETRA + 4)])
+    assert two.is_watertight and two.euler_number == 4
+    fins = meshlod.Mesh([*np.eye(3), [1, 1, 1], [2, 2, 2]], [[0, 1, 2], [1, 0, 3], [0, 1, 4]])
+    assert not fins.is_watertight and fins.euler_number == 5 - 7 + 3
+    spare = meshlod.Mesh([*points, [9, 9, 9]], faces)
+    assert spare.euler_number == 0, "vertices without faces do not count"
+    empty = meshlod.Mesh([], [])
+    assert not empty.is_watertight and empty.euler_number == 0
+
+
+def test_a_seam_is_not_open():
+    points, faces, uvs = unrolled()
+    mesh = meshlod.Mesh(points, faces, uvs=uvs)
+    assert mesh.is_watertight and mesh.euler_number == 0
+    assert not meshlod.Mesh(points, faces).is_watertight
+
+
+@pytest.mark.parametrize("closed", [True, False])
+def test_names_mean_what_they_do_in_trimesh(closed):
+    trimesh = pytest.importorskip("trimesh")
+    points, faces = torus(24, 12)
+    mesh = meshlod.Mesh(points, faces if closed else faces[7:])
+    theirs = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
+    # The volume of an open surface is a matter of taste.
+    for name in ("vertices", "faces", "bounds", "extents", "area", *["volume"] * closed):
+        assert np.allclose(getattr(mesh, name), getattr(theirs, name)), name
+    for name in ("is_watertight", "euler_number"):
+        assert getattr(mesh, name) == getattr(theirs, name), name
+    matrix = trimesh.transformations.random_rotation_matrix() @ np.diag([2, -3, 0.5, 1])
+    moved = mesh.apply_transform(matrix)
+    theirs.apply_transform(matrix)
+    assert np.allclose(moved.vertices, theirs.vertices)
+    if closed:
+        assert moved.volume == pytest.approx(theirs.volume) and moved.volume > 0
+
+
+def test_a_copy_is_the_mesh_itself():
+    mesh = meshlod.Mesh(*torus())
+    assert mesh.copy() is mesh
+    assert meshlod.Scene(mesh).copy().face_count == len(mesh.faces)
+
+
+def test_a_transform_moves_positions_and_turns_normals():
+    points, faces, uvs = sheet()
+    normals = np.tile([0.0, 0.0, 1.0], (len(points), 1))
+    mesh = meshlod.Mesh(points, faces, normals=normals, uvs=uvs)
+    # A quarter turn around x, stretched along x, and moved.
+    matrix = [[2, 0, 0, 5], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]]
+    moved = mesh.apply_transform(matrix)
+    x, y, z = points.T
+    assert np.allclose(moved.vertices, np.stack([2 * x + 5, -z, y], axis=1))
+    assert np.allclose(moved.normals, [0, -1, 0], atol=1e-6) and np.array_equal(moved.uvs, uvs)
+    assert np.array_equal(moved.faces, faces)
+    assert np.array_equal(mesh.vertices, points), "the mesh itself stays"
+    assert np.array_equal(mesh.apply_transform(np.eye(4)).vertices, points)
+
+
+def test_a_mirror_flips_the_faces_and_keeps_labels(tmp_path):
+    mesh = meshlod.Scene.load(write_gltf(tmp_path, torus(), 1)).meshes[0][1]
+    mirrored = mesh.apply_transform(np.diag([-1, 1, 1, 1]))
+    assert mirrored.volume == pytest.approx(mesh.volume) and mirrored.is_watertight
+    assert mirrored.materials[0] == mesh.materials[0]
+    assert np.array_equal(mirrored.materials[1], mesh.materials[1])
+
+
+@pytest.mark.parametrize(
+    ("matrix", "message"),
+    [
+        (np.eye(3), r"matrix must have the shape \(4, 4\), not float64 of \(3, 3\)"),
+        (np.eye(4) * np.nan, "matrix is not finite"),
+        (np.eye(4)[[0, 1, 3, 2]], r"its last row must be \[0, 0, 0, 1\], not \[0.0, 0.0, 1.0, 0"),
+        (np.eye(4).astype(str), "matrix must have the shape"),
+        (np.diag([1e308, 1e308, 1e308, 1]), "not finite"),
+    ],
+)
+def test_matrices_that_are_none(matrix, message):
+    with pytest.raises(meshlod.MeshlodError, match=message):
+        meshlod.Mesh(*torus()).apply_transform(matrix)
 
 
 def test_levels_are_nested_and_fall():

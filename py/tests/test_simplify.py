@@ -42,6 +42,20 @@ def test_an_error_is_proved():
     assert 0 < distance.max <= 0.02
 
 
+def test_an_error_may_be_a_percentage_of_the_diagonal():
+    points, faces = torus()
+    mesh = meshlod.Mesh(points, faces)
+    length = float(np.linalg.norm(mesh.extents)) * 0.005
+    expected = meshlod.simplify(points, faces, max_error=length)
+    found = *level, report = meshlod.simplify(points, faces, max_error="0.5%", return_report=True)
+    assert report.error_asked == pytest.approx(length) and report.reached
+    assert [len(array) for array in level] == [len(array) for array in expected]
+    for of in mesh, meshlod.Scene(mesh):
+        _, report = of.simplify(max_error="0.5%", return_report=True)
+        assert report.error_asked == pytest.approx(length)
+    assert len(meshlod.simplify(mesh, max_error="0.5%").faces) == len(found[1])
+
+
 @pytest.mark.parametrize("points_dtype", [np.float64, np.float32, ">f8", np.float16, np.int32])
 @pytest.mark.parametrize("faces_dtype", [np.int64, np.int32, np.uint32, np.uint64, ">i4", np.int16])
 def test_all_number_types_are_read(points_dtype, faces_dtype):

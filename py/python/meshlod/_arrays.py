@@ -6,7 +6,7 @@ An array that is so already is not copied here.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -20,7 +20,7 @@ MOST_LABEL = 2**24
 Attribute = tuple[str, str, NDArray[np.float32]]
 
 #: Layout that Rust can read in place: row after row, at aligned addresses.
-ALIGNED = ("C", "A")
+ALIGNED: tuple[Literal["C"], Literal["A"]] = ("C", "A")
 
 
 def as_points(points: ArrayLike, name: str = "points") -> NDArray[Any]:

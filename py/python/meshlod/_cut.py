@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _native
 from ._arrays import by_name
 from ._asked import number, whole
 from ._errors import MeshlodError
 from ._mesh import Mesh
+from ._options import Length
 from ._query import Camera, Focus, query
+
+if TYPE_CHECKING:
+    from ._native import NativeCut
 
 #: Seconds from which on a limit is none.
 LONGEST = 1e9
@@ -49,38 +53,41 @@ class Cut:
     The level has no cracks at any time, also if a limit has stopped an update.
     """
 
-    __slots__ = ("__weakref__", "_native", "_table")
+    __slots__ = ("__weakref__", "_diagonal", "_native", "_table")
 
-    _native: _native.NativeCut
+    _native: NativeCut
+    _diagonal: float
     _table: tuple[NDArray[np.float64], dict[str, NDArray[np.float32]]] | None
 
     def __init__(self) -> None:
         raise MeshlodError("make a Cut by Model.cut")
 
     @classmethod
-    def _of(cls, native: _native.NativeCut) -> Cut:
+    def _of(cls, native: NativeCut, diagonal: float) -> Cut:
         cut = cls.__new__(cls)
         cut._native = native
+        cut._diagonal = diagonal
         cut._table = None
         return cut
 
     def update(
         self,
         *,
-        error: float | None = None,
+        max_error: Length | None = None,
         camera: Camera | None = None,
         focus: Focus | None = None,
         changes: int | None = None,
         seconds: float | None = None,
+        error: Length | None = None,
     ) -> CutChange:
         """Refines and coarsens until the cut is the smallest that satisfies a query.
 
-        ``error``, ``camera`` and ``focus`` are those of :meth:`Model.extract`, by the errors that
-        the file stores. After ``changes`` splits and merges, or after ``seconds``, the update
-        stops; the next one with this query goes on from there. Slots that an interrupted update
-        has written are in the next :class:`CutChange`.
+        ``max_error``, ``camera`` and ``focus`` are those of :meth:`Model.extract`, by the errors
+        that the file stores; ``error`` is another name of ``max_error``. After ``changes`` splits
+        and merges, or after ``seconds``, the update stops; the next one with this query goes on
+        from there. Slots that an interrupted update has written are in the next :class:`CutChange`.
         """
-        asked = query(error, camera, focus)
+        asked = query(max_error, error, camera, focus, lambda: self._diagonal)
         most = None if changes is None else whole("changes", changes, 0, 2**53)
         time = None if seconds is None else number("seconds", seconds)
         if time is not None and not time >= 0:
@@ -127,8 +134,9 @@ class Cut:
     def _vertex_table(self) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float32]]]:
         if self._table is None:
             positions, layers = self._native.vertices()
-            for array in (positions, *(values for _, values in layers)):
-                array.setflags(write=False)
+            positions.setflags(write=False)
+            for _, values in layers:
+                values.setflags(write=False)
             self._table = positions, by_name(layers)
         return self._table
 

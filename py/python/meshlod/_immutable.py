@@ -14,6 +14,10 @@ class Immutable:
 
     __slots__ = ()
 
+    def copy(self: Self) -> Self:
+        """Returns the object itself, since it never changes."""
+        return self
+
     def __copy__(self: Self) -> Self:
         return self
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,11 +13,15 @@ from . import _asked, _native
 from ._arrays import as_attributes, as_faces, as_points, as_vertices, by_name
 from ._errors import MeshlodError, warn
 from ._immutable import Immutable
+from ._options import Length
 from ._progress import ProgressLike, callback
 from ._reports import CheckReport, Distance, OneSidedDistance, Report
 
 if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
     from ._model import Model
+    from ._options import MeshOptions, RepairOptions
 
 Path = str | os.PathLike[str]
 
@@ -27,6 +31,8 @@ PICTURE = (512, 512)
 
 class Mesh(Immutable):
     """A triangle mesh that never changes: all methods return new ones.
+
+    Names are those of trimesh where both have the thing.
 
     ``vertices``, ``faces`` and the attributes are read-only views of its memory. They have one row
     for each set of attributes: vertices at a seam of the texture come several times, and are one
@@ -106,6 +112,13 @@ class Mesh(Immutable):
         return np.full((2, 3), np.nan) if found is None else np.array(found)
 
     @property
+    def extents(self) -> NDArray[np.float64]:
+        """Size of the bounding box along each axis; NaN if there are no faces."""
+        least, greatest = self.bounds
+        size: NDArray[np.float64] = greatest - least
+        return size
+
+    @property
     def area(self) -> float:
         """Area of the surface."""
         return _native.sizes(self._native)[0]
@@ -115,12 +128,63 @@ class Mesh(Immutable):
         """Volume that the surface encloses, with a sign; it means little if it is not closed."""
         return _native.sizes(self._native)[1]
 
+    @property
+    def is_watertight(self) -> bool:
+        """True if each edge has exactly two faces; seams of attributes do not count as open."""
+        faces_of_edges = self._edges()[1]
+        return len(faces_of_edges) > 0 and bool((faces_of_edges == 2).all())
+
+    @property
+    def euler_number(self) -> int:
+        """Vertices minus edges plus faces: 2 for a sphere, 0 for a torus.
+
+        A seam of attributes is no edge of the surface, and vertices without faces do not count.
+        """
+        vertices, faces_of_edges = self._edges()
+        return vertices - len(faces_of_edges) + len(self.faces)
+
+    def apply_transform(self, matrix: ArrayLike) -> Mesh:
+        """Returns the mesh moved by a matrix of shape (4, 4); this one stays as it is.
+
+        In trimesh it is changed in place: ``mesh = mesh.apply_transform(matrix)`` is right for
+        both. Normals turn with it, and a matrix that mirrors flips the faces, so that they still
+        are counter-clockwise seen from outside. The last row must be 0, 0, 0, 1.
+        """
+        return Mesh._of(self._native.transformed(_asked.affine("matrix", matrix)))
+
+    @overload
     def simplify(
         self,
         target_reduction: float | None = None,
         target_count: int | None = None,
         *,
-        max_error: float | None = None,
+        return_report: Literal[False] = False,
+        **options: Unpack[MeshOptions],
+    ) -> Mesh: ...
+    @overload
+    def simplify(
+        self,
+        target_reduction: float | None = None,
+        target_count: int | None = None,
+        *,
+        return_report: Literal[True],
+        **options: Unpack[MeshOptions],
+    ) -> tuple[Mesh, Report]: ...
+    @overload
+    def simplify(
+        self,
+        target_reduction: float | None = None,
+        target_count: int | None = None,
+        *,
+        return_report: bool,
+        **options: Unpack[MeshOptions],
+    ) -> Mesh | tuple[Mesh, Report]: ...
+    def simplify(
+        self,
+        target_reduction: float | None = None,
+        target_count: int | None = None,
+        *,
+        max_error: Length | None = None,
         method: str = "lindstrom-turk",
         topology: str = "free",
         locks: ArrayLike | None = None,
@@ -129,7 +193,7 @@ class Mesh(Immutable):
         precision: str = "auto",
         progress: ProgressLike = None,
         return_report: bool = False,
-    ) -> Any:
+    ) -> Mesh | tuple[Mesh, Report]:
         """Returns a coarser mesh, or ``(mesh, report)``; see :func:`meshlod.simplify`."""
         kind, value = _asked.target(target_reduction, target_count, max_error)
         options: dict[str, Any] = {
@@ -168,7 +232,7 @@ class Mesh(Immutable):
             "topology": topology,
             "lock_boundary": lock_boundary,
         }
-        asked = _asked.asked("ratio", ratios[-1], progress=bar, **options)
+        asked = _asked.asked(self._native, "ratio", ratios[-1], progress=bar, **options)
         done = _native.levels(self._native, ratios, asked)
         reports = [Report(**fields) for _, fields in done]
         missed = [report for report in reports if not report.reached]
@@ -197,6 +261,18 @@ class Mesh(Immutable):
         warnings = {kind: count for kind, count, is_error in found if not is_error}
         return CheckReport(errors=errors, warnings=warnings)
 
+    @overload
+    def repair(
+        self, *, return_report: Literal[False] = False, **options: Unpack[RepairOptions]
+    ) -> Mesh: ...
+    @overload
+    def repair(
+        self, *, return_report: Literal[True], **options: Unpack[RepairOptions]
+    ) -> tuple[Mesh, dict[str, int]]: ...
+    @overload
+    def repair(
+        self, *, return_report: bool, **options: Unpack[RepairOptions]
+    ) -> Mesh | tuple[Mesh, dict[str, int]]: ...
     def repair(
         self,
         *,
@@ -204,7 +280,7 @@ class Mesh(Immutable):
         stitch: float | None = 0.0,
         fill_holes: int | None = None,
         return_report: bool = False,
-    ) -> Any:
+    ) -> Mesh | tuple[Mesh, dict[str, int]]:
         """Returns a mesh without errors, or ``(mesh, counts)`` with the changes by kind.
 
         ``weld`` and ``stitch`` are distances within which vertices are merged, and boundary edges
@@ -222,14 +298,16 @@ class Mesh(Immutable):
         """Returns triangle strips of the faces: rows of vertices, with 2**32 - 1 between strips."""
         return _native.strip(self._native, _asked.word("quality", quality))
 
-    def compress(self, path: Path, *, bits: int = 11, max_error: float | None = None) -> int:
+    def compress(self, path: Path, *, bits: int = 11, max_error: Length | None = None) -> int:
         """Writes a compressed file, ``.mlz`` or ``.mlq``, and returns its size in bytes.
 
-        ``bits`` are those of a coordinate; ``max_error`` is a mean distance in their place.
+        ``bits`` are those of a coordinate; ``max_error`` is a mean distance in their place, also as
+        a percentage of the diagonal of :attr:`bounds`, ``"0.01%"``.
         """
         bits = _asked.whole("bits", bits, 2, 24)
-        error = None if max_error is None else _asked.number("max_error", max_error)
-        name = _asked.path_name(path)
+        name, error = _asked.path_name(path), None
+        if max_error is not None:
+            error = _asked.length("max_error", max_error, self._native)
         size, reached = _native.compress(self._native, name, bits, error)
         if not reached:
             warn(f"{name}: the target was not met")
@@ -292,6 +370,15 @@ class Mesh(Immutable):
         points, faces, _ = self._native.to_arrays()
         return points, faces
 
+    def _edges(self) -> tuple[int, NDArray[np.int64]]:
+        """Returns the number of vertices with faces, and that of the faces of each edge."""
+        vertex_of_points = self._native.vertex_of_points().astype(np.int64)
+        faces = vertex_of_points[self.faces]
+        sides = np.stack([faces, np.roll(faces, -1, axis=1)], axis=-1).reshape(-1, 2)
+        keys = sides.min(axis=1) * len(vertex_of_points) + sides.max(axis=1)
+        faces_of_edges = np.unique(keys, return_counts=True)[1]
+        return len(np.unique(faces)), faces_of_edges.astype(np.int64)
+
     def _simplified(
         self, kind: str, value: float, locks: ArrayLike | None, options: dict[str, Any]
     ) -> tuple[Mesh, Report]:
@@ -299,7 +386,7 @@ class Mesh(Immutable):
         if locks is not None:
             vertices = self._native.vertex_of_points()
             locked = vertices[as_vertices(locks, len(vertices))]
-        asked = _asked.asked(kind, value, locks=locked, **options)
+        asked = _asked.asked(self._native, kind, value, locks=locked, **options)
         level, fields = _native.simplify(self._native, asked)
         return Mesh._of(level), Report(**fields)
 

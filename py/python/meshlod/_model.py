@@ -9,6 +9,7 @@ from ._asked import path_name, whole
 from ._cut import Cut
 from ._errors import warn
 from ._mesh import Mesh, Path
+from ._options import Length
 from ._query import Camera, Focus, Query, query
 
 
@@ -25,18 +26,20 @@ class Model:
     def extract(
         self,
         *,
-        error: float | None = None,
+        max_error: Length | None = None,
         faces: int | None = None,
         camera: Camera | None = None,
         focus: Focus | None = None,
         verify: bool = True,
         crop: bool = False,
+        error: Length | None = None,
     ) -> Mesh:
         """Returns a mesh of one level of detail, without cracks.
 
-        ``error`` is the greatest distance from the surface, 0 by default; with a ``camera`` it is
-        in pixels, 1 by default, and holds in the picture. ``faces`` is the greatest number of
-        faces. ``focus`` is where the error matters: a ball ``(center, radius)`` or a box
+        ``max_error`` is the greatest distance from the surface, 0 by default, or a percentage of
+        the diagonal, ``"0.1%"``; with a ``camera`` it is in pixels, 1 by default, and holds in the
+        picture. ``error`` is another name of it. ``faces`` is the greatest number of faces.
+        ``focus`` is where the error matters: a ball ``(center, radius)`` or a box
         ``(least corner, greatest corner)``; ``crop`` leaves out what is outside.
 
         Unless ``faces`` is given, the error is proved; without ``verify`` it goes by the errors
@@ -45,7 +48,7 @@ class Model:
         level has, a focus that no face intersects, and a file that was cut off. An error of 0 asks
         for the finest level in the file, whose vertices that rounding has moved.
         """
-        asked = query(error, camera, focus)
+        asked = query(max_error, error, camera, focus, self._native.diagonal)
         most = None if faces is None else whole("faces", faces, 0, 2**53)
         found, report = self._native.extract(
             asked.error, most, *asked[1:], bool(verify), bool(crop)
@@ -65,7 +68,7 @@ class Model:
         native, pieces, word = self._native.cut()
         if text := _truncated(pieces, word):
             warn(f"{self.path}: {text}")
-        return Cut._of(native)
+        return Cut._of(native, self._native.diagonal())
 
     def __repr__(self) -> str:
         return f"Model({self.path!r})"

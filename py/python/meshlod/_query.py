@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import pi
 from numbers import Real
 from typing import Any, NamedTuple
 
+from ._asked import error as checked_error
 from ._asked import number, size_px, triple
 from ._errors import MeshlodError
+from ._options import Length
 
 #: A ball, as its center and radius, or a box, as its least and greatest corner.
 Focus = tuple[Sequence[float], float | Sequence[float]]
@@ -40,11 +42,38 @@ class Query(NamedTuple):
     corners: list[list[float]] | None
 
 
-def query(error: float | None, camera: Camera | None, focus: Focus | None) -> Query:
-    """Returns a query; the error is 0 by default, or a pixel with a camera."""
+def query(
+    max_error: Length | None,
+    error: Length | None,
+    camera: Camera | None,
+    focus: Focus | None,
+    diagonal: Callable[[], float],
+) -> Query:
+    """Returns a query; the error is 0 by default, or a pixel with a camera.
+
+    ``error`` is another name of ``max_error``.
+    """
     sphere, corners = (None, None) if focus is None else _focus(focus)
-    least = (0.0 if camera is None else 1.0) if error is None else number("error", error)
+    if max_error is not None and error is not None:
+        raise MeshlodError("error is another name of max_error: give one of them")
+    least = 0.0 if camera is None else 1.0
+    if max_error is not None:
+        least = _length("max_error", max_error, camera, diagonal)
+    elif error is not None:
+        least = _length("error", error, camera, diagonal)
     return Query(least, None if camera is None else _seen(camera), sphere, corners)
+
+
+def _length(
+    name: str, value: Length, camera: Camera | None, diagonal: Callable[[], float]
+) -> float:
+    """Returns an error in model units, or in pixels with a camera."""
+    found, is_part = checked_error(name, value)
+    if not is_part:
+        return found
+    if camera is not None:
+        raise MeshlodError(f"{name} is in pixels where there is a camera: write 1, not {value!r}")
+    return found * diagonal()
 
 
 def _focus(focus: Any) -> tuple[tuple[list[float], float] | None, list[list[float]] | None]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Literal, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,11 +11,15 @@ from . import _asked, _native
 from ._errors import MeshlodError, warn
 from ._immutable import Immutable
 from ._mesh import Mesh, Path
+from ._options import Length
 from ._progress import ProgressLike, callback
 from ._reports import Report
 
 if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
     from ._model import Model
+    from ._options import SceneOptions
 
 
 class Scene(Immutable):
@@ -67,16 +71,56 @@ class Scene(Immutable):
         """Number of faces that are shown, counting every placed mesh."""
         return self._native.face_count()
 
+    @property
+    def bounds(self) -> NDArray[np.float64]:
+        """Least and greatest coordinates of all placed meshes; NaN if there are no faces."""
+        found = self._native.bounds()
+        return np.full((2, 3), np.nan) if found is None else np.array(found)
+
+    @property
+    def extents(self) -> NDArray[np.float64]:
+        """Size of the bounding box along each axis; NaN if there are no faces."""
+        least, greatest = self.bounds
+        size: NDArray[np.float64] = greatest - least
+        return size
+
     def flatten(self) -> Mesh:
         """Merges all placed meshes into one, in world space."""
         return Mesh._of(self._native.flatten())
 
+    @overload
     def simplify(
         self,
         target_reduction: float | None = None,
         target_count: int | None = None,
         *,
-        max_error: float | None = None,
+        return_report: Literal[False] = False,
+        **options: Unpack[SceneOptions],
+    ) -> Scene: ...
+    @overload
+    def simplify(
+        self,
+        target_reduction: float | None = None,
+        target_count: int | None = None,
+        *,
+        return_report: Literal[True],
+        **options: Unpack[SceneOptions],
+    ) -> tuple[Scene, Report]: ...
+    @overload
+    def simplify(
+        self,
+        target_reduction: float | None = None,
+        target_count: int | None = None,
+        *,
+        return_report: bool,
+        **options: Unpack[SceneOptions],
+    ) -> Scene | tuple[Scene, Report]: ...
+    def simplify(
+        self,
+        target_reduction: float | None = None,
+        target_count: int | None = None,
+        *,
+        max_error: Length | None = None,
         method: str = "lindstrom-turk",
         topology: str = "free",
         lock_boundary: bool = False,
@@ -84,13 +128,15 @@ class Scene(Immutable):
         precision: str = "auto",
         progress: ProgressLike = None,
         return_report: bool = False,
-    ) -> Any:
+    ) -> Scene | tuple[Scene, Report]:
         """Returns a coarser scene, or ``(scene, report)``; see :func:`meshlod.simplify`.
 
-        All meshes share the target, so that detail stays where the scene shows it.
+        All meshes share the target, so that detail stays where the scene shows it. A percentage of
+        ``max_error`` is one of the diagonal of :attr:`bounds`.
         """
         kind, value = _asked.target(target_reduction, target_count, max_error)
         asked = _asked.asked(
+            self._native,
             kind,
             value,
             method=method,

@@ -4,25 +4,137 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from numbers import Real
-from typing import Any
+from typing import TYPE_CHECKING, Any, Literal, overload
 
-from numpy.typing import ArrayLike
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from . import _asked, _native
 from ._arrays import as_attributes, as_faces, as_named, as_points, as_vertices, returned
 from ._errors import MeshlodError, warn
 from ._mesh import Mesh
+from ._options import Length
 from ._progress import ProgressLike, callback
 from ._reports import Report
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
+    from ._options import ArrayOptions
+
+Points = NDArray[np.float64]
+Faces = NDArray[np.int32]
+Layers = dict[str, NDArray[Any]]
+
+
+# Arrays without attributes. That some calls fit the next two as well is meant: the first counts.
+@overload
+def simplify(  # pyright: ignore[reportOverlappingOverload]
+    points: ArrayLike,
+    faces: ArrayLike,
+    target_reduction: float | None = None,
+    target_count: int | None = None,
+    *,
+    normals: None = None,
+    uvs: None = None,
+    colors: None = None,
+    attributes: None = None,
+    return_report: Literal[False] = False,
+    **options: Unpack[ArrayOptions],
+) -> tuple[Points, Faces]: ...
+@overload
+def simplify(  # pyright: ignore[reportOverlappingOverload]
+    points: ArrayLike,
+    faces: ArrayLike,
+    target_reduction: float | None = None,
+    target_count: int | None = None,
+    *,
+    normals: None = None,
+    uvs: None = None,
+    colors: None = None,
+    attributes: None = None,
+    return_report: Literal[True],
+    **options: Unpack[ArrayOptions],
+) -> tuple[Points, Faces, Report]: ...
+
+
+# Arrays with attributes.
+@overload
+def simplify(
+    points: ArrayLike,
+    faces: ArrayLike,
+    target_reduction: float | None = None,
+    target_count: int | None = None,
+    *,
+    normals: ArrayLike = ...,
+    uvs: ArrayLike = ...,
+    colors: ArrayLike = ...,
+    attributes: Mapping[str, ArrayLike] = ...,
+    return_report: Literal[False] = False,
+    **options: Unpack[ArrayOptions],
+) -> tuple[Points, Faces, Layers]: ...
+@overload
+def simplify(
+    points: ArrayLike,
+    faces: ArrayLike,
+    target_reduction: float | None = None,
+    target_count: int | None = None,
+    *,
+    normals: ArrayLike = ...,
+    uvs: ArrayLike = ...,
+    colors: ArrayLike = ...,
+    attributes: Mapping[str, ArrayLike] = ...,
+    return_report: Literal[True],
+    **options: Unpack[ArrayOptions],
+) -> tuple[Points, Faces, Layers, Report]: ...
+
+
+# Meshes of this package.
+@overload
+def simplify(
+    points: Mesh,
+    faces: None = None,
+    target_reduction: float | None = None,
+    target_count: int | None = None,
+    *,
+    return_report: Literal[False] = False,
+    **options: Unpack[ArrayOptions],
+) -> Mesh: ...
+@overload
+def simplify(
+    points: Mesh,
+    faces: None = None,
+    target_reduction: float | None = None,
+    target_count: int | None = None,
+    *,
+    return_report: Literal[True],
+    **options: Unpack[ArrayOptions],
+) -> tuple[Mesh, Report]: ...
+
+
+# Meshes of other packages, and what is known only when it runs.
+@overload
 def simplify(
     points: Any,
     faces: ArrayLike | None = None,
     target_reduction: float | None = None,
     target_count: int | None = None,
     *,
-    max_error: float | None = None,
+    normals: ArrayLike | None = None,
+    uvs: ArrayLike | None = None,
+    colors: ArrayLike | None = None,
+    attributes: Mapping[str, ArrayLike] | None = None,
+    return_report: bool = False,
+    triangles: ArrayLike | None = None,
+    **options: Unpack[ArrayOptions],
+) -> Any: ...
+def simplify(
+    points: Any,
+    faces: ArrayLike | None = None,
+    target_reduction: float | None = None,
+    target_count: int | None = None,
+    *,
+    max_error: Length | None = None,
     normals: ArrayLike | None = None,
     uvs: ArrayLike | None = None,
     colors: ArrayLike | None = None,
@@ -45,9 +157,9 @@ def simplify(
     """Returns a coarser mesh: ``(points, faces)``.
 
     Exactly one of ``target_reduction`` (part of the faces to remove, 0 to 1), ``target_count``
-    (number of faces to keep) and ``max_error`` (distance in the unit of the points, which is then
-    proved for every point of both surfaces) says how coarse. If the target is out of reach, a
-    :class:`MeshlodWarning` says so.
+    (number of faces to keep) and ``max_error`` (distance in the unit of the points, or a percentage
+    of the diagonal of their bounding box, ``"0.1%"``, which is then proved for every point of both
+    surfaces) says how coarse. If the target is out of reach, a :class:`MeshlodWarning` says so.
 
     ``points`` are rows of three coordinates, ``faces`` rows of three indices of them. The points
     that come back are double precision, the faces 32-bit integers, both new arrays.
@@ -116,7 +228,8 @@ def simplify(
     locked: Any = None if locks is None else as_vertices(locks, len(rows))
     if locked is not None and vertices is not None:
         locked = vertices[locked]
-    level, fields = _native.simplify(mesh, _asked.asked(kind, value, locks=locked, **options))
+    asked = _asked.asked(mesh, kind, value, locks=locked, **options)
+    level, fields = _native.simplify(mesh, asked)
     out: tuple[Any, ...] = level.to_arrays()
     out = (*out[:2], returned(out[2], given)) if layers else out[:2]
     report = Report(**fields)
@@ -141,4 +254,3 @@ def _of_mesh(
         warn(report.why_not_reached())
     out = level if back is None else back(level)
     return (out, report) if return_report else out
-

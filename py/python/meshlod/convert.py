@@ -52,14 +52,14 @@ def _of_trimesh(mesh: Any) -> tuple[Mesh, list[str]]:
         advice = ": use to_mesh() first" if hasattr(mesh, "to_mesh") else ""
         raise MeshlodError(f"from_trimesh takes a trimesh.Trimesh, not {kind}{advice}")
     known: dict[str, Any] = {}
-    left_out = []
+    left_out: list[str] = []
     visual = mesh.visual
-    kind = getattr(visual, "kind", None)
-    if kind == "texture" and visual.uv is not None:
+    look = getattr(visual, "kind", None)
+    if look == "texture" and visual.uv is not None:
         known["uvs"] = visual.uv
-    elif kind == "vertex":
+    elif look == "vertex":
         known["colors"] = np.asarray(visual.vertex_colors)
-    elif kind == "face":
+    elif look == "face":
         left_out.append("colours of faces")
     arrays, unheld = _held_of(mesh.vertex_attributes, known)
     left_out += _listed("attributes of vertices", unheld)

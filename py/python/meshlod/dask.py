@@ -103,7 +103,8 @@ def _one(task: tuple[list[str], str, str]) -> str:
 def _row(status: str, result: Any, distributed: Any) -> dict[str, Any]:
     """Returns the report of a task, or that of a file whose workers died."""
     if status == "finished":
-        return json.loads(result)
+        row: dict[str, Any] = json.loads(result)
+        return row
     if status != "error":
         raise MeshlodError(f"a task was {status}: {result}")
     _, error, trace = result

@@ -93,6 +93,8 @@ fn pictures(title: &str, mesh: &Mesh, marks: &Marks) -> Result<Markup, Failure> 
         });
         figures.push((side, images.collect::<Result<Vec<_>, Failure>>()?));
     }
+    // What is said above the pictures is a row, too.
+    let rows = 1 + parts.len();
     Ok(html! {
         section id="pictures" {
             h2 { "Pictures" }
@@ -100,7 +102,7 @@ fn pictures(title: &str, mesh: &Mesh, marks: &Marks) -> Result<Markup, Failure> 
                 p { "Above: the whole mesh. Below: the marked parts only, so that those inside show too." }
             }
             (legend(&used))
-            div.strip.wrap style="--columns: 4" tabindex="0" role="region" aria-label=(title) {
+            div.strip.wrap style=(format!("--columns: 4; --rows: {rows}")) tabindex="0" role="region" aria-label=(title) {
                 @for (side, images) in figures {
                     figure {
                         figcaption { b { (side) } }

@@ -12,8 +12,11 @@ use meshlod::jobs::{Grade, Group};
 /// Limit of object pairs on a terminal; JSON and page have more.
 const MOST_PAIRS: usize = 12;
 
-/// Formats the report: a table of groups with the first finding of each, what to do about them, a
-/// table of contacts, and totals.
+/// Cell without a figure.
+const NONE: &str = "-";
+
+/// Formats the report: totals, a table of groups with the first finding of each, what to do about
+/// them, and a table of contacts, which may be long.
 pub fn text(inspection: &Inspection, sites: &Sites) -> String {
     let objects = inspection.report.owners.objects.names.len();
     let components = inspection.report.owners.objects.components;
@@ -25,10 +28,10 @@ pub fn text(inspection: &Inspection, sites: &Sites) -> String {
         count(components),
         plural(components),
     );
+    text += &format!("{}\n", verdict(inspection));
     text += &groups(inspection, sites);
     text += &remedies(inspection);
-    text += &contacts(inspection);
-    text + &format!("{}\n", verdict(inspection))
+    text + &contacts(inspection)
 }
 
 /// Formats the numbers of errors, warnings and touches in words.
@@ -89,7 +92,8 @@ fn remedies(inspection: &Inspection) -> String {
     if lines.is_empty() { lines } else { format!("what to do\n{lines}") }
 }
 
-/// Formats the table of object pairs, those with the most face pairs first.
+/// Formats the table of object pairs, those with the most face pairs first. Columns without a
+/// figure are left out.
 fn contacts(inspection: &Inspection) -> String {
     let pairs = inspection.report.contacts.by_size();
     if pairs.is_empty() {
@@ -104,7 +108,7 @@ fn contacts(inspection: &Inspection) -> String {
         let [a, b] = objects.map(|object| short(inspection.report.name(object)));
         row(format!("  {a} – {b}"), pair)
     }));
-    let table = aligned(&rows);
+    let table = aligned(&without_empty_columns(rows));
     let more = pairs.len().saturating_sub(MOST_PAIRS);
     let more = if more > 0 { format!("  and {} more\n", count(more)) } else { String::new() };
     format!("{}\n{table}{more}", meetings(inspection))
@@ -126,9 +130,20 @@ pub fn meetings(inspection: &Inspection) -> String {
     }
 }
 
+/// Leaves out the columns that have nothing below their heads.
+fn without_empty_columns(rows: Vec<Vec<String>>) -> Vec<Vec<String>> {
+    let columns = 0..rows.first().map_or(0, Vec::len);
+    let filled: Vec<bool> =
+        columns.map(|column| rows[1..].iter().any(|row| row[column] != NONE)).collect();
+    let kept = |row: Vec<String>| {
+        row.into_iter().zip(&filled).filter(|(_, filled)| **filled).map(|(cell, _)| cell).collect()
+    };
+    rows.into_iter().map(kept).collect()
+}
+
 fn row(name: String, pair: &ObjectPair) -> Vec<String> {
-    let some = |number: usize| if number == 0 { "-".into() } else { count(number) };
-    let depth = if pair.deepest.depth > 0.0 { value(pair.deepest.depth) } else { "-".into() };
+    let some = |number: usize| if number == 0 { NONE.into() } else { count(number) };
+    let depth = if pair.deepest.depth > 0.0 { value(pair.deepest.depth) } else { NONE.into() };
     let counts = [pair.faces()].into_iter().chain(pair.counts).map(some);
     [name].into_iter().chain(counts).chain([depth]).collect()
 }

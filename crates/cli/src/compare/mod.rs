@@ -2,9 +2,10 @@
 //!
 //! [`comparison`] builds and measures the levels, and [`output`] writes them; [`verdict`] says
 //! which method did best, and [`page`] and [`summary`] show the same figures on a page and on the
-//! terminal.
+//! terminal. [`front`] chooses the side that the pictures show.
 
 mod comparison;
+mod front;
 mod output;
 mod page;
 mod section;
@@ -126,11 +127,15 @@ impl Compare {
         let fused = self.constraints.fuse.apply(&mut scene, session);
         let output = Output::new(&self.out, &self.input, &scene, session);
         let materials = style::materials(&scene, &self.input, session);
-        let View { direction, up, .. } = self.viewpoint.view();
+        let asked = self.viewpoint.view();
         let name = files::name(&self.input);
         let title = self.input.file_name().unwrap_or_default().to_string_lossy();
         let single_sided = single_sided_materials(&scene);
         let style = |mesh: &_| {
+            let View { direction, up, .. } = match self.no_pictures || self.viewpoint.is_given() {
+                true => asked,
+                false => front::facing(mesh, asked),
+            };
             let paint = OwnedPaint::comparison(mesh, materials);
             SubjectStyle { single_sided, ..SubjectStyle::new(paint, mesh, direction, up) }
         };

@@ -1,4 +1,5 @@
-//! Verdict of a comparison: which method came closest at a size, which was fastest, and by how much.
+//! Verdict of a comparison: which method came closest at a size and what that costs, which was
+//! fastest, and by how much.
 
 use meshlod::Method;
 use meshlod::measure::Distance;
@@ -84,8 +85,10 @@ impl Verdict {
             );
         }
         let both = closest.exact() < 2 && closest.0[0].0 == fastest.0[0].0;
+        // Of a method that is also fastest, the second half says how fast it is.
+        let cost = if both { String::new() } else { closest.cost(fastest) };
         let [closest, fastest] = [closest.closest(), fastest.fastest(both)];
-        format!("At {size}, {closest}, and {fastest}.")
+        format!("At {size}, {closest}{cost}, and {fastest}.")
     }
 }
 
@@ -128,6 +131,29 @@ impl Contest {
         }
     }
 
+    /// Says how long the closest method takes, compared with the rival that has just been named;
+    /// `times` are the seconds of the methods. Empty if no rival has been.
+    fn cost(&self, times: &Contest) -> String {
+        let Some((rival, _)) = self.rival().filter(|_| self.exact() < 2) else {
+            return String::new();
+        };
+        match (times.of_method(self.0[0].0), times.of_method(rival)) {
+            (Some(own), Some(other)) if is_equal(own.min(other), own.max(other)) => {
+                " in the same time".into()
+            }
+            (Some(own), Some(other)) if own > other => {
+                format!(" at {} times its time", factor(own / other))
+            }
+            (Some(own), Some(other)) => format!(" in {:.2} of its time", own / other),
+            _ => String::new(),
+        }
+    }
+
+    /// Returns the figure of a method.
+    fn of_method(&self, wanted: Method) -> Option<f64> {
+        self.0.iter().find(|(method, _)| *method == wanted).map(|(_, figure)| *figure)
+    }
+
     /// Says which method was fastest; `is_same` if it has just been named.
     fn fastest(&self, is_same: bool) -> String {
         let (method, time) = self.0[0];
@@ -139,7 +165,7 @@ impl Contest {
                 format!("{text}, about as long as {} takes", named(rival))
             }
             Some((rival, other)) => {
-                format!("{text}, {} times as fast as {}", times(other / time), named(rival))
+                format!("{text}, {} times as fast as {}", factor(other / time), named(rival))
             }
         }
     }
@@ -161,7 +187,7 @@ pub fn named(method: Method) -> String {
 }
 
 /// Formats a factor above one with two or three digits.
-fn times(factor: f64) -> String {
+fn factor(factor: f64) -> String {
     match factor {
         _ if factor < 1.995 => format!("{factor:.2}"),
         _ if factor < 9.95 => format!("{factor:.1}"),
@@ -186,8 +212,28 @@ mod tests {
         assert_eq!(
             sentence(&rms, &seconds),
             "At 10%, lindstrom-turk (default) is closest with an RMS error of 0.0160%, 20% less \
-             than qem, and qem is fastest with 45.0 ms, 2.0 times as fast as lindstrom-turk (default)."
+             than qem at 2.0 times its time, and qem is fastest with 45.0 ms, 2.0 times as fast as lindstrom-turk (default)."
         );
+    }
+
+    #[test]
+    fn what_the_closest_method_costs_is_said_beside_the_default() {
+        let default = Method::default();
+        let rms = [(Method::Pm, 0.9), (default, 1.0), (Method::Qem, 1.2)];
+        let at = |pm: f64| sentence(&rms, &[(Method::Qem, 1.0), (default, 2.0), (Method::Pm, pm)]);
+        let start = "At 10%, pm is closest with an RMS error of 0.900%, 10% less than \
+                     lindstrom-turk (default)";
+        let end =
+            ", and qem is fastest with 1.00 s, 2.0 times as fast as lindstrom-turk (default).";
+        for (seconds, cost) in [
+            (74.0, " at 37 times its time"),
+            (2.01, " in the same time"),
+            (1.5, " in 0.75 of its time"),
+        ] {
+            let text = at(seconds);
+            let said = text.strip_prefix(start).and_then(|text| text.strip_suffix(end));
+            assert_eq!(said, Some(cost), "{text}");
+        }
     }
 
     #[test]

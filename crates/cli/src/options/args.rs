@@ -190,6 +190,11 @@ enum Axis {
 }
 
 impl ViewArgs {
+    /// Returns whether a direction is given, so that the default is not used.
+    pub fn is_given(&self) -> bool {
+        self.view.is_some()
+    }
+
     /// Returns the view with the requested direction and up axis, and defaults for all else.
     pub fn view(&self) -> View {
         let up = match self.up {

@@ -46,7 +46,8 @@ fn errors_are_told_and_are_1() {
     assert_eq!((done.code, &done.err[..]), (3, ""));
     let line = "  error    non-manifold-edge  1  first: v0 to v1 at 0 0 0.5\n";
     assert!(done.text().contains(line), "{}", done.text());
-    assert!(done.text().ends_with("\n1 error, 2 warnings\n"), "{}", done.text());
+    let verdict = done.text().lines().nth(1).map(str::to_owned);
+    assert_eq!(verdict.as_deref(), Some("1 error, 2 warnings"), "{}", done.text());
     let json = check(&run, &["book.obj", "--json"]);
     assert_eq!(json.code, 3);
     let json = json.json();
@@ -299,6 +300,7 @@ fn the_page_has_pictures_a_legend_and_the_tables() {
     run.json(&["check", "ball.ply", "--out", "out"]);
     let page = std::fs::read_to_string(run.path("out/index.html")).unwrap();
     assert_eq!(page.matches("data:image/png").count(), 4, "there is nothing to mark");
+    assert!(page.contains("--rows: 2"), "no row is empty below the pictures");
     assert!(page.contains("No findings in"));
 }
 
@@ -319,8 +321,10 @@ fn objects_that_touch_are_no_warning() {
     assert_eq!(findings.len(), 2, "one place is shared, and the objects meet there: {json}");
     assert!(findings.iter().all(|finding| finding["severity"] == "touch"), "{json}");
     let done = check(&run, &["in.obj"]);
-    assert!(done.text().contains("1 pair of objects that only touch\n"), "{}", done.text());
-    assert!(done.text().ends_with("0 errors, 0 warnings; 2 places where objects touch\n"));
+    assert!(done.text().contains("\n0 errors, 0 warnings; 2 places where objects touch\n"));
+    let contacts = "1 pair of objects that only touch\n                face pairs  vertex\n  \
+                    left – right           1       1\n";
+    assert!(done.text().ends_with(contacts), "columns without figures go: {}", done.text());
     let page = std::fs::read_to_string(run.path("page/index.html")).unwrap();
     assert!(page.contains("objects touch, as parts may") && page.contains("May be meant"));
     assert!(!page.contains("To look at") && !page.contains("<span class=\"chip warning\">"));

@@ -30,7 +30,8 @@ def frames(headings: NDArray[np.float64], up: str) -> NDArray[np.float64]:
         x = np.stack([z[:, 2], np.zeros(len(z)), -z[:, 0]], axis=1)
         length = np.linalg.norm(x, axis=1, keepdims=True)
         x = np.where(length > 1e-6, x / length, [1.0, 0.0, 0.0])
-    return turn.T @ np.stack([x, np.cross(z, x), z], axis=2)
+    axes: NDArray[np.float64] = turn.T @ np.stack([x, np.cross(z, x), z], axis=2)
+    return axes
 
 
 def model_axes(forward: Any, up: Any) -> NDArray[np.float64]:
