@@ -16,6 +16,11 @@ use meshlod_spatial::closest_point;
 use self::check::{Check, CutSurface, RESERVE};
 use crate::model::measured_poses;
 
+/// Part of the tolerance at which a cut for a camera or a focus starts, which has up to a tenth more
+/// faces from 1. The whole surface within one tolerance starts at 1: from 1.5 it has a hundredth fewer
+/// faces, and takes half as long again.
+const START: f64 = 1.5;
+
 /// Number of refinements after which the rest is refined as far as it goes, so that a file of wrong
 /// errors cannot hold up its reader. The meshes of docs/notes/multires.md take 10 at most.
 const MOST_ROUNDS: usize = 64;
@@ -134,12 +139,13 @@ fn refine<S: Source>(
         // Nothing in the file is finer.
         return Ok(VerifiedExtract { extract: near.extract(&finest)?, verification });
     }
-    // From 1.5 times the tolerance a cut has a hundredth fewer faces in the end, and takes half as long
-    // again.
+    let is_uniform = query.is_everywhere() && matches!(query.tolerance, Tolerance::Uniform(_));
     let part = match measured_poses(archive)? {
         // No check looks at the poses in which the stored errors were measured.
         Some(_) if least > 0.0 => (1.0 - rounding / least).max(0.0),
-        _ => 1.0,
+        Some(_) => 1.0,
+        None if is_uniform => 1.0,
+        None => START,
     };
     let mut check = None;
     let mut cut = rayon::in_place_scope(|scope| {
