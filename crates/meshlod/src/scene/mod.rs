@@ -36,5 +36,6 @@ pub use fuse::{FuseReport, fuse_scene};
 pub use locks::join_locks;
 #[cfg(feature = "picture")]
 pub use materials::{ImageWarning, materials_of, single_sided_materials};
+pub(crate) use place::rounding_in_meshes;
 pub use place::{moved_at_most, rounding_of_level, shown_rounding, world_bounds};
 pub use simplifier::{SceneError, SceneSimplifier};

@@ -35,19 +35,26 @@ pub(crate) fn shown_faces(scene: &Scene) -> usize {
 ///
 /// Covers coordinates in the space of a mesh, as glTF has them, and in world space.
 pub fn rounding_of_level(scene: &Scene, digits: Digits) -> f64 {
-    if digits == Digits::F64 {
-        return 0.0;
+    match digits {
+        Digits::F64 => 0.0,
+        Digits::F32 | Digits::Decimal => rounding_in_meshes(scene).max(half_ulp(&world_bounds(scene))),
     }
-    let reach = |bounds: &Bounds| {
-        let of_each = bounds.min.iter().chain(&bounds.max).filter(|x| x.is_finite());
-        of_each.fold(0.0, |most: f64, x| most.max(x.abs()))
-    };
+}
+
+/// Returns how far writing a level of a scene with 32 bits may move a point, at most, in world units,
+/// where nodes are kept: as [`rounding_of_level`], in the space of each mesh alone.
+pub(crate) fn rounding_in_meshes(scene: &Scene) -> f64 {
     let own = |place: &MeshInstance| {
-        length_scale(&place.transform) * reach(&scene.meshes[place.mesh].mesh.bounds())
+        length_scale(&place.transform) * half_ulp(&scene.meshes[place.mesh].mesh.bounds())
     };
-    let local = scene.instances().iter().map(own).fold(0.0, f64::max);
-    let half_ulp = 0.5 * f64::from(f32::EPSILON);
-    BEYOND * 3f64.sqrt() * half_ulp * local.max(reach(&world_bounds(scene)))
+    scene.instances().iter().map(own).fold(0.0, f64::max)
+}
+
+/// Returns how far rounding to 32 bits may move a vertex of a level of a mesh with these bounds.
+fn half_ulp(bounds: &Bounds) -> f64 {
+    let of_each = bounds.min.iter().chain(&bounds.max).filter(|x| x.is_finite());
+    let reach = of_each.fold(0.0, |most: f64, x| most.max(x.abs()));
+    BEYOND * 3f64.sqrt() * 0.5 * f64::from(f32::EPSILON) * reach
 }
 
 /// Returns the largest change of a coordinate, in world units, when a scene is written in a format and

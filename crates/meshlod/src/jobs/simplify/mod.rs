@@ -89,7 +89,7 @@ fn asked_and_written(
         let as_ = request.written_as;
         return (None, if request.exact_volume { of_scene(as_) } else { as_ });
     };
-    let with = |as_| BoundToProve::new(error, scene, digits(as_), request.exact_volume);
+    let with = |as_| BoundToProve::new(error, scene, as_, request.exact_volume);
     let mut as_ = request.written_as;
     if with(of_scene(as_)).needs_precision() {
         as_ = as_.map(WrittenAs::precise);

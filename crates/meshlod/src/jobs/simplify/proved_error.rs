@@ -5,8 +5,10 @@ use meshlod_measure::{CertifiedOptions, PreparedSurface, certified_surface_dista
 use meshlod_mesh::Mesh;
 use meshlod_simplify::{Digits, Report, Target};
 
+use crate::jobs::WrittenAs;
 use crate::jobs::scene_run::surface_of;
-use crate::scene::rounding_of_level;
+use crate::jobs::written_as::digits;
+use crate::scene::{rounding_in_meshes, rounding_of_level};
 
 /// Part of the error that rounding may take before coordinates are written with 64 bits.
 const UNSEEN: f64 = 0.005;
@@ -55,8 +57,20 @@ impl ProvedError {
 
 impl BoundToProve {
     /// Restoring the volume moves vertices too, mostly by about twice the rounding.
-    pub fn new(asked: f64, scene: &Scene, digits: Digits, is_volume_restored: bool) -> Self {
-        let rounding = rounding_of_level(scene, digits);
+    ///
+    /// A file with nodes is proved in its own numbers: what a node far from the origin adds to a
+    /// coordinate is rounded by whoever adds it.
+    pub fn new(
+        asked: f64,
+        scene: &Scene,
+        written_as: Option<WrittenAs>,
+        is_volume_restored: bool,
+    ) -> Self {
+        let has_nodes = |as_: &WrittenAs| as_.format.is_gltf() && scene.source.is_some();
+        let rounding = match digits(written_as) {
+            Digits::F32 if written_as.as_ref().is_some_and(has_nodes) => rounding_in_meshes(scene),
+            digits => rounding_of_level(scene, digits),
+        };
         let room = if is_volume_restored { MOVES * rounding } else { rounding };
         Self { asked, rounding, room }
     }
@@ -105,5 +119,27 @@ impl BoundToProve {
 
     fn with(&self, proved: Option<f64>, is_held: bool, rounds: usize) -> ProvedError {
         ProvedError { asked: self.asked, proved, is_held, rounds, rounding: self.rounding }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_io::{Format, Precision, Weld, gltf};
+    use meshlod_samples as samples;
+
+    use super::*;
+
+    #[test]
+    fn a_node_far_from_the_origin_takes_nothing_of_an_error() {
+        let mut scene = Scene::from_mesh("torus", samples::torus(600));
+        scene.nodes[0].transform[3] = [4.5e6, 0.0, 0.0, 1.0];
+        let bytes = gltf::write_glb(&scene, &[]).unwrap();
+        let read = gltf::read(&bytes, &mut |_| None, Weld::Exact).unwrap();
+        let room = |scene: &Scene, format| {
+            let as_ = WrittenAs { format, precision: Precision::F32 };
+            BoundToProve::new(0.01, scene, Some(as_), false).room
+        };
+        assert!(room(&read, Format::Glb) < 1e-5);
+        assert!(room(&read, Format::Ply) > 0.1);
     }
 }
