@@ -69,7 +69,7 @@ pub struct CompressedSizes {
 
 /// Limit on the attribute values of a wedge over all layers. Without it a small file of constant
 /// values could claim a mesh of unlimited size.
-const MAX_VALUES: usize = 255;
+const MAX_VALUES: usize = 1023;
 /// Limit on the number of faces, chosen so that their bits take less than 4 GB in any case.
 const MAX_FACES: usize = 1 << 27;
 /// Blocks of vertices per patch, which gives about 256 faces. Twice as many save half a bit per

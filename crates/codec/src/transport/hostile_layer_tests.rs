@@ -30,8 +30,8 @@ fn bad_attributes_are_refused_in_words() {
     assert!(matches!(error, TransportError::Layer(_)));
     let error = refused(&|mesh| {
         let count = mesh.attributes.as_ref().unwrap().wedge_count;
-        let values = vec![0.0; 256 * count];
-        with(mesh, Layer { kind: LayerKind::Other, name: "wide".into(), width: 256, values });
+        let values = vec![0.0; 1024 * count];
+        with(mesh, Layer { kind: LayerKind::Other, name: "wide".into(), width: 1024, values });
     });
     assert!(matches!(error, TransportError::Layer(_)));
     let error = refused(&|mesh| {

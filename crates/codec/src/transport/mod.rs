@@ -100,7 +100,9 @@ pub struct TransportOptions {
 }
 
 /// Limit on the attribute values of a wedge over all layers.
-const MAX_LAYER_VALUES: usize = 255;
+const MAX_LAYER_VALUES: usize = 1023;
+/// Limit on the number of layers, which takes a byte.
+const MAX_LAYERS: usize = 255;
 
 /// Grid of cubic cells to which vertex positions are rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -156,7 +158,8 @@ pub enum TransportError {
     Mesh(#[from] MeshError),
     /// An attribute layer has too many values, or its name is too long.
     #[error(
-        "attribute layer \"{0}\" does not fit: a file holds {MAX_LAYER_VALUES} values per wedge"
+        "attribute layer \"{0}\" does not fit: a file holds {MAX_LAYERS} layers and \
+         {MAX_LAYER_VALUES} values per wedge"
     )]
     Layer(String),
     /// An attribute value is infinite or NaN.

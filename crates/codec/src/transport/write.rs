@@ -16,7 +16,9 @@ use super::rans::encode;
 use super::symbol_bits::SymbolBits;
 use super::walk::{BlockWalk, Walker};
 use super::weld_blocks::{WeldTable, checksum, key};
-use super::{MAX_LAYER_VALUES, Transport, TransportError, TransportOptions, max_block_faces};
+use super::{
+    MAX_LAYER_VALUES, MAX_LAYERS, Transport, TransportError, TransportOptions, max_block_faces,
+};
 use crate::attributes::LayerCoding;
 
 /// Greatest number of faces, for 32-bit numbers of faces and of their sides.
@@ -68,9 +70,10 @@ impl Transport {
 fn check_attributes(mesh: &Mesh) -> Result<(), TransportError> {
     mesh.validate_attributes()?;
     let mut width = 0;
-    for layer in mesh.attributes.iter().flat_map(|attributes| &attributes.layers) {
+    let layers = mesh.attributes.iter().flat_map(|attributes| &attributes.layers);
+    for (count, layer) in (1..).zip(layers) {
         width += layer.width;
-        if width > MAX_LAYER_VALUES || !LayerCoding::is_storable(layer) {
+        if count > MAX_LAYERS || width > MAX_LAYER_VALUES || !LayerCoding::is_storable(layer) {
             return Err(TransportError::Layer(layer.name.clone()));
         }
         if let Some(at) = layer.values.iter().position(|x| !x.is_finite()) {

@@ -37,7 +37,9 @@ pub(crate) fn shown_faces(scene: &Scene) -> usize {
 pub fn rounding_of_level(scene: &Scene, digits: Digits) -> f64 {
     match digits {
         Digits::F64 => 0.0,
-        Digits::F32 | Digits::Decimal => rounding_in_meshes(scene).max(half_ulp(&world_bounds(scene))),
+        Digits::F32 | Digits::Decimal => {
+            rounding_in_meshes(scene).max(half_ulp(&world_bounds(scene)))
+        }
     }
 }
 
