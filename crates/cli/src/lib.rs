@@ -69,7 +69,7 @@ fn parse(arguments: &[OsString]) -> Result<(String, Cli), clap::Error> {
     let mut command = Cli::command();
     let matches = command
         .try_get_matches_from_mut(arguments)
-        .map_err(|error| usage::explain(error, arguments))?;
+        .map_err(|error| usage::explain(error, arguments, Cli::command()))?;
     let verb = matches.subcommand_name().unwrap_or_default().to_owned();
     let cli = Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut command))?;
     Ok((verb, cli))

@@ -22,7 +22,6 @@ use meshlod::io::{remove_abandoned, write_file};
 use serde_json::json;
 
 use crate::batch::journal::Journal;
-pub use crate::batch::plan::files_of;
 use crate::batch::plan::{FileJob, Plan};
 use crate::batch::report::{FileReport, Status, table};
 use crate::batch::workers::{Crew, run_jobs};

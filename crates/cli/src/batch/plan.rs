@@ -4,13 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-use glob::{MatchOptions, Pattern, glob_with};
+use glob::Pattern;
 use meshlod::FileKind;
 
 use crate::options::parse::Suffix;
-use crate::session::absent::is_pattern;
 use crate::session::failure::Failure;
-use crate::session::files;
+use crate::session::{files, patterns};
 
 /// One file of a batch.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,13 +25,6 @@ pub struct Plan {
     /// Number of files that patterns match but that are of no format that is read.
     pub others: usize,
 }
-
-/// Names that begin with a dot are hidden, as they are to shells: unfinished files have such names.
-const MATCHING: MatchOptions = MatchOptions {
-    case_sensitive: true,
-    require_literal_separator: true,
-    require_literal_leading_dot: true,
-};
 
 impl Plan {
     /// Finds the files of `patterns`; outputs are below `folder`, with another suffix if one is
@@ -92,14 +84,6 @@ fn check_folder(folder: &Path) -> Result<(), Failure> {
     Err(Failure::usage(format_args!("{}: {reason}", files::name(folder))).about(folder))
 }
 
-/// Returns the files that a pattern matches.
-///
-/// # Errors
-/// If it matches nothing.
-pub fn files_of(pattern: &Path) -> Result<Vec<PathBuf>, Failure> {
-    Ok(Found::of(pattern, Path::new(""))?.files)
-}
-
 /// Files that one pattern matches.
 struct Found {
     /// Folder that the pattern fixes.
@@ -114,7 +98,7 @@ impl Found {
             let base = pattern.parent().unwrap_or(Path::new("")).to_owned();
             return Ok(Self { base, files: vec![pattern.to_owned()], others: 0 });
         }
-        if !pattern.exists() && !is_pattern(pattern) {
+        if !pattern.exists() && !patterns::is_pattern(pattern) {
             return Err(Failure::at(pattern, "there is no such file or folder"));
         }
         let text = pattern.to_str().ok_or_else(|| Failure::at(pattern, "is not Unicode"))?;
@@ -127,11 +111,9 @@ impl Found {
         };
         // Paths that are found do not begin with a dot of the pattern.
         let base = base.strip_prefix(".").map(Path::to_owned).unwrap_or(base);
-        let paths = glob_with(&text, MATCHING).map_err(|error| Failure::at(pattern, error))?;
         let mut found = Self { base, files: Vec::new(), others: 0 };
         let made_before = made_before(&found.base, out);
-        for path in paths {
-            let path = path.map_err(|error| Failure::at(error.path(), error.error()))?;
+        for path in patterns::matches(pattern, &text)? {
             if !path.is_file() || made_before.as_deref().is_some_and(|out| is_below(&path, out)) {
                 continue;
             }

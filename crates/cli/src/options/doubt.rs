@@ -1,14 +1,10 @@
 //! Doubts about numbers that are probably meant as percentages. They are warnings, since a number
 //! may be meant as it is: a batch has one length for models of any size.
 
-use std::path::Path;
-
 use meshlod::Scene;
 use meshlod::scene::world_bounds;
 
 use crate::options::parse::{Bound, LevelSize};
-use crate::session::Session;
-use crate::session::failure::Failure;
 use crate::text::numbers::{count, value};
 
 /// Part of the diagonal from which a length leaves little of a model.
@@ -20,24 +16,16 @@ const MOST_PERCENT: f64 = 100.0;
 /// Faces of a model of which nobody wants so few.
 const MANY_FACES: usize = 1000;
 
-/// Warns of a doubt about a file, if there is one.
-pub fn warn(input: &Path, doubt: Option<String>, session: &Session) {
-    if let Some(doubt) = doubt {
-        session.warn(Failure::at(input, doubt));
-    }
-}
-
-/// Warns of sizes of levels that are probably percentages.
-pub fn warn_of_levels(levels: &[LevelSize], input: &Path, scene: &Scene, session: &Session) {
+/// Doubts sizes of levels of a scene that are probably percentages, or one number with a comma.
+pub fn of_sizes(levels: &[LevelSize], scene: &Scene) -> Option<String> {
     let faces = scene.meshes.iter().map(|mesh| mesh.mesh.faces.len()).sum();
-    warn(input, of_commas(levels).or_else(|| of_levels(levels, faces)), session);
+    of_commas(levels).or_else(|| of_levels(levels, faces))
 }
 
-/// Warns of a length that is large for a model, by an option that takes no percentages.
-pub fn warn_of_length(option: &str, length: f64, input: &Path, scene: &Scene, session: &Session) {
-    let doubt = of_length(option, length, world_bounds(scene).diagonal());
-    let doubt = doubt.map(|doubt| doubt + ": is it in the units of the model?");
-    warn(input, doubt, session);
+/// Doubts a length that is large for a scene, by an option that takes no percentages.
+pub fn of_distance(option: &str, length: f64, scene: &Scene) -> Option<String> {
+    let doubt = of_length(option, length, world_bounds(scene).diagonal())?;
+    Some(doubt + ": is it in the units of the model?")
 }
 
 /// Doubts a length in model units that is large for a model.
@@ -69,6 +57,12 @@ pub fn of_part(option: &str, bound: Bound) -> Option<String> {
              faces is written --ratio {bound}"
         )
     })
+}
+
+/// Doubts a first level that is the input, which a chain has anyway.
+pub fn of_whole(levels: &[LevelSize]) -> Option<String> {
+    let is_whole = levels.first() == Some(&LevelSize::Ratio(1.0));
+    is_whole.then(|| "--levels: LOD0 is the input, so leave out 100%".into())
 }
 
 /// Doubts two sizes that may be one with a comma: `12,500`.

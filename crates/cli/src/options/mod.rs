@@ -1,4 +1,8 @@
 //! Groups of options that verbs share, each with the plain data that it stands for.
+//!
+//! Values are read by [`parse`], with [`number`], [`tolerance`] and [`query_args`]; what they are
+//! doubted for is in [`doubt`]. [`args`] has the options of every verb, [`constraints`] and [`method`]
+//! those of verbs that simplify.
 
 pub mod args;
 pub mod constraints;

@@ -9,7 +9,7 @@ use meshlod::multires::{ModelFile, ViewCamera};
 
 use crate::options::doubt;
 use crate::options::parse;
-use crate::options::query_args::{self, ErrorLimit};
+use crate::options::query_args::{self, CAMERA, ErrorLimit};
 use crate::session::Session;
 use crate::session::failure::Failure;
 use crate::text::numbers::faces;
@@ -71,11 +71,14 @@ pub struct QueryTargetArgs {
 }
 
 impl QueryArgs {
-    /// Fails unless there is an error or a number of faces to ask for.
+    /// Fails unless there is an error or a number of faces to ask for, and a camera for pixels.
     pub fn check_target(&self) -> Result<(), Failure> {
-        match self.target.error.is_some() || self.target.faces.is_some() {
-            true => Ok(()),
-            false => Err(Failure::usage(
+        match (self.target.error, self.target.faces) {
+            (Some(ErrorLimit::Pixels(_)), _) if self.camera.is_none() => Err(Failure::usage(
+                format_args!("--error: pixels need a camera: --camera \"{CAMERA}\""),
+            )),
+            (Some(_), _) | (_, Some(_)) => Ok(()),
+            (None, None) => Err(Failure::usage(
                 "a multiresolution file needs --error or --faces, such as --error 0.1% or --faces 5k",
             )),
         }
@@ -112,7 +115,7 @@ impl QueryArgs {
     pub fn warn_of_error(&self, file: &AnyFile, session: &Session) {
         let Some(ErrorLimit::Length(bound)) = self.target.error else { return };
         let diagonal = file.levels().map_or(0.0, ModelFile::diagonal);
-        doubt::warn(file.path(), doubt::of_bound("--error", bound, diagonal), session);
+        session.doubt(file.path(), doubt::of_bound("--error", bound, diagonal));
     }
 
     /// Warns if a cut has more faces than asked for, since nothing is coarser. `done` says what is

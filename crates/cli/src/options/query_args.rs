@@ -40,10 +40,17 @@ pub fn focus(text: &str) -> Result<FocusRequest, String> {
     Ok(FocusRequest::Region(focus))
 }
 
+/// Form of a camera.
+pub const CAMERA: &str = "eye=x,y,z look=x,y,z fov=45 1920x1080";
+
 /// Parses a camera: `eye=x,y,z look=x,y,z fov=45 1920x1080`, with an optional `up=x,y,z`.
 pub fn camera(text: &str) -> Result<ViewCamera, String> {
-    const FORM: &str = "expected \"eye=x,y,z look=x,y,z fov=45 1920x1080\" with the vertical field \
-                        of view in degrees, and up=x,y,z unless y is up";
+    let form = || {
+        format!(
+            "expected \"{CAMERA}\" with the vertical field of view in degrees, and up=x,y,z unless y \
+             is up"
+        )
+    };
     let (mut eye, mut look, mut up, mut fov, mut viewport) = (None, None, None, None, None);
     for word in text.split_whitespace() {
         match word.split_once('=') {
@@ -51,15 +58,15 @@ pub fn camera(text: &str) -> Result<ViewCamera, String> {
             Some(("look", place)) => look = Some(triple(place)?),
             Some(("up", direction)) => up = Some(triple(direction)?),
             Some(("fov", degrees)) => fov = Some(parse::number(degrees)?.to_radians()),
-            None => viewport = Some(parse::pixels(word)?),
-            Some(_) => return Err(FORM.into()),
+            None if word.contains('x') => viewport = Some(parse::pixels(word)?),
+            None | Some(_) => return Err(form()),
         }
     }
     match (eye, look, fov, viewport) {
         (Some(eye), Some(look), Some(fov_rad), Some(viewport)) => {
             Ok(ViewCamera { eye, look, up: up.unwrap_or([0.0, 1.0, 0.0]), fov_rad, viewport })
         }
-        _ => Err(FORM.into()),
+        _ => Err(form()),
     }
 }
 

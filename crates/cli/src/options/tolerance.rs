@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use meshlod::Format;
+use meshlod::scene::world_bounds;
+use meshlod::{Format, Scene};
 
 use crate::options::parse::{self, Bound};
 use crate::options::{doubt, number};
@@ -53,9 +54,10 @@ impl Tolerance {
     }
 
     /// Warns if the length leaves little of a model and its unit may be missing.
-    pub fn doubt(&self, option: &str, input: &Path, diagonal: f64, session: &Session) {
+    pub fn doubt(&self, option: &str, input: &Path, scene: &Scene, session: &Session) {
         if let Self::Bound(bound) = self {
-            doubt::warn(input, doubt::of_bound(option, *bound, diagonal), session);
+            let diagonal = world_bounds(scene).diagonal();
+            session.doubt(input, doubt::of_bound(option, *bound, diagonal));
         }
     }
 }

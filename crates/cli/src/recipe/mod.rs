@@ -11,8 +11,8 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use clap::Parser;
 use clap::error::{ContextKind, ContextValue};
+use clap::{CommandFactory, Parser};
 
 use crate::command::VerbLine;
 pub use crate::recipe::spell::{Spelled, VerbOptions};
@@ -119,7 +119,7 @@ impl Recipe {
     pub fn line(&self, paths: &[PathBuf]) -> Result<VerbLine, Failure> {
         let arguments = self.arguments(paths);
         VerbLine::try_parse_from(&arguments)
-            .map_err(|error| self.failure(&explain(error, &arguments)))
+            .map_err(|error| self.failure(&explain(error, &arguments, VerbLine::command())))
     }
 
     /// Returns the recipe as arguments, beginning with the name of the program, with these
@@ -180,11 +180,15 @@ impl Recipe {
     }
 }
 
-/// Makes the failure of a path that is none of a recipe.
+/// Makes the failure of a path without the suffix of a recipe.
 fn no_recipe(path: &Path) -> Failure {
     let name = files::name(path);
     match VerbOptions::named(&name) {
-        Some(_) => Failure::at(path, format_args!("is a verb: meshlod {name}, without run")),
+        Some(_) => {
+            let reason =
+                "is a verb, and a recipe is a .toml or .json file; a verb is run by itself";
+            Failure::at(path, format_args!("{reason}: meshlod {name}"))
+        }
         None => Failure::at(path, "a recipe must end in .toml or .json"),
     }
 }

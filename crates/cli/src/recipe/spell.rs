@@ -6,12 +6,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
-use clap::{Arg, ArgAction, ArgMatches, Command, CommandFactory};
+use clap::{Arg, ArgAction, ArgMatches, Command, CommandFactory, Parser};
 
 use crate::command::VerbLine;
 use crate::recipe::Recipe;
 use crate::recipe::text::{Entry, Given};
-use crate::usage::{tip_for_key, tip_for_verb};
+use crate::usage;
 
 /// An option with its value, as it is given on the command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -66,7 +66,7 @@ impl VerbOptions {
             let all = VerbLine::command();
             let names: Vec<&str> = all.get_subcommands().map(Command::get_name).collect();
             let tip = match verb {
-                Given::Text(name) => tip_for_verb(name),
+                Given::Text(name) => tip(&[name]),
                 _ => None,
             };
             with_tip(format!("verb must be one of {}", names.join(", ")), tip)
@@ -109,7 +109,7 @@ impl VerbOptions {
         let arg = self.options().find(|arg| arg.get_long() == Some(&entry.key));
         let Some(arg) = arg else {
             let reason = format!("{} has no option {:?}", self.verb, entry.key);
-            return Err(with_tip(reason, tip_for_key(&self.verb, &entry.key)));
+            return Err(with_tip(reason, tip(&[&self.verb, &format!("--{}", entry.key)])));
         };
         let values =
             values(arg, &entry.value).map_err(|reason| format!("{} {reason}", entry.key))?;
@@ -152,6 +152,13 @@ impl VerbOptions {
         };
         self.command.get_arguments().filter(acts).filter(|arg| !arg.is_positional())
     }
+}
+
+/// Returns the tip that the command line gets for words, as recipes spell options.
+fn tip(words: &[&str]) -> Option<String> {
+    let words: Vec<OsString> = ["meshlod"].iter().chain(words).map(OsString::from).collect();
+    let error = VerbLine::try_parse_from(&words).err()?;
+    Some(usage::tip(&error, &words, VerbLine::command())?.replace("--", ""))
 }
 
 fn with_tip(reason: String, tip: Option<String>) -> String {

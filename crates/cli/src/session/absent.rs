@@ -7,12 +7,7 @@ use std::path::{Path, PathBuf};
 use meshlod::{FileKind, IoError};
 
 use crate::session::failure::Failure;
-use crate::session::files;
-
-/// Reports whether a path is a pattern that no shell has replaced.
-pub fn is_pattern(path: &Path) -> bool {
-    path.to_string_lossy().contains(['*', '?', '[']) && !path.exists()
-}
+use crate::session::{files, patterns};
 
 /// Makes the failure of a file that cannot be read; says what is meant if there is none.
 pub fn failure(error: IoError) -> Failure {
@@ -33,7 +28,7 @@ fn tip(path: &Path) -> Option<String> {
     if name.contains("://") {
         return Some("download it first".into());
     }
-    if is_pattern(path) {
+    if patterns::is_pattern(path) {
         return Some(format!("patterns are for batch: meshlod batch '{name}' OUT"));
     }
     if name.starts_with('~') {

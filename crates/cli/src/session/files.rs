@@ -32,7 +32,7 @@ pub fn stem(path: &Path) -> String {
 pub fn read(path: &Path, reading: &ReadArgs, session: &Session) -> Result<Scene, Failure> {
     let scene = scene_of(open(path, reading, session)?, session)?;
     if let Some(length) = reading.weld() {
-        doubt::warn_of_length("--weld", length, path, &scene, session);
+        session.doubt(path, doubt::of_distance("--weld", length, &scene));
     }
     Ok(scene)
 }
@@ -152,7 +152,7 @@ fn unknown_output(path: &Path, error: &IoError) -> Failure {
         None => {
             let reason = match (foreign::way_to(path), path.extension()) {
                 (Some(way), _) => format!("{}: {way}", name(path)),
-                (None, None) => format!("{error}; did you mean {}.glb?", name(path)),
+                (None, None) => format!("{error}; did you mean {}?", with_suffix(path)),
                 (None, Some(_)) => error.to_string(),
             };
             return Failure::usage(reason).about(path);
@@ -160,6 +160,15 @@ fn unknown_output(path: &Path, error: &IoError) -> Failure {
     };
     Failure::usage(format_args!("{}: only `meshlod {verb}` writes such files", name(path)))
         .about(path)
+}
+
+/// Returns a name with a suffix for a path without one, which may be a suffix itself.
+fn with_suffix(path: &Path) -> String {
+    let name = name(path);
+    match Format::of_suffix(name.trim_start_matches('.')) {
+        Some(suffix) => format!("out.{suffix}"),
+        None => format!("{name}.glb"),
+    }
 }
 
 /// Fails if a picture cannot be written to a path, before any work is done.

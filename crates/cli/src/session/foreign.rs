@@ -5,9 +5,9 @@ use std::path::Path;
 /// Files of other programs.
 struct Foreign {
     suffixes: &'static [&'static str],
-    /// What to do before we read it.
+    /// Way to a file that we read.
     read: &'static str,
-    /// What to write in its place.
+    /// File to write in its place.
     write: &'static str,
 }
 

@@ -1,7 +1,8 @@
 //! The run of a verb: what it answers, where it fails, what it says on the way.
 //!
 //! [`Session`] is what every verb gets. Read on in [`answer`] and [`failure`] for how a verb ends,
-//! and in [`files`], [`scene_files`] and [`own_files`] for what it reads and writes.
+//! in [`files`], [`scene_files`] and [`own_files`] for what it reads and writes, and in [`absent`] and
+//! [`foreign`] for files that it cannot read.
 
 pub mod absent;
 pub mod answer;
@@ -11,6 +12,7 @@ pub mod foreign;
 pub mod hearing;
 pub mod model_file;
 pub mod own_files;
+pub mod patterns;
 pub mod progress;
 pub mod report_head;
 pub mod scene_files;
@@ -131,6 +133,13 @@ impl Session {
             // With `--strict`, a warning of a file may be why the batch fails.
             None if self.quiet && !self.strict => {}
             None => self.progress.suspend(|| say(format_args!("warning: {line}"))),
+        }
+    }
+
+    /// Warns of a doubt about what is asked for a file, if there is one.
+    pub fn doubt(&self, path: &Path, doubt: Option<String>) {
+        if let Some(doubt) = doubt {
+            self.warn(Failure::at(path, doubt));
         }
     }
 

@@ -4,10 +4,9 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
-use crate::batch;
 use crate::session::answer::{Answer, Outcome};
 use crate::session::failure::Failure;
-use crate::session::{Session, absent, files};
+use crate::session::{Session, files, patterns};
 
 /// Answers for each file in turn; a failure of one does not stop the others. Of one file, the answer
 /// is its own.
@@ -36,8 +35,8 @@ pub fn answer(
 
 /// Replaces patterns by what they match, where no shell has done so.
 fn paths(inputs: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
-    let of_input = |input: &PathBuf| match absent::is_pattern(input) {
-        true => batch::files_of(input),
+    let of_input = |input: &PathBuf| match patterns::is_pattern(input) {
+        true => patterns::files_of(input),
         false => Ok(vec![input.clone()]),
     };
     let found: Result<Vec<_>, _> = inputs.iter().map(of_input).collect();

@@ -1,13 +1,11 @@
-//! The command line as it was typed.
+//! A command line as it was typed.
 
 use std::ffi::OsString;
 
-use clap::{Arg, Command, CommandFactory};
-
-use crate::command::Cli;
+use clap::{Arg, Command};
 
 /// Words of a command line, with the verb among them.
-pub struct Line {
+pub struct TypedLine {
     /// All words after the name of the program.
     pub words: Vec<String>,
     /// Verb with its options, if there is one.
@@ -16,11 +14,10 @@ pub struct Line {
     pub program: Command,
 }
 
-impl Line {
-    pub fn of(arguments: &[OsString]) -> Self {
+impl TypedLine {
+    pub fn of(arguments: &[OsString], mut program: Command) -> Self {
         let words: Vec<String> =
             arguments.iter().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
-        let mut program = Cli::command();
         program.build();
         let verb = words.iter().find_map(|word| program.find_subcommand(word)).cloned();
         Self { words, verb, program }
@@ -46,6 +43,12 @@ impl Line {
     pub fn before(&self, word: &str) -> Option<&str> {
         let at = self.words.iter().position(|other| other == word)?;
         Some(&self.words[at.checked_sub(1)?])
+    }
+
+    /// Reports whether the verb reads one file and writes another.
+    pub fn reads_and_writes(&self) -> bool {
+        let places = self.verb.iter().flat_map(Command::get_positionals);
+        places.map(|place| place.get_id().as_str()).eq(["input", "output"])
     }
 
     /// Returns the verb with its places: `meshlod simplify <IN> <OUT>`.

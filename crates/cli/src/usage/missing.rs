@@ -3,10 +3,10 @@
 use clap::Error;
 use clap::error::{ContextKind, ContextValue};
 
-use crate::usage::line::Line;
+use crate::usage::line::TypedLine;
 
 /// Says what to add.
-pub fn tip(error: &Error, line: &Line) -> Option<String> {
+pub fn tip(error: &Error, line: &TypedLine) -> Option<String> {
     let ContextValue::Strings(missing) = error.get(ContextKind::InvalidArg)? else { return None };
     let lacks = |name: &str| missing.iter().any(|arg| arg.contains(name));
     let (verb, paths) = (line.verb_name()?, line.paths());

@@ -4,21 +4,20 @@ mod line;
 mod missing;
 mod options;
 mod places;
+mod values;
 mod verbs;
 mod words;
 
 use std::ffi::OsString;
 
-use clap::Error;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Command, Error};
 
-use self::line::Line;
-pub use self::options::{tip_for_key, tip_for_verb};
+use self::line::TypedLine;
 
-/// Adds a tip to an error of the parser about `arguments`, in place of the parser's own.
-pub fn explain(mut error: Error, arguments: &[OsString]) -> Error {
-    let line = Line::of(arguments);
-    let tip = tip(&error, &line);
+/// Adds a tip to an error of the parser of `program`, in place of the parser's own.
+pub fn explain(mut error: Error, arguments: &[OsString], program: Command) -> Error {
+    let tip = tip(&error, arguments, program);
     if error.kind() == ErrorKind::UnknownArgument {
         // Nobody who misspells an option wants `-- --option`.
         error.remove(ContextKind::Suggested);
@@ -26,12 +25,15 @@ pub fn explain(mut error: Error, arguments: &[OsString]) -> Error {
     if let Some(tip) = tip {
         error.remove(ContextKind::SuggestedArg);
         error.remove(ContextKind::SuggestedSubcommand);
+        error.remove(ContextKind::SuggestedValue);
         error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
     }
     error
 }
 
-fn tip(error: &Error, line: &Line) -> Option<String> {
+/// Names what to type in place of what an error of the parser of `program` is about.
+pub fn tip(error: &Error, arguments: &[OsString], program: Command) -> Option<String> {
+    let line = &TypedLine::of(arguments, program);
     let of_kind = || match error.kind() {
         ErrorKind::UnknownArgument => {
             let word = invalid(error, ContextKind::InvalidArg)?;
@@ -43,6 +45,7 @@ fn tip(error: &Error, line: &Line) -> Option<String> {
         ErrorKind::InvalidSubcommand => {
             verbs::tip(invalid(error, ContextKind::InvalidSubcommand)?, error, line)
         }
+        ErrorKind::InvalidValue | ErrorKind::ValueValidation => values::tip(error),
         ErrorKind::MissingRequiredArgument => missing::tip(error, line),
         _ => None,
     };

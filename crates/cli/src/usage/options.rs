@@ -1,29 +1,27 @@
 //! Tips for options that a verb does not have.
 
-use std::ffi::OsString;
-
 use clap::error::ContextKind;
-use clap::{Command, CommandFactory, Error, Parser};
+use clap::{Command, Error};
 
-use crate::command::VerbLine;
-use crate::usage::line::{Line, long_option};
-use crate::usage::words::{Meant, OPTIONS};
+use crate::usage::line::{TypedLine, long_option};
+use crate::usage::words::{Meant, OPTIONS, has};
 use crate::usage::{invalid, verbs};
 
 /// Dashes that text programs put in place of a hyphen.
 const LONG_DASHES: [char; 3] = ['–', '—', '−'];
 
 /// Says which option or place was meant by a word that begins with a hyphen.
-pub fn tip(word: &str, error: &Error, line: &Line) -> Option<String> {
+pub fn tip(word: &str, error: &Error, line: &TypedLine) -> Option<String> {
     let name = name_of(word);
-    by_table(name, line)
+    by_table(name_of(whole(word, line)), line)
+        .or_else(|| by_table(name, line))
         .or_else(|| verbs::of_option(name, line))
         .or_else(|| elsewhere(name, line))
         .or_else(|| Some(format!("did you mean {}?", invalid(error, ContextKind::SuggestedArg)?)))
 }
 
 /// Says that an option begins with two hyphens, if it was typed with one, or with dashes.
-pub fn dashes(line: &Line) -> Option<String> {
+pub fn dashes(line: &TypedLine) -> Option<String> {
     line.words.iter().find_map(|word| {
         let name = name_of(word);
         line.option(name).filter(|_| name.len() > 1)?;
@@ -35,20 +33,10 @@ pub fn dashes(line: &Line) -> Option<String> {
     })
 }
 
-/// Returns the tip for a key of a recipe that its verb does not have.
-pub fn tip_for_key(verb: &str, key: &str) -> Option<String> {
-    let tip = tip_of(&["meshlod", verb, &format!("--{key}")])?;
-    Some(tip.replace("--", ""))
-}
-
-/// Returns the tip for a verb that is none.
-pub fn tip_for_verb(verb: &str) -> Option<String> {
-    tip_of(&["meshlod", verb])
-}
-
-fn tip_of(words: &[&str]) -> Option<String> {
-    let words: Vec<OsString> = words.iter().map(OsString::from).collect();
-    super::tip(&VerbLine::try_parse_from(&words).err()?, &Line::of(&words))
+/// Returns the word of the line of which the parser has taken the first letter: `-si` for `-s`.
+fn whole<'l>(word: &'l str, line: &'l TypedLine) -> &'l str {
+    let whole = line.words.iter().find(|other| !word.starts_with("--") && other.starts_with(word));
+    whole.map_or(word, String::as_str)
 }
 
 fn name_of(word: &str) -> &str {
@@ -57,12 +45,14 @@ fn name_of(word: &str) -> &str {
 }
 
 /// Looks a name up among those that other programs have for our options.
-fn by_table(name: &str, line: &Line) -> Option<String> {
-    let (_, meant) = OPTIONS.iter().find(|(names, _)| names.contains(&name))?;
+fn by_table(name: &str, line: &TypedLine) -> Option<String> {
+    let (_, meant) = OPTIONS.iter().find(|(names, _)| has(names, name))?;
     match meant {
         Meant::Option(options) => {
-            let option = options.iter().find(|option| line.option(option).is_some())?;
-            Some(format!("did you mean --{option}?"))
+            match options.iter().find(|option| line.option(option).is_some()) {
+                Some(option) => Some(format!("did you mean --{option}?")),
+                None => elsewhere(options[0], line),
+            }
         }
         Meant::Out if line.option("out").is_some() => {
             Some(format!("did you mean {}?", line.option("out")?))
@@ -76,10 +66,10 @@ fn by_table(name: &str, line: &Line) -> Option<String> {
 }
 
 /// Names the verbs that have the option.
-fn elsewhere(name: &str, line: &Line) -> Option<String> {
-    let all = VerbLine::command();
+fn elsewhere(name: &str, line: &TypedLine) -> Option<String> {
     let has = |verb: &&Command| long_option(verb, name).is_some();
-    let verbs: Vec<&str> = all.get_subcommands().filter(has).map(Command::get_name).collect();
+    let verbs: Vec<&str> =
+        line.program.get_subcommands().filter(has).map(Command::get_name).collect();
     let (last, others) = verbs.split_last()?;
     let verbs = match others {
         [] => (*last).to_owned(),

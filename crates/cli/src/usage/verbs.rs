@@ -6,25 +6,25 @@ use clap::Error;
 use clap::error::{ContextKind, ContextValue};
 use meshlod::FileKind;
 
-use crate::usage::line::Line;
-use crate::usage::words::{VERBS, VERBS_OF_OPTIONS};
+use crate::usage::line::TypedLine;
+use crate::usage::words::{VERBS, VERBS_OF_OPTIONS, has};
 
 /// Says which verb was meant by a word in its place, which may be a file.
-pub fn tip(word: &str, error: &Error, line: &Line) -> Option<String> {
+pub fn tip(word: &str, error: &Error, line: &TypedLine) -> Option<String> {
     if is_file(word) {
         return Some(format!("name a verb first: {}", with_verb(&line.paths())));
     }
-    let known = VERBS.iter().find(|(_, words)| words.contains(&&*word.to_lowercase()));
+    let known = VERBS.iter().find(|(_, words)| has(words, &word.to_lowercase()));
     let verb = known.map(|(verb, _)| *verb).or_else(|| similar(error))?;
     Some(format!("did you mean {verb}?"))
 }
 
 /// Says which verb does what an option was to do.
-pub fn of_option(name: &str, line: &Line) -> Option<String> {
+pub fn of_option(name: &str, line: &TypedLine) -> Option<String> {
     if line.verb.is_none() && line.program.find_subcommand(name).is_some() {
         return Some(format!("a verb has no hyphens: meshlod {name}"));
     }
-    let (_, verb) = VERBS_OF_OPTIONS.iter().find(|(option, _)| *option == name)?;
+    let (verb, _) = VERBS_OF_OPTIONS.iter().find(|(_, options)| has(options, name))?;
     Some(format!("meshlod {verb} does that"))
 }
 

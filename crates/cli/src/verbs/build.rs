@@ -8,7 +8,6 @@ use std::time::Instant;
 use clap::{Args, ValueEnum};
 use meshlod::jobs::{self, BuildRequest, LevelModel, LevelOrder};
 use meshlod::multires::ErrorKind;
-use meshlod::scene::world_bounds;
 use meshlod::{Bound, Constraints, Method};
 
 use crate::options::args::{AttributeErrorArgs, ReadArgs};
@@ -126,7 +125,7 @@ impl Build {
         let rounding = self.rounding.bound("--rounding", &self.input, session)?;
         self.request(rounding, Constraints::default()).validate().map_err(failed)?;
         let (scene, fused) = self.constraints.read_fused(&self.input, &self.reading, session)?;
-        self.rounding.doubt("--rounding", &self.input, world_bounds(&scene).diagonal(), session);
+        self.rounding.doubt("--rounding", &self.input, &scene, session);
         let input = InputScene { scene: &scene, path: &self.input, reading: &self.reading };
         // The scene is fused already.
         let constraints = Constraints { fuse: false, ..self.constraints.constraints(&input)? };

@@ -8,7 +8,6 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use meshlod::jobs::{self, CompressRequest, CompressTarget};
-use meshlod::scene::world_bounds;
 
 use crate::options::args::{AttributeErrorArgs, ReadArgs};
 use crate::options::constraints::ConstraintArgs;
@@ -103,7 +102,7 @@ impl Compress {
         files::check_apart(&self.output, &[&self.input])?;
         let scene = files::read_surface(&self.input, &self.reading, session)?;
         if let Some(error) = &self.target.error {
-            error.doubt("--error", &self.input, world_bounds(&scene).diagonal(), session);
+            error.doubt("--error", &self.input, &scene, session);
         }
         let done = jobs::compress(scene, &request, &hearing);
         let (bytes, report) = done.map_err(|error| hearing.failure(error))?;

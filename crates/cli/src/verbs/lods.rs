@@ -67,7 +67,8 @@ impl Lods {
         self.name_in_folder(session)?;
         let (format, layout) = self.check_files(session)?;
         let scene = files::read_surface(&self.input, &self.reading, session)?;
-        doubt::warn_of_levels(&self.levels, &self.input, &scene, session);
+        session.doubt(&self.input, doubt::of_sizes(&self.levels, &scene));
+        session.doubt(&self.input, doubt::of_whole(&self.levels));
         let request = self.request(&scene, format)?;
         let hearing = Hearing::new(session, &self.input, &self.output);
         let done = jobs::lods(scene, &request, &hearing);

@@ -109,7 +109,7 @@ impl Repair {
         };
         let scene = files::read(&self.input, &self.reading, session)?;
         for (option, length) in [("--weld", weld.unwrap_or(0.0)), ("--stitch", self.steps.stitch)] {
-            doubt::warn_of_length(option, length, &self.input, &scene, session);
+            session.doubt(&self.input, doubt::of_distance(option, length, &scene));
         }
         let hearing = Hearing::new(session, &self.input, &self.output);
         let done = jobs::repair(scene, &request, &hearing);

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use meshlod::jobs::{self, Aim, SimplifyReport, SimplifyRequest};
-use meshlod::scene::world_bounds;
 use meshlod::{Format, Scene};
 
 use crate::options::args::{ReadArgs, WriteArgs};
@@ -66,9 +65,9 @@ struct TargetArgs {
     /// Largest distance from the input: 0.1% or a length, proved
     ///
     /// A length is in model units, a percentage relative to the diagonal; 1mm is read for glTF, whose
-    /// unit is the metre. The bound holds for every
-    /// point of both surfaces, as written, and faces that are farther away are mended; methods
-    /// other than lindstrom-turk and qem start again with a lower bound.
+    /// unit is the metre. The bound holds for every point of both surfaces, as written, and faces
+    /// that are farther away are mended; methods other than lindstrom-turk and qem start again with
+    /// a lower bound.
     #[arg(short, long, value_name = "BOUND", value_parser = Tolerance::parse,
         allow_hyphen_values = true)]
     error: Option<Tolerance>,
@@ -87,9 +86,9 @@ impl TargetArgs {
     /// Warns of an error that is probably meant as a percentage, or as a ratio.
     fn doubt(&self, input: &Path, scene: &Scene, session: &Session) {
         let Some(error) = &self.error else { return };
-        error.doubt("--error", input, world_bounds(scene).diagonal(), session);
+        error.doubt("--error", input, scene, session);
         if let Tolerance::Bound(bound) = error {
-            doubt::warn(input, doubt::of_part("--error", *bound), session);
+            session.doubt(input, doubt::of_part("--error", *bound));
         }
     }
 }

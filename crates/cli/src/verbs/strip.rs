@@ -99,7 +99,7 @@ impl Strip {
             files::read_surface(&self.input, &self.reading, session)?
         };
         let hearing = Hearing::new(session, &self.input, &self.input);
-        doubt::warn_of_levels(&self.levels, &self.input, &scene, session);
+        session.doubt(&self.input, doubt::of_sizes(&self.levels, &scene));
         let request = self.request(&scene)?;
         let done = jobs::strip(scene, &request, &hearing);
         let (stripped, report) = done.map_err(|error| hearing.failure(error))?;

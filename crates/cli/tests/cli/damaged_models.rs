@@ -36,10 +36,10 @@ fn a_file_that_is_none_is_1_and_one_line() {
         refused_by_all(&run, name);
     }
     refused_by_all(&run, "absent.mlod");
-    // A file with another suffix is recognised by its contents.
+    // A mesh is told by its suffix, before it is read.
     write(&run, "mesh.ply", &mesh);
     let done = refused(&run, &["extract", "mesh.ply", "out.ply", "--error", "0"], 1);
-    assert!(done.only_line().contains("meshlod build makes"), "{done:?}");
+    assert!(done.only_line().contains("meshlod build mesh.ply mesh.mlod"), "{done:?}");
 }
 
 #[test]

@@ -213,7 +213,7 @@ fn wrong_values_are_named_and_write_nothing() {
         (&["--out", "ball.ply/inner"], 1, "ball.ply/inner: "),
         (&["--model", "none.ply"], 1, "none.ply: "),
         (&["--model", "ball.ply"], 1, "ball.ply: "),
-        (&["--model", "ball.xyz"], 1, "ball.xyz: unknown suffix"),
+        (&["--model", "ball.abc"], 1, "ball.abc: unknown suffix"),
     ];
     for (arguments, code, reason) in cases {
         let done = run.run(&[&["flock"], *arguments].concat());

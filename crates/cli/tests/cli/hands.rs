@@ -49,7 +49,12 @@ fn numbers_that_make_no_sense_ask_back() {
         ("compare in.ply --out out -f 10,000", "write 10000, not 10,000"),
         ("simplify in.ply out.ply -e 2px", "give a percentage of the diagonal, such as 0.1%"),
         ("simplify in.ply out.ply -r 10% --weld 1mm", "in glTF, whose unit is the metre, 0.001"),
-        ("simplify in.ply out.ply -r 10% -j all", "all cores are the default"),
+        ("simplify in.ply out.ply -r 10% -j all", "leave it out to use all cores"),
+        ("simplify in.ply out.ply -r 10% --method quadric", "did you mean qem?"),
+        ("simplify in.ply out.ply -r 10% --method QEM", "did you mean qem?"),
+        ("lods in.ply out.glb --layout unity", "did you mean scene?"),
+        ("extract in.mlod out.ply -e 1px", "pixels need a camera: --camera \"eye=x,y,z"),
+        ("extract in.mlod out.ply -e 1px --camera 0,0,3", "expected \"eye=x,y,z look=x,y,z"),
     ];
     refused(&folder(), 2, &cases);
 }
@@ -76,6 +81,7 @@ fn numbers_that_are_probably_percentages_are_doubted() {
             "lods in.ply out.glb --levels 50,25,10",
             "2,000 faces; percentages are written 50%,25%,10%",
         ),
+        ("lods in.ply out.glb --levels 100%,50%", "LOD0 is the input, so leave out 100%"),
         ("lods in.ply out.glb --levels 4", "percentages are written 50%,25%,10%"),
         ("strip in.ply --levels 10", "percentages are written 10%"),
         (
@@ -134,6 +140,12 @@ fn unknown_options_name_the_one_that_was_meant() {
         ("batch in.ply out --triangles 500", "did you mean --faces?"),
         ("lods in.ply out.glb --ratio 50%", "did you mean --levels?"),
         ("lods in.ply out.glb -r 50%", "did you mean --levels?"),
+        ("lods in.ply out.glb -r50%", "did you mean --levels?"),
+        ("simplify in.ply out.ply -si 0.1", "did you mean --ratio?"),
+        ("simplify in.ply out.ply --target-reduction 0.9", "--ratio 10% for a reduction of 90%"),
+        ("compress in.ply out.mlq -r 10%", "--ratio is an option of simplify, compare and batch"),
+        ("extract in.mlod out.ply --ratio 10%", "did you mean --faces?"),
+        ("simplify in.ply out.ply -r 10% --preserve-uv", "attributes are kept anyway"),
         ("simplify in.ply out.ply --levels 50%", "--levels is an option of lods and strip"),
         ("simplify in.ply -o out.ply -r 10%", "only a place: meshlod simplify <IN> <OUT>"),
         ("check in.ply --output report", "did you mean --out <DIR>?"),
@@ -166,6 +178,8 @@ fn words_without_a_place_are_told_theirs() {
         ("simplify my mesh.ply out.ply -r 10%", "needs quotes: \"my mesh.ply\""),
         ("simplify in.ply out.ply -r 10 %", "without a space: 10%"),
         ("simplify in.ply out.ply -e 1 mm", "without a space: 1mm"),
+        ("simplify in.ply out.ply -e 1 percent", "without a space: 1%"),
+        ("strip in.ply out.glb", "did you mean --out out.glb?"),
         ("simplify in.ply out.ply 10%", "did you mean --ratio 10%?"),
         ("simplify in.ply out.ply 500", "did you mean --faces 500?"),
         ("lods in.ply out.glb 50%", "did you mean --levels 50%?"),
@@ -206,7 +220,7 @@ fn keys_and_verbs_of_recipes_are_told_like_options() {
         ("{\"verb\": \"decimate\"}", "did you mean simplify?"),
         ("{\"verb\": \"simplify\"}", "say how far, such as --ratio 10%"),
         ("{\"verb\": \"lods\", \"levels\": \"10,000\"}", "write 10000, not 10,000"),
-        ("simplify", "is a verb: meshlod simplify, without run"),
+        ("simplify", "a verb is run by itself: meshlod simplify"),
     ];
     for (recipe, words) in cases {
         let done = run.run(&["run", recipe, "in.ply", "out.ply"]);
@@ -247,6 +261,7 @@ fn files_that_are_not_read_name_a_way() {
         ("convert in.ply out.usdz", ".usdz is not written: write .glb"),
         ("lods in.ply out.fbx", ".fbx is not written: write .glb"),
         ("convert in.ply new", "did you mean new.glb?"),
+        ("convert in.ply obj", "did you mean out.obj?"),
         ("build in.ply out.glb", "levels in .glb are written by meshlod lods"),
         ("batch in.ply out.ply -r 10%", "the last path of a batch is the folder to write to"),
         ("batch in.ply in.glb -r 10%", "the last path of a batch is the folder to write to"),
