@@ -2,12 +2,15 @@
 # The caller is in the project's root.
 
 # Tests run what is compiled here, and nobody else: speed of the compiler comes first. Nothing is
-# optimized across crates or units of code, and the crates of others hardly at all. The Python
-# package, a workspace of its own, has the same profile so that it shares what it can.
+# optimized across crates or units of code, and hardly anything in the crates of others, the command
+# and the viewer, which leave the work to ours. The Python package, a workspace of its own, has the
+# same profile so that it shares what it can.
 export CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 CARGO_PROFILE_RELEASE_LTO=off CARGO_PROFILE_DEV_DEBUG=0
 quick=(profile.release.package.meshlod-simplify.codegen-units=16
-    'profile.release.package."*".opt-level=1')
-release=(--release --config "${quick[0]}" --config "${quick[1]}")
+    'profile.release.package."*".opt-level=1'
+    profile.release.package.meshlod-cli.opt-level=1
+    profile.release.package.meshlod-view.opt-level=1)
+release=(--release "${quick[@]/#/--config=}")
 
 # Everything temporary, for scripts that may end anywhere.
 work="$(mktemp -d)"

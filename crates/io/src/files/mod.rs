@@ -73,6 +73,10 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Scene, IoEr
 pub fn write(path: impl AsRef<Path>, scene: &Scene, options: &WriteOptions) -> Result<(), IoError> {
     let path = path.as_ref();
     let format = Format::of_output(path)?;
+    if format.stores().holds != Holds::Document && scene.has_only_points() {
+        let reason = "only .glb and .gltf hold points and lines, and there are no faces";
+        return Err(IoError::unsupported(path, Unsupported::new("file", reason)));
+    }
     match format.stores().holds {
         Holds::Document => write_lods(path, scene, &[], LodLayout::default()),
         Holds::Library => write_obj(path, scene, options.precision),

@@ -62,6 +62,7 @@ mod write;
 use meshlod_mesh::Mesh;
 
 use crate::error::ParseError;
+use crate::grouped;
 use crate::options::Resolve;
 use crate::scene::Scene;
 use assemble::Body;
@@ -120,7 +121,19 @@ fn check_elements(header: &Header) -> Result<(), ParseError> {
              a line \"element face\" with the number of faces is missing before it",
         );
     }
-    wrong("no faces: the file declares neither an element face nor an element tristrips")
+    wrong(&format!("no faces: the file is {}", points(vertex)))
+}
+
+/// Returns what a file of points is, with a way to a surface.
+fn points(vertex: &Element) -> String {
+    let has = |name: &str| vertex.properties.iter().any(|property| property.name == name);
+    if ["f_dc_0", "scale_0", "rot_0"].iter().all(|name| has(name)) {
+        return "a set of Gaussian splats, which have no surface; extract a mesh where they were \
+                trained"
+            .to_owned();
+    }
+    let count = grouped(vertex.count as usize);
+    format!("a cloud of {count} points; reconstruct a surface first, as MeshLab does")
 }
 
 /// Reads the elements in order. Faces that precede the vertices are read again once those are

@@ -10,6 +10,7 @@ use meshlod_mesh::{Conditioning, Mesh, NearBorders};
 use meshlod_simplify::{AttributeWeights, Method, Report, Target};
 
 use crate::Constraints;
+use crate::jobs::faceless::refuse_points;
 use crate::jobs::scene_run::{self, Original, RunChoice, SceneRun};
 use crate::jobs::written_as::digits;
 use crate::jobs::{About, JobError, Remark, SwitchCamera, Watch, WrittenAs, cancellable};
@@ -133,6 +134,7 @@ pub fn lods(
     request: &LodsRequest,
     watch: &dyn Watch,
 ) -> Result<(LodChain, LodsReport), JobError> {
+    refuse_points(&scene)?;
     cancellable(|| {
         let fused = scene_run::fuse(&mut scene, request.constraints.fuse, watch);
         let (levels, report) = made(&scene, request, fused, watch)?;

@@ -20,9 +20,10 @@ mod copies;
 mod error;
 #[cfg(feature = "multires")]
 mod extract;
+#[cfg(feature = "check")]
+mod faceless;
 #[cfg(feature = "serde")]
 pub mod figures;
-#[cfg(feature = "check")]
 mod lods;
 #[cfg(feature = "multires")]
 mod measure;

@@ -5,6 +5,7 @@ use std::time::Instant;
 use meshlod_check::{CheckOptions, Kinds, RepairOptions, RepairReport, RepairStep, Summary};
 use meshlod_io::{ReadOptions, Scene, WriteOptions, read_bytes, write_to};
 
+use crate::jobs::faceless::refuse_points;
 use crate::jobs::{
     About, CheckRequest, JobError, Remark, Watch, WrittenAs, begin, check, scene_run,
 };
@@ -81,6 +82,7 @@ pub fn repair(
     request: &RepairRequest,
     watch: &dyn Watch,
 ) -> Result<(Scene, SceneRepair), JobError> {
+    refuse_points(&scene)?;
     begin(watch, "repairing")?;
     let [input_vertices, input_faces] = size(&scene);
     let start = Instant::now();

@@ -7,6 +7,7 @@ use crate::gltf::document::extensions::{DRACO, INSTANCING, MESHOPT};
 use crate::gltf::document::primitive_kind::is_surface;
 use crate::gltf::document::source::SourceDocument;
 use crate::notes::Note;
+use crate::scene::Scene;
 
 impl SourceDocument {
     /// Notes the parts of the document that are in no field of the scene.
@@ -32,6 +33,15 @@ pub(crate) fn unheld_parts(json: &Value) -> Vec<Note> {
         Note::left_out(places.len(), "entry with extras", "entries with extras").named(places),
         Note::left_out(copyrights, "copyright notice", "copyright notices"),
     ]
+}
+
+impl Scene {
+    /// Returns true if the scene was read from a document of points or lines, and has no face.
+    pub fn has_only_points(&self) -> bool {
+        let has_points = |source: &SourceDocument| !points_and_lines(&source.0.json).is_empty();
+        self.meshes.iter().all(|mesh| mesh.mesh.faces.is_empty())
+            && self.source.as_ref().is_some_and(has_points)
+    }
 }
 
 /// Returns the mesh of each primitive without faces, by name or as `mesh 3`.

@@ -10,6 +10,7 @@ use meshlod_mesh::{AttributeBounds, Mesh};
 use meshlod_multires::{Certificate, ErrorKind, Fit};
 use meshlod_simplify::{Held, Method};
 
+use crate::jobs::faceless::refuse_points;
 use crate::jobs::{JobError, Watch, cancellable};
 use crate::model::{PoseCounts, SceneCounts};
 use crate::{Bound, Constraints, VertexLocking};
@@ -245,6 +246,7 @@ pub fn build(
     watch: &dyn Watch,
 ) -> Result<(Vec<u8>, BuildReport), JobError> {
     request.validate()?;
+    refuse_points(&scene)?;
     cancellable(|| {
         if request.constraints.fuse {
             watch.stage("fusing");

@@ -19,6 +19,7 @@ use self::place::{Placed, place};
 use self::report::Packed;
 pub use self::report::{CompressReport, PieceCount, StripCounts};
 pub use self::request::{CompressRequest, CompressTarget, GltfPacking, Packing, PositionScheme};
+use crate::jobs::faceless::refuse_points;
 use crate::jobs::{JobError, Watch, begin};
 use crate::model::{SceneCounts, model_limits};
 use crate::scene::FuseReport;
@@ -56,6 +57,7 @@ pub fn compress(
     watch: &dyn Watch,
 ) -> Result<(Vec<u8>, CompressReport), JobError> {
     request.check()?;
+    refuse_points(&scene)?;
     request.check_scene(&scene)?;
     let packing = request.packing.refined_for(&scene);
     let fused = match request.fuse {

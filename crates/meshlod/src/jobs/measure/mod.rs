@@ -10,6 +10,7 @@ use meshlod_measure::{
 use meshlod_mesh::{Connectivity, Mesh};
 
 use crate::jobs::copies::Copies;
+use crate::jobs::faceless::refuse_points;
 use crate::jobs::scene_run::own_surface;
 use crate::jobs::{JobError, Watch, begin};
 
@@ -103,6 +104,8 @@ pub fn measure(
     request: &MeasureRequest,
     watch: &dyn Watch,
 ) -> Result<MeasureReport, JobError> {
+    refuse_points(a)?;
+    refuse_points(b).map_err(JobError::second)?;
     begin(watch, "measuring")?;
     if let Some(report) = of_copies([a, b], request, watch)? {
         return Ok(report);

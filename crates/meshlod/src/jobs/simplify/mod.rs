@@ -12,6 +12,7 @@ use meshlod_measure::{Distance, DistanceOptions, PreparedSurface};
 use meshlod_mesh::Mesh;
 use meshlod_simplify::{Report, Target};
 
+use crate::jobs::faceless::refuse_points;
 use crate::jobs::scene_run::{self, Original, RunChoice, SceneRun, own_surface};
 use crate::jobs::simplify::proved_error::BoundToProve;
 use crate::jobs::written_as::digits;
@@ -53,6 +54,7 @@ pub fn simplify(
     request: &SimplifyRequest,
     watch: &dyn Watch,
 ) -> Result<(Scene, SimplifyReport), JobError> {
+    refuse_points(&scene)?;
     cancellable(|| {
         let fused = scene_run::fuse(&mut scene, request.constraints.fuse, watch);
         let target = request.target.target(&scene);

@@ -23,6 +23,7 @@ pub use self::report::{StripReport, StrippedLevelReport};
 pub use self::request::{StripFilter, StripRequest};
 use self::request::{check_sizes, options, quality_name, size_text};
 use crate::VertexLocking;
+use crate::jobs::faceless::refuse_points;
 use crate::jobs::{About, JobError, Remark, Watch, begin};
 use crate::numbers;
 use crate::scene::FuseReport;
@@ -83,6 +84,7 @@ pub fn strip(
     request: &StripRequest,
     watch: &dyn Watch,
 ) -> Result<(Stripped, StripReport), JobError> {
+    refuse_points(&scene)?;
     let fused = request.constraints.fuse.then(|| {
         watch.stage("fusing");
         FuseReport::of(&mut scene)
