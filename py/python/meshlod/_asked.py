@@ -88,6 +88,8 @@ def error(name: str, value: Any) -> tuple[float, bool]:
     """Returns an error, and whether it is a part of the diagonal, as ``"0.1%"`` is."""
     is_part = isinstance(value, str) and value.endswith("%")
     try:
+        if isinstance(value, str) and not is_part:
+            raise ValueError(value)
         found = float(value[:-1]) / 100 if is_part else float(value)
     except (TypeError, ValueError, OverflowError):
         what = 'a number, or a percentage of the diagonal such as "0.1%"'

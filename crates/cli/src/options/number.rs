@@ -54,7 +54,8 @@ pub fn metres(text: &str) -> Option<f64> {
     let text = text.trim();
     let (number, metres) =
         UNITS.into_iter().find_map(|(unit, metres)| Some((text.strip_suffix(unit)?, metres)))?;
-    finite(number).filter(|number| *number >= 0.0).map(|number| number * metres)
+    let found = finite(number).filter(|number| *number >= 0.0)? * metres;
+    found.is_finite().then_some(found)
 }
 
 fn finite(text: &str) -> Option<f64> {
@@ -78,7 +79,8 @@ fn scaled(text: &str) -> Option<usize> {
     });
     let (number, scale) = scale.or_else(|| text.contains(['e', 'E']).then_some((text, 1.0)))?;
     let number = finite(number)? * scale;
-    let is_whole = (0.0..1e15).contains(&number) && (number - number.round()).abs() < 1e-6;
+    let is_near = (number - number.round()).abs() < 1e-9 * number;
+    let is_whole = number == 0.0 || (1.0..1e15).contains(&number) && is_near;
     is_whole.then(|| number.round() as usize)
 }
 

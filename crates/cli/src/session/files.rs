@@ -5,6 +5,7 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 use meshlod::io::{IoError, write_file};
+use meshlod::jobs::refuse_points;
 use meshlod::{AnyFile, AnyFileError, FileKind, Format, Output, Scene};
 
 use crate::options::args::ReadArgs;
@@ -68,6 +69,7 @@ pub fn open(path: &Path, reading: &ReadArgs, session: &Session) -> Result<AnyFil
 /// Reads a scene like [`read`], for verbs that need faces.
 pub fn read_surface(path: &Path, reading: &ReadArgs, session: &Session) -> Result<Scene, Failure> {
     let scene = read(path, reading, session)?;
+    refuse_points(&scene).map_err(|error| Failure::at(path, error))?;
     let has_faces = |mesh: usize| !scene.meshes[mesh].mesh.faces.is_empty();
     match scene.instances().iter().any(|shown| has_faces(shown.mesh)) {
         true => Ok(scene),

@@ -8,15 +8,17 @@ use crate::session::answer::{Answer, Outcome};
 use crate::session::failure::Failure;
 use crate::session::{Session, files, patterns};
 
-/// Answers for each file in turn; a failure of one does not stop the others. Of one file, the answer
-/// is its own.
+/// Answers for each file in turn; a failure of one does not stop the others. Of one file that is
+/// named, the answer is its own.
 pub fn answer(
     inputs: &[PathBuf],
     session: &Session,
     each: impl Fn(&Path) -> Result<Answer, Failure>,
 ) -> Result<Answer, Failure> {
     let paths = paths(inputs)?;
-    if let [path] = &paths[..] {
+    if let ([input], [path]) = (inputs, &paths[..])
+        && input == path
+    {
         return each(path);
     }
     let (mut answers, mut texts, mut outcomes) = (Vec::new(), Vec::new(), Vec::new());

@@ -26,7 +26,8 @@ fn split_path(line: &TypedLine) -> Option<String> {
 
 /// A number that is apart from its unit: `10 %`.
 fn split_value(word: &str, line: &TypedLine) -> Option<String> {
-    let joined = format!("{}{}", line.before(word)?, word.replace("percent", "%"));
+    let before = line.before(word).filter(|before| number::number(before).is_ok())?;
+    let joined = format!("{before}{}", word.replace("percent", "%"));
     let is_unit = word == "%" || word == "percent" || number::metres(&format!("1{word}")).is_some();
     (is_unit && number::number(word).is_err())
         .then(|| format!("write it without a space: {joined}"))

@@ -31,7 +31,7 @@ pub enum CompressError {
     TooManyFaces(usize),
     /// The attributes have too many values per wedge, or the name of a layer is too long.
     #[error(
-        "layer \"{0}\" does not fit: a wedge can have at most {MAX_VALUES} values in all layers, \
+        "layer \"{0}\" does not fit: a wedge can have at most 255 values in a layer and {MAX_VALUES} in all, \
          and a layer name at most 65535 bytes"
     )]
     Layer(String),

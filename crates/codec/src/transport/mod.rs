@@ -158,8 +158,8 @@ pub enum TransportError {
     Mesh(#[from] MeshError),
     /// An attribute layer has too many values, or its name is too long.
     #[error(
-        "attribute layer \"{0}\" does not fit: a file holds {MAX_LAYERS} layers and \
-         {MAX_LAYER_VALUES} values per wedge"
+        "attribute layer \"{0}\" does not fit: a file holds {MAX_LAYERS} layers, of 255 values \
+         per wedge each and {MAX_LAYER_VALUES} in all"
     )]
     Layer(String),
     /// An attribute value is infinite or NaN.

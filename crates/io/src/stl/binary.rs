@@ -40,7 +40,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<(Mesh, Vec<Note>), ParseError> {
     };
     let body = &bytes[PREAMBLE..];
     let there = body.len() / FACET;
-    let is_unknown = UNKNOWN.contains(&claimed) && there > 0;
+    let is_unknown = UNKNOWN.contains(&claimed) && there > 0 && body.len().is_multiple_of(FACET);
     let claimed = if is_unknown { there } else { claimed };
     if there < claimed {
         let reason = format!("the file ends inside facet {there} of {claimed}");

@@ -4,8 +4,8 @@
 use glam::{DMat3, DMat4, DVec3};
 use meshlod_io::{MeshInstance, Scene};
 use meshlod_measure::{
-    Bracket, CertifiedDistance, CertifiedOptions, Distance, DistanceOptions, MeasureError,
-    OneSidedDistance, Place, PreparedSurface, certified_surface_distance, surface_distance,
+    Distance, DistanceOptions, MeasureError, OneSidedDistance, Place, PreparedSurface, area,
+    surface_distance,
 };
 use meshlod_mesh::{FaceId, Mesh};
 use rayon::prelude::*;
@@ -18,61 +18,73 @@ const MANY: usize = 4;
 /// similarity.
 const SIMILAR: f64 = 1e-6;
 
-/// Least number of samples of a mesh.
+/// Least number of samples of a mesh, if there are as many for all.
 const LEAST_SAMPLES: usize = 1000;
 
 /// The instances of a scene that shows its meshes many times, in similar shapes.
-pub(super) struct Copies<'s> {
-    scene: &'s Scene,
+pub(super) struct Copies {
     instances: Vec<MeshInstance>,
     /// By mesh: its instances; `None` if it is not shown or has no faces.
     of_meshes: Vec<Option<CopiesOfMesh>>,
+    /// Largest scale, in which the others are given.
+    unit: f64,
+    /// Diagonal of the bounding box of all instances.
+    diagonal: f64,
 }
 
 /// The instances of a mesh.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct CopiesOfMesh {
     /// Sums of the second, third and fourth powers of their scales.
     powers: [f64; 3],
-    /// The largest, by its place in the list of instances, and its scale.
-    largest: usize,
+    /// Scale of the largest, and its place in the list of instances.
     scale: f64,
+    largest: usize,
 }
 
 /// Prepared surfaces of the meshes that are shown.
 pub(super) type Surfaces<'m> = Vec<Option<PreparedSurface<'m>>>;
 
-impl<'s> Copies<'s> {
+impl Copies {
     /// Returns the instances of a scene; `None` if each mesh is shown a few times, or some in another
     /// shape.
-    pub fn of(scene: &'s Scene) -> Option<Self> {
+    pub fn of(scene: &Scene) -> Option<Self> {
+        let faces = |mesh: usize| scene.meshes[mesh].mesh.faces.len();
         let instances = scene.instances();
+        let shown = || instances.iter().enumerate().filter(|(_, shown)| faces(shown.mesh) > 0);
         let mut of_meshes: Vec<Option<CopiesOfMesh>> = vec![None; scene.meshes.len()];
-        let (mut shown, mut own) = (0, 0);
-        for (i, instance) in instances.iter().enumerate() {
-            let faces = scene.meshes[instance.mesh].mesh.faces.len();
-            if faces == 0 {
-                continue;
-            }
-            let scale = similarity(instance)?;
-            shown += faces;
-            let copies = of_meshes[instance.mesh].get_or_insert_with(|| {
-                own += faces;
-                CopiesOfMesh { powers: [0.0; 3], largest: i, scale }
-            });
-            for (power, sum) in (2..).zip(&mut copies.powers) {
-                *sum += scale.powi(power);
-            }
-            if scale > copies.scale {
-                (copies.largest, copies.scale) = (i, scale);
-            }
+        shown().for_each(|(_, shown)| of_meshes[shown.mesh] = Some(CopiesOfMesh::default()));
+        let once =
+            (0..of_meshes.len()).filter(|&i| of_meshes[i].is_some()).map(faces).sum::<usize>();
+        let all: usize = shown().map(|(_, shown)| faces(shown.mesh)).sum();
+        if once == 0 || all < MANY * once {
+            return None;
         }
-        (own > 0 && shown >= MANY * own).then_some(Self { scene, instances, of_meshes })
+        let scales: Option<Vec<f64>> = shown().map(|(_, shown)| similarity(shown)).collect();
+        let scales = scales?;
+        let unit = scales.iter().fold(0.0, |most: f64, scale| most.max(*scale));
+        for ((i, shown), scale) in shown().zip(scales) {
+            let copies = of_meshes[shown.mesh].as_mut().expect("it is shown");
+            copies.add(i, scale / unit);
+        }
+        let diagonal = diagonal(scene, &instances);
+        Some(Self { instances, of_meshes, unit, diagonal })
     }
 
-    /// Returns true if another scene shows as many meshes in the same places.
-    pub fn are_those_of(&self, other: &Scene) -> bool {
-        self.scene.meshes.len() == other.meshes.len() && self.instances == other.instances()
+    /// Returns the mesh of another scene in the place of each mesh; `None` unless that shows as many,
+    /// in the same places.
+    pub fn counterparts(&self, other: &Scene) -> Option<Vec<usize>> {
+        let theirs = other.instances();
+        let mut found: Vec<Option<usize>> = vec![None; self.of_meshes.len()];
+        let is_same = |(a, b): (&MeshInstance, &MeshInstance)| {
+            let has_faces = !other.meshes[b.mesh].mesh.faces.is_empty();
+            a.transform == b.transform
+                && has_faces == self.of_meshes[a.mesh].is_some()
+                && *found[a.mesh].get_or_insert(b.mesh) == b.mesh
+        };
+        let are_same =
+            theirs.len() == self.instances.len() && self.instances.iter().zip(&theirs).all(is_same);
+        are_same.then(|| found.into_iter().map(|mesh| mesh.unwrap_or(0)).collect())
     }
 
     /// Prepares the meshes that are shown, or others in their places; `None` if one has no area.
@@ -84,10 +96,13 @@ impl<'s> Copies<'s> {
         prepared.collect()
     }
 
-    /// Returns the sum of a size of the meshes over all instances, a power of a length.
+    /// Returns the sum of a size of the meshes over all instances, the second or third power of a
+    /// length.
     pub fn sum(&self, size: impl Fn(usize) -> f64, power: usize) -> f64 {
         let shown = self.of_meshes.iter().enumerate();
-        shown.filter_map(|(i, copies)| Some(size(i) * copies.as_ref()?.powers[power - 2])).sum()
+        let own =
+            shown.filter_map(|(i, copies)| Some(size(i) * copies.as_ref()?.powers[power - 2]));
+        own.sum::<f64>() * self.unit.powi(power as i32)
     }
 
     /// Returns true if something holds of all meshes that are shown.
@@ -104,143 +119,168 @@ impl<'s> Copies<'s> {
         [a, b]: [&Surfaces<'_>; 2],
         options: &DistanceOptions,
     ) -> Result<Distance, MeasureError> {
-        let [areas, areas_b] = [a, b].map(|of| self.areas(of));
-        let all: f64 = areas.iter().sum();
-        let mut forward = Merged::new(self.faces_before(b));
-        let mut backward = Merged::new(self.faces_before(a));
+        let areas = |of: &Surfaces<'_>| -> Vec<f64> {
+            of.iter().map(|of| of.as_ref().map_or(0.0, |surface| area(surface.mesh()))).collect()
+        };
+        let [areas_a, areas_b] = [a, b].map(areas);
+        let all = self.sum(|i| areas_a[i], 2) / self.unit.powi(2);
+        let least = LEAST_SAMPLES.min(options.samples / a.iter().flatten().count().max(1)).max(1);
+        let [mut forward, mut backward] = [Merged::default(), Merged::default()];
         for (i, copies) in self.of_meshes.iter().enumerate() {
             let (Some(copies), Some(a), Some(b)) = (copies, &a[i], &b[i]) else { continue };
-            let share = (options.samples as f64 * areas[i] / all) as usize;
-            let samples = share.clamp(LEAST_SAMPLES.min(options.samples), options.samples);
+            let share = options.samples as f64 * areas_a[i] * copies.powers[0] / all;
+            let samples = (share as usize).clamp(least.min(options.samples), options.samples);
             let found = surface_distance(a, b, &DistanceOptions { samples, ..*options })?;
-            forward.add(&found.forward, areas[i], copies);
+            forward.add(&found.forward, areas_a[i], copies);
             backward.add(&found.backward, areas_b[i], copies);
         }
-        let [forward, backward] = [forward, backward].map(|merged| merged.finish(&self.instances));
-        Ok(Distance { forward, backward, diagonal: self.diagonal() })
+        let [forward, backward] = [(forward, b), (backward, a)].map(|(merged, to)| {
+            let place = merged.worst.map(|(_, place, largest)| self.placed(&place, largest, to));
+            merged.finish(place.expect("a mesh is shown"), self.unit)
+        });
+        Ok(Distance { forward, backward, diagonal: self.diagonal })
     }
 
-    /// Encloses the greatest distance between the scene and one with other meshes in their places.
-    pub fn certified(&self, [a, b]: [&Surfaces<'_>; 2]) -> Option<CertifiedDistance> {
-        let before = [b, a].map(|of| self.faces_before(of));
-        let mut all: Option<CertifiedDistance> = None;
-        for (i, copies) in self.of_meshes.iter().enumerate() {
-            let (Some(copies), Some(a), Some(b)) = (copies, &a[i], &b[i]) else { continue };
-            let found = certified_surface_distance(a, b, &CertifiedOptions::default());
-            let placed = |bracket: Bracket, before: &[usize]| Bracket {
-                lower: copies.scale * bracket.lower,
-                upper: copies.scale * bracket.upper,
-                place: placed(
-                    &bracket.place,
-                    &self.instances[copies.largest],
-                    before[copies.largest],
-                ),
-                ..bracket
-            };
-            let found = CertifiedDistance {
-                forward: placed(found.forward, &before[0]),
-                backward: placed(found.backward, &before[1]),
-                ..found
-            };
-            all = Some(all.map_or(found, |all| CertifiedDistance {
-                forward: enclosing(all.forward, found.forward),
-                backward: enclosing(all.backward, found.backward),
-                ..all
-            }));
+    /// Returns a place on a mesh and its level as an instance has it, with the face among all that the
+    /// other surface shows.
+    fn placed(&self, place: &Place, largest: usize, to: &Surfaces<'_>) -> Place {
+        let faces = |shown: &MeshInstance| {
+            to[shown.mesh].as_ref().map_or(0, |surface| surface.mesh().faces.len())
+        };
+        let before: usize = self.instances[..largest].iter().map(faces).sum();
+        let to_world = DMat4::from_cols_array_2d(&self.instances[largest].transform);
+        let [from, to] =
+            [place.from, place.to].map(|at| to_world.transform_point3(at.into()).to_array());
+        Place { from, to, face: FaceId::new(before + place.face.index()) }
+    }
+}
+
+impl CopiesOfMesh {
+    fn add(&mut self, instance: usize, scale: f64) {
+        (2..).zip(&mut self.powers).for_each(|(power, sum)| *sum += scale.powi(power));
+        if scale > self.scale {
+            (self.scale, self.largest) = (scale, instance);
         }
-        all.map(|all| CertifiedDistance { diagonal: self.diagonal(), ..all })
     }
+}
 
-    /// Returns the area of each mesh over all its instances, in units of its own.
-    fn areas(&self, of: &Surfaces<'_>) -> Vec<f64> {
-        let area = |(i, copies): (usize, &Option<CopiesOfMesh>)| {
-            let area = of[i].as_ref().map(|surface| meshlod_measure::area(surface.mesh()));
-            copies.zip(area).map_or(0.0, |(copies, area)| area * copies.powers[0])
-        };
-        self.of_meshes.iter().enumerate().map(area).collect()
-    }
-
-    /// Returns for each instance the number of faces of those before it.
-    fn faces_before(&self, of: &Surfaces<'_>) -> Vec<usize> {
-        let faces = |mesh: usize| of[mesh].as_ref().map_or(0, |surface| surface.mesh().faces.len());
-        let count = |sum: &mut usize, instance: &MeshInstance| {
-            Some(std::mem::replace(sum, *sum + faces(instance.mesh)))
-        };
-        self.instances.iter().scan(0, count).collect()
-    }
-
-    /// Returns the diagonal of the bounding box of all instances.
-    fn diagonal(&self) -> f64 {
-        let nothing = || [DVec3::INFINITY, DVec3::NEG_INFINITY];
-        let both = |[a, b]: [DVec3; 2], [c, d]: [DVec3; 2]| [a.min(c), b.max(d)];
-        let of_instance = |instance: &MeshInstance| {
-            let to_world = DMat4::from_cols_array_2d(&instance.transform);
-            let mesh = &self.scene.meshes[instance.mesh].mesh;
-            let used = mesh.faces.iter().flatten().map(|v| mesh.positions[v.index()]);
-            used.map(|at| to_world.transform_point3(at.into()))
-                .fold(nothing(), |bounds, at| both(bounds, [at, at]))
-        };
-        let [min, max] = self.instances.par_iter().map(of_instance).reduce(nothing, both);
-        min.distance(max)
-    }
+/// Returns the diagonal of the bounding box of all instances.
+fn diagonal(scene: &Scene, instances: &[MeshInstance]) -> f64 {
+    let used: Vec<Vec<DVec3>> = scene
+        .meshes
+        .iter()
+        .map(|mesh| {
+            let used = mesh.mesh.used_vertices();
+            let places = mesh.mesh.positions.iter().zip(&used);
+            places.filter(|(_, used)| **used).map(|(&at, _)| at.into()).collect()
+        })
+        .collect();
+    let nothing = || [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    let both = |[a, b]: [DVec3; 2], [c, d]: [DVec3; 2]| [a.min(c), b.max(d)];
+    let of_instance = |instance: &MeshInstance| {
+        let to_world = DMat4::from_cols_array_2d(&instance.transform);
+        let places = used[instance.mesh].iter().map(|at| to_world.transform_point3(*at));
+        places.fold(nothing(), |bounds, at| both(bounds, [at, at]))
+    };
+    let [min, max] = instances.par_iter().map(of_instance).reduce(nothing, both);
+    min.distance(max)
 }
 
 /// Returns the scale of an instance; `None` unless its transform is a similarity, maybe mirrored.
 fn similarity(instance: &MeshInstance) -> Option<f64> {
     let linear = DMat3::from_mat4(DMat4::from_cols_array_2d(&instance.transform));
     let axes = [linear.x_axis, linear.y_axis, linear.z_axis];
-    let scale = linear.determinant().abs().cbrt();
-    let is_unit = |axis: &DVec3| (axis.length() / scale - 1.0).abs() <= SIMILAR;
-    let are_square =
-        (0..3).all(|k| axes[k].dot(axes[(k + 1) % 3]).abs() <= SIMILAR * scale * scale);
-    (scale > 0.0 && scale.is_finite() && axes.iter().all(is_unit) && are_square).then_some(scale)
-}
-
-/// Returns a place on a mesh and its level as an instance has it.
-fn placed(place: &Place, instance: &MeshInstance, faces_before: usize) -> Place {
-    let to_world = DMat4::from_cols_array_2d(&instance.transform);
-    let [from, to] =
-        [place.from, place.to].map(|at| to_world.transform_point3(at.into()).to_array());
-    Place { from, to, face: FaceId::new(faces_before + place.face.index()) }
-}
-
-fn enclosing(a: Bracket, b: Bracket) -> Bracket {
-    let Bracket { lower, place, .. } = if b.lower > a.lower { b } else { a };
-    let (reached, splits) = (a.reached && b.reached, a.splits + b.splits);
-    Bracket { lower, upper: a.upper.max(b.upper), place, reached, splits }
+    let scale = axes[0].length();
+    if !(scale > 0.0 && scale.is_finite()) {
+        return None;
+    }
+    let [x, y, z] = axes.map(|axis| axis / scale);
+    let are_unit = [y, z].iter().all(|axis| (axis.length() - 1.0).abs() <= SIMILAR);
+    let are_square = [x.dot(y), y.dot(z), z.dot(x)].iter().all(|cos| cos.abs() <= SIMILAR);
+    (are_unit && are_square).then_some(scale)
 }
 
 /// One direction of a distance, over all instances.
+#[derive(Default)]
 struct Merged {
     /// Sums over the area: itself, and times the distance and its square.
     sums: [f64; 3],
     /// Greatest distance, its place on the mesh, and its instance.
     worst: Option<(f64, Place, usize)>,
-    /// By instance: the faces before it on the other surface.
-    faces_before: Vec<usize>,
 }
 
 impl Merged {
-    fn new(faces_before: Vec<usize>) -> Self {
-        Self { sums: [0.0; 3], worst: None, faces_before }
-    }
-
-    /// Adds a mesh of this area over all its instances.
+    /// Adds a mesh, of an area in its own space, over all its instances.
     fn add(&mut self, found: &OneSidedDistance, area: f64, copies: &CopiesOfMesh) {
-        let [squares, cubes, fourths] = copies.powers;
-        let own = area / squares;
-        let terms = [area, own * found.mean * cubes, own * found.rms.powi(2) * fourths];
-        self.sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+        let terms = [1.0, found.mean, found.rms.powi(2)].into_iter().zip(copies.powers);
+        let sums = self.sums.iter_mut().zip(terms);
+        sums.for_each(|(sum, (term, power))| *sum += area * term * power);
         let max = copies.scale * found.max;
         if self.worst.is_none_or(|(worst, ..)| max > worst) {
             self.worst = Some((max, found.place, copies.largest));
         }
     }
 
-    fn finish(self, instances: &[MeshInstance]) -> OneSidedDistance {
+    fn finish(self, place: Place, unit: f64) -> OneSidedDistance {
         let [area, sum, squares] = self.sums;
-        let (max, place, instance) = self.worst.expect("a mesh is shown");
-        let place = placed(&place, &instances[instance], self.faces_before[instance]);
-        OneSidedDistance { mean: sum / area, rms: (squares / area).sqrt(), max, place }
+        let max = self.worst.map_or(0.0, |(max, ..)| max);
+        OneSidedDistance {
+            mean: unit * sum / area,
+            rms: unit * (squares / area).sqrt(),
+            max: unit * max,
+            place,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_samples as samples;
+
+    use super::*;
+
+    fn flock(transforms: &[[[f64; 4]; 4]]) -> Scene {
+        let mut scene = Scene::from_mesh("torus", samples::torus(600));
+        let node = scene.nodes[0].clone();
+        scene.nodes = transforms
+            .iter()
+            .map(|&to| meshlod_io::Node { transform: to, ..node.clone() })
+            .collect();
+        scene.roots = (0..transforms.len()).collect();
+        scene
+    }
+
+    fn scaled(x: f64, y: f64, z: f64) -> [[f64; 4]; 4] {
+        DMat4::from_scale([x, y, z].into()).to_cols_array_2d()
+    }
+
+    #[test]
+    fn only_similar_instances_are_copies() {
+        assert!(Copies::of(&flock(&[scaled(1.0, 1.0, 1.0); 3])).is_none());
+        let mirrored = [scaled(2.0, 2.0, 2.0), scaled(-3.0, 3.0, 3.0)];
+        let copies = Copies::of(&flock(&mirrored.repeat(3))).unwrap();
+        assert_eq!((copies.unit, copies.of_meshes[0].unwrap().largest), (3.0, 1));
+        for other in [scaled(1.0, 1.0, 1.1), scaled(0.0, 0.0, 0.0)] {
+            assert!(Copies::of(&flock(&[&mirrored.repeat(3)[..], &[other]].concat())).is_none());
+        }
+        // Powers of such scales are beyond the numbers.
+        let huge = flock(&[scaled(1e100, 1e100, 1e100); 5]);
+        let copies = Copies::of(&huge).unwrap();
+        let surfaces = copies.prepare(|i| &huge.meshes[i].mesh).unwrap();
+        let apart = copies.apart([&surfaces, &surfaces], &DistanceOptions::default()).unwrap();
+        assert!(apart.mean().is_finite() && apart.rms().is_finite() && apart.max().is_finite());
+    }
+
+    #[test]
+    fn a_mesh_where_there_was_none_is_no_counterpart() {
+        let mut ours = flock(&[scaled(1.0, 1.0, 1.0); 6]);
+        let mut theirs = ours.clone();
+        for (scene, mesh) in [(&mut ours, Mesh::default()), (&mut theirs, samples::torus(60))] {
+            scene.meshes.push(meshlod_io::SceneMesh { mesh, ..Default::default() });
+            scene.nodes.push(meshlod_io::Node { mesh: Some(1), ..scene.nodes[0].clone() });
+            scene.roots.push(6);
+        }
+        let copies = Copies::of(&ours).unwrap();
+        assert!(copies.counterparts(&ours).is_some() && copies.counterparts(&theirs).is_none());
     }
 }

@@ -8,7 +8,7 @@ use crate::jobs::JobError;
 ///
 /// # Errors
 /// [`JobError::Input`].
-pub(super) fn refuse_points(scene: &Scene) -> Result<(), JobError> {
+pub fn refuse_points(scene: &Scene) -> Result<(), JobError> {
     match scene.has_only_points() {
         false => Ok(()),
         true => Err(JobError::input(

@@ -67,6 +67,7 @@ pub use extract::{
     PosedError, QueryRequest, QueryTarget, extract,
 };
 #[cfg(feature = "check")]
+pub use faceless::refuse_points;
 pub use lods::{LodChain, LodReport, LodsReport, LodsRequest, chain_samples, lods};
 #[cfg(feature = "multires")]
 pub use measure::{FarthestPose, MeasureReport, MeasureRequest, measure};

@@ -199,7 +199,7 @@ enum OriginalSurface<'m> {
     /// All that the scene shows, in world space.
     Whole(PreparedSurface<'m>),
     /// Meshes that the scene shows many times.
-    Copies(Copies<'m>, Surfaces<'m>),
+    Copies(Copies, Surfaces<'m>),
 }
 
 impl<'m> Original<'m> {

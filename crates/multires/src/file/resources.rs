@@ -129,7 +129,7 @@ mod tests {
     #[test]
     fn bytes_come_back_whether_compressed_or_not() {
         let noise: Vec<u8> =
-            (0..2000u64).map(|i| ((i * i * i * 2_654_435_761) >> 13) as u8).collect();
+            (0..2000u64).map(|i| ((i * i * i).wrapping_mul(2_654_435_761) >> 13) as u8).collect();
         for bytes in [&[][..], b"x", &[7; 100_000], &noise] {
             let packed = pack_resource(bytes).unwrap();
             assert_eq!(unpack_resource(&packed).as_deref(), Some(bytes));

@@ -113,6 +113,9 @@ impl Forest {
 /// Number of updates that are replayed together: enough to be worth sharing out.
 const BLOCK: usize = 1024;
 
+/// Number of faces at which a block ends early, as at hubs.
+const BLOCK_FACES: usize = 1 << 16;
+
 /// Replay of the contractions that measures distances.
 struct Measure<'f, C> {
     forest: &'f Forest,
@@ -214,6 +217,9 @@ impl<'f, C: Corners + Send> Measure<'f, C> {
             self.from_input.push(self.forest, own(u, apart));
             block.apart.push([apart, least]);
             block.ends.push(block.coarse.len());
+            if block.coarse.len() > BLOCK_FACES {
+                break;
+            }
         }
         block
     }

@@ -64,8 +64,10 @@ impl Lods {
         let suffix = format.filter(is_fit).unwrap_or(Format::Glb);
         let stem = files::stem(&self.input);
         self.output = self.output.join(format!("{stem}.{suffix}"));
-        self.layout.get_or_insert(ChainLayout::Files);
-        Ok(())
+        match *self.layout.get_or_insert(ChainLayout::Files) {
+            ChainLayout::Files => Ok(()),
+            _ => files::check_apart(&self.output, &[&self.input]),
+        }
     }
 
     /// Returns the path of the file that says when to show each level.

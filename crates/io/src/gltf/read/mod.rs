@@ -30,8 +30,8 @@ use crate::remarks;
 use crate::scene::{Scene, SceneMesh};
 use images::read_images;
 
-/// Parses a glTF or GLB file, or a b3dm tile around a GLB, recognised by its first bytes; `resolve` loads its buffers and
-/// images.
+/// Parses a glTF or GLB file, or a b3dm tile around a GLB, recognised by its first bytes; `resolve`
+/// loads its buffers and images.
 ///
 /// Every mesh of the document becomes a mesh of the scene. Its material labels are the primitives
 /// in order, and `SceneMesh::materials` holds their materials. Attributes become layers named as in
@@ -65,8 +65,8 @@ pub fn read(bytes: &[u8], resolve: Resolve<'_>, weld: Weld) -> Result<Scene, Par
     let decoded = draco::decompress(&mut json, &mut buffers)?;
     let mut scene = Scene::default();
     scene.notes.extend((decoded.count > 0).then_some(decoded));
-    scene.notes.extend(tile.apply_to(&mut json));
-    scene.notes.extend(mended::part_roots_from_children(&mut json));
+    scene.notes.extend(mended::part_roots_from_children(&mut json).into_iter().flatten());
+    scene.notes.extend(tile.apply_to(&mut json)?);
     scene.notes.extend(mended::drop_vertex_names(&mut json));
     let document = Document::new(&json, &buffers)?;
     scene.images = read_images(&document, resolve)?;

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::mended::parents;
+use super::mended::{parents, shown_scene};
 use crate::error::ParseError;
 use crate::gltf::document::entries::extend;
 use crate::gltf::document::extensions::{drop_entry, forget_names};
@@ -27,7 +27,7 @@ pub(super) struct Tile<'b> {
 /// Takes the GLB out of a batched model; any other file stays whole.
 ///
 /// # Errors
-/// A header that does not fit, and other kinds of tiles.
+/// A header or a centre that makes no sense, and other kinds of tiles.
 pub(super) fn unwrap(bytes: &[u8]) -> Result<Tile<'_>, ParseError> {
     let other = |kind: &str| {
         let reason = format!("a 3D tile of kind {kind}, which is not supported; b3dm and GLB are");
@@ -56,50 +56,77 @@ fn batched(bytes: &[u8]) -> Result<Tile<'_>, ParseError> {
         let reason = "no GLB follows the tables of the b3dm";
         return Err(ParseError::byte(bytes.len() - gltf.len(), reason));
     }
-    let features = &bytes[HEADER..HEADER + lengths[0]];
+    let (features, rest) = bytes[HEADER..].split_at(lengths[0]);
     let features: Value = match features.trim_ascii() {
         [] => Value::Null,
         text => serde_json::from_slice(text)
             .map_err(|error| ParseError::part("feature table", error.to_string()))?,
     };
-    let has_batches = lengths[2] > 0;
-    Ok(Tile { gltf, center: features.get("RTC_CENTER").and_then(numbers), has_batches })
+    let center = features.get("RTC_CENTER").map(|center| {
+        let binary = center.get("byteOffset").map(|at| binary(&rest[..lengths[1]], at));
+        let found = binary.unwrap_or_else(|| numbers(center));
+        found.ok_or_else(|| ParseError::part("RTC_CENTER", THREE))
+    });
+    Ok(Tile { gltf, center: center.transpose()?, has_batches: lengths[2] > 0 })
 }
+
+/// Reason why a centre is refused.
+const THREE: &str = "must be three finite numbers";
 
 impl Tile<'_> {
     /// Moves the nodes of its document to their centre, and notes what is left out.
-    pub(super) fn apply_to(&self, json: &mut Value) -> Option<Note> {
-        let own = json.pointer("/extensions/CESIUM_RTC/center").and_then(numbers);
+    ///
+    /// # Errors
+    /// A centre that is not three numbers, or nodes that cannot be moved.
+    pub(super) fn apply_to(&self, json: &mut Value) -> Result<Option<Note>, ParseError> {
+        let own = json.pointer("/extensions/CESIUM_RTC").map(|rtc| {
+            let found = rtc.get("center").and_then(numbers);
+            found.ok_or_else(|| ParseError::part("CESIUM_RTC", THREE))
+        });
+        for center in [self.center, own.transpose()?].into_iter().flatten() {
+            move_to(json, center)?;
+        }
         drop_entry(json, RTC);
         forget_names(json, &[RTC]);
-        for center in [self.center, own].into_iter().flatten() {
-            move_to(json, center);
-        }
         let note = Note::left_out(1, "batch table of a 3D tile", "batch tables of 3D tiles");
-        self.has_batches.then_some(note)
+        Ok(self.has_batches.then_some(note))
     }
 }
 
 /// Puts the nodes of the scene that is shown under one at a center, given with z up.
-fn move_to(json: &mut Value, [x, y, z]: [f64; 3]) {
-    let shown = json.get("scene").and_then(Value::as_u64).unwrap_or(0) as usize;
-    if json.get("scenes").is_none() {
+fn move_to(json: &mut Value, [x, y, z]: [f64; 3]) -> Result<(), ParseError> {
+    let nodes = json.get("nodes").and_then(Value::as_array).map_or(0, Vec::len);
+    if json.get("scenes").is_none_or(|scenes| *scenes == json!([])) {
         // Then all nodes are shown.
         let parents = parents(json);
         let roots: Vec<usize> = (0..parents.len()).filter(|&i| parents[i].is_none()).collect();
         json["scenes"] = json!([{ "nodes": roots }]);
     }
-    let Some(roots) = json.pointer_mut(&format!("/scenes/{shown}/nodes")).map(Value::take) else {
-        return;
+    let shown = shown_scene(json);
+    let scenes = json.get_mut("scenes").and_then(Value::as_array_mut);
+    let scene = scenes.and_then(|scenes| scenes.get_mut(shown)?.as_object_mut());
+    let scene = scene.ok_or_else(|| ParseError::part("scenes", "there is no scene to move"))?;
+    let Some(roots) = scene.insert("nodes".to_owned(), json!([nodes])) else {
+        // An empty scene stays empty.
+        scene.remove("nodes");
+        return Ok(());
     };
-    let count = json.get("nodes").and_then(Value::as_array).map_or(0, Vec::len);
     extend(json, "nodes", vec![json!({ "translation": [x, z, -y], "children": roots })]);
-    json["scenes"][shown]["nodes"] = json!([count]);
+    Ok(())
 }
 
 fn numbers(value: &Value) -> Option<[f64; 3]> {
-    let numbers: Vec<f64> = value.as_array()?.iter().filter_map(Value::as_f64).collect();
-    numbers.try_into().ok().filter(|all: &[f64; 3]| all.iter().all(|x| x.is_finite()))
+    let numbers: Option<Vec<f64>> = value.as_array()?.iter().map(Value::as_f64).collect();
+    numbers?.try_into().ok().filter(|all: &[f64; 3]| all.iter().all(|x| x.is_finite()))
+}
+
+/// Reads three floats at an offset into the binary part of a feature table.
+fn binary(table: &[u8], offset: &Value) -> Option<[f64; 3]> {
+    let at = usize::try_from(offset.as_u64()?).ok()?;
+    let bytes = table.get(at..at.checked_add(12)?)?;
+    let float = |k: usize| bytes[4 * k..].first_chunk().map(|chunk| f32::from_le_bytes(*chunk));
+    let floats = [float(0)?, float(1)?, float(2)?].map(f64::from);
+    floats.iter().all(|x| x.is_finite()).then_some(floats)
 }
 
 #[cfg(test)]
@@ -122,7 +149,7 @@ mod tests {
             "extensionsRequired": [RTC], "extensions": {RTC: {"center": [10, 20, 30]}},
             "scenes": [{"nodes": [0]}], "nodes": [{}],
         });
-        assert!(found.apply_to(&mut json).is_some());
+        assert!(found.apply_to(&mut json).unwrap().is_some());
         let expected = json!({
             "scenes": [{"nodes": [2]}],
             "nodes": [
@@ -135,6 +162,34 @@ mod tests {
     }
 
     #[test]
+    fn a_center_may_be_binary_and_scenes_be_missing() {
+        let mut bytes = tile(r#"{"RTC_CENTER": {"byteOffset": 4}}"#, "", b"");
+        let floats: Vec<u8> = [9f32, 1.0, 2.0, 3.0].iter().flat_map(|x| x.to_le_bytes()).collect();
+        bytes[16..20].copy_from_slice(&16u32.to_le_bytes());
+        let bytes = [&bytes[..], &floats, b"glTF"].concat();
+        let found = unwrap(&bytes).unwrap();
+        assert_eq!(found.center, Some([1.0, 2.0, 3.0]));
+        let mut json = json!({ "scenes": [], "nodes": [{"children": [1]}, {}] });
+        found.apply_to(&mut json).unwrap();
+        assert_eq!(json["scenes"], json!([{"nodes": [2]}]));
+        assert_eq!(json["nodes"][2]["children"], json!([0]));
+    }
+
+    #[test]
+    fn what_cannot_be_moved_is_an_error() {
+        let rtc = |center: Value| json!({ RTC: { "center": center } });
+        let plain = unwrap(b"{}").unwrap();
+        for mut json in [
+            json!({ "extensions": rtc(json!([10, 20])), "scenes": [{"nodes": [0]}], "nodes": [{}] }),
+            json!({ "extensions": rtc(json!([1, "a", 2, 3])), "nodes": [{}] }),
+            json!({ "extensions": rtc(json!([1, 2, 3])), "scenes": {"0": {"nodes": [0]}} }),
+            json!({ "extensions": rtc(json!([1, 2, 3])), "scene": 7, "scenes": [{"nodes": [0]}] }),
+        ] {
+            assert!(plain.apply_to(&mut json).is_err(), "{json}");
+        }
+    }
+
+    #[test]
     fn damaged_tiles_are_errors() {
         let whole = tile("{}", "", b"glTF");
         assert!(unwrap(&whole).is_ok());
@@ -142,6 +197,7 @@ mod tests {
             (&whole[..20], "ends inside"),
             (&tile("{}", "", b"")[..], "no GLB"),
             (&tile("{", "", b"glTF")[..], "feature table"),
+            (&tile(r#"{"RTC_CENTER": {"byteOffset": 0}}"#, "", b"glTF")[..], "three finite"),
             (b"i3dm", "instances"),
         ] {
             let message = unwrap(bytes).unwrap_err().to_string();

@@ -69,7 +69,7 @@ pub enum LevelOrder {
     Cost,
     /// The error that they need, in steps of a factor of 1.3 from .01 to 2 % of the diagonal, then
     /// their cost. Levels within an error have a fifth to a third fewer faces; building takes about
-    /// ten times as long.
+    /// ten times as long. Methods other than `lindstrom-turk` and `qem` go by their estimates.
     Error,
 }
 
