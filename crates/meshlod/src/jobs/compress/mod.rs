@@ -1,6 +1,5 @@
 //! Compression of scenes into files to draw from or to send.
 
-mod cells;
 mod gltf;
 mod part_strips;
 mod place;

@@ -6,7 +6,6 @@ use meshlod_codec::{
 use meshlod_mesh::{AttributeBounds, Mesh};
 use meshlod_strip::StripQuality;
 
-use super::cells::shared_places;
 use super::part_strips::with_strips;
 use super::report::{Packed, PieceCount, StripCounts};
 use super::request::PositionScheme;
@@ -23,7 +22,6 @@ pub(super) fn pack(
 ) -> Result<Packed, JobError> {
     let (scheme, strips) = spelled(scheme);
     let done = meshlod_codec::compress(mesh, scheme, target, bounds).map_err(refused)?;
-    let shared = shared_places(mesh, done.compressed.decode())?;
     let compressed = match strips {
         Some(quality) => with_strips(done.compressed, quality).map_err(JobError::input)?,
         None => done.compressed,
@@ -42,7 +40,7 @@ pub(super) fn pack(
         layers: compressed.layers(),
         strips: strip_counts(&compressed).map_err(JobError::input)?,
         reached: done.reached,
-        notes: unused_parts(mesh, compressed.faces()).into_iter().chain([shared]).collect(),
+        notes: unused_parts(mesh, compressed.faces()).into(),
         bytes: compressed.to_bytes(),
     })
 }

@@ -1,12 +1,11 @@
 //! Compressed `.mlz` files for transmission.
 
 use meshlod_codec::{
-    CompressionTarget, Lattice, Transport, TransportError, TransportFile, TransportOptions,
-    TransportQuantization, TransportSizes,
+    CompressionTarget, Lattice, Transport, TransportError, TransportOptions, TransportQuantization,
+    TransportSizes,
 };
 use meshlod_mesh::{AttributeBounds, Mesh};
 
-use super::cells::shared_places;
 use super::report::{Packed, PieceCount};
 use super::resident::refused;
 use crate::jobs::JobError;
@@ -30,8 +29,6 @@ pub(super) fn pack(
         TransportError::Bits(_) => JobError::request("", error),
         error => JobError::input(error),
     })?;
-    let decoded = TransportFile::open(&done.bytes).and_then(|file| file.decode());
-    let shared = shared_places(mesh, decoded)?;
     Ok(Packed {
         sizes: sizes(&done),
         scene: done.sizes.resources,
@@ -40,7 +37,7 @@ pub(super) fn pack(
         pieces: PieceCount::Blocks(done.blocks),
         strips: None,
         reached: true,
-        notes: unused_parts(mesh, done.faces).into_iter().chain([shared]).collect(),
+        notes: unused_parts(mesh, done.faces).into(),
         layers: done.layers,
         bytes: done.bytes,
     })
