@@ -16,6 +16,7 @@ mod check;
 #[cfg(feature = "codec")]
 mod compress;
 mod convert;
+#[cfg(feature = "check")]
 mod copies;
 mod error;
 #[cfg(feature = "multires")]
@@ -24,6 +25,7 @@ mod extract;
 mod faceless;
 #[cfg(feature = "serde")]
 pub mod figures;
+#[cfg(feature = "check")]
 mod lods;
 #[cfg(feature = "multires")]
 mod measure;
@@ -68,6 +70,7 @@ pub use extract::{
 };
 #[cfg(feature = "check")]
 pub use faceless::refuse_points;
+#[cfg(feature = "check")]
 pub use lods::{LodChain, LodReport, LodsReport, LodsRequest, chain_samples, lods};
 #[cfg(feature = "multires")]
 pub use measure::{FarthestPose, MeasureReport, MeasureRequest, measure};

@@ -36,6 +36,7 @@ pub use fuse::{FuseReport, fuse_scene};
 pub use locks::join_locks;
 #[cfg(feature = "picture")]
 pub use materials::{ImageWarning, materials_of, single_sided_materials};
+#[cfg(feature = "check")]
 pub(crate) use place::rounding_in_meshes;
 pub use place::{moved_at_most, rounding_of_level, shown_rounding, world_bounds};
 pub use simplifier::{SceneError, SceneSimplifier};
