@@ -480,3 +480,25 @@ fn wrong_builds_are_2_and_write_nothing() {
     let done = refused(&run, &["build", "in.ply", "folder.mlod"], 1);
     assert!(done.only_line().contains("folder.mlod: is a folder"), "{done:?}");
 }
+
+/// Returns the bytes of the first block of hexadecimal lines in docs/formats/mlod.md.
+fn test_vector() -> Vec<u8> {
+    let page = include_str!("../../../../docs/formats/mlod.md");
+    let section = page.split_once("## A test vector").unwrap().1;
+    let block = section.split("```text").nth(1).unwrap().split("```").next().unwrap();
+    let words = block.lines().flat_map(|line| line.split_whitespace().skip(1));
+    let hex: String = words.collect();
+    let byte = |at: usize| u8::from_str_radix(&hex[at..at + 2], 16).unwrap();
+    (0..hex.len()).step_by(2).map(byte).collect()
+}
+
+#[test]
+fn the_test_vector_of_the_page_is_what_is_written() {
+    let run = Run::new();
+    run.sample("terrain", 30, "t.ply");
+    run.json(&["build", "t.ply", "t.mlod", "--rounding", "1%"]);
+    let written = std::fs::read(run.path("t.mlod")).unwrap();
+    assert!(written == test_vector(), "{} bytes", written.len());
+    let finest = run.json(&["extract", "t.mlod", "f.ply", "--error", "0"]);
+    assert_eq!([&finest["vertices"], &finest["faces"]], [25, 32]);
+}
