@@ -29,7 +29,8 @@ impl Output {
     /// Creates an output, and checks that a file can be there, before any work is done.
     ///
     /// # Errors
-    /// An unknown suffix, one of files that are only read, a path that is a folder, and a folder that is a file.
+    /// An unknown suffix, one of files that are only read, a path that is a folder, and a folder that
+    /// is a file.
     pub fn new(path: impl Into<PathBuf>) -> Result<Self, IoError> {
         let path = path.into();
         check_place(&path)?;

@@ -36,7 +36,8 @@ pub struct LodsRequest {
     /// True to restore the volume of closed parts, exactly in the digits that are written.
     pub exact_volume: bool,
     /// True to measure the distance of each level from the input; without, nothing is known about
-    /// where a level is fine enough.
+    /// where a level is fine enough. Meshes that are shown many times are measured once, each against
+    /// its own level.
     pub measured: bool,
     /// True to look for boundary edges near each other, which welding would join.
     pub near_borders: bool,

@@ -24,7 +24,8 @@ pub struct SimplifyRequest {
     pub constraints: Constraints,
     /// True to restore the volume of closed parts, exactly in the digits that are written.
     pub exact_volume: bool,
-    /// True to measure the distance from the input, at points.
+    /// True to measure the distance from the input, at points. Meshes that are shown many times are
+    /// measured once, each against its own level.
     pub measured: bool,
     /// True to look for boundary edges near each other, which welding would join.
     pub near_borders: bool,
