@@ -1,0 +1,138 @@
+//! What a corner of a face has beside its point, and its bytes in scratch files.
+
+use meshlod_mesh::{Attributes, Layer, LayerKind};
+use serde::{Deserialize, Serialize};
+
+/// Attribute layers that tiles keep, with their place in the values of a corner.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Layout {
+    layers: Vec<LayoutLayer>,
+}
+
+/// Attribute layer of all tiles.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct LayoutLayer {
+    /// Bytes that stand for the type, see [`LayerKind::tag`].
+    tag: (u8, u8),
+    name: String,
+    width: usize,
+}
+
+impl Layout {
+    /// Returns the layout of the layers that tiles keep: normals, texture coordinates and colours.
+    pub fn of<'l>(layers: impl IntoIterator<Item = &'l Layer>) -> Self {
+        let is_kept = |layer: &&Layer| {
+            matches!(layer.kind, LayerKind::Normal | LayerKind::Uv(_) | LayerKind::Color(_))
+        };
+        let kept = layers.into_iter().filter(is_kept).map(|layer| LayoutLayer {
+            tag: layer.kind.tag(),
+            name: layer.name.clone(),
+            width: layer.width,
+        });
+        Self { layers: kept.collect() }
+    }
+
+    /// Returns true if corners have nothing but their point.
+    pub fn is_empty(&self) -> bool {
+        self.layers.is_empty()
+    }
+
+    /// Returns the number of values of a corner.
+    pub fn width(&self) -> usize {
+        self.layers.iter().map(|layer| layer.width).sum()
+    }
+
+    /// Returns the number of bytes of a corner's values in scratch files.
+    pub fn bytes(&self) -> usize {
+        self.layers.iter().map(|layer| layer.width * layer.value_bytes()).sum()
+    }
+
+    /// Appends the values of a corner as bytes: colours as one each, others as `f32`.
+    pub fn pack(&self, values: &[f32], bytes: &mut Vec<u8>) {
+        let mut rest = values;
+        for layer in &self.layers {
+            let (own, after) = rest.split_at(layer.width);
+            match layer.value_bytes() {
+                1 => bytes.extend(own.iter().map(|x| (x.clamp(0.0, 1.0) * 255.0).round() as u8)),
+                _ => own.iter().for_each(|x| bytes.extend(x.to_le_bytes())),
+            }
+            rest = after;
+        }
+    }
+
+    /// Appends the values that were packed.
+    pub fn unpack(&self, bytes: &[u8], values: &mut Vec<f32>) {
+        let mut rest = bytes;
+        for layer in &self.layers {
+            let (own, after) = rest.split_at(layer.width * layer.value_bytes());
+            match layer.value_bytes() {
+                1 => values.extend(own.iter().map(|&x| f32::from(x) / 255.0)),
+                _ => values.extend(own.as_chunks().0.iter().map(|&x| f32::from_le_bytes(x))),
+            }
+            rest = after;
+        }
+    }
+
+    /// Returns the values of a point between the three corners of a triangle, by its weights.
+    /// Directions have their length.
+    pub fn blend(&self, corners: [&[f32]; 3], weights: [f32; 3], values: &mut Vec<f32>) {
+        let first = values.len();
+        values.extend((0..self.width()).map(|i| {
+            corners.iter().zip(weights).map(|(corner, weight)| weight * corner[i]).sum::<f32>()
+        }));
+        let mut at = first;
+        for layer in &self.layers {
+            if layer.kind().is_direction() {
+                let own = &mut values[at..at + layer.width];
+                let length = own.iter().map(|x| x * x).sum::<f32>().sqrt();
+                own.iter_mut().filter(|_| length > 0.0).for_each(|x| *x /= length);
+            }
+            at += layer.width;
+        }
+    }
+
+    /// Returns empty layers, to be filled wedge by wedge.
+    pub fn attributes(&self) -> Option<Attributes> {
+        let layer = |of: &LayoutLayer| Layer {
+            kind: of.kind(),
+            name: of.name.clone(),
+            width: of.width,
+            values: Vec::new(),
+        };
+        let layers = self.layers.iter().map(layer).collect();
+        (!self.is_empty()).then(|| Attributes { wedge_count: 0, corners: Vec::new(), layers })
+    }
+}
+
+impl LayoutLayer {
+    fn kind(&self) -> LayerKind {
+        LayerKind::from_tag(self.tag.0, self.tag.1).unwrap_or(LayerKind::Other)
+    }
+
+    fn value_bytes(&self) -> usize {
+        if matches!(self.kind(), LayerKind::Color(_)) { 1 } else { 4 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_are_bytes_and_directions_keep_their_length() {
+        let layer = |kind, width| Layer { kind, name: String::new(), width, values: Vec::new() };
+        let layers = [layer(LayerKind::Normal, 3), layer(LayerKind::Color(0), 3)];
+        let layout = Layout::of(&layers);
+        assert_eq!((layout.width(), layout.bytes()), (6, 15));
+        let values = [0.6, 0.8, 0.0, 1.0, 0.2, 0.0];
+        let (mut bytes, mut back) = (Vec::new(), Vec::new());
+        layout.pack(&values, &mut bytes);
+        layout.unpack(&bytes, &mut back);
+        assert_eq!((bytes.len(), &back[..]), (15, &values[..]));
+
+        let other = [-0.6, 0.8, 0.0, 0.0, 0.2, 0.0];
+        let mut between = Vec::new();
+        layout.blend([&values, &other, &other], [0.5, 0.25, 0.25], &mut between);
+        assert_eq!(between, [0.0, 1.0, 0.0, 0.5, 0.2, 0.0]);
+    }
+}

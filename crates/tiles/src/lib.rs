@@ -1,0 +1,27 @@
+//! Meshes larger than memory as a tree of tiles: a leaf holds a part of the input, any other tile
+//! a coarser surface of its up to eight children.
+//!
+//! A tile needs nothing from its neighbours, and yet meets them without a crack at every level,
+//! whatever made it and in whatever order. Reading order: [`lattice`], on which all vertices are;
+//! [`cell`] and [`octree`]; [`cut`], which divides triangles among the leaves; [`curves`], the rule
+//! by which two neighbours simplify what they share; [`coarser`], which makes a tile of its
+//! children.
+#![forbid(unsafe_code)]
+
+pub mod cell;
+pub mod chain;
+mod chords;
+pub mod coarser;
+pub mod curves;
+pub mod cut;
+pub mod lattice;
+pub mod layout;
+pub mod merge;
+pub mod octree;
+pub mod scratch;
+pub mod tile;
+
+pub use cell::Cell;
+pub use lattice::Lattice;
+pub use octree::Octree;
+pub use tile::TileMesh;

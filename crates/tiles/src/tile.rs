@@ -1,0 +1,124 @@
+//! Mesh of a tile, with the curves along which it meets its neighbours.
+
+use meshlod_mesh::{Attributes, Labels, Mesh, VertexId, WedgeId};
+use rustc_hash::FxHashMap;
+
+use crate::cell::Cell;
+use crate::lattice::Point;
+
+/// Mesh of a tile.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TileMesh {
+    /// Geometry, with positions in steps of the lattice.
+    pub mesh: Mesh,
+    /// Edges in the sides of the cell, in the direction that their faces have. Their ends have whole
+    /// coordinates.
+    pub border: Vec<[VertexId; 2]>,
+}
+
+impl TileMesh {
+    /// Returns the point of a vertex with whole coordinates.
+    pub fn point(&self, v: VertexId) -> Point {
+        point_of(&self.mesh, v)
+    }
+
+    /// Returns for each vertex whether it is an end of a border edge.
+    pub fn border_vertices(&self) -> Vec<bool> {
+        let mut is_border = vec![false; self.mesh.positions.len()];
+        self.border.iter().flatten().for_each(|v| is_border[v.index()] = true);
+        is_border
+    }
+}
+
+/// Returns the position of a vertex with whole coordinates.
+pub(crate) fn point_of(mesh: &Mesh, v: VertexId) -> Point {
+    mesh.positions[v.index()].map(|x| x as i32)
+}
+
+/// Builds the mesh of a tile from corners, joining vertices at one point, and wedges with one set
+/// of values.
+#[derive(Debug)]
+pub struct TileBuilder {
+    mesh: Mesh,
+    /// Vertex at each point.
+    at: FxHashMap<Point, VertexId>,
+    /// First wedge of each vertex, and the next one of the same vertex.
+    first: Vec<Option<WedgeId>>,
+    next: Vec<Option<WedgeId>>,
+}
+
+impl TileBuilder {
+    /// Creates the builder of a mesh with these layers, which are empty, and names of materials.
+    pub fn new(attributes: Option<Attributes>, materials: &[String]) -> Self {
+        let labels = || Labels { names: materials.to_vec(), of_face: Vec::new() };
+        let materials = (!materials.is_empty()).then(labels);
+        let mesh = Mesh { attributes, materials, ..Mesh::default() };
+        Self { mesh, at: FxHashMap::default(), first: Vec::new(), next: Vec::new() }
+    }
+
+    /// Adds a face from the points and values of its corners.
+    pub fn add_face(&mut self, corners: [(Point, &[f32]); 3], material: u32) {
+        let face = corners.map(|(point, _)| self.vertex(point));
+        let [a, b, c] = face;
+        if a == b || b == c || c == a {
+            return;
+        }
+        if self.mesh.attributes.is_some() {
+            let wedges = [0, 1, 2].map(|i| self.wedge(face[i], corners[i].1));
+            self.mesh.attributes.as_mut().expect("there are layers").corners.push(wedges);
+        }
+        self.mesh.faces.push(face);
+        if let Some(labels) = &mut self.mesh.materials {
+            labels.of_face.push(material);
+        }
+    }
+
+    fn vertex(&mut self, point: Point) -> VertexId {
+        *self.at.entry(point).or_insert_with(|| {
+            self.mesh.positions.push(point.map(f64::from));
+            self.first.push(None);
+            VertexId::new(self.mesh.positions.len() - 1)
+        })
+    }
+
+    fn wedge(&mut self, v: VertexId, values: &[f32]) -> WedgeId {
+        let attributes = self.mesh.attributes.as_mut().expect("there are layers");
+        let mut found = self.first[v.index()];
+        while let Some(wedge) = found {
+            if has_values(attributes, wedge, values) {
+                return wedge;
+            }
+            found = self.next[wedge.index()];
+        }
+        let wedge = WedgeId::new(attributes.wedge_count);
+        attributes.wedge_count += 1;
+        let mut rest = values;
+        for layer in &mut attributes.layers {
+            let (own, after) = rest.split_at(layer.width);
+            layer.values.extend_from_slice(own);
+            rest = after;
+        }
+        self.next.push(self.first[v.index()].replace(wedge));
+        wedge
+    }
+
+    /// Returns the mesh of a leaf. Edges with both ends on one side of its cell are its border.
+    pub fn leaf(self, cell: Cell) -> TileMesh {
+        let mesh = self.mesh;
+        let sides: Vec<u8> =
+            mesh.positions.iter().map(|at| cell.sides_of(at.map(|x| x as i32))).collect();
+        let edges = mesh.faces.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let is_border = |[a, b]: &[VertexId; 2]| sides[a.index()] & sides[b.index()] != 0;
+        let border = edges.filter(is_border).collect();
+        TileMesh { mesh, border }
+    }
+}
+
+fn has_values(attributes: &Attributes, wedge: WedgeId, values: &[f32]) -> bool {
+    let mut rest = values;
+    attributes.layers.iter().all(|layer| {
+        let (own, after) = rest.split_at(layer.width);
+        rest = after;
+        layer.of(wedge) == own
+    })
+}
