@@ -13,7 +13,7 @@ use crate::session::answer::Answer;
 use crate::session::failure::Failure;
 use crate::verbs::{
     batch, build, check, completions, compress, convert, decompress, extract, flock, info, lods,
-    man, measure, render, repair, run, sample, simplify, strip, view,
+    man, measure, render, repair, run, sample, simplify, strip, tiles, view,
 };
 
 /// Level of detail for triangle meshes.
@@ -66,6 +66,7 @@ pub enum Verb {
     Lods(lods::Lods),
     Build(build::Build),
     Extract(extract::Extract),
+    Tiles(tiles::Tiles),
     Strip(strip::Strip),
     Compress(compress::Compress),
     Decompress(decompress::Decompress),
@@ -91,6 +92,7 @@ impl Verb {
             Self::Lods(verb) => verb.run(session),
             Self::Build(verb) => verb.run(session),
             Self::Extract(verb) => verb.run(session),
+            Self::Tiles(verb) => verb.run(session),
             Self::Strip(verb) => verb.run(session),
             Self::Compress(verb) => verb.run(session),
             Self::Decompress(verb) => verb.run(session),

@@ -337,6 +337,8 @@ pub use meshlod_picture as picture;
 pub use meshlod_samples as samples;
 #[cfg(feature = "strip")]
 pub use meshlod_strip as strip;
+#[cfg(feature = "tiles")]
+pub use meshlod_tiles as tiles;
 
 pub use bound::Bound;
 pub use conditioned::simplify;

@@ -16,7 +16,7 @@ const OF_CURVES: f64 = 0.125;
 /// Simplifies the mesh of a tile.
 pub trait Coarsen {
     /// Reason why a mesh cannot be simplified.
-    type Error;
+    type Error: std::fmt::Display + Send;
 
     /// Simplifies a mesh within an error, with locks for its vertices, and then further to a number
     /// of faces if it still has more. Returns the mesh, and a distance that no point of either is
@@ -25,6 +25,12 @@ pub trait Coarsen {
     /// # Errors
     /// The method decides.
     fn coarsen(&self, mesh: &Mesh, locks: Vec<Lock>, error: f64) -> Result<(Mesh, f64), Self::Error>;
+
+    /// Returns the error at which a mesh has a number of faces.
+    ///
+    /// # Errors
+    /// The method decides.
+    fn loss(&self, mesh: &Mesh, faces: usize) -> Result<f64, Self::Error>;
 }
 
 /// Tile that is coarser than what it was made from.

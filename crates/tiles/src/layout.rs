@@ -21,15 +21,17 @@ struct LayoutLayer {
 impl Layout {
     /// Returns the layout of the layers that tiles keep: normals, texture coordinates and colours.
     pub fn of<'l>(layers: impl IntoIterator<Item = &'l Layer>) -> Self {
-        let is_kept = |layer: &&Layer| {
-            matches!(layer.kind, LayerKind::Normal | LayerKind::Uv(_) | LayerKind::Color(_))
-        };
-        let kept = layers.into_iter().filter(is_kept).map(|layer| LayoutLayer {
+        let kept = layers.into_iter().filter(|layer| Self::keeps(layer)).map(|layer| LayoutLayer {
             tag: layer.kind.tag(),
             name: layer.name.clone(),
             width: layer.width,
         });
         Self { layers: kept.collect() }
+    }
+
+    /// Returns true for layers that tiles keep.
+    pub fn keeps(layer: &Layer) -> bool {
+        matches!(layer.kind, LayerKind::Normal | LayerKind::Uv(_) | LayerKind::Color(_))
     }
 
     /// Returns true if corners have nothing but their point.

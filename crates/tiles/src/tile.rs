@@ -102,6 +102,11 @@ impl TileBuilder {
         wedge
     }
 
+    /// Returns the mesh.
+    pub fn into_mesh(self) -> Mesh {
+        self.mesh
+    }
+
     /// Returns the mesh of a leaf. Edges with both ends on one side of its cell are its border.
     pub fn leaf(self, cell: Cell) -> TileMesh {
         let mesh = self.mesh;

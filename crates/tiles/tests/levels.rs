@@ -30,6 +30,10 @@ impl Coarsen for Kernel {
         let (mesh, _) = contract_to(mesh, Target::Error(error), &options)?;
         Ok((mesh, error))
     }
+
+    fn loss(&self, _: &Mesh, _: usize) -> Result<f64, SimplifyError> {
+        Ok(0.0)
+    }
 }
 
 /// Points of the faces of a mesh on the lattice.

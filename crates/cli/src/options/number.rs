@@ -6,6 +6,9 @@ const SEPARATORS: [char; 5] = [',', '.', '\'', '_', ' '];
 /// Multipliers of whole numbers.
 const SCALES: [(char, f64); 2] = [('k', 1e3), ('m', 1e6)];
 
+/// Units of memory in bytes.
+const MEMORY: [(&str, f64); 4] = [("K", 1e3), ("M", 1e6), ("G", 1e9), ("T", 1e12)];
+
 /// Units of length in metres. Those that end like another come before it.
 const UNITS: [(&str, f64); 9] = [
     ("um", 1e-6),
@@ -38,6 +41,17 @@ pub fn whole(text: &str) -> Result<usize, String> {
         Some(plain) => format!("write it without separators: {plain}"),
         None => "it must be a whole number of at least 0, such as 5000 or 5k".into(),
     })
+}
+
+/// Parses a number of bytes with a unit, such as `500M` or `1.5GB`.
+pub fn bytes(text: &str) -> Result<usize, String> {
+    let upper = text.trim().to_ascii_uppercase();
+    let number = upper.trim_end_matches("IB").trim_end_matches('B');
+    let found = MEMORY.into_iter().find_map(|(unit, scale)| {
+        let number = finite(number.strip_suffix(unit)?).filter(|number| *number > 0.0)?;
+        Some((number * scale) as usize)
+    });
+    found.ok_or_else(|| "it must be a number of bytes with a unit, such as 500M or 2G".into())
 }
 
 /// Returns `10000` for `10,000`, `10.000` and the like.

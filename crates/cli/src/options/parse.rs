@@ -6,7 +6,7 @@ pub use meshlod::Bound;
 use meshlod::{Format, Method, Target};
 
 use crate::options::number::{is_end_of_thousands, metres, without_separators};
-pub use crate::options::number::{number, whole};
+pub use crate::options::number::{bytes, number, whole};
 use crate::text::numbers::{count, plural, value};
 
 /// Requested size of a simplified mesh.

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `simplify`, `lods` | levels |
 //! | `build`, `extract` | all levels in one file |
+//! | `tiles` | models of any size |
 //! | `strip`, `compress`, `decompress`, `convert` | other forms |
 //! | `check`, `repair`, `measure`, `info` | what a mesh is |
 //! | `render`, `view`, `flock` | pictures |
@@ -28,4 +29,5 @@ pub mod run;
 pub mod sample;
 pub mod simplify;
 pub mod strip;
+pub mod tiles;
 pub mod view;

@@ -31,7 +31,7 @@ pub use skeleton::images::SkeletonImage;
 pub use write::levels::{Level, LodLayout};
 pub use write::output::GltfFiles;
 pub use write::parts::{QuantizedPart, write_parts_glb};
-pub use write::settings::{Bytes, Compression, CompressionReport};
+pub use write::settings::{Bytes, Compression, CompressionReport, PositionGrid};
 pub use write::strip_mesh::{StripCorner, StripMesh};
 pub use write::strips::{write_strips, write_strips_glb};
 pub use write::{write, write_compressed, write_compressed_glb, write_glb, write_lods_glb};

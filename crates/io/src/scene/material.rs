@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// Material of a scene.
 ///
 /// Properties beyond these are kept in [`Material::mtl`] or, for glTF, in the source document only.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Material {
     /// Name of the material in the file; empty if it has none.
     pub name: String,

@@ -41,6 +41,8 @@ mod simplify;
 mod strip;
 #[cfg(feature = "check")]
 mod switching;
+#[cfg(feature = "tiles")]
+mod tiles;
 #[cfg(feature = "multires")]
 mod unused;
 mod watch;
@@ -89,6 +91,11 @@ pub use strip::{
 };
 #[cfg(feature = "check")]
 pub use switching::{Switch, SwitchCamera};
+#[cfg(feature = "tiles")]
+pub use tiles::{
+    Globe, TileInput, TileLevel, TilesReport, TilesRequest, Up, finish_tiles, plan_folder,
+    plan_tiles, run_tile_task, tiles,
+};
 pub use watch::{About, Remark, Watch};
 #[cfg(feature = "check")]
 pub use written_as::WrittenAs;

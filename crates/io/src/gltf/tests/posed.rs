@@ -18,6 +18,7 @@ const BITS: Compression = Compression {
     uv_bits: 12,
     animation_degrees: 0.1,
     meshopt: false,
+    grid: None,
 };
 
 fn index(value: &Value) -> usize {

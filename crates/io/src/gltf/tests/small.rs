@@ -17,6 +17,7 @@ const PLAIN: Compression = Compression {
     uv_bits: 12,
     animation_degrees: 0.1,
     meshopt: false,
+    grid: None,
 };
 const PACKED: Compression = Compression { meshopt: true, ..PLAIN };
 

@@ -209,7 +209,7 @@ fn grids(
     compression: Option<&Compression>,
 ) -> Grids {
     match compression {
-        Some(own) => Grids::choose(of, scene, levels.levels, own.position_bits),
+        Some(own) => Grids::choose(of, scene, levels.levels, own),
         None => Grids::none(scene),
     }
 }

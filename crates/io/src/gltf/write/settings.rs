@@ -22,6 +22,20 @@ pub struct Compression {
     /// If true, geometry is also compressed with meshopt; if not, a GPU can use it straight from
     /// the file.
     pub meshopt: bool,
+    /// Grid of all positions, of 16 bits, in place of one over each mesh; `None` by default.
+    ///
+    /// Meshes on grids whose cells meet have equal positions where they had them before. What is
+    /// outside is moved to the grid.
+    pub grid: Option<PositionGrid>,
+}
+
+/// Grid for vertex positions, the same for several files.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PositionGrid {
+    /// Place of the first point, representable in `f32`.
+    pub origin: [f64; 3],
+    /// Distance between points on each axis, representable in `f32`.
+    pub cell: f64,
 }
 
 impl Default for Compression {
@@ -34,6 +48,7 @@ impl Default for Compression {
             uv_bits: 12,
             animation_degrees: 0.1,
             meshopt: true,
+            grid: None,
         }
     }
 }

@@ -29,6 +29,7 @@ pub(super) fn pack(
                 uv_bits: uv_error.map_or(default.uv_bits, uv_bits),
                 animation_degrees: animation_error.unwrap_or(default.animation_degrees),
                 meshopt: !resident,
+                grid: None,
             };
             pack_scene(&scene, &settings, watch)
         }

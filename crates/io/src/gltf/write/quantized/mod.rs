@@ -14,6 +14,7 @@ use crate::gltf::document::primitive_kind::is_surface;
 use crate::gltf::document::schema::parse_target_name;
 use crate::gltf::write::levels::Level;
 use crate::gltf::write::quantized::grid::QuantizationGrid;
+use crate::gltf::write::settings::{Compression, PositionGrid};
 use crate::scene::Scene;
 use skins::SkinMatrices;
 
@@ -39,7 +40,7 @@ impl Grids {
         (json, document): (&Value, Option<&Document<'_>>),
         scene: &Scene,
         levels: &[Level],
-        bits: u32,
+        compression: &Compression,
     ) -> Self {
         let mut kept = Vec::new();
         let mut of_mesh = Vec::new();
@@ -49,7 +50,7 @@ impl Grids {
             let grid = match why_floats(json, index) {
                 _ if mesh.faces.is_empty() => Ok(None),
                 Some(why) => Err(why),
-                None => grid_over(&meshes, bits).map(Some),
+                None => grid_over(&meshes, compression).map(Some),
             };
             if let Err(why) = grid {
                 kept.push(format!("mesh {index}: positions stay floats, because it {why}"));
@@ -68,9 +69,17 @@ impl Grids {
 const MOST_CELLS: f64 = 1e9;
 
 /// Builds the grid over the positions of a mesh and its levels, or returns the reason against it.
-fn grid_over(meshes: &[&Mesh], bits: u32) -> Result<QuantizationGrid, &'static str> {
+fn grid_over(
+    meshes: &[&Mesh],
+    compression: &Compression,
+) -> Result<QuantizationGrid, &'static str> {
     let points = meshes.iter().flat_map(|mesh| &mesh.positions);
-    let grid = QuantizationGrid::over(points, bits);
+    let grid = match compression.grid {
+        Some(PositionGrid { origin, cell }) => {
+            Some(QuantizationGrid { origin, cell, most: u16::MAX })
+        }
+        None => QuantizationGrid::over(points, compression.position_bits),
+    };
     let grid = grid.ok_or("is too large or too small for a node's scale")?;
     let layers = meshes.iter().filter_map(|mesh| mesh.attributes.as_ref()).flat_map(|a| &a.layers);
     let mut deltas = layers

@@ -1,0 +1,224 @@
+//! Tiles of a model of any size: 3D Tiles, from a plan whose tasks any number of processes may do.
+
+mod method;
+mod placement;
+mod report;
+mod request;
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use meshlod_io::write_file;
+use meshlod_tiles::TilesError;
+use meshlod_tiles::errors::find_errors;
+use meshlod_tiles::folder::Folder;
+use meshlod_tiles::plan::{Look, Plan};
+use meshlod_tiles::source::Source;
+use meshlod_tiles::task::run_task;
+use meshlod_tiles::tileset::finish;
+use rayon::ThreadPoolBuilder;
+use rayon::prelude::*;
+
+use crate::jobs::{JobError, Watch};
+use method::Proven;
+
+pub use placement::{Globe, Up};
+pub use report::{TileLevel, TilesReport};
+pub use request::TilesRequest;
+
+/// Folder of the plan in that of the tileset, while this is made.
+const PLAN: &str = ".plan";
+
+/// Folder of the contents in that of the tileset.
+const TILES: &str = "tiles";
+
+/// Model that tiles are made of.
+#[derive(Clone, Copy)]
+pub struct TileInput<'a> {
+    /// Its triangles.
+    pub source: &'a dyn Source,
+    /// Its materials and images.
+    pub look: &'a Look,
+    /// Text that is different for another model: what was made of the same one goes on.
+    pub key: &'a str,
+}
+
+/// Makes the tiles of a model in a folder: `tileset.json` and what it names.
+///
+/// The work is planned and done in a folder `.plan` inside, which is removed at the end. A call that
+/// was ended goes on from there. The bytes of the tileset depend on the model and the request alone,
+/// whatever the number of threads.
+///
+/// # Errors
+/// A request that has no meaning, a model without faces or extent, errors of the system, and a
+/// folder that another process is working on.
+pub fn tiles(
+    input: TileInput<'_>,
+    out: &Path,
+    request: &TilesRequest,
+    watch: &dyn Watch,
+) -> Result<TilesReport, JobError> {
+    let folder = Folder::new(out.join(PLAN));
+    let _lock = locked(&folder)?;
+    plan_tiles(input, folder.path(), request, watch)?;
+    let (plan, look) = planned(&folder)?;
+    watch.stage("making tiles");
+    let work = Work { plan: &plan, look: &look, folder: &folder, watch, done: AtomicUsize::new(0) };
+    let threads = request.threads(rayon::current_num_threads());
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(JobError::output)?;
+    pool.install(|| work.make(plan.tasks.len() - 1))?;
+    finish_tiles(folder.path(), out, watch)
+}
+
+/// Plans the tiles of a model in a folder, unless that is done: counts and cuts its faces, and finds
+/// the errors of the levels. Returns the number of tasks.
+///
+/// # Errors
+/// As [`tiles`].
+pub fn plan_tiles(
+    input: TileInput<'_>,
+    folder: &Path,
+    request: &TilesRequest,
+    watch: &dyn Watch,
+) -> Result<usize, JobError> {
+    let folder = Folder::new(folder);
+    let options = request.options()?;
+    if let Some(plan) = folder.plan().map_err(failure)?
+        && plan.key == input.key
+        && plan.options == options
+    {
+        return Ok(plan.tasks.len());
+    }
+    // What is left of another plan.
+    if folder.path().is_dir() {
+        for part in ["tiles", "content"] {
+            let _ = fs::remove_dir_all(folder.path().join(part));
+        }
+    }
+    folder.make().map_err(failure)?;
+    watch.stage("cutting into tiles");
+    let part = folder.path().join(format!("pieces-{}.part", std::process::id()));
+    let plan = Plan::new(input.source, input.look, &options, &part).map_err(failure)?;
+    let scratch = folder.scratch();
+    fs::rename(&part, &scratch).map_err(|error| failure(TilesError::system(&scratch, error)))?;
+    watch.stage("finding the errors of levels");
+    let errors = find_errors(&plan, &folder, &Proven::new(&plan)).map_err(failure)?;
+    let plan = Plan { errors, key: input.key.to_owned(), ..plan };
+    folder.write_plan(&plan, &input.look.images).map_err(failure)?;
+    Ok(plan.tasks.len())
+}
+
+/// Does a task of a plan, unless it is done.
+///
+/// # Errors
+/// A task that there is not or that needs another one first, and errors of the system.
+pub fn run_tile_task(folder: &Path, task: usize) -> Result<(), JobError> {
+    let folder = Folder::new(folder);
+    let (plan, look) = planned(&folder)?;
+    run_task((&plan, &look), &folder, task, &Proven::new(&plan)).map(drop).map_err(failure)
+}
+
+/// Checks that all tasks of a plan are done and that their tiles meet at every level, and makes the
+/// tileset of them. The plan is removed.
+///
+/// # Errors
+/// A task that is not done, tiles that do not meet, and errors of the system.
+pub fn finish_tiles(
+    folder: &Path,
+    out: &Path,
+    watch: &dyn Watch,
+) -> Result<TilesReport, JobError> {
+    watch.stage("checking");
+    let folder = Folder::new(folder);
+    let (plan, _) = planned(&folder)?;
+    let finished = finish(&plan, &folder).map_err(failure)?;
+    let tiles = out.join(TILES);
+    let system = |path: &Path| {
+        let path = path.to_owned();
+        move |error| failure(TilesError::system(&path, error))
+    };
+    fs::create_dir_all(out).map_err(system(out))?;
+    if tiles.exists() {
+        fs::remove_dir_all(&tiles).map_err(system(&tiles))?;
+    }
+    fs::rename(folder.content_folder(), &tiles).map_err(system(&tiles))?;
+    for file in finished.files.iter().rev() {
+        write_file(&out.join(&file.name), &file.text).map_err(JobError::output)?;
+    }
+    let report = TilesReport::of(&plan, &finished);
+    // It would only take space.
+    let _ = fs::remove_dir_all(folder.path());
+    Ok(report)
+}
+
+/// Reads a plan and the materials of its model.
+fn planned(folder: &Folder) -> Result<(Plan, Look), JobError> {
+    let none = || JobError::request("", format!("{}: no plan of tiles", folder.path().display()));
+    let plan = folder.plan().map_err(failure)?.ok_or_else(none)?;
+    let images = folder.images(&plan).map_err(failure)?;
+    let look = Look { labels: plan.labels.clone(), materials: plan.materials.clone(), images };
+    Ok((plan, look))
+}
+
+/// Locks a folder against other processes for as long as the file is open.
+fn locked(folder: &Folder) -> Result<File, JobError> {
+    folder.make().map_err(failure)?;
+    let path = folder.path().join("lock");
+    let file = File::create(&path).map_err(|error| failure(TilesError::system(&path, error)))?;
+    match file.try_lock() {
+        Ok(()) => Ok(file),
+        Err(_) => Err(JobError::output(format!(
+            "{}: another process is making tiles here",
+            path.display()
+        ))),
+    }
+}
+
+/// Work on all tasks of a plan.
+struct Work<'a> {
+    plan: &'a Plan,
+    look: &'a Look,
+    folder: &'a Folder,
+    watch: &'a dyn Watch,
+    done: AtomicUsize,
+}
+
+impl Work<'_> {
+    /// Makes a tile after those that it is made from, whose meshes are then removed.
+    fn make(&self, task: usize) -> Result<(), JobError> {
+        if self.watch.is_cancelled() {
+            return Err(JobError::Cancelled);
+        }
+        let cell = |task| self.plan.cell(task).map_err(failure);
+        let parts = self.plan.parts(task);
+        if self.folder.record(cell(task)?).is_none() {
+            parts.par_iter().with_max_len(1).try_for_each(|&part| self.make(part))?;
+            let method = Proven::new(self.plan);
+            run_task((self.plan, self.look), self.folder, task, &method).map_err(failure)?;
+        }
+        for part in parts {
+            self.folder.forget_mesh(cell(part)?);
+        }
+        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+        self.watch.step(done, Some(self.plan.tasks.len()));
+        Ok(())
+    }
+}
+
+/// Says which part of the job an error is about.
+fn failure(error: TilesError) -> JobError {
+    match error {
+        TilesError::NoFaces | TilesError::NoExtent => JobError::input(error),
+        TilesError::NoTask { .. } | TilesError::NotDone { .. } => JobError::request("", error),
+        error => JobError::output(error),
+    }
+}
+
+/// Returns the path of the plan of a tileset that is being made.
+pub fn plan_folder(out: &Path) -> PathBuf {
+    out.join(PLAN)
+}
+
+#[cfg(test)]
+mod tests;

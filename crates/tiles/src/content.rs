@@ -1,0 +1,163 @@
+//! Content of a tile: its mesh as GLB, on the grid of its level.
+
+use meshlod_io::gltf::{Compression, PositionGrid, write_compressed_glb};
+use meshlod_io::{Node, Scene, SceneMesh, Unsupported};
+use meshlod_mesh::{Mesh, VertexId};
+
+use crate::cell::Cell;
+use crate::lattice::BITS;
+use crate::plan::{Look, Plan};
+use crate::skirt::skirt;
+use crate::tile::{TileMesh, point_of};
+
+/// Bits of a coordinate along the side of a cell. A bit more is for skirts.
+const GRID_BITS: u32 = 15;
+
+/// Column-major matrix from axes whose z is up to those of glTF, whose y is up.
+const TO_Y_UP: [[f64; 4]; 4] =
+    [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+
+/// Content of a tile.
+#[derive(Debug)]
+pub struct Content {
+    /// The GLB file.
+    pub glb: Vec<u8>,
+    /// Number of faces, without those of skirts.
+    pub faces: usize,
+    /// Greatest distance by which a vertex was moved, in steps of the lattice.
+    pub moved: f64,
+    /// Least and greatest coordinates, in steps of the lattice.
+    pub bounds: [[f64; 3]; 2],
+}
+
+/// Returns the number of steps between points of the grid of a level, a power of two.
+fn grid_step(depth: u8) -> i32 {
+    1 << (BITS - u32::from(depth)).saturating_sub(GRID_BITS)
+}
+
+/// Makes the content of a tile. Vertices that it shares with others are on the coarsest grid of all
+/// of them, so that all place them alike.
+///
+/// # Errors
+/// A mesh that glTF cannot hold.
+pub fn content(
+    (plan, look): (&Plan, &Look),
+    cell: Cell,
+    tile: &TileMesh,
+) -> Result<Content, Unsupported> {
+    let (mut mesh, moved) = on_grid(plan, cell, tile);
+    let skirts = plan.options.skirts.then(|| skirt(plan, cell, tile, &mesh)).flatten();
+    drop_degenerate(&mut mesh);
+    let faces = mesh.faces.len();
+    let all = || mesh.positions.iter().chain(skirts.iter().flat_map(|mesh| &mesh.positions));
+    let bounds = all().fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |[low, high], at| {
+        [0, 1].map(|side| {
+            [0, 1, 2].map(|axis| match side {
+                0 => f64::min(low[axis], at[axis]),
+                _ => f64::max(high[axis], at[axis]),
+            })
+        })
+    });
+    let mut meshes = vec![mesh];
+    meshes.extend(skirts);
+    let glb = encode((plan, look), cell, meshes)?;
+    Ok(Content { glb, faces, moved, bounds })
+}
+
+/// Returns the mesh of a tile with its vertices on the grid of its level, in steps of the lattice,
+/// and the greatest distance that one was moved.
+fn on_grid(plan: &Plan, cell: Cell, tile: &TileMesh) -> (Mesh, f64) {
+    let is_border = tile.border_vertices();
+    let mut mesh = tile.mesh.clone();
+    let mut moved = 0f64;
+    for i in 0..mesh.positions.len() {
+        let point = point_of(&mesh, VertexId::new(i));
+        let depth = match is_border[i] {
+            true => plan.tree.least_depth_around(point, cell),
+            false => cell.depth,
+        };
+        let step = grid_step(depth);
+        let near = point.map(|x| (x + step / 2) & !(step - 1)).map(f64::from);
+        let off: f64 = (0..3).map(|axis| (near[axis] - mesh.positions[i][axis]).powi(2)).sum();
+        moved = moved.max(off);
+        mesh.positions[i] = near;
+    }
+    (mesh, moved.sqrt())
+}
+
+/// Removes faces with two corners at one place.
+fn drop_degenerate(mesh: &mut Mesh) {
+    let is_sound = |face: &[VertexId; 3]| {
+        let [a, b, c] = face.map(|v| mesh.positions[v.index()]);
+        a != b && b != c && c != a
+    };
+    let keep: Vec<bool> = mesh.faces.iter().map(is_sound).collect();
+    if keep.iter().all(|&keep| keep) {
+        return;
+    }
+    let kept = |i: &mut usize| {
+        *i += 1;
+        keep[*i - 1]
+    };
+    let mut at = 0;
+    mesh.faces.retain(|_| kept(&mut at));
+    if let Some(attributes) = &mut mesh.attributes {
+        let mut at = 0;
+        attributes.corners.retain(|_| kept(&mut at));
+    }
+    if let Some(labels) = &mut mesh.materials {
+        let mut at = 0;
+        labels.of_face.retain(|_| kept(&mut at));
+    }
+    mesh.compact();
+}
+
+/// Encodes meshes in steps of the lattice as a GLB about the middle of the cell, in model units.
+fn encode(
+    (plan, look): (&Plan, &Look),
+    cell: Cell,
+    meshes: Vec<Mesh>,
+) -> Result<Vec<u8>, Unsupported> {
+    let (step, middle) = (plan.lattice.step, cell.middle());
+    let transform = match plan.options.is_z_up {
+        true => TO_Y_UP,
+        false => Node::default().transform,
+    };
+    let local = |mut mesh: Mesh| {
+        for at in &mut mesh.positions {
+            *at = [0, 1, 2].map(|axis| (at[axis] - f64::from(middle[axis])) * step);
+        }
+        mesh
+    };
+    let labels = look.labels.len();
+    let names = ["surface", "skirt"].into_iter();
+    let meshes: Vec<SceneMesh> = names
+        .zip(meshes)
+        .map(|(name, mesh)| SceneMesh {
+            name: name.to_owned(),
+            mesh: local(mesh),
+            materials: if labels == 0 { vec![None] } else { (0..labels).map(Some).collect() },
+        })
+        .collect();
+    let nodes = (0..meshes.len()).map(|mesh| Node { mesh: Some(mesh), transform, ..Node::default() });
+    let scene = Scene {
+        nodes: nodes.collect(),
+        roots: (0..meshes.len()).collect(),
+        meshes,
+        materials: look.materials.clone(),
+        images: look.images.clone(),
+        ..Scene::default()
+    };
+    let grid = f64::from(grid_step(cell.depth));
+    // Half of the numbers that the cell leaves over are on each side of it.
+    let margin = (f64::from(1 << 16) * grid - f64::from(cell.width())) / 2.0;
+    let margin = (margin / grid).floor() * grid;
+    let origin = [-(f64::from(cell.width()) / 2.0 + margin) * step; 3];
+    let compression = Compression {
+        grid: Some(PositionGrid { origin, cell: grid * step }),
+        meshopt: plan.options.meshopt,
+        uv_bits: 14,
+        ..Compression::default()
+    };
+    Ok(write_compressed_glb(&scene, &[], &compression)?.0)
+}

@@ -1,0 +1,83 @@
+//! Reasons why tiles cannot be made.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use meshlod_io::{IoError, Unsupported};
+use thiserror::Error;
+
+/// Reason why tiles cannot be made.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum TilesError {
+    /// The model has no faces.
+    #[error("the model has no faces")]
+    NoFaces,
+    /// All vertices are at one place, or so far apart that their distance is not a number.
+    #[error("the model has no extent that could be divided into tiles")]
+    NoExtent,
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    Io(#[from] IoError),
+    /// A file of the plan is damaged.
+    #[error("{}: {reason}; make the plan again", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A tile needs another one that has not been made.
+    #[error("task {task} needs task {needs}, which is not done")]
+    NotDone {
+        /// Number of the task.
+        task: usize,
+        /// Number of the task that must be done before.
+        needs: usize,
+    },
+    /// The plan has fewer tasks.
+    #[error("there is no task {task}; the plan has {tasks}, from 0 on")]
+    NoTask {
+        /// Number that was asked for.
+        task: usize,
+        /// Number of tasks.
+        tasks: usize,
+    },
+    /// A tile cannot be simplified.
+    #[error("tile {tile}: {reason}")]
+    Simplify {
+        /// The tile.
+        tile: String,
+        /// Reason.
+        reason: String,
+    },
+    /// A tile cannot be written as glTF.
+    #[error("tile {tile}: {source}")]
+    Content {
+        /// The tile.
+        tile: String,
+        /// Reason.
+        source: Unsupported,
+    },
+    /// Tiles of a level do not meet.
+    #[error("tiles of depth {depth} do not meet; a tile file must have been changed")]
+    Cracked {
+        /// Depth of the level.
+        depth: u8,
+    },
+    /// Another process works on the plan, or the job was cancelled.
+    #[error("{0}")]
+    Stopped(String),
+}
+
+impl TilesError {
+    /// Returns an error of the system at a path.
+    pub fn system(path: &Path, error: io::Error) -> Self {
+        Self::Io(IoError::system(path, error))
+    }
+
+    /// Returns the error of a damaged file.
+    pub(crate) fn damaged(path: &Path, reason: impl ToString) -> Self {
+        Self::Damaged { path: path.to_owned(), reason: reason.to_string() }
+    }
+}
