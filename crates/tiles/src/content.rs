@@ -5,7 +5,7 @@ use meshlod_io::{Node, Scene, SceneMesh, Unsupported};
 use meshlod_mesh::{Mesh, VertexId};
 
 use crate::cell::Cell;
-use crate::lattice::BITS;
+use crate::lattice::{BITS, Point};
 use crate::plan::{Look, Plan};
 use crate::skirt::skirt;
 use crate::tile::{TileMesh, point_of};
@@ -31,7 +31,7 @@ pub struct Content {
 }
 
 /// Returns the number of steps between points of the grid of a level, a power of two.
-fn grid_step(depth: u8) -> i32 {
+pub(crate) fn grid_step(depth: u8) -> i32 {
     1 << (BITS - u32::from(depth)).saturating_sub(GRID_BITS)
 }
 
@@ -77,12 +77,23 @@ fn on_grid(plan: &Plan, cell: Cell, tile: &TileMesh) -> (Mesh, f64) {
             false => cell.depth,
         };
         let step = grid_step(depth);
-        let near = point.map(|x| (x + step / 2) & !(step - 1)).map(f64::from);
+        let near = point.map(|x| (x + step / 2) & !(step - 1));
+        let near = if is_border[i] { near } else { inside(near, cell, step) }.map(f64::from);
         let off: f64 = (0..3).map(|axis| (near[axis] - mesh.positions[i][axis]).powi(2)).sum();
         moved = moved.max(off);
         mesh.positions[i] = near;
     }
     (mesh, moved.sqrt())
+}
+
+/// Moves a point on a side of a cell inside: only the vertices that tiles share are on sides.
+fn inside(point: Point, cell: Cell, step: i32) -> Point {
+    let (low, high) = (cell.low(), cell.high());
+    [0, 1, 2].map(|axis| match point[axis] {
+        at if at <= low[axis] => low[axis] + step,
+        at if at >= high[axis] => high[axis] - step,
+        at => at,
+    })
 }
 
 /// Removes faces with two corners at one place.

@@ -27,6 +27,17 @@ pub enum TilesError {
         /// What is wrong with it.
         reason: String,
     },
+    /// A file of a tileset is not JSON.
+    #[error("{}: {reason}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A tileset that another program has made.
+    #[error("{}: is not a tileset of meshlod, and only those can be checked", .0.display())]
+    Foreign(PathBuf),
     /// A tile needs another one that has not been made.
     #[error("task {task} needs task {needs}, which is not done")]
     NotDone {

@@ -23,6 +23,7 @@ pub mod layout;
 pub mod merge;
 pub mod octree;
 pub mod plan;
+pub mod review;
 pub mod scratch;
 mod skirt;
 pub mod source;

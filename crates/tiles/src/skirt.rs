@@ -4,6 +4,7 @@ use meshlod_mesh::{Labels, Mesh, VertexId};
 use rustc_hash::FxHashMap;
 
 use crate::cell::Cell;
+use crate::content::grid_step;
 use crate::plan::Plan;
 use crate::tile::TileMesh;
 
@@ -12,7 +13,10 @@ use crate::tile::TileMesh;
 /// tile as it will be shown.
 pub fn skirt(plan: &Plan, cell: Cell, tile: &TileMesh, mesh: &Mesh) -> Option<Mesh> {
     let coarser = usize::from(cell.depth.saturating_sub(1));
-    let depth: f64 = plan.errors[coarser..].iter().sum();
+    let error: f64 = plan.errors[coarser..].iter().sum();
+    // The grid goes on for half a cell beyond its sides.
+    let depth = error.min(f64::from(cell.width()) / 4.0);
+    let step = f64::from(grid_step(cell.depth));
     if tile.border.is_empty() || depth == 0.0 {
         return None;
     }
@@ -38,7 +42,8 @@ pub fn skirt(plan: &Plan, cell: Cell, tile: &TileMesh, mesh: &Mesh) -> Option<Me
             let [under_a, under_b] = [a, b].map(|v| {
                 *low.entry(v).or_insert_with(|| {
                     let (at, normal) = (mesh.positions[v.index()], normals[v.index()]);
-                    let down = [0, 1, 2].map(|axis| (at[axis] - depth * normal[axis]).round());
+                    let down = [0, 1, 2].map(|axis| at[axis] - depth * normal[axis]);
+                    let down = down.map(|x| (x / step).round() * step);
                     new.positions.push(down);
                     VertexId::new(new.positions.len() - 1)
                 })

@@ -114,7 +114,11 @@ impl Writer<'_> {
             false => json!(["KHR_mesh_quantization"]),
         };
         let tileset = json!({
-            "asset": { "version": "1.1", "generator": generator },
+            "asset": {
+                "version": "1.1",
+                "generator": generator,
+                "extras": { "lattice": self.plan.lattice, "zUp": self.plan.options.is_z_up },
+            },
             "geometricError": whole,
             "extensionsUsed": ["3DTILES_content_gltf"],
             "extensions": { "3DTILES_content_gltf": {
@@ -147,7 +151,7 @@ impl Writer<'_> {
             return tile;
         }
         tile["content"] = json!({ "uri": format!("tiles/{cell}.glb") });
-        tile["extras"] = json!({ "faces": record.faces });
+        tile["extras"] = json!({ "faces": record.faces, "cell": cell });
         if !parts.is_empty() {
             let parts = parts.into_iter().map(|part| self.tile(part, Some(cell), last));
             tile["children"] = Value::Array(parts.collect());

@@ -7,7 +7,7 @@
 //! | files, in reading order | hold |
 //! |---|---|
 //! | `inspection`, `sites`, `places` | findings, and where they are |
-//! | `advice`, `proof` | what they mean, and levels without cracks |
+//! | `advice`, `proof`, `tileset` | what they mean, and levels without cracks |
 //! | `report`, `text` | JSON and text |
 //! | `marks`, `drawing`, `findings`, `page` | pictures and the page |
 //! | `lock_file` | locks |
@@ -24,3 +24,4 @@ pub mod proof;
 pub mod report;
 pub mod sites;
 pub mod text;
+pub mod tileset;

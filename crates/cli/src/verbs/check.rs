@@ -15,7 +15,7 @@ use meshlod::scene::scene_locks;
 use crate::check::inspection::Inspection;
 use crate::check::lock_file::{self, FileRows};
 use crate::check::sites::Sites;
-use crate::check::{page, proof, report, text};
+use crate::check::{page, proof, report, text, tileset};
 use crate::options::args::ReadArgs;
 use crate::options::parse;
 use crate::session::Session;
@@ -30,7 +30,7 @@ use meshlod::jobs::Grade;
 /// Find defects of a mesh and contacts between its objects; exit with 3 on errors
 #[derive(Args)]
 pub struct Check {
-    /// Meshes to read, or -; or .mlod files, to prove that none of their cuts has a crack
+    /// Meshes to read, or -; or .mlod files and folders of tiles, to prove that none has a crack
     #[arg(id = "input", value_name = "IN", required = true)]
     inputs: Vec<PathBuf>,
     /// Definition of an object
@@ -101,6 +101,12 @@ impl Check {
                 return Err(Failure::usage("--locks and --out need a mesh, not a .mlod file"));
             }
             return proof::prove(path, session);
+        }
+        if tileset::is_tileset(path) {
+            if self.locks.is_some() || self.out.is_some() {
+                return Err(Failure::usage("--locks and --out need a mesh, not a tileset"));
+            }
+            return tileset::check(path, session);
         }
         self.refuse_early(path)?;
         let scene = files::read(path, &self.reading, session)?;

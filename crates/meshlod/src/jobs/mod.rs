@@ -93,8 +93,8 @@ pub use strip::{
 pub use switching::{Switch, SwitchCamera};
 #[cfg(feature = "tiles")]
 pub use tiles::{
-    Globe, TileInput, TileLevel, TilesReport, TilesRequest, Up, finish_tiles, plan_folder,
-    plan_tiles, run_tile_task, tiles,
+    Globe, TileInput, TileLevel, TilesReport, TilesRequest, TilesetReport, Up, check_tileset,
+    finish_tiles, plan_tiles, run_tile_task, tiles,
 };
 pub use watch::{About, Remark, Watch};
 #[cfg(feature = "check")]

@@ -6,7 +6,7 @@ mod report;
 mod request;
 
 use std::fs::{self, File};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use meshlod_io::write_file;
@@ -14,6 +14,7 @@ use meshlod_tiles::TilesError;
 use meshlod_tiles::errors::find_errors;
 use meshlod_tiles::folder::Folder;
 use meshlod_tiles::plan::{Look, Plan};
+use meshlod_tiles::review::review;
 use meshlod_tiles::source::Source;
 use meshlod_tiles::task::run_task;
 use meshlod_tiles::tileset::finish;
@@ -24,7 +25,7 @@ use crate::jobs::{JobError, Watch};
 use method::Proven;
 
 pub use placement::{Globe, Up};
-pub use report::{TileLevel, TilesReport};
+pub use report::{TileLevel, TilesReport, TilesetReport};
 pub use request::TilesRequest;
 
 /// Folder of the plan in that of the tileset, while this is made.
@@ -60,8 +61,13 @@ pub fn tiles(
     watch: &dyn Watch,
 ) -> Result<TilesReport, JobError> {
     let folder = Folder::new(out.join(PLAN));
+    let was_there = out.exists();
     let _lock = locked(&folder)?;
-    plan_tiles(input, folder.path(), request, watch)?;
+    if let Err(error) = plan_tiles(input, folder.path(), request, watch) {
+        // Nothing is left that a next run could go on from.
+        let _ = fs::remove_dir_all(if was_there { folder.path() } else { out });
+        return Err(error);
+    }
     let (plan, look) = planned(&folder)?;
     watch.stage("making tiles");
     let work = Work { plan: &plan, look: &look, folder: &folder, watch, done: AtomicUsize::new(0) };
@@ -152,6 +158,15 @@ pub fn finish_tiles(
     Ok(report)
 }
 
+/// Reads a tileset and all its tiles again, and checks them.
+///
+/// # Errors
+/// A folder without a tileset of ours.
+pub fn check_tileset(folder: &Path, watch: &dyn Watch) -> Result<TilesetReport, JobError> {
+    watch.stage("reading tiles");
+    Ok(TilesetReport::of(review(folder).map_err(JobError::input)?))
+}
+
 /// Reads a plan and the materials of its model.
 fn planned(folder: &Folder) -> Result<(Plan, Look), JobError> {
     let none = || JobError::request("", format!("{}: no plan of tiles", folder.path().display()));
@@ -213,11 +228,6 @@ fn failure(error: TilesError) -> JobError {
         TilesError::NoTask { .. } | TilesError::NotDone { .. } => JobError::request("", error),
         error => JobError::output(error),
     }
-}
-
-/// Returns the path of the plan of a tileset that is being made.
-pub fn plan_folder(out: &Path) -> PathBuf {
-    out.join(PLAN)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Report of tiles.
 
 use meshlod_tiles::plan::Plan;
+use meshlod_tiles::review::TilesetReview;
 use meshlod_tiles::tileset::Finished;
 
 /// Report of [`tiles`](crate::jobs::tiles()).
@@ -36,6 +37,27 @@ pub struct TileLevel {
     pub faces: usize,
     /// Greatest error of its tiles, proved, in model units.
     pub error_proved: f64,
+}
+
+/// Report of [`check_tileset`](crate::jobs::check_tileset).
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct TilesetReport {
+    /// Number of tiles.
+    pub tiles: usize,
+    /// Number of levels.
+    pub levels: usize,
+    /// Number of faces of all tiles, without skirts.
+    pub faces: usize,
+    /// What is wrong, one line each.
+    pub findings: Vec<String>,
+}
+
+impl TilesetReport {
+    pub(super) fn of(review: TilesetReview) -> Self {
+        let TilesetReview { tiles, levels, faces, findings } = review;
+        Self { tiles, levels, faces, findings }
+    }
 }
 
 impl TilesReport {

@@ -40,6 +40,9 @@ fn tasks_one_by_one_make_the_same_files() {
     assert!(report.levels.windows(2).all(|pair| pair[0].faces < pair[1].faces
         && pair[0].error_proved >= pair[1].error_proved));
 
+    let found = check_tileset(folder.path(), &()).unwrap();
+    assert_eq!((found.tiles, &found.findings[..]), (report.tiles, &[][..]));
+
     let plan = other.path().join("plan");
     let tasks = plan_tiles(input, &plan, &request, &()).unwrap();
     assert_eq!(tasks, report.tiles);
@@ -48,5 +51,35 @@ fn tasks_one_by_one_make_the_same_files() {
     (0..tasks).for_each(|task| run_tile_task(&plan, task).unwrap());
     let out = other.path().join("out");
     assert_eq!(finish_tiles(&plan, &out, &()).unwrap(), report);
-    assert_eq!(files(&out), files(folder.path()).into_iter().filter(|(name, _)| !name.starts_with(".plan")).collect());
+    assert_eq!(files(&out), files(folder.path()));
+}
+
+#[test]
+fn a_tile_that_was_changed_is_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let (source, look) = (knot(), Look::default());
+    let input = TileInput { source: &source, look: &look, key: "knot" };
+    let request = TilesRequest { tile_faces: 2_000, plain: true, ..TilesRequest::default() };
+    tiles(input, folder.path(), &request, &()).unwrap();
+    let tiles = folder.path().join(TILES);
+    let [one, other] = ["1-0-0-0.glb", "1-1-0-0.glb"].map(|name| tiles.join(name));
+    fs::copy(&one, &other).unwrap();
+    let findings = check_tileset(folder.path(), &()).unwrap().findings;
+    assert!(findings.iter().any(|finding| finding.contains("do not meet")), "{findings:?}");
+    fs::write(&other, b"glTF").unwrap();
+    let findings = check_tileset(folder.path(), &()).unwrap().findings;
+    assert!(findings.iter().any(|finding| finding.contains("1-1-0-0.glb")), "{findings:?}");
+}
+
+#[test]
+fn what_has_no_extent_leaves_nothing_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut mesh = samples::torus(100);
+    mesh.positions.fill([1.0; 3]);
+    let source = SceneSource::new(Scene::from_mesh("point", mesh));
+    let look = Look::default();
+    let input = TileInput { source: &source, look: &look, key: "point" };
+    let out = folder.path().join("out");
+    let error = tiles(input, &out, &TilesRequest::default(), &()).unwrap_err();
+    assert!(error.to_string().contains("no extent") && !out.exists(), "{error}");
 }

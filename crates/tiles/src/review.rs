@@ -1,0 +1,218 @@
+//! Review of a tileset that was written: every file is read again.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use meshlod_io::{MeshInstance, ReadOptions, Scene, Weld, read};
+use rustc_hash::FxHashMap;
+use serde_json::Value;
+
+use crate::cell::Cell;
+use crate::error::TilesError;
+use crate::lattice::{END, Lattice, Point};
+
+/// Part of the size of the model by which boxes may be too small: rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Largest depth of external tilesets in each other.
+const MOST_FILES: usize = 64;
+
+/// What a review of a tileset has found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TilesetReview {
+    /// Number of tiles.
+    pub tiles: usize,
+    /// Number of faces of all tiles, without skirts.
+    pub faces: usize,
+    /// Number of levels.
+    pub levels: usize,
+    /// What is wrong, one line each.
+    pub findings: Vec<String>,
+}
+
+/// Reads a tileset of ours, all its tiles, and checks that contents are in their boxes and boxes in
+/// those around them, that errors do not rise towards the leaves, and that the tiles of each level
+/// meet without a crack.
+///
+/// # Errors
+/// A `tileset.json` that cannot be read, or that is not one of ours.
+pub fn review(folder: &Path) -> Result<TilesetReview, TilesError> {
+    let path = folder.join("tileset.json");
+    let whole = json(&path)?;
+    let extras = &whole["asset"]["extras"];
+    let foreign = || TilesError::Foreign(path.clone());
+    let lattice = serde_json::from_value(extras["lattice"].clone()).map_err(|_| foreign())?;
+    let is_z_up = extras["zUp"].as_bool().ok_or_else(foreign)?;
+    let mut reviewer = Reviewer {
+        folder: folder.to_owned(),
+        lattice,
+        is_z_up,
+        review: TilesetReview::default(),
+        leaves: Vec::new(),
+        inner: Vec::new(),
+        deepest: 0,
+    };
+    let error = whole["geometricError"].as_f64().unwrap_or(f64::NAN);
+    reviewer.tile(&whole["root"], error, None, 0);
+    reviewer.check_levels();
+    Ok(reviewer.review)
+}
+
+fn json(path: &Path) -> Result<Value, TilesError> {
+    let bytes = fs::read(path).map_err(|error| TilesError::system(path, error))?;
+    serde_json::from_slice(&bytes).map_err(|error| TilesError::Unreadable {
+        path: path.to_owned(),
+        reason: error.to_string(),
+    })
+}
+
+/// Border edges of a tile by their points, each with the number of times that it is there, less
+/// that of the edge in the other direction.
+type Edges = FxHashMap<[Point; 2], i64>;
+
+struct Reviewer {
+    folder: PathBuf,
+    lattice: Lattice,
+    is_z_up: bool,
+    review: TilesetReview,
+    leaves: Vec<(Cell, Edges)>,
+    inner: Vec<(Cell, Edges)>,
+    deepest: u8,
+}
+
+impl Reviewer {
+    /// Reviews a tile and those that refine it.
+    fn tile(&mut self, tile: &Value, most: f64, around: Option<[[f64; 3]; 2]>, files: usize) {
+        let uri = tile["content"]["uri"].as_str().unwrap_or_default().to_owned();
+        if uri.ends_with(".json") {
+            let path = self.folder.join(&uri);
+            match json(&path) {
+                Ok(inner) if files < MOST_FILES => {
+                    self.tile(&inner["root"], most, around, files + 1);
+                }
+                Ok(_) => self.find(&uri, "tilesets are nested too deeply"),
+                Err(error) => self.review.findings.push(error.to_string()),
+            }
+            return;
+        }
+        let Ok(cell) = serde_json::from_value::<Cell>(tile["extras"]["cell"].clone()) else {
+            return self.find(&uri, "its cell is missing");
+        };
+        self.review.tiles += 1;
+        self.deepest = self.deepest.max(cell.depth);
+        let error = tile["geometricError"].as_f64().unwrap_or(f64::NAN);
+        if !(0.0..=most).contains(&error) {
+            self.find(&uri, "its error is above that of the tile that it refines");
+        }
+        let bounds = self.bounds(tile, cell);
+        let slack = ROUNDING * f64::from(END) * self.lattice.step;
+        let is_inside = |[low, high]: [[f64; 3]; 2], [a, b]: [[f64; 3]; 2]| {
+            (0..3).all(|axis| low[axis] >= a[axis] - slack && high[axis] <= b[axis] + slack)
+        };
+        match bounds {
+            None => self.find(&uri, "it has no box"),
+            Some(bounds) if around.is_some_and(|around| !is_inside(bounds, around)) => {
+                self.find(&uri, "its box is not inside that of the tile that it refines");
+            }
+            Some(_) => {}
+        }
+        let children = tile["children"].as_array().cloned().unwrap_or_default();
+        match self.content(&uri, cell) {
+            Ok((edges, content)) => {
+                if bounds.is_some_and(|bounds| !is_inside(content, bounds)) {
+                    self.find(&uri, "it is not inside its box");
+                }
+                let tiles = if children.is_empty() { &mut self.leaves } else { &mut self.inner };
+                tiles.push((cell, edges));
+            }
+            Err(reason) => self.find(&uri, &reason),
+        }
+        for child in &children {
+            self.tile(child, error, bounds, files);
+        }
+    }
+
+    fn find(&mut self, uri: &str, what: &str) {
+        self.review.findings.push(format!("{uri}: {what}"));
+    }
+
+    /// Returns the box of a tile in the axes of the model, in model units.
+    fn bounds(&self, tile: &Value, cell: Cell) -> Option<[[f64; 3]; 2]> {
+        let numbers = tile["boundingVolume"]["box"].as_array()?;
+        let numbers: Vec<f64> = numbers.iter().map(Value::as_f64).collect::<Option<_>>()?;
+        let [x, y, z, a, .., c] = numbers[..] else { return None };
+        let b = *numbers.get(7)?;
+        let turned = |[x, y, z]: [f64; 3]| if self.is_z_up { [x, y, z] } else { [x, z, -y] };
+        let (center, half) = (turned([x, y, z]), turned([a, b, c]).map(f64::abs));
+        let middle = self.lattice.place(cell.middle().map(f64::from));
+        let side = |sign: f64| [0, 1, 2].map(|i| middle[i] + center[i] + sign * half[i]);
+        Some([side(-1.0), side(1.0)])
+    }
+
+    /// Reads the content of a tile. Returns its border edges, and its bounds in model units.
+    fn content(&mut self, uri: &str, cell: Cell) -> Result<(Edges, [[f64; 3]; 2]), String> {
+        let path = self.folder.join(uri);
+        let options = ReadOptions { weld: Weld::Off };
+        let scene = read(&path, &options).map_err(|error| error.to_string())?;
+        let (mut edges, mut bounds) =
+            (Edges::default(), [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]]);
+        for shown in scene.instances() {
+            let points = self.points(&scene, &shown, cell);
+            for place in points.iter().map(|point| self.lattice.place(point.map(f64::from))) {
+                (0..3).for_each(|axis| {
+                    bounds[0][axis] = bounds[0][axis].min(place[axis]);
+                    bounds[1][axis] = bounds[1][axis].max(place[axis]);
+                });
+            }
+            let mesh = &scene.meshes[shown.mesh];
+            if mesh.name == "skirt" {
+                continue;
+            }
+            self.review.faces += mesh.mesh.faces.len();
+            for face in &mesh.mesh.faces {
+                let [a, b, c] = face.map(|v| points[v.index()]);
+                for [a, b] in [[a, b], [b, c], [c, a]] {
+                    if cell.sides_of(a) & cell.sides_of(b) != 0 && a != b {
+                        let (edge, sign) = if a < b { ([a, b], 1) } else { ([b, a], -1) };
+                        *edges.entry(edge).or_default() += sign;
+                    }
+                }
+            }
+        }
+        edges.retain(|_, sum| *sum != 0);
+        Ok((edges, bounds))
+    }
+
+    /// Returns the vertices of a mesh on the lattice.
+    fn points(&self, scene: &Scene, shown: &MeshInstance, cell: Cell) -> Vec<Point> {
+        let (to, middle) = (shown.transform, cell.middle());
+        let mesh = &scene.meshes[shown.mesh].mesh;
+        let place = |at: &[f64; 3]| {
+            let [x, y, z] = [0, 1, 2].map(|row| {
+                to[3][row] + (0..3).map(|axis| to[axis][row] * at[axis]).sum::<f64>()
+            });
+            let own = if self.is_z_up { [x, -z, y] } else { [x, y, z] };
+            [0, 1, 2].map(|axis| (own[axis] / self.lattice.step).round() as i32 + middle[axis])
+        };
+        mesh.positions.iter().map(place).collect()
+    }
+
+    /// Checks at every depth that the border edges of what is shown then cancel out.
+    fn check_levels(&mut self) {
+        self.review.levels = usize::from(self.deepest) + 1;
+        for depth in 0..=self.deepest {
+            let leaves = self.leaves.iter().filter(|(cell, _)| cell.depth <= depth);
+            let inner = self.inner.iter().filter(|(cell, _)| cell.depth == depth);
+            let mut sums: BTreeMap<[Point; 2], i64> = BTreeMap::new();
+            for (edge, sum) in leaves.chain(inner).flat_map(|(_, edges)| edges) {
+                *sums.entry(*edge).or_default() += sum;
+            }
+            let open = sums.values().filter(|sum| **sum != 0).count();
+            if open > 0 {
+                let finding = format!("depth {depth}: {open} edges between tiles do not meet");
+                self.review.findings.push(finding);
+            }
+        }
+    }
+}
