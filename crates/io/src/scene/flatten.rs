@@ -78,7 +78,7 @@ impl Scene {
         let shown = || instances.iter().map(|instance| &self.meshes[instance.mesh].mesh);
         flat.attributes = self.flat_attributes(&instances, flat.positions.len());
         if shown().any(|mesh| !has_normals(mesh)) {
-            normals::compute_missing(&mut flat);
+            normals::compute_missing(&mut flat, |_| true);
         }
         flat.materials = self.flat_materials(&instances);
         if instances.len() > 1
