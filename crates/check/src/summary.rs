@@ -24,7 +24,12 @@ pub struct Summary {
 impl Summary {
     /// Adds one finding to the counts.
     pub fn add(&mut self, finding: &Finding) {
-        self.counts[finding.kind() as usize] += 1;
+        self.add_many(finding.kind(), 1);
+    }
+
+    /// Adds a number of findings of one kind.
+    pub fn add_many(&mut self, kind: Kind, count: usize) {
+        self.counts[kind as usize] += count;
     }
 
     /// Returns the number of findings of this kind.

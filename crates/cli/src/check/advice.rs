@@ -52,7 +52,8 @@ fn intersection(kind: Kind) -> [&'static str; 2] {
         ],
         _ => [
             "So many faces meet that the search for them was given up; there may be more.",
-            "`repair` drops duplicate faces, which are the usual cause; then check again.",
+            "`repair` drops duplicate faces, which are the usual cause; then check again. Where many \
+             instances overlap, check fewer at once.",
         ],
     }
 }

@@ -12,7 +12,7 @@ use crate::page::facts::facts;
 use crate::page::figures::whole;
 use crate::text::numbers::{count, value};
 use meshlod::jobs::CONTACT_KINDS;
-use meshlod::jobs::Group;
+use meshlod::jobs::{Group, ListedFinding};
 
 /// Limit of places listed of a group; the JSON has more.
 const MOST_PLACES: usize = 25;
@@ -22,7 +22,9 @@ pub fn findings(inspection: &Inspection, sites: &Sites) -> Markup {
     html! {
         section id="findings" {
             h2 { "Findings" }
-            div.intro { (facts(&Counts::of(&inspection.mesh))) }
+            @if let Some(drawn) = &inspection.drawn {
+                div.intro { (facts(&Counts::of(&drawn.mesh))) }
+            }
             @if inspection.report.groups().next().is_some() {
                 (overview(inspection))
                 @for (group, number) in inspection.report.groups() { (places(inspection, sites, group, number)) }
@@ -51,7 +53,8 @@ fn overview(inspection: &Inspection) -> Markup {
 /// Lists the first places of a group: ids, objects and coordinates.
 fn places(inspection: &Inspection, sites: &Sites, group: Group, number: usize) -> Markup {
     let Advice { about, .. } = advice(group);
-    let listed: Vec<&Finding> = inspection.report.of_group(group).take(MOST_PLACES).collect();
+    let listed: Vec<ListedFinding<'_>> =
+        inspection.report.of_group(group).take(MOST_PLACES).collect();
     let more = number - listed.len();
     let several = inspection.report.owners.objects.names.len() > 1;
     let label = format!("Places: {}", group.kind.name());
@@ -64,11 +67,11 @@ fn places(inspection: &Inspection, sites: &Sites, group: Group, number: usize) -
                 @if several { th scope="col" { "Objects" } }
                 th scope="col" { "At x y z" } th scope="col" {}
             } }
-            tbody { @for finding in &listed { tr {
-                th scope="row" { (ids(finding, sites)) }
-                @if several { td { (objects(finding, inspection)) } }
-                td { (coordinates(finding, inspection)) }
-                td { (detail(finding)) }
+            tbody { @for found in &listed { tr {
+                th scope="row" { (ids(found.finding, sites)) }
+                @if several { td { (objects(found, inspection)) } }
+                td { (found.place.map(coordinates).unwrap_or_default()) }
+                td { (detail(found.finding)) }
             } } }
         } }
         @if more > 0 {

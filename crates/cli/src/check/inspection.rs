@@ -1,32 +1,43 @@
-//! A mesh with the report of its check, and marks for pictures of it.
+//! The report of a check, and marks for pictures of what was checked.
 
-use meshlod::Mesh;
-use meshlod::jobs::{CheckReport, CheckRequest, JobError, Watch, check_each};
+use meshlod::jobs::{CheckReport, CheckRequest, JobError, Watch, check_each, check_scene};
+use meshlod::{Mesh, Scene};
 
 use crate::check::marks::Marks;
 
-/// A mesh with the report of its check.
+/// The report of a check, with what pictures are to show.
 pub struct Inspection {
-    pub mesh: Mesh,
     pub report: CheckReport,
-    /// Marks on the faces and edges of the mesh, if pictures are to show them.
-    pub marks: Option<Marks>,
+    /// The mesh with marks on its faces and edges, if it is to be drawn.
+    pub drawn: Option<MarkedMesh>,
+}
+
+/// A mesh with marks on its faces and edges.
+pub struct MarkedMesh {
+    pub mesh: Mesh,
+    pub marks: Marks,
 }
 
 impl Inspection {
-    /// Checks a mesh; `is_drawn` asks for marks.
+    /// Checks a scene; `is_drawn` asks for marks.
     pub fn of(
-        mesh: Mesh,
+        scene: Scene,
         request: &CheckRequest,
         is_drawn: bool,
         watch: &dyn Watch,
     ) -> Result<Self, JobError> {
-        let mut marks = is_drawn.then(|| Marks::new(&mesh));
+        match is_drawn {
+            true => Self::marked(scene.into_mesh(), request, watch),
+            false => Ok(Self { report: check_scene(scene, request, watch)?, drawn: None }),
+        }
+    }
+
+    /// Checks a mesh, and marks what is found.
+    pub fn marked(mesh: Mesh, request: &CheckRequest, watch: &dyn Watch) -> Result<Self, JobError> {
+        let mut marks = Marks::new(&mesh);
         let report = check_each(&mesh, request, watch, &mut |owners, finding| {
-            if let Some(marks) = &mut marks {
-                marks.add(&mesh, &owners.objects, finding);
-            }
+            marks.add(&mesh, &owners.objects, finding);
         })?;
-        Ok(Self { mesh, report, marks })
+        Ok(Self { report, drawn: Some(MarkedMesh { mesh, marks }) })
     }
 }

@@ -42,10 +42,8 @@ pub fn write(
 fn page(name: &str, inspection: &Inspection, sites: &Sites) -> Result<Markup, Failure> {
     let title = Path::new(name).file_name().map(|name| name.to_string_lossy().into_owned());
     let title = title.unwrap_or_else(|| name.to_owned());
-    let pictures = match &inspection.marks {
-        Some(marks) if !inspection.mesh.faces.is_empty() => {
-            pictures(&title, &inspection.mesh, marks)?
-        }
+    let pictures = match &inspection.drawn {
+        Some(drawn) if !drawn.mesh.faces.is_empty() => pictures(&title, &drawn.mesh, &drawn.marks)?,
         _ => html! {},
     };
     let contacts = !inspection.report.contacts.is_empty();

@@ -1,6 +1,7 @@
 //! Places of findings in words: ids, objects and coordinates.
 
 use meshlod::check::Finding;
+use meshlod::jobs::ListedFinding;
 
 use crate::check::inspection::Inspection;
 use crate::check::sites::Sites;
@@ -41,20 +42,19 @@ pub fn ids(finding: &Finding, sites: &Sites) -> String {
     }
 }
 
-/// Formats the coordinates of a finding in model units; empty if it has none.
-pub fn coordinates(finding: &Finding, inspection: &Inspection) -> String {
-    let place = finding.place(&inspection.mesh);
-    place.map_or_else(String::new, |place| place.map(value).join(" "))
+/// Formats coordinates in model units.
+pub fn coordinates(place: [f64; 3]) -> String {
+    place.map(value).join(" ")
 }
 
 /// Names the objects of a finding; empty if the mesh is a single object, or the finding has none.
-pub fn objects(finding: &Finding, inspection: &Inspection) -> String {
+pub fn objects(found: &ListedFinding<'_>, inspection: &Inspection) -> String {
     if inspection.report.owners.objects.names.len() < 2 {
         return String::new();
     }
     /// Objects named before the others are counted.
     const MOST: usize = 3;
-    let objects = inspection.report.owners.of(finding);
+    let objects = found.objects;
     let names = objects.iter().take(MOST).map(|&object| short(inspection.report.name(object)));
     let more = objects.len().saturating_sub(MOST);
     let more = (more > 0).then(|| format!("{} more", count(more)));

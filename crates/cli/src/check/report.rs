@@ -6,12 +6,12 @@ use serde_json::{Value, json};
 use crate::check::inspection::Inspection;
 use crate::check::sites::Sites;
 use meshlod::jobs::CONTACT_KINDS;
-use meshlod::jobs::{CheckReport, Grade};
+use meshlod::jobs::{CheckReport, Grade, ListedFinding};
 
 /// Returns the report of a mesh check as JSON: counts by kind, findings, contacts by pair of
 /// objects.
 pub fn json(inspection: &Inspection, sites: &Sites) -> Value {
-    let Inspection { mesh, report, .. } = inspection;
+    let report = &inspection.report;
     let CheckReport { owners, summary, limit, .. } = report;
     let objects = &owners.objects;
     let looked_for =
@@ -21,8 +21,8 @@ pub fn json(inspection: &Inspection, sites: &Sites) -> Value {
     let left_out = left_out.filter(|&(_, count)| count > 0);
     let pairs = inspection.report.contacts.by_size();
     json!({
-        "vertices": mesh.positions.len(),
-        "faces": mesh.faces.len(),
+        "vertices": report.vertices,
+        "faces": report.faces,
         "objects": objects.names.len(),
         "components": objects.components,
         "clean": summary.total() == 0,
@@ -47,23 +47,22 @@ pub fn json(inspection: &Inspection, sites: &Sites) -> Value {
             }
             json
         }).collect::<Vec<_>>(),
-        "contacts_left_out": pairs.len().saturating_sub(*limit),
+        "contacts_left_out": report.contacts.len().saturating_sub(*limit),
         "sites": sites.several(),
     })
 }
 
-/// Returns the JSON of a finding with its kind, position and ids.
 /// Iterates over the findings to list: none, if their limit is 0.
-fn listed(report: &CheckReport) -> impl Iterator<Item = &Finding> {
-    report.findings.iter().filter(|_| report.limit > 0)
+fn listed(report: &CheckReport) -> impl Iterator<Item = ListedFinding<'_>> {
+    report.listed().filter(|_| report.limit > 0)
 }
 
-fn of(inspection: &Inspection, finding: &Finding) -> Value {
-    let mut json = ids(inspection, finding);
-    let group = inspection.report.owners.group(finding);
-    json["kind"] = json!(group.kind);
-    json["severity"] = group.grade.name().into();
-    json["place"] = json!(finding.place(&inspection.mesh));
+/// Returns the JSON of a finding with its kind, position and ids.
+fn of(inspection: &Inspection, found: ListedFinding<'_>) -> Value {
+    let mut json = ids(inspection, found.finding);
+    json["kind"] = json!(found.group.kind);
+    json["severity"] = found.group.grade.name().into();
+    json["place"] = json!(found.place);
     json
 }
 

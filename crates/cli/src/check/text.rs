@@ -22,7 +22,7 @@ pub fn text(inspection: &Inspection, sites: &Sites) -> String {
     let components = inspection.report.owners.objects.components;
     let mut text = format!(
         "{}, {} object{}, {} component{}\n",
-        faces(inspection.mesh.faces.len()),
+        faces(inspection.report.faces),
         count(objects),
         plural(objects),
         count(components),
@@ -69,17 +69,15 @@ fn groups(inspection: &Inspection, sites: &Sites) -> String {
 
 /// Describes the place of the first finding of a group, by ids, objects and position.
 fn first(inspection: &Inspection, sites: &Sites, group: Group) -> String {
-    let Some(finding) = inspection.report.of_group(group).next() else { return String::new() };
-    let mut text = ids(finding, sites);
-    if finding.place(&inspection.mesh).is_none() {
-        return text;
-    }
-    let objects = objects(finding, inspection);
+    let Some(found) = inspection.report.of_group(group).next() else { return String::new() };
+    let mut text = ids(found.finding, sites);
+    let Some(place) = found.place else { return text };
+    let objects = objects(&found, inspection);
     // Ids of a scene name its nodes already.
     if !objects.is_empty() && !sites.are_several() {
         text += &format!(" in {objects}");
     }
-    format!("first: {text} at {}", coordinates(finding, inspection))
+    format!("first: {text} at {}", coordinates(place))
 }
 
 /// Formats a line for each group of findings that says what to do about it.
@@ -109,15 +107,15 @@ fn contacts(inspection: &Inspection) -> String {
         row(format!("  {a} – {b}"), pair)
     }));
     let table = aligned(&without_empty_columns(rows));
-    let more = pairs.len().saturating_sub(MOST_PAIRS);
+    let more = inspection.report.contacts.len().saturating_sub(MOST_PAIRS);
     let more = if more > 0 { format!("  and {} more\n", count(more)) } else { String::new() };
     format!("{}\n{table}{more}", meetings(inspection))
 }
 
 /// Says how many pairs of objects meet, and how many of them only touch.
 pub fn meetings(inspection: &Inspection) -> String {
-    let pairs = inspection.report.contacts.by_size();
-    let touching = pairs.iter().filter(|(_, pair)| pair.only_touches()).count();
+    let pairs = &inspection.report.contacts;
+    let touching = pairs.touching();
     let all = format!("{} pair{} of objects", count(pairs.len()), plural(pairs.len()));
     match pairs.len() - touching {
         0 => format!("{all} that only touch"),

@@ -15,6 +15,7 @@ use crate::page::subject::Subject;
 use crate::session::Session;
 use crate::session::failure::Failure;
 use crate::text::simplify_report;
+use crate::text::stuck::Stuck;
 
 /// A mesh, and the sizes and methods for which to compare simplifications of it.
 pub struct Comparison<'s> {
@@ -175,7 +176,8 @@ impl ComparisonResult {
         for MethodResult { chain, failure, .. } in &self.entries {
             let method = chain.method.name();
             for level in chain.levels.iter().filter(|level| !level.report.reached) {
-                let reason = simplify_report::why_not_reached(&level.report, topology);
+                let reason =
+                    simplify_report::why_not_reached(&level.report, topology, Stuck::default());
                 session.warn(format_args!("{name}: {method}, {}: {reason}", level.size));
             }
             if let Some(failure) = failure {

@@ -20,7 +20,7 @@ impl Output {
     /// PLY, which keeps positions exactly.
     pub fn new(folder: &Path, input: &Path, scene: &Scene, session: &Session) -> Self {
         let format = match files::is_pipe(input) {
-            true => session.format,
+            true => session.format(),
             false => Format::of_path(input).ok(),
         };
         let attributes = scene.meshes.iter().any(|mesh| mesh.mesh.attributes.is_some());

@@ -60,7 +60,7 @@ impl ConstraintArgs {
         Ok(Constraints {
             topology: self.topology.kind(),
             borders: self.topology.borders(),
-            vanish_below: self.topology.vanish_below()?,
+            vanish_below: self.topology.vanish_below(input)?,
             fuse: self.fuse.fuse,
             lock_boundary: self.locks.lock_boundary,
             locks: self.locks.locking(input)?,

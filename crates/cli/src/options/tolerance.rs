@@ -35,13 +35,22 @@ impl Tolerance {
     /// # Errors
     /// If it has a unit and the file has none.
     pub fn bound(&self, option: &str, input: &Path, session: &Session) -> Result<Bound, Failure> {
+        let is_metric = files::format_of(input, session).is_some_and(Format::is_gltf);
+        self.bound_if(is_metric, option, input)
+    }
+
+    /// Returns the length in the units of a scene that was read: those of glTF are metres.
+    ///
+    /// # Errors
+    /// If it has a unit and the scene has none.
+    pub fn bound_in(&self, scene: &Scene, option: &str, input: &Path) -> Result<Bound, Failure> {
+        self.bound_if(scene.source.is_some(), option, input)
+    }
+
+    fn bound_if(&self, is_metric: bool, option: &str, input: &Path) -> Result<Bound, Failure> {
         match self {
             Self::Bound(bound) => Ok(*bound),
-            Self::Metric { metres, .. }
-                if files::format_of(input, session).is_some_and(Format::is_gltf) =>
-            {
-                Ok(Bound::Length(*metres))
-            }
+            Self::Metric { metres, .. } if is_metric => Ok(Bound::Length(*metres)),
             Self::Metric { text, metres } => Err(Failure::usage(format_args!(
                 "{option} {text}: {} has no unit; give {} if it is in metres, {} if it is in \
                  millimetres, or a percentage of its diagonal, such as 0.1%",

@@ -4,7 +4,9 @@ use clap::{Args, ValueEnum};
 use meshlod::mesh::{Conditioning, NearBorders};
 use meshlod::{Borders, Topology};
 
-use crate::options::parse::{self, Bound};
+use crate::options::locks::InputScene;
+use crate::options::parse::Bound;
+use crate::options::tolerance::Tolerance;
 use crate::session::Session;
 use crate::session::failure::Failure;
 use crate::text::numbers::{count, value};
@@ -18,10 +20,11 @@ pub struct TopologyArgs {
     topology: Option<TopologyArg>,
     /// Largest component that may vanish: 5% or a length
     ///
-    /// By the diagonal of its bounding box, in model units or relative to the model's diagonal. By
-    /// default lindstrom-turk and qem have no limit, and with other methods nothing vanishes.
-    #[arg(long, value_name = "SIZE", value_parser = parse::bound, allow_hyphen_values = true)]
-    vanish_below: Option<Bound>,
+    /// By the diagonal of its bounding box, in model units or relative to the model's diagonal; 1mm
+    /// is read for glTF. By default lindstrom-turk and qem have no limit, and with other methods
+    /// nothing vanishes.
+    #[arg(long, value_name = "SIZE", value_parser = Tolerance::parse, allow_hyphen_values = true)]
+    vanish_below: Option<Tolerance>,
     /// Do not sew boundary edges that coincide exactly
     #[arg(long)]
     no_stitch: bool,
@@ -40,13 +43,14 @@ enum TopologyArg {
 
 impl TopologyArgs {
     /// Returns the limit of components that may vanish.
-    pub fn vanish_below(&self) -> Result<Option<Bound>, Failure> {
+    pub fn vanish_below(&self, input: &InputScene<'_>) -> Result<Option<Bound>, Failure> {
         if self.topology == Some(TopologyArg::Keep) && self.vanish_below.is_some() {
             return Err(Failure::usage(
                 "--vanish-below does not go with --topology keep, with which nothing vanishes",
             ));
         }
-        Ok(self.vanish_below)
+        let size = self.vanish_below.as_ref();
+        size.map(|size| size.bound_in(input.scene, "--vanish-below", input.path)).transpose()
     }
 
     /// Returns what may happen to the topology.

@@ -51,7 +51,7 @@ pub fn scene_of(file: AnyFile, session: &Session) -> Result<Scene, Failure> {
 
 /// Returns the format of a mesh to read by its suffix, that of standard input by `--format`.
 pub fn format_of(path: &Path, session: &Session) -> Option<Format> {
-    if is_pipe(path) { session.format } else { Format::of_path(path).ok() }
+    if is_pipe(path) { session.format() } else { Format::of_path(path).ok() }
 }
 
 /// Opens a file of any kind, or standard input.
@@ -95,6 +95,7 @@ pub fn check_output(path: &Path, session: &Session) -> Result<Format, Failure> {
         return check_place(path).map(|()| format);
     }
     check_stdout(session)?;
+    session.check_format()?;
     match pipe_format(session)? {
         Format::Gltf => {
             Err(Failure::usage("-: .gltf needs a separate buffer file; use --format glb"))
@@ -251,6 +252,6 @@ fn check_stdout(session: &Session) -> Result<(), Failure> {
 /// Returns the format of standard input and output.
 fn pipe_format(session: &Session) -> Result<Format, Failure> {
     session
-        .format
+        .format()
         .ok_or_else(|| Failure::usage("-: give --format with the suffix of a mesh, such as ply"))
 }

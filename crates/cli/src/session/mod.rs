@@ -30,6 +30,7 @@ use meshlod::io::{Note, NoteKind};
 use serde_json::{Value, json};
 
 use crate::options::args::GlobalArgs;
+use crate::options::parse::Suffix;
 use crate::session::answer::{Answer, Outcome};
 use crate::session::failure::Failure;
 use crate::session::progress::Progress;
@@ -44,8 +45,8 @@ pub struct Session {
     pub quiet: bool,
     /// True if what is left out of a file, or a target that is missed, is a failure.
     pub strict: bool,
-    /// File format of standard input and output.
-    pub format: Option<Format>,
+    /// Suffix of standard input and output.
+    suffix: Option<Suffix>,
     pub progress: Progress,
     /// Start of the program.
     #[cfg_attr(not(feature = "view"), allow(dead_code))]
@@ -71,7 +72,7 @@ impl Session {
             json,
             quiet,
             strict,
-            format: format.and_then(|suffix| suffix.mesh),
+            suffix: format,
             progress,
             started: Instant::now(),
             threads,
@@ -98,7 +99,22 @@ impl Session {
             self.progress = Progress::new(true);
         }
         (self.json, self.strict, self.quiet, self.threads) = (json, strict, quiet, threads);
-        self.format = format.and_then(|suffix| suffix.mesh);
+        self.suffix = format;
+    }
+
+    /// Returns the file format of standard input and output.
+    pub fn format(&self) -> Option<Format> {
+        self.suffix.as_ref()?.mesh
+    }
+
+    /// Fails if standard output would be of a kind that is only read, such as b3dm.
+    pub fn check_format(&self) -> Result<(), Failure> {
+        let suffix = self.suffix.as_ref().filter(|suffix| Format::is_read_only(&suffix.text));
+        suffix.map_or(Ok(()), |Suffix { text, .. }| {
+            Err(Failure::usage(format_args!(
+                "--format {text}: {text} is read only; use --format glb"
+            )))
+        })
     }
 
     /// Does `work` on the number of threads that was asked for, however many other runs in the

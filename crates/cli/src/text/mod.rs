@@ -5,6 +5,7 @@ pub mod error_bound;
 pub mod kept_error;
 pub mod model_scene;
 pub mod simplify_report;
+pub mod stuck;
 pub mod table;
 
 pub use meshlod::numbers;

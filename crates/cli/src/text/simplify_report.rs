@@ -7,18 +7,19 @@ use meshlod::simplify::Refusal;
 use meshlod::{Report, Topology};
 
 use crate::text::numbers::{count, faces, percent, value};
+use crate::text::stuck::Stuck;
 
 /// Relative change of volume up to which the text does not mention it.
 const UNSEEN: f64 = 1e-4;
 
 /// Formats a line that explains why the target of a simplification was missed, and what would help.
-pub fn why_not_reached(report: &Report, topology: Topology) -> String {
+pub fn why_not_reached(report: &Report, topology: Topology, stuck: Stuck) -> String {
     let mut line = format!(
         "target not reached: no further contraction is possible at {} (refused: {})",
         faces(report.output_faces),
         report.refusals,
     );
-    for advice in advice(report, topology) {
+    for advice in advice(report, topology, stuck) {
         line += "; ";
         line += &advice;
     }
@@ -26,7 +27,7 @@ pub fn why_not_reached(report: &Report, topology: Topology) -> String {
 }
 
 /// Returns what would let a simplification go on, by what has held it up.
-fn advice(report: &Report, topology: Topology) -> Vec<String> {
+fn advice(report: &Report, topology: Topology, stuck: Stuck) -> Vec<String> {
     let refused = |refusal: Refusal| report.refusals.count(refusal) > 0;
     let by_topology = [Refusal::NonManifold, Refusal::Link, Refusal::LastFaces];
     let held = report.held.locked + report.held.tied;
@@ -35,6 +36,15 @@ fn advice(report: &Report, topology: Topology) -> Vec<String> {
         && (report.non_manifold_vertices > 0 || by_topology.into_iter().any(refused))
     {
         advice.push("--topology free would let components vanish and places come apart".into());
+    }
+    if stuck.holes > 0 && refused(Refusal::Link) {
+        let holes = if stuck.holes == 1 { "hole stays" } else { "holes stay" };
+        advice.push(format!("{} {holes}: repair --holes N closes holes", count(stuck.holes)));
+    }
+    if stuck.meshes > 1 && (refused(Refusal::Link) || refused(Refusal::LastFaces)) {
+        let meshes = count(stuck.meshes);
+        advice
+            .push(format!("each of {meshes} meshes keeps a face: convert to .ply makes them one"));
     }
     if held > 0 && (refused(Refusal::Locked) || refused(Refusal::Tied)) {
         let vertices = if held == 1 { "vertex is" } else { "vertices are" };

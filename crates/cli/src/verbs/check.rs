@@ -118,7 +118,7 @@ impl Check {
         let sites = Sites::of(&scene);
         let request = CheckRequest { options: self.options(), limit: self.limit };
         let hearing = Hearing::new(session, path, path);
-        let inspection = Inspection::of(scene.into_mesh(), &request, self.out.is_some(), &hearing)
+        let inspection = Inspection::of(scene, &request, self.out.is_some(), &hearing)
             .map_err(|error| hearing.failure(error))?;
         if let Some(folder) = &self.out {
             session.progress.stage("drawing the page");

@@ -23,6 +23,7 @@ use crate::session::files;
 use crate::session::hearing::Hearing;
 use crate::session::scene_files;
 use crate::text::simplify_report;
+use crate::text::stuck::Stuck;
 
 use self::camera::CameraArgs;
 use self::layout::ChainLayout;
@@ -77,10 +78,12 @@ impl Lods {
         let figures = self.figures(&report, layout);
         let text = self.text(&report, layout);
         let guide = self.guide(&report, &world_bounds(&chain.scene), layout);
+        let coarsest = chain.levels.last().map(|level| Stuck::of(&level.meshes));
+        let stuck = coarsest.filter(|_| !report.run.reached).unwrap_or_default();
         self.write(layout, chain, &report, session)?;
         write_file(&self.guide_file(), format!("{guide:#}\n").as_bytes())?;
         for level in &report.levels {
-            self.warn_of(level, request.constraints.topology, session);
+            self.warn_of(level, request.constraints.topology, stuck, session);
         }
         Ok(Answer::new(figures, text))
     }
@@ -117,10 +120,10 @@ impl Lods {
     }
 
     /// Warns of a target that was missed, and of a level that is not written.
-    fn warn_of(&self, level: &LodReport, topology: Topology, session: &Session) {
+    fn warn_of(&self, level: &LodReport, topology: Topology, stuck: Stuck, session: &Session) {
         let at = |reason: &str| Failure::at(&self.input, format_args!("{}: {reason}", level.size));
         if !level.run.reached {
-            session.miss(&at(&simplify_report::why_not_reached(&level.run, topology)));
+            session.miss(&at(&simplify_report::why_not_reached(&level.run, topology, stuck)));
         }
         if level.is_same {
             session.warn(at("not written, since it is the same as the level before"));

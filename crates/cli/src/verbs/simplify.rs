@@ -24,6 +24,7 @@ use crate::session::hearing::Hearing;
 use crate::session::scene_files;
 use crate::text::error_bound;
 use crate::text::simplify_report;
+use crate::text::stuck::Stuck;
 
 /// Reduce a mesh to fewer faces
 #[derive(Args)]
@@ -104,7 +105,7 @@ impl Simplify {
         let done = jobs::simplify(scene, &request, &hearing);
         let (scene, report) = done.map_err(|error| hearing.failure(error))?;
         topology::warn(report.near_borders, session);
-        self.warn_if_missed(&report, &request, session);
+        self.warn_if_missed(&scene, &report, &request, session);
         let answer = Answer::new(self.figures(&report), self.text(&report));
         let writing = self.writing.written_as(report.written_as);
         scene_files::write(&self.output, &scene, &writing, session)?;
@@ -134,6 +135,7 @@ impl Simplify {
     /// Says why the target was missed, if it was.
     fn warn_if_missed(
         &self,
+        scene: &Scene,
         report: &SimplifyReport,
         request: &SimplifyRequest,
         session: &Session,
@@ -142,7 +144,10 @@ impl Simplify {
         let reason = match missed {
             Some(error) => error_bound::warning(error),
             None if report.run.reached => return,
-            None => simplify_report::why_not_reached(&report.run, request.constraints.topology),
+            None => {
+                let stuck = Stuck::of(scene.meshes.iter().map(|mesh| &mesh.mesh));
+                simplify_report::why_not_reached(&report.run, request.constraints.topology, stuck)
+            }
         };
         session.miss(&Failure::at(&self.input, reason));
     }

@@ -328,3 +328,31 @@ fn an_error_bound_that_a_stray_value_breaks_is_noted() {
         assert!(!run.path(to).exists());
     }
 }
+
+#[test]
+fn vertices_that_few_bits_put_at_one_place_are_counted() {
+    let run = Run::new();
+    run.sample("gyroid", 10_000, "in.ply");
+    for file in ["out.mlq", "out.mlz"] {
+        let count = |bits: &str| {
+            let packed = run.json(&["compress", "in.ply", file, "--bits", bits]);
+            packed["vertices_coinciding"].as_u64().unwrap()
+        };
+        assert_eq!(count("14"), 0, "{file}");
+        let coarse = count("4");
+        assert!(coarse > 10, "{file}: {coarse}");
+        // Also those that are at one place as the file is read.
+        run.json(&["decompress", file, "back.ply"]);
+        let [was, is] = ["in.ply", "back.ply"].map(|mesh| {
+            let mesh = meshlod::read(run.path(mesh), &meshlod::ReadOptions::default()).unwrap();
+            let places = mesh.into_mesh().positions.into_iter().map(|at| at.map(f64::to_bits));
+            places.collect::<std::collections::BTreeSet<_>>().len()
+        });
+        assert_eq!(was - is, coarse as usize, "{file}");
+        let told = run.run(&["compress", "in.ply", file, "--bits", "4"]);
+        let text = String::from_utf8_lossy(&told.out);
+        assert!(text.contains("vertices are rounded to the places of others"), "{told:?}");
+    }
+    let packed = run.json(&["compress", "in.ply", "out.glb"]);
+    assert!(packed.get("vertices_coinciding").is_none());
+}

@@ -121,7 +121,17 @@ fn lengths_with_units_are_read_where_the_file_has_one() {
     let piped = fs::read(run.path("in.glb")).unwrap();
     let done = run.run_with(&["simplify", "-", "p.ply", "-e", "5mm", "--format", "glb"], &piped);
     assert_eq!(done.code, 0, "{done:?}");
+    for size in ["5mm", "0.005"] {
+        let done = line(&run, &format!("simplify in.glb {size}.glb -r 10% --vanish-below {size}"));
+        assert_eq!(done.code, 0, "{done:?}");
+    }
+    let [metric, plain] = ["5mm.glb", "0.005.glb"].map(|file| fs::read(run.path(file)).unwrap());
+    assert!(metric == plain);
     let cases = [
+        (
+            "simplify in.ply x.ply -r 10% --vanish-below 1mm",
+            "--vanish-below 1mm: in.ply has no unit",
+        ),
         ("simplify in.ply x.ply -e 1mm", "in.ply has no unit; give 0.001 if it is in metres, 1 if"),
         ("compress in.ply x.mlq -e 1mm", "or a percentage of its diagonal, such as 0.1%"),
         ("build in.ply x.mlod --rounding 1mm", "in.ply has no unit"),

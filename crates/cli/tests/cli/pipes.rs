@@ -110,3 +110,23 @@ fn an_interrupted_run_leaves_nothing() {
         }
     }
 }
+
+#[test]
+fn a_tile_is_read_from_a_pipe_and_not_written_to_one() {
+    let run = Run::new();
+    run.sample("sphere", 100, "in.glb");
+    let glb = std::fs::read(run.path("in.glb")).unwrap();
+    let tile = [&b"b3dm\x01\0\0\0"[..], &[0; 20], &glb].concat();
+    let read = run.run_with(&["convert", "-", "out.ply", "--format", "b3dm"], &tile);
+    assert_eq!(read.code, 0, "{}", read.err);
+    for arguments in [
+        &["simplify", "in.glb", "-", "--ratio", "50%"][..],
+        &["convert", "in.glb", "-"],
+        &["lods", "in.glb", "levels/", "--levels", "50%"],
+    ] {
+        let done = run.run(&[arguments, &["--format", "b3dm"]].concat());
+        let expected = "meshlod: --format b3dm: b3dm is read only; use --format glb";
+        assert_eq!(done.only_line(), expected);
+        assert!(done.code == 2 && done.out.is_empty(), "{done:?}");
+    }
+}

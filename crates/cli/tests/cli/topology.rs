@@ -140,3 +140,34 @@ fn compare_takes_the_topology_too() {
     };
     assert_eq!((components("keep"), components("free")), (json!(2), json!(1)));
 }
+
+#[test]
+fn holes_and_meshes_that_stay_are_named() {
+    let run = Run::new();
+    // Two tubes of eight sides, each an object.
+    let mut text = String::new();
+    for tube in 0..2u32 {
+        text += &format!("o tube{tube}\n");
+        for k in 0..16u32 {
+            let (sin, cos) = (f64::from(k % 8) * std::f64::consts::FRAC_PI_4).sin_cos();
+            text += &format!("v {} {sin} {}\n", cos + f64::from(9 * tube), k / 8);
+        }
+        for k in 0..8 {
+            let at = |i: u32, end: u32| 16 * tube + (k + i) % 8 + 8 * end + 1;
+            text += &format!("f {} {} {} {}\n", at(0, 0), at(1, 0), at(1, 1), at(0, 1));
+        }
+    }
+    std::fs::write(run.path("in.obj"), text).unwrap();
+    run.json(&["convert", "in.obj", "in.glb"]);
+    for verb in [
+        &["simplify", "in.glb", "out.glb", "--faces", "1"][..],
+        &["lods", "in.glb", "out.glb", "--levels", "1"],
+    ] {
+        let done = run.run(verb);
+        for part in ["2 holes stay: repair --holes N", "each of 2 meshes keeps a face"] {
+            assert!(done.err.contains(part), "{part}: {done:?}");
+        }
+    }
+    let merged = run.run(&["simplify", "in.obj", "out.ply", "--faces", "1"]);
+    assert!(merged.err.contains("1 hole stays"), "one tube has vanished: {merged:?}");
+}

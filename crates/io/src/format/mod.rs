@@ -62,11 +62,16 @@ impl Format {
     /// Those of [`of_path`](Self::of_path); also suffixes of files that are only read, such as b3dm.
     pub fn of_output(path: &Path) -> Result<Self, IoError> {
         let format = Self::of_path(path)?;
-        if path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case(READ_ALONE)) {
+        if path.extension().and_then(|suffix| suffix.to_str()).is_some_and(Self::is_read_only) {
             let reason = "b3dm is read only; write .glb, which 3D Tiles 1.1 holds as it is";
             return Err(IoError::unsupported(path, Unsupported::new("file", reason)));
         }
         Ok(format)
+    }
+
+    /// Returns true for a suffix of files that are read, but not written, such as b3dm.
+    pub fn is_read_only(suffix: &str) -> bool {
+        suffix.eq_ignore_ascii_case(READ_ALONE)
     }
 
     /// Returns the suffixes of all formats, as in `.ply .obj`.

@@ -3,6 +3,7 @@
 //! Topology comes from the `v` index of each corner, so a texture seam does not split the surface;
 //! the `vt` and `vn` values there become wedges. `o` and `g` become objects, `usemtl` materials.
 
+mod bare_faces;
 mod colored_vertices;
 mod labels;
 pub(crate) mod mtl;

@@ -4,6 +4,7 @@ use std::num::NonZeroU32;
 
 use meshlod_mesh::{Mesh, VertexId};
 
+use super::bare_faces;
 use super::labels::LabelRuns;
 use super::mtl::{Library, resolve_materials};
 use super::polypaint::Polypaint;
@@ -21,7 +22,8 @@ use crate::text::cursor::{TextCursor, quoted, text_of};
 ///
 /// Polygons are triangulated. A `v` gives three coordinates and, if present, a colour; a `vt` gives
 /// two coordinates. Values of `vt`, `vn` and colours that are not finite become 0, and are counted.
-/// Corners without a value that others have get 0, too. Colours above 1 are divided by 255. Colours
+/// Corners without a texture coordinate that others have get 0, too, and those without a normal get
+/// that of the faces around them, which is noted. Colours above 1 are divided by 255. Colours
 /// in comments `#MRGB`, the polypaint of ZBrush, are used if no vertex has another. `o` wins over
 /// `g`. A material whose library or image is missing keeps its name. Materials that no face uses
 /// come last. Lines, points, curves, faces with fewer than three corners and other statements are
@@ -331,14 +333,16 @@ impl<'a> ObjReader<'a> {
         }
         let used = materials.as_ref().map_or(&[][..], |labels| &labels.names);
         let resolved = resolve_materials(used, &library, resolve);
-        let mesh = Mesh {
+        let mut mesh = Mesh {
             attributes,
             materials,
             objects,
             face_layers: smoothing.into_iter().collect(),
             ..Mesh::new(self.positions, self.faces)
         };
+        let bare = bare_faces::compute_normals(&mut mesh, &self.corners);
         let mut notes = self.skipped.notes(self.has_object);
+        notes.extend(bare);
         notes.extend(resolved.notes);
         Ok(Scene {
             meshes: vec![SceneMesh { name: String::new(), mesh, materials: resolved.labels }],

@@ -85,8 +85,8 @@ fn wedges_are_one_where_the_values_are() {
 }
 
 #[test]
-fn corners_without_what_others_have_get_zeros() {
-    let text = format!("{SQUARE}vt 1 1\nvn 0 0 1\nf 1 2 3\nf 1/1 3//1 4/1/1\nf 1/ 2// 3/1/\n");
+fn corners_without_what_others_have_get_zeros_or_normals_of_faces() {
+    let text = format!("{SQUARE}vt 1 1\nvn 0 0 -1\nf 1 2 3\nf 1/1 3//1 4/1/1\nf 1/ 2// 3/1/\n");
     let attributes = mesh(&text).attributes.unwrap();
     let uvs = attributes.layer(LayerKind::Uv(0)).unwrap();
     let normals = attributes.layer(LayerKind::Normal).unwrap();
@@ -94,8 +94,11 @@ fn corners_without_what_others_have_get_zeros() {
         let wedge = attributes.corners[face][corner];
         (uvs.of(wedge)[0], normals.of(wedge)[2])
     };
-    assert_eq!([at(0, 0), at(1, 0), at(1, 1), at(1, 2)], [(0., 0.), (1., 0.), (0., 1.), (1., 1.)]);
-    assert_eq!([at(2, 0), at(2, 1), at(2, 2)], [(0., 0.), (0., 0.), (1., 0.)]);
+    assert_eq!(
+        [at(0, 0), at(1, 0), at(1, 1), at(1, 2)],
+        [(0., 1.), (1., 1.), (0., -1.), (1., -1.)]
+    );
+    assert_eq!([at(2, 0), at(2, 1), at(2, 2)], [(0., 1.), (0., 1.), (1., 1.)]);
 }
 
 #[test]
@@ -165,4 +168,17 @@ fn a_vertex_with_many_different_corners_is_no_trouble() {
         text += &format!("vt {i} 0\nf 1/-1 2/-1 3/-1\n");
     }
     assert_eq!(mesh(&text).attributes.unwrap().wedge_count, 300_000);
+}
+
+#[test]
+fn faces_without_normals_get_those_around_and_are_counted() {
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 1 0 0\nf 1//1 2//1 3//1\nf 1 4 2\n";
+    let scene = scene(text);
+    let notes: Vec<String> = scene.notes.iter().map(|note| note.to_string()).collect();
+    assert_eq!(notes, ["1 of 2 faces without normals, computed from the faces around"]);
+    let attributes = scene.meshes[0].mesh.attributes.as_ref().unwrap();
+    let normals = attributes.layer(LayerKind::Normal).unwrap();
+    let at = |face: usize| attributes.corners[face].map(|wedge| normals.of(wedge).to_vec());
+    assert_eq!(at(0), [[1.0, 0.0, 0.0]; 3].map(Vec::from), "those of the file stay");
+    assert_eq!(at(1), [[0.0, 1.0, 0.0]; 3].map(Vec::from));
 }

@@ -78,7 +78,7 @@ impl Scene {
         let shown = || instances.iter().map(|instance| &self.meshes[instance.mesh].mesh);
         flat.attributes = self.flat_attributes(&instances, flat.positions.len());
         if shown().any(|mesh| !has_normals(mesh)) {
-            normals::compute_missing(&mut flat);
+            normals::compute_missing(&mut flat, |_| true);
         }
         flat.materials = self.flat_materials(&instances);
         if instances.len() > 1
@@ -125,6 +125,18 @@ impl Scene {
             [only] if only.transform == IDENTITY => Some(only.mesh),
             _ => None,
         }
+    }
+
+    /// Returns the names of the objects that [`Scene::flatten`] makes of an instance, where the scene
+    /// shows several: those of its mesh, or else one for the node.
+    pub fn names_of_instance(&self, instance: &MeshInstance) -> Cow<'_, [String]> {
+        let mesh = &self.meshes[instance.mesh];
+        if let Some(objects) = &mesh.mesh.objects {
+            return Cow::Borrowed(&objects.names);
+        }
+        let node = instance.node;
+        let named = [&self.nodes[node].name, &mesh.name].into_iter().find(|n| !n.is_empty());
+        Cow::Owned(vec![named.cloned().unwrap_or_else(|| format!("node {node}"))])
     }
 
     fn append(&self, flat: &mut Mesh, instance: &MeshInstance) {
@@ -207,17 +219,14 @@ impl Scene {
 
     fn flat_objects(&self, instances: &[MeshInstance]) -> Labels {
         let mut flat = Labels::default();
-        for &MeshInstance { node, mesh, .. } in instances {
-            let mesh = &self.meshes[mesh];
+        for instance in instances {
             let base = flat.names.len() as u32;
-            if let Some(objects) = &mesh.mesh.objects {
-                flat.names.extend_from_slice(&objects.names);
-                flat.of_face.extend(objects.of_face.iter().map(|label| base + label));
-                continue;
+            flat.names.extend_from_slice(&self.names_of_instance(instance));
+            let mesh = &self.meshes[instance.mesh].mesh;
+            match &mesh.objects {
+                Some(own) => flat.of_face.extend(own.of_face.iter().map(|label| base + label)),
+                None => flat.of_face.extend(mesh.faces.iter().map(|_| base)),
             }
-            let named = [&self.nodes[node].name, &mesh.name].into_iter().find(|n| !n.is_empty());
-            flat.names.push(named.cloned().unwrap_or_else(|| format!("node {node}")));
-            flat.of_face.extend(mesh.mesh.faces.iter().map(|_| base));
         }
         flat
     }

@@ -38,15 +38,16 @@ pub(crate) fn make_unit(scene: &mut Scene) {
     scene.notes.extend(notes.into_iter().filter(|note| note.count > 0));
 }
 
-/// Computes the normals of length 0 from the faces around them.
+/// Computes the normals of length 0 at the corners of these faces from the faces around them.
 ///
 /// Cost: linear.
-pub(crate) fn compute_missing(mesh: &mut Mesh) {
+pub(crate) fn compute_missing(mesh: &mut Mesh, is_meant: impl Fn(usize) -> bool) {
     let Some(mut attributes) = mesh.attributes.take() else { return };
+    let marks = wedges_of_faces(&attributes.corners, attributes.wedge_count, is_meant);
     for layer in attributes.layers.iter_mut().filter(|layer| layer.kind == LayerKind::Normal) {
-        let normals = layer.values.as_chunks::<3>().0.iter().enumerate();
-        let missing: Vec<usize> =
-            normals.filter(|(_, normal)| **normal == [0.0; 3]).map(|(wedge, _)| wedge).collect();
+        let normals = layer.values.as_chunks::<3>().0.iter().zip(&marks).enumerate();
+        let missing = normals.filter(|&(_, (normal, &marked))| marked && *normal == [0.0; 3]);
+        let missing: Vec<usize> = missing.map(|(wedge, _)| wedge).collect();
         put_face_normals(mesh, &attributes.corners, &missing, layer);
     }
     mesh.attributes = Some(attributes);
@@ -82,7 +83,11 @@ fn make_mesh_unit(mesh: &mut Mesh, rounding: f64, bare: &[bool]) -> Counts {
         if missing.is_empty() {
             continue;
         }
-        let is_of_file = wedges_of_file(mesh, &attributes.corners, attributes.wedge_count, bare);
+        let has_normals = |face: usize| {
+            let label = mesh.materials.as_ref().and_then(|labels| labels.of_face.get(face));
+            label.and_then(|&label| bare.get(label as usize)) != Some(&true)
+        };
+        let is_of_file = wedges_of_faces(&attributes.corners, attributes.wedge_count, has_normals);
         for wedge in put_face_normals(mesh, &attributes.corners, &missing, layer) {
             counts.computed += usize::from(is_of_file[wedge.index()]);
         }
@@ -91,19 +96,15 @@ fn make_mesh_unit(mesh: &mut Mesh, rounding: f64, bare: &[bool]) -> Counts {
     counts
 }
 
-/// Marks the wedges of faces whose material label is not marked in `bare`.
-fn wedges_of_file(
-    mesh: &Mesh,
+/// Marks the wedges at the corners of these faces.
+fn wedges_of_faces(
     corners: &[[WedgeId; 3]],
     wedge_count: usize,
-    bare: &[bool],
+    is_meant: impl Fn(usize) -> bool,
 ) -> Vec<bool> {
     let mut marks = vec![false; wedge_count];
-    for (face, wedges) in corners.iter().enumerate() {
-        let label = mesh.materials.as_ref().and_then(|labels| labels.of_face.get(face));
-        if label.and_then(|&label| bare.get(label as usize)) != Some(&true) {
-            wedges.iter().for_each(|wedge| marks[wedge.index()] = true);
-        }
+    for (_, wedges) in corners.iter().enumerate().filter(|&(face, _)| is_meant(face)) {
+        wedges.iter().for_each(|wedge| marks[wedge.index()] = true);
     }
     marks
 }

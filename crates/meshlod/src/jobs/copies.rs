@@ -1,22 +1,19 @@
 //! Scenes that show meshes many times: each mesh is measured once, in its own place, and lengths are
 //! scaled. A mesh is then compared with its own level alone, not with what other nodes show there.
 
-use glam::{DMat3, DMat4, DVec3};
+use glam::DMat4;
 use meshlod_io::{MeshInstance, Scene};
 use meshlod_measure::{
     Distance, DistanceOptions, MeasureError, OneSidedDistance, Place, PreparedSurface, area,
     surface_distance,
 };
 use meshlod_mesh::{FaceId, Mesh};
-use rayon::prelude::*;
+
+use crate::scene::place::{similarity, world_bounds};
 
 /// Number of times that a scene shows the faces of its meshes, on average, from which each mesh is
 /// measured once.
 const MANY: usize = 4;
-
-/// Largest difference between the scales along axes, as a part of them, and cosine between axes of a
-/// similarity.
-const SIMILAR: f64 = 1e-6;
 
 /// Least number of samples of a mesh, if there are as many for all.
 const LEAST_SAMPLES: usize = 1000;
@@ -67,8 +64,14 @@ impl Copies {
             let copies = of_meshes[shown.mesh].as_mut().expect("it is shown");
             copies.add(i, scale / unit);
         }
-        let diagonal = diagonal(scene, &instances);
+        let diagonal = world_bounds(scene).diagonal();
         Some(Self { instances, of_meshes, unit, diagonal })
+    }
+
+    /// Returns the largest instance of each mesh that is shown.
+    #[cfg(feature = "strip")]
+    pub fn largest(&self) -> impl Iterator<Item = MeshInstance> {
+        self.of_meshes.iter().flatten().map(|copies| self.instances[copies.largest])
     }
 
     /// Returns the mesh of another scene in the place of each mesh; `None` unless that shows as many,
@@ -162,42 +165,6 @@ impl CopiesOfMesh {
             (self.scale, self.largest) = (scale, instance);
         }
     }
-}
-
-/// Returns the diagonal of the bounding box of all instances.
-fn diagonal(scene: &Scene, instances: &[MeshInstance]) -> f64 {
-    let used: Vec<Vec<DVec3>> = scene
-        .meshes
-        .iter()
-        .map(|mesh| {
-            let used = mesh.mesh.used_vertices();
-            let places = mesh.mesh.positions.iter().zip(&used);
-            places.filter(|(_, used)| **used).map(|(&at, _)| at.into()).collect()
-        })
-        .collect();
-    let nothing = || [DVec3::INFINITY, DVec3::NEG_INFINITY];
-    let both = |[a, b]: [DVec3; 2], [c, d]: [DVec3; 2]| [a.min(c), b.max(d)];
-    let of_instance = |instance: &MeshInstance| {
-        let to_world = DMat4::from_cols_array_2d(&instance.transform);
-        let places = used[instance.mesh].iter().map(|at| to_world.transform_point3(*at));
-        places.fold(nothing(), |bounds, at| both(bounds, [at, at]))
-    };
-    let [min, max] = instances.par_iter().map(of_instance).reduce(nothing, both);
-    min.distance(max)
-}
-
-/// Returns the scale of an instance; `None` unless its transform is a similarity, maybe mirrored.
-fn similarity(instance: &MeshInstance) -> Option<f64> {
-    let linear = DMat3::from_mat4(DMat4::from_cols_array_2d(&instance.transform));
-    let axes = [linear.x_axis, linear.y_axis, linear.z_axis];
-    let scale = axes[0].length();
-    if !(scale > 0.0 && scale.is_finite()) {
-        return None;
-    }
-    let [x, y, z] = axes.map(|axis| axis / scale);
-    let are_unit = [y, z].iter().all(|axis| (axis.length() - 1.0).abs() <= SIMILAR);
-    let are_square = [x.dot(y), y.dot(z), z.dot(x)].iter().all(|cos| cos.abs() <= SIMILAR);
-    (are_unit && are_square).then_some(scale)
 }
 
 /// One direction of a distance, over all instances.

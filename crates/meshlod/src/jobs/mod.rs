@@ -55,8 +55,8 @@ pub use build::{
 };
 #[cfg(feature = "check")]
 pub use check::{
-    CONTACT_KINDS, CheckReport, CheckRequest, Contacts, Grade, Group, ObjectPair, Ownership, check,
-    check_each, is_touch,
+    CONTACT_KINDS, CheckReport, CheckRequest, Contacts, Grade, Group, ListedFinding, ObjectPair,
+    Ownership, check, check_each, check_scene, is_touch,
 };
 #[cfg(feature = "codec")]
 pub use compress::{

@@ -7,7 +7,7 @@ use meshlod_io::{ReadOptions, Scene, WriteOptions, read_bytes, write_to};
 
 use crate::jobs::faceless::refuse_points;
 use crate::jobs::{
-    About, CheckRequest, JobError, Remark, Watch, WrittenAs, begin, check, scene_run,
+    About, CheckRequest, JobError, Remark, Watch, WrittenAs, begin, check_scene, scene_run,
 };
 use crate::numbers::{count, plural};
 use crate::scene::FuseReport;
@@ -167,12 +167,12 @@ fn errors_left(
     written_as: Option<WrittenAs>,
     watch: &dyn Watch,
 ) -> Result<Summary, JobError> {
-    let mesh = match written_as {
-        Some(as_) => read_back(scene, as_, watch)?.into_mesh(),
-        None => scene.flatten(),
+    let scene = match written_as {
+        Some(as_) => read_back(scene, as_, watch)?,
+        None => scene.clone(),
     };
     let options = CheckOptions { kinds: Kinds::errors(), ..CheckOptions::default() };
-    Ok(check(&mesh, &CheckRequest { options, limit: 0 }, watch)?.summary)
+    Ok(check_scene(scene, &CheckRequest { options, limit: 0 }, watch)?.summary)
 }
 
 /// Writes a scene to memory and reads it, with default options.

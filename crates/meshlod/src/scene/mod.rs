@@ -22,6 +22,7 @@ pub(crate) mod locks;
 mod materials;
 pub(crate) mod place;
 mod simplifier;
+mod sizes;
 
 #[cfg(feature = "picture")]
 pub use appearance::{OwnedPaint, normals_of};
@@ -40,3 +41,4 @@ pub use materials::{ImageWarning, materials_of, single_sided_materials};
 pub(crate) use place::rounding_in_meshes;
 pub use place::{moved_at_most, rounding_of_level, shown_rounding, world_bounds};
 pub use simplifier::{SceneError, SceneSimplifier};
+pub use sizes::{ShownSizes, shown_sizes};

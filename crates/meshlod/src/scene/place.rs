@@ -4,25 +4,64 @@ use glam::{DMat3, DMat4, DVec3};
 use meshlod_io::{Format, MeshInstance, Precision, Scene};
 use meshlod_mesh::{Bounds, Mesh};
 use meshlod_simplify::Digits;
+use rayon::prelude::*;
 
 /// Returns the bounding box of a scene in world space, without vertices that no face uses.
 ///
-/// Equal to the box of [`Scene::flatten`], which is not built. Cost: linear in the faces shown.
+/// Equal to the box of [`Scene::flatten`], which is not built. Cost: linear in the vertices shown.
 pub fn world_bounds(scene: &Scene) -> Bounds {
-    let mut bounds = Bounds::EMPTY;
-    for placement in scene.instances() {
-        let world = DMat4::from_cols_array_2d(&placement.transform);
-        let mesh = &scene.meshes[placement.mesh].mesh;
-        if world == DMat4::IDENTITY {
-            bounds.merge(&mesh.bounds());
+    let points = used_points(scene);
+    let merged = |mut all: Bounds, own: Bounds| {
+        all.merge(&own);
+        all
+    };
+    let instances = scene.instances();
+    let own = instances.par_iter().map(|shown| instance_bounds(shown, &points[shown.mesh]));
+    own.reduce(|| Bounds::EMPTY, merged)
+}
+
+/// Returns the places that faces use of each mesh that a scene shows, in the space of the mesh.
+pub(crate) fn used_points(scene: &Scene) -> Vec<Vec<DVec3>> {
+    let mut points = vec![Vec::new(); scene.meshes.len()];
+    let mut is_known = vec![false; scene.meshes.len()];
+    for shown in scene.instances() {
+        if std::mem::replace(&mut is_known[shown.mesh], true) {
             continue;
         }
-        for vertex in mesh.faces.iter().flatten() {
-            let position = DVec3::from(mesh.positions[vertex.index()]);
-            bounds.add(world.transform_point3(position).to_array());
-        }
+        let mesh = &scene.meshes[shown.mesh].mesh;
+        let places = mesh.positions.iter().zip(mesh.used_vertices());
+        points[shown.mesh] = places.filter(|(_, used)| *used).map(|(at, _)| (*at).into()).collect();
+    }
+    points
+}
+
+/// Returns the bounding box, in world space, of an instance of a mesh with these points.
+pub(crate) fn instance_bounds(shown: &MeshInstance, points: &[DVec3]) -> Bounds {
+    let world = DMat4::from_cols_array_2d(&shown.transform);
+    let mut bounds = Bounds::EMPTY;
+    match world == DMat4::IDENTITY {
+        true => points.iter().for_each(|at| bounds.add(at.to_array())),
+        false => points.iter().for_each(|at| bounds.add(world.transform_point3(*at).to_array())),
     }
     bounds
+}
+
+/// Largest difference between the scales along axes, as a part of them, and cosine between axes of a
+/// similarity.
+const SIMILAR: f64 = 1e-6;
+
+/// Returns the scale of an instance; `None` unless its transform is a similarity, maybe mirrored.
+pub(crate) fn similarity(instance: &MeshInstance) -> Option<f64> {
+    let linear = DMat3::from_mat4(DMat4::from_cols_array_2d(&instance.transform));
+    let axes = [linear.x_axis, linear.y_axis, linear.z_axis];
+    let scale = axes[0].length();
+    if !(scale > 0.0 && scale.is_finite()) {
+        return None;
+    }
+    let [x, y, z] = axes.map(|axis| axis / scale);
+    let are_unit = [y, z].iter().all(|axis| (axis.length() - 1.0).abs() <= SIMILAR);
+    let are_square = [x.dot(y), y.dot(z), z.dot(x)].iter().all(|cos| cos.abs() <= SIMILAR);
+    (are_unit && are_square).then_some(scale)
 }
 
 /// Returns the number of faces that a scene shows, over all instances of its meshes.

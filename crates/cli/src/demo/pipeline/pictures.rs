@@ -52,9 +52,9 @@ impl<'p> StepPainter<'p> {
     }
 
     fn defects(&self, mesh: Mesh) -> Result<Picture, Failure> {
-        let inspected = Inspection::of(mesh, &CheckRequest::default(), true, &());
-        let Inspection { mesh, marks, .. } = inspected.map_err(Failure::new)?;
-        let drawing = Drawing::new(&mesh, marks.as_ref().expect("asked for"), Part::Whole);
+        let inspected = Inspection::marked(mesh, &CheckRequest::default(), &());
+        let drawn = inspected.map_err(Failure::new)?.drawn.expect("asked for");
+        let drawing = Drawing::new(&drawn.mesh, &drawn.marks, Part::Whole);
         drawing.picture(&self.camera).map_err(Failure::new)
     }
 

@@ -24,6 +24,7 @@ pub(super) fn figures<'f>(output: &Path, report: &'f CompressReport) -> Compress
 
 pub(super) fn text(output: &Path, report: &CompressReport) -> String {
     let mut text = fuse::to_text(report.fused.as_ref()) + &sizes(output, report);
+    text += &coinciding_text(report.vertices_coinciding.unwrap_or(0));
     if let Some(strips) = report.strips {
         text += &strips_text(strips, report);
     }
@@ -57,6 +58,17 @@ fn sizes(output: &Path, report: &CompressReport) -> String {
             saved => format!("{} less", percent(saved)),
         },
     )
+}
+
+fn coinciding_text(vertices: usize) -> String {
+    match vertices {
+        0 => String::new(),
+        1 => "1 vertex is rounded to the place of another; more bits keep it apart\n".into(),
+        many => format!(
+            "{} vertices are rounded to the places of others; more bits keep them apart\n",
+            count(many)
+        ),
+    }
 }
 
 fn pieces(pieces: PieceCount) -> String {

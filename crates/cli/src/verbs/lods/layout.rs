@@ -48,7 +48,7 @@ impl Lods {
     /// Names the files of a chain after the input if the output is a folder, with its suffix.
     ///
     /// # Errors
-    /// If the input has no name.
+    /// If the input has no name, and for formats that are only read.
     pub(super) fn name_in_folder(&mut self, session: &Session) -> Result<(), Failure> {
         let is_named = Format::of_path(&self.output).is_ok() || files::is_pipe(&self.output);
         if is_named || !files::is_folder(&self.output) {
@@ -59,7 +59,8 @@ impl Lods {
             return Err(Failure::usage(format_args!("{folder}: is a folder; name a file in it")));
         }
         let of_input = Format::of_path(&self.input).ok();
-        let format = session.format.or(of_input);
+        session.check_format()?;
+        let format = session.format().or(of_input);
         let is_fit = |format: &Format| ChainLayout::of(self.layout, *format).is_ok();
         let suffix = format.filter(is_fit).unwrap_or(Format::Glb);
         let stem = files::stem(&self.input);

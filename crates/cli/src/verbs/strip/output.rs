@@ -56,8 +56,8 @@ pub(super) fn write(
     }
 }
 
-/// Builds JSON lists of the vertices of each strip. They are numbered as in the input, or as in the
-/// fused mesh, whose positions are then listed; in a mesh with attributes or several objects or
+/// Builds JSON lists of the vertices of each strip. They are numbered as in the input, each of whose
+/// meshes may be there once, or as in the fused mesh, whose positions are then listed; in a mesh with attributes or several objects or
 /// materials they are wedges, each with where its values are.
 fn lists(Stripped { mesh, tree, levels, .. }: &Stripped, report: &StripReport) -> Value {
     let strips = |(strips, level): (&Strips, &StrippedLevelReport)| {
@@ -69,7 +69,10 @@ fn lists(Stripped { mesh, tree, levels, .. }: &Stripped, report: &StripReport) -
         })
     };
     let of_levels = levels.iter().zip(&report.levels).map(strips);
-    let mut lists = json!({ "levels": of_levels.collect::<Vec<_>>() });
+    let mut lists = json!({
+        "each_mesh_once": report.each_mesh_once,
+        "levels": of_levels.collect::<Vec<_>>(),
+    });
     if report.fused.is_some() {
         lists["positions"] = json!(mesh.positions);
     }

@@ -57,6 +57,9 @@ pub(super) fn text(report: &StripReport) -> String {
     if report.verified == Some(true) {
         text += "verified: the strips draw exactly the faces of each level\n";
     }
+    if report.each_mesh_once {
+        text += "each mesh is stripped once; counts are of all that is shown\n";
+    }
     let left_out = report.degenerate_faces + report.duplicate_faces;
     if left_out > 0 {
         text += &format!("left out: {}, degenerate or duplicate\n", faces(left_out));

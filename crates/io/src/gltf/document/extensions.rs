@@ -47,8 +47,9 @@ pub(crate) fn check_head(json: &Value) -> Result<(), ParseError> {
     }
 }
 
-/// Reports whether an extension is supported or leaves the geometry alone.
-fn is_understood(name: &str) -> bool {
+/// Reports whether an extension is supported or leaves the geometry alone: none of the latter refers
+/// to accessors.
+pub(crate) fn is_understood(name: &str) -> bool {
     const GEOMETRY: [&str; 6] =
         ["KHR_mesh_quantization", "MSFT_lod", INSTANCING, MESHOPT[0], MESHOPT[1], RTC];
     const OTHERS: [&str; 12] = [

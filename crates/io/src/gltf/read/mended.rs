@@ -172,7 +172,8 @@ pub(super) fn parents(json: &Value) -> Vec<Option<usize>> {
     parents
 }
 
-fn index(value: &Value) -> Option<usize> {
+/// Reads an index of an entry.
+pub(super) fn index(value: &Value) -> Option<usize> {
     value.as_u64().and_then(|index| usize::try_from(index).ok())
 }
 

@@ -1,10 +1,12 @@
 //! Contents of 3D tiles: a batched model (b3dm) around a GLB, and centres far from the origin.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use serde_json::{Value, json};
 
-use super::mended::{parents, shown_scene};
+use super::mended::{index, parents, shown_scene};
 use crate::error::ParseError;
-use crate::gltf::document::entries::extend;
+use crate::gltf::document::entries::{entries, extend};
 use crate::gltf::document::extensions::{drop_entry, forget_names};
 use crate::notes::Note;
 
@@ -93,26 +95,72 @@ impl Tile<'_> {
     }
 }
 
-/// Puts the nodes of the scene that is shown under one at a center, given with z up.
+/// Puts the roots of every scene under nodes at a center, given with z up.
 fn move_to(json: &mut Value, [x, y, z]: [f64; 3]) -> Result<(), ParseError> {
-    let nodes = json.get("nodes").and_then(Value::as_array).map_or(0, Vec::len);
+    let parents = parents(json);
     if json.get("scenes").is_none_or(|scenes| *scenes == json!([])) {
         // Then all nodes are shown.
-        let parents = parents(json);
         let roots: Vec<usize> = (0..parents.len()).filter(|&i| parents[i].is_none()).collect();
         json["scenes"] = json!([{ "nodes": roots }]);
     }
     let shown = shown_scene(json);
     let scenes = json.get_mut("scenes").and_then(Value::as_array_mut);
-    let scene = scenes.and_then(|scenes| scenes.get_mut(shown)?.as_object_mut());
-    let scene = scene.ok_or_else(|| ParseError::part("scenes", "there is no scene to move"))?;
-    let Some(roots) = scene.insert("nodes".to_owned(), json!([nodes])) else {
-        // An empty scene stays empty.
-        scene.remove("nodes");
-        return Ok(());
+    let Some(scenes) = scenes.filter(|scenes| scenes.get(shown).is_some_and(Value::is_object))
+    else {
+        return Err(ParseError::part("scenes", "there is no scene to move"));
     };
-    extend(json, "nodes", vec![json!({ "translation": [x, z, -y], "children": roots })]);
+    let groups = groups_of_roots(scenes, &parents)?;
+    let mut above = vec![None; parents.len()];
+    for (group, roots) in groups.iter().enumerate() {
+        roots.iter().for_each(|&root| above[root] = Some(parents.len() + group));
+    }
+    scenes.iter_mut().for_each(|scene| list_instead(scene, &above));
+    if !groups.is_empty() {
+        let node = |roots| json!({ "translation": [x, z, -y], "children": roots });
+        extend(json, "nodes", groups.into_iter().map(node).collect());
+    }
     Ok(())
+}
+
+/// Groups the roots by the scenes that list them, so that none gets two parents. A node that is the
+/// child of another is left out, as it moves with that one.
+fn groups_of_roots(
+    scenes: &[Value],
+    parents: &[Option<usize>],
+) -> Result<Vec<Vec<usize>>, ParseError> {
+    let mut scenes_of = vec![Vec::new(); parents.len()];
+    let mut order = Vec::new();
+    for (at, scene) in scenes.iter().enumerate() {
+        for root in entries(scene, "nodes").filter_map(index) {
+            let Some(parent) = parents.get(root) else {
+                let reason = format!("list node {root}, but there are only {}", parents.len());
+                return Err(ParseError::part("scenes", reason));
+            };
+            if parent.is_some() || scenes_of[root].last() == Some(&at) {
+                continue;
+            }
+            if scenes_of[root].is_empty() {
+                order.push(root);
+            }
+            scenes_of[root].push(at);
+        }
+    }
+    let mut groups: BTreeMap<_, Vec<usize>> = BTreeMap::new();
+    for root in order {
+        groups.entry(std::mem::take(&mut scenes_of[root])).or_default().push(root);
+    }
+    Ok(groups.into_values().collect())
+}
+
+/// Makes a scene list the node above each of its roots, once, instead of the root.
+fn list_instead(scene: &mut Value, above: &[Option<usize>]) {
+    let Some(listed) = scene.get_mut("nodes").and_then(Value::as_array_mut) else { return };
+    let mut added = BTreeSet::new();
+    listed.retain_mut(|root| {
+        let Some(node) = index(root).and_then(|root| above[root]) else { return true };
+        *root = node.into();
+        added.insert(node)
+    });
 }
 
 fn numbers(value: &Value) -> Option<[f64; 3]> {
@@ -176,6 +224,23 @@ mod tests {
     }
 
     #[test]
+    fn every_scene_is_moved_and_shared_roots_once() {
+        let mut json = json!({
+            "extensions": {RTC: {"center": [1, 2, 3]}},
+            "scene": 1,
+            "scenes": [{"nodes": [3, 0]}, {"nodes": [0, 1, 2]}, {"nodes": [4]}, {}],
+            "nodes": [{}, {"children": [4]}, {}, {}, {}],
+        });
+        unwrap(b"{}").unwrap().apply_to(&mut json).unwrap();
+        let scenes = json!([{"nodes": [5, 6]}, {"nodes": [6, 7]}, {"nodes": [4]}, {}]);
+        assert_eq!(json["scenes"], scenes, "node 4 moves with its parent");
+        let moved = |roots: [usize; 1]| json!({"translation": [1.0, 3.0, -2.0], "children": roots});
+        assert_eq!(json["nodes"][5], moved([3]));
+        assert_eq!(json["nodes"][6], moved([0]));
+        assert_eq!(json["nodes"][7]["children"], json!([1, 2]));
+    }
+
+    #[test]
     fn what_cannot_be_moved_is_an_error() {
         let rtc = |center: Value| json!({ RTC: { "center": center } });
         let plain = unwrap(b"{}").unwrap();
@@ -184,6 +249,7 @@ mod tests {
             json!({ "extensions": rtc(json!([1, "a", 2, 3])), "nodes": [{}] }),
             json!({ "extensions": rtc(json!([1, 2, 3])), "scenes": {"0": {"nodes": [0]}} }),
             json!({ "extensions": rtc(json!([1, 2, 3])), "scene": 7, "scenes": [{"nodes": [0]}] }),
+            json!({ "extensions": rtc(json!([1, 2, 3])), "scenes": [{"nodes": [0]}] }),
         ] {
             assert!(plain.apply_to(&mut json).is_err(), "{json}");
         }

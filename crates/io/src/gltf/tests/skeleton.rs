@@ -139,6 +139,9 @@ fn a_skeleton_has_no_geometry_and_key_frames_apart() {
     assert_valid(&glb);
     let json = json_of(&glb);
     assert!(json.get("animations").is_none() && json["skins"][0]["joints"].is_array());
+    // Attributes, indices and matrices; a view for each, and one for the image.
+    let count = |key: &str| json[key].as_array().unwrap().len();
+    assert_eq!([count("accessors"), count("bufferViews")], [6, 7]);
     assert!(json["accessors"].as_array().unwrap().iter().all(|a| a["count"].as_u64() > Some(0)));
     // Without being told that they are lost, there is an error.
     let lost = Skeleton { animations: Vec::new(), ..skeleton };

@@ -24,8 +24,9 @@ const TRIANGLE_STRIP: u32 = 5;
 /// Encodes a scene as a GLB file with triangle strips in place of faces.
 ///
 /// `strips` has an entry for each of the scene's [instances](Scene::instances), in the space of its
-/// mesh. A mesh that several nodes show is written once for each. A primitive has the same vertices
-/// at all levels. Levels are linked by `MSFT_lod`; everything else is written as by
+/// mesh: a mesh that several nodes show is then written once for each. Or it has fewer, one for each
+/// mesh that the scene shows, in their order, which all its nodes share. A primitive has the same
+/// vertices at all levels. Levels are linked by `MSFT_lod`; everything else is written as by
 /// [`write_glb`](super::write_glb).
 ///
 /// # Errors
@@ -81,11 +82,7 @@ fn finish(
     mut replacer: Replacer<'_>,
     strips: &[StripMesh],
 ) -> Result<Output, Unsupported> {
-    let own = own_meshes(&mut json, scene);
-    if own.len() != strips.len() {
-        let reason = format!("are of {} instances, the scene has {}", strips.len(), own.len());
-        return Err(Unsupported::new("strips", reason));
-    }
+    let own = meshes_of_strips(&mut json, scene, strips.len())?;
     let count = json["meshes"].as_array().map_or(0, Vec::len);
     let mut coarser = vec![Vec::new(); count];
     for (&index, strips) in own.iter().zip(strips) {
@@ -110,6 +107,30 @@ fn finish(
             Ok(Output { json, builder: replacer.builder, report: CompressionReport::default() })
         }
         _ => Err(Unsupported::new("source", "is not a JSON object")),
+    }
+}
+
+/// Returns the indices of the meshes in the document that get so many strips: those that the scene
+/// shows, or one for each instance.
+fn meshes_of_strips(
+    json: &mut Value,
+    scene: &Scene,
+    strips: usize,
+) -> Result<Vec<usize>, Unsupported> {
+    let instances = scene.instances();
+    if strips == instances.len() {
+        return Ok(own_meshes(json, scene));
+    }
+    let mut shown: Vec<usize> = instances.iter().map(|instance| instance.mesh).collect();
+    shown.sort_unstable();
+    shown.dedup();
+    match strips == shown.len() {
+        true => Ok(shown),
+        false => {
+            let (all, shown) = (instances.len(), shown.len());
+            let reason = format!("are {strips}, the scene has {all} instances of {shown} meshes");
+            Err(Unsupported::new("strips", reason))
+        }
     }
 }
 

@@ -28,32 +28,55 @@ pub const CONTACT_KINDS: [(IntersectionKind, &str); 4] = [
 
 /// Contacts of a mesh by pairs of objects that meet.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Contacts(BTreeMap<[ObjectId; 2], ObjectPair>);
+pub struct Contacts {
+    pairs: BTreeMap<[ObjectId; 2], ObjectPair>,
+    /// Pairs that copies of a mesh have as those that are listed, and how many of them only touch.
+    unlisted: usize,
+    unlisted_touching: usize,
+}
 
 impl Contacts {
     pub(super) fn add(&mut self, objects: [ObjectId; 2], faces: [FaceId; 2], touch: Intersection) {
         let new = || ObjectPair { counts: [0; 4], deepest: touch, faces };
-        let pair = self.0.entry(objects).or_insert_with(new);
+        let pair = self.pairs.entry(objects).or_insert_with(new);
         pair.counts[touch.kind as usize] += 1;
         if touch.depth > pair.deepest.depth {
             (pair.deepest, pair.faces) = (touch, faces);
         }
     }
 
+    /// Adds a pair of objects that meet.
+    pub(super) fn add_pair(&mut self, objects: [ObjectId; 2], pair: ObjectPair) {
+        self.pairs.insert(objects, pair);
+    }
+
+    /// Counts pairs of objects that meet as a listed pair does, and are not listed.
+    pub(super) fn count_more(&mut self, pair: &ObjectPair, count: usize) {
+        self.unlisted += count;
+        self.unlisted_touching += if pair.only_touches() { count } else { 0 };
+    }
+
     /// Returns the number of pairs of objects that meet.
     pub fn len(&self) -> usize {
-        self.0.len()
+        self.pairs.len() + self.unlisted
+    }
+
+    /// Returns the number of pairs of objects that touch, but nowhere pass through each other.
+    pub fn touching(&self) -> usize {
+        let listed = self.pairs.values().filter(|pair| pair.only_touches()).count();
+        listed + self.unlisted_touching
     }
 
     /// Returns true if no two objects meet.
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.len() == 0
     }
 
     /// Returns the pairs of objects, those with the most touching faces first; ties are broken by
-    /// object ids.
+    /// object ids. Of copies of a mesh, the first have their pairs listed, at least as many as the
+    /// request lists findings.
     pub fn by_size(&self) -> Vec<([ObjectId; 2], &ObjectPair)> {
-        let mut pairs: Vec<_> = self.0.iter().map(|(&objects, pair)| (objects, pair)).collect();
+        let mut pairs: Vec<_> = self.pairs.iter().map(|(&objects, pair)| (objects, pair)).collect();
         pairs.sort_by_key(|(_, pair)| std::cmp::Reverse(pair.faces()));
         pairs
     }

@@ -38,6 +38,14 @@ impl Grade {
     }
 }
 
+impl Group {
+    /// Returns the group of contacts of a kind.
+    pub(super) fn of_contact(kind: IntersectionKind) -> Self {
+        let grade = if is_touch(kind) { Grade::Touch } else { Grade::Warning };
+        Self { grade, kind: Kind::Contact }
+    }
+}
+
 /// Objects that the vertices and faces of a mesh belong to.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -62,6 +70,16 @@ impl Ownership {
         Self { objects, of_vertex }
     }
 
+    /// Lists objects alone, without what belongs to them.
+    pub(super) fn of_objects(objects: Objects) -> Self {
+        Self { objects, of_vertex: Vec::new() }
+    }
+
+    /// Returns the object of the first face at a vertex.
+    pub(super) fn of_vertex(&self, vertex: VertexId) -> Option<ObjectId> {
+        self.of_vertex.get(vertex.index()).copied().flatten()
+    }
+
     /// Returns the group of a finding.
     pub fn group(&self, finding: &Finding) -> Group {
         let kind = finding.kind();
@@ -75,7 +93,7 @@ impl Ownership {
 
     /// Returns the objects that a finding concerns, each once, in the order of the finding's ids.
     pub fn of(&self, finding: &Finding) -> Vec<ObjectId> {
-        let vertex = |v: &VertexId| self.of_vertex.get(v.index()).copied().flatten();
+        let vertex = |v: &VertexId| self.of_vertex(*v);
         let face = |f: &FaceId| self.objects.of_face.get(f.index()).copied();
         let mut found: Vec<ObjectId> = match finding {
             Finding::BadAttributes { .. } | Finding::Crowded { .. } => Vec::new(),

@@ -1,19 +1,21 @@
 //! Checking a mesh: every finding, by urgency and place, and the contacts between objects.
 
 mod contacts;
+mod copies;
 mod group;
 mod report;
 
 use std::ops::ControlFlow;
 
-use meshlod_check::{CheckOptions, Finding};
+use meshlod_check::{CheckOptions, Finding, Objects};
+use meshlod_io::Scene;
 use meshlod_mesh::Mesh;
 
 use crate::jobs::{JobError, Watch};
 
 pub use contacts::{CONTACT_KINDS, Contacts, ObjectPair};
 pub use group::{Grade, Group, Ownership, is_touch};
-pub use report::CheckReport;
+pub use report::{CheckReport, ListedFinding};
 
 /// Request to check a mesh.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,9 +59,42 @@ pub fn check_each(
     visit: &mut dyn FnMut(&Ownership, &Finding),
 ) -> Result<CheckReport, JobError> {
     watch.stage("checking");
-    let mut report = CheckReport::new(mesh, request);
+    look_through(mesh, request, watch, visit)
+}
+
+/// Checks all that a scene shows, as [`check`] does the mesh that it is [merged](Scene::flatten) into,
+/// with the ids of that.
+///
+/// A scene that shows its meshes many times, in similar shapes, is not merged. Each mesh is checked
+/// once, in its own place: its findings count for every instance, and are listed for the first.
+/// Contacts of instances are found where their bounding boxes meet. Where too many do, the report has
+/// a finding of the kind `crowded`, and `watch` hears how many instances were not compared.
+///
+/// # Errors
+/// [`JobError::Cancelled`], and copies with more than 2^32 faces or vertices in all.
+pub fn check_scene(
+    scene: Scene,
+    request: &CheckRequest,
+    watch: &dyn Watch,
+) -> Result<CheckReport, JobError> {
+    watch.stage("checking");
+    match copies::PlacedInstances::of(&scene)? {
+        Some(placed) => copies::check(&scene, &placed, request, watch),
+        None => look_through(&scene.into_mesh(), request, watch, &mut |_, _| {}),
+    }
+}
+
+/// Checks a mesh, and shows `visit` every finding.
+fn look_through(
+    mesh: &Mesh,
+    request: &CheckRequest,
+    watch: &dyn Watch,
+    visit: &mut dyn FnMut(&Ownership, &Finding),
+) -> Result<CheckReport, JobError> {
+    let owners = Ownership::new(mesh, Objects::of(mesh, request.options.objects));
+    let mut report = CheckReport::new([mesh.positions.len(), mesh.faces.len()], owners, request);
     let flow = meshlod_check::check(mesh, &request.options, &mut |finding| {
-        report.add(finding);
+        report.add(mesh, finding);
         visit(&report.owners, finding);
         match watch.is_cancelled() {
             true => ControlFlow::Break(()),

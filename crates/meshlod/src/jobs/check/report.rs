@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use meshlod_check::{Finding, Kind, Kinds, ObjectId, Objects, Severity, Summary};
+use meshlod_check::{Finding, Kind, Kinds, ObjectId, Severity, Summary};
 use meshlod_mesh::Mesh;
 
 use super::{CheckRequest, Contacts, Grade, Group, Ownership};
@@ -13,7 +13,12 @@ use super::{CheckRequest, Contacts, Grade, Group, Ownership};
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct CheckReport {
-    /// The objects of the mesh, with the owners of its vertices.
+    /// Number of vertices.
+    pub vertices: usize,
+    /// Number of faces.
+    pub faces: usize,
+    /// The objects of the mesh, with the owners of its vertices; without the owners in a scene of
+    /// [copies](super::check_scene).
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub owners: Ownership,
     /// Kinds that were looked for.
@@ -29,34 +34,76 @@ pub struct CheckReport {
     pub contacts: Contacts,
     #[cfg_attr(feature = "serde", serde(skip))]
     groups: BTreeMap<Group, usize>,
+    /// Groups, objects and places of the listed findings.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    details: Vec<Details>,
+}
+
+/// Group, objects and place of a finding.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Details {
+    pub group: Group,
+    pub objects: Vec<ObjectId>,
+    pub place: Option<[f64; 3]>,
+}
+
+/// A finding that a report lists.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ListedFinding<'r> {
+    /// The finding, with its ids.
+    pub finding: &'r Finding,
+    /// Kind and urgency.
+    pub group: Group,
+    /// Objects that it concerns, each once, in the order of the finding's ids.
+    pub objects: &'r [ObjectId],
+    /// Position, as [`Finding::place`] returns it.
+    pub place: Option<[f64; 3]>,
 }
 
 impl CheckReport {
-    /// Creates the report of a check that has found nothing yet.
-    pub(super) fn new(mesh: &Mesh, request: &CheckRequest) -> Self {
-        let CheckRequest { options, limit } = request;
+    /// Creates the report of a check of so many vertices and faces that has found nothing yet.
+    pub(super) fn new(
+        [vertices, faces]: [usize; 2],
+        owners: Ownership,
+        request: &CheckRequest,
+    ) -> Self {
         Self {
-            owners: Ownership::new(mesh, Objects::of(mesh, options.objects)),
-            kinds: options.kinds,
+            vertices,
+            faces,
+            owners,
+            kinds: request.options.kinds,
             summary: Summary::default(),
             findings: Vec::new(),
-            limit: *limit,
+            limit: request.limit,
             contacts: Contacts::default(),
             groups: BTreeMap::new(),
+            details: Vec::new(),
         }
     }
 
-    pub(super) fn add(&mut self, finding: &Finding) {
-        self.summary.add(finding);
+    /// Adds a finding of the mesh that is checked.
+    pub(super) fn add(&mut self, mesh: &Mesh, finding: &Finding) {
         let group = self.owners.group(finding);
-        let count = self.groups.entry(group).or_default();
-        *count += 1;
-        if *count <= self.limit.max(1) {
-            self.findings.push(finding.clone());
+        self.count_more(group, 1);
+        if self.groups[&group] <= self.limit.max(1) {
+            let (objects, place) = (self.owners.of(finding), finding.place(mesh));
+            self.list(finding.clone(), Details { group, objects, place });
         }
         if let &Finding::Contact { objects, faces, intersection } = finding {
             self.contacts.add(objects, faces, intersection);
         }
+    }
+
+    /// Counts findings of a group.
+    pub(super) fn count_more(&mut self, group: Group, count: usize) {
+        self.summary.add_many(group.kind, count);
+        *self.groups.entry(group).or_default() += count;
+    }
+
+    /// Lists a finding, which is counted by itself.
+    pub(super) fn list(&mut self, finding: Finding, details: Details) {
+        self.findings.push(finding);
+        self.details.push(details);
     }
 
     /// Returns true if nothing was found.
@@ -79,9 +126,19 @@ impl CheckReport {
         self.groups.iter().map(|(&group, &count)| (group, count))
     }
 
+    /// Iterates over the listed findings with their groups, objects and places.
+    pub fn listed(&self) -> impl Iterator<Item = ListedFinding<'_>> {
+        self.findings.iter().zip(&self.details).map(|(finding, details)| ListedFinding {
+            finding,
+            group: details.group,
+            objects: &details.objects,
+            place: details.place,
+        })
+    }
+
     /// Iterates over the first findings of a group; at least one.
-    pub fn of_group(&self, group: Group) -> impl Iterator<Item = &Finding> {
-        self.findings.iter().filter(move |finding| self.owners.group(finding) == group)
+    pub fn of_group(&self, group: Group) -> impl Iterator<Item = ListedFinding<'_>> {
+        self.listed().filter(move |found| found.group == group)
     }
 
     /// Returns the number of findings of a kind that are not listed.

@@ -1,5 +1,6 @@
 //! Compression of scenes into files to draw from or to send.
 
+mod coinciding;
 mod gltf;
 mod part_strips;
 mod place;

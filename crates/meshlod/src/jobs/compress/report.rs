@@ -16,6 +16,9 @@ use crate::scene::FuseReport;
 pub struct CompressReport {
     /// Number of vertices in the file.
     pub vertices: usize,
+    /// Number of vertices that rounding has put at the place of another one; `None` for glTF.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub vertices_coinciding: Option<usize>,
     /// Number of faces in the file; degenerate faces of the scene are left out.
     pub faces: usize,
     /// Size of the positions.
@@ -89,6 +92,8 @@ pub(super) struct Packed {
     /// Bytes of the rest of the scene.
     pub scene: usize,
     pub vertices: usize,
+    /// Vertices at the place of another one, if they are counted.
+    pub coinciding: Option<usize>,
     pub faces: usize,
     pub pieces: PieceCount,
     pub layers: Vec<LayerReport>,
@@ -108,6 +113,7 @@ impl Packed {
         let surface = self.bytes.len() - self.scene;
         let report = CompressReport {
             vertices: self.vertices,
+            vertices_coinciding: self.coinciding,
             faces: self.faces,
             bytes_positions,
             bytes_connectivity,

@@ -6,6 +6,7 @@ use meshlod_codec::{
 use meshlod_mesh::{AttributeBounds, Mesh};
 use meshlod_strip::StripQuality;
 
+use super::coinciding::coinciding_vertices;
 use super::part_strips::with_strips;
 use super::report::{Packed, PieceCount, StripCounts};
 use super::request::PositionScheme;
@@ -22,6 +23,7 @@ pub(super) fn pack(
 ) -> Result<Packed, JobError> {
     let (scheme, strips) = spelled(scheme);
     let done = meshlod_codec::compress(mesh, scheme, target, bounds).map_err(refused)?;
+    let coinciding = coinciding_vertices(mesh, done.compressed.decode())?;
     let compressed = match strips {
         Some(quality) => with_strips(done.compressed, quality).map_err(JobError::input)?,
         None => done.compressed,
@@ -32,6 +34,7 @@ pub(super) fn pack(
         sizes: [sizes.positions, sizes.connectivity, sizes.attributes + sizes.labels],
         scene: sizes.resources,
         vertices: compressed.vertices(),
+        coinciding: Some(coinciding),
         faces: compressed.faces(),
         pieces: match scheme {
             Scheme::Parts(_) => PieceCount::Parts(compressed.blocks()),

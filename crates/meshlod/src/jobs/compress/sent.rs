@@ -1,11 +1,12 @@
 //! Compressed `.mlz` files for transmission.
 
 use meshlod_codec::{
-    CompressionTarget, Lattice, Transport, TransportError, TransportOptions, TransportQuantization,
-    TransportSizes,
+    CompressionTarget, Lattice, Transport, TransportError, TransportFile, TransportOptions,
+    TransportQuantization, TransportSizes,
 };
 use meshlod_mesh::{AttributeBounds, Mesh};
 
+use super::coinciding::coinciding_vertices;
 use super::report::{Packed, PieceCount};
 use super::resident::refused;
 use crate::jobs::JobError;
@@ -29,10 +30,12 @@ pub(super) fn pack(
         TransportError::Bits(_) => JobError::request("", error),
         error => JobError::input(error),
     })?;
+    let decoded = TransportFile::open(&done.bytes).and_then(|file| file.decode());
     Ok(Packed {
         sizes: sizes(&done),
         scene: done.sizes.resources,
         vertices: done.vertices,
+        coinciding: Some(coinciding_vertices(mesh, decoded)?),
         faces: done.faces,
         pieces: PieceCount::Blocks(done.blocks),
         strips: None,

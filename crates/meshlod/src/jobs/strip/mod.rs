@@ -1,5 +1,6 @@
 //! Triangle strips of the levels of a scene, and strips that follow a cut.
 
+mod each_mesh;
 mod follow;
 mod meshes;
 mod report;
@@ -14,11 +15,12 @@ use meshlod_io::Scene;
 use meshlod_io::gltf::StripMesh;
 use meshlod_mesh::Mesh;
 use meshlod_simplify::{Options, SimplifyError, Target};
-use meshlod_strip::{Filter, MergeTree, SkipStrip, StripStatistics, Strips, stripify};
+use meshlod_strip::{Filter, MergeTree, SkipStrip, StripStatistics, StripWedge, Strips, stripify};
 
+use self::each_mesh::EachMesh;
 pub use self::follow::{FollowReport, FollowRequest, FollowedCut, follow_strips};
 use self::meshes::scene_strips;
-use self::report::odd_faces;
+use self::report::Odd;
 pub use self::report::{StripReport, StrippedLevelReport};
 pub use self::request::{StripFilter, StripRequest};
 use self::request::{check_sizes, options, quality_name, size_text};
@@ -34,12 +36,14 @@ use crate::scene::place::shown_faces;
 pub struct Stripped {
     /// The scene, fused if that was asked for.
     pub scene: Scene,
-    /// The scene merged into one mesh.
+    /// The scene merged into one mesh, or each of its meshes once.
     pub mesh: Mesh,
     /// Contractions of that mesh down to the coarsest level.
     pub tree: MergeTree,
     /// Strips of each level, in the order of the request; their vertices are those of the tree.
     pub levels: Vec<Strips>,
+    /// The scene with each mesh once, if these were stripped.
+    each_mesh: Option<Scene>,
 }
 
 impl Stripped {
@@ -54,14 +58,17 @@ impl Stripped {
             .collect();
         drawn.sort_by_key(|&(triangles, _)| std::cmp::Reverse(triangles));
         let strips: Vec<&Strips> = drawn.into_iter().map(|(_, level)| level).collect();
-        scene_strips(&self.scene, &self.mesh, &self.tree, &strips)
+        let stripped = self.each_mesh.as_ref().unwrap_or(&self.scene);
+        scene_strips(stripped, &self.mesh, &self.tree, &strips)
     }
 }
 
 /// Makes triangle strips of a scene, merged into one mesh, and of levels of it.
 ///
 /// Levels come from half-edge contractions, so that all have vertices of the mesh. Strips never run
-/// across instances or materials. [`strip`](crate::strip) has the parts.
+/// across instances or materials. Of a scene that shows its meshes many times, in similar shapes, each
+/// mesh is stripped once, unless instances are to be fused or locked where they meet; counts are of
+/// all instances. [`strip`](crate::strip) has the parts.
 ///
 /// # Errors
 /// Sizes out of range, locks of another scene, and a scene without a face that is not degenerate.
@@ -89,32 +96,26 @@ pub fn strip(
         watch.stage("fusing");
         FuseReport::of(&mut scene)
     });
-    remark_copies(&scene, watch);
+    let each_mesh = EachMesh::of(&scene, request);
+    if each_mesh.is_none() {
+        remark_copies(&scene, watch);
+    }
     if matches!(request.constraints.locks, VertexLocking::Contacts(_)) {
         watch.stage("looking for contacts");
     }
-    let flat = request.constraints.flatten(scene.clone(), Options::default());
+    let placed = each_mesh.as_ref().map_or(&scene, |own| &own.scene).clone();
+    let flat = request.constraints.flatten(placed, Options::default());
     let (mesh, options) = flat.map_err(JobError::input)?;
-    let input_faces = fused.as_ref().map_or(mesh.faces.len(), |fused| fused.input_faces);
+    let faces = if each_mesh.is_some() { shown_faces(&scene) } else { mesh.faces.len() };
+    let input_faces = fused.as_ref().map_or(faces, |fused| fused.input_faces);
     check_sizes(&request.levels, input_faces)?;
-    let input = FlatScene { mesh, options, fused };
-    let mut source = StripSource::new(input, request, watch)?;
-    let mut levels = Vec::new();
-    let mut reports = Vec::new();
-    for &size in &request.levels {
-        begin(watch, &format!("stripping {}", size_text(size)))?;
-        let (strips, report) = source.level(size, request);
-        levels.push(strips);
-        reports.push(report);
-    }
-    if request.verify {
-        begin(watch, "verifying")?;
-        verify::compare(&source.input, &source.tree, &levels, &mut reports)
-            .map_err(JobError::input)?;
-    }
+    let input = FlatScene { mesh, options, fused, faces };
+    let mut source = StripSource::new(input, each_mesh, request, watch)?;
+    let (levels, reports) = source.levels(request, watch)?;
     let report = source.report(request, input_faces, reports);
-    let StripSource { input: FlatScene { mesh, .. }, tree, .. } = source;
-    Ok((Stripped { scene, mesh, tree, levels }, report))
+    let StripSource { input: FlatScene { mesh, .. }, tree, each_mesh, .. } = source;
+    let each_mesh = each_mesh.map(|own| own.scene);
+    Ok((Stripped { scene, mesh, tree, levels, each_mesh }, report))
 }
 
 /// Multiple of the faces of meshes from which on a scene that shows them is warned of.
@@ -144,20 +145,26 @@ struct FlatScene {
     mesh: Mesh,
     options: Options,
     fused: Option<FuseReport>,
+    /// Number of faces that are shown.
+    faces: usize,
 }
 
 impl FlatScene {
     /// Returns the largest number of faces of a level; ratios are of the faces before fusing.
     fn faces_of(&self, size: Target) -> usize {
         let size = self.fused.map_or(size, |fused| fused.target(size));
-        size.faces_of(self.mesh.faces.len())
+        size.faces_of(self.faces)
     }
 }
 
 /// Mesh and contractions that all levels come from.
 struct StripSource {
     input: FlatScene,
+    /// The meshes, if each is stripped once.
+    each_mesh: Option<EachMesh>,
     tree: MergeTree,
+    /// Vertices of the mesh that those of the tree are, if each mesh is stripped once.
+    wedges: Vec<StripWedge>,
     simplify_time: Duration,
     /// Strips of the whole mesh that filters shorten.
     skip: Option<SkipStrip>,
@@ -166,12 +173,20 @@ struct StripSource {
 
 impl StripSource {
     /// Records the contractions down to the coarsest level, and strips the whole mesh for a filter.
-    fn new(input: FlatScene, request: &StripRequest, watch: &dyn Watch) -> Result<Self, JobError> {
+    fn new(
+        input: FlatScene,
+        each_mesh: Option<EachMesh>,
+        request: &StripRequest,
+        watch: &dyn Watch,
+    ) -> Result<Self, JobError> {
         let whole = MergeTree::new(&input.mesh);
         if whole.faces().is_empty() {
             return Err(JobError::input(SimplifyError::AllDegenerate(input.mesh.faces.len())));
         }
+        // Levels of so few faces each show no more than was asked for.
+        let times = each_mesh.as_ref().map_or(1, EachMesh::most_times);
         let coarsest = request.levels.iter().map(|&size| input.faces_of(size)).min();
+        let coarsest = coarsest.map(|faces| (faces / times).max(1));
         let (tree, simplify_time) = match coarsest {
             Some(faces) if faces < whole.faces().len() => {
                 begin(watch, "simplifying")?;
@@ -186,12 +201,59 @@ impl StripSource {
         let start = Instant::now();
         let strips = || stripify(tree.faces(), &options(request.quality));
         let skip = request.filter.map(|_| SkipStrip::new(tree.clone(), strips()));
-        Ok(Self { input, tree, simplify_time, skip, strip_time: start.elapsed() })
+        let strip_time = start.elapsed();
+        let wedges = each_mesh.as_ref().map(|_| tree.wedges(&input.mesh).into_owned());
+        let wedges = wedges.unwrap_or_default();
+        Ok(Self { input, each_mesh, tree, wedges, simplify_time, skip, strip_time })
+    }
+
+    /// Strips all levels, compares them if that is asked for, and reports on what they show.
+    fn levels(
+        &mut self,
+        request: &StripRequest,
+        watch: &dyn Watch,
+    ) -> Result<(Vec<Strips>, Vec<StrippedLevelReport>), JobError> {
+        let (mut levels, mut reports) = (Vec::new(), Vec::new());
+        for &size in &request.levels {
+            begin(watch, &format!("stripping {}", size_text(size)))?;
+            let (strips, report) = self.level(size, request);
+            levels.push(strips);
+            reports.push(report);
+        }
+        if request.verify {
+            begin(watch, "verifying")?;
+            verify::compare(&self.input, &self.tree, &levels, &mut reports)
+                .map_err(JobError::input)?;
+        }
+        if let Some(own) = &self.each_mesh {
+            for ((&size, strips), report) in request.levels.iter().zip(&levels).zip(&mut reports) {
+                let faces = self.input.faces_of(size);
+                let level = self.tree.level(self.contractions_to(faces));
+                let sent = own.statistics(&self.wedges, strips);
+                report.show(faces, own.shown(&self.wedges, &level), &sent);
+            }
+        }
+        Ok((levels, reports))
+    }
+
+    /// Returns the number of contractions until at most so many faces are shown.
+    fn contractions_to(&self, faces: usize) -> usize {
+        let Some(own) = &self.each_mesh else { return self.tree.contractions_to(faces) };
+        let shown = |at: usize| own.shown(&self.wedges, &self.tree.level(at));
+        let (mut low, mut high) = (0, self.tree.contractions());
+        while low < high {
+            let middle = (low + high) / 2;
+            match shown(middle) <= faces {
+                true => high = middle,
+                false => low = middle + 1,
+            }
+        }
+        low
     }
 
     fn level(&mut self, size: Target, request: &StripRequest) -> (Strips, StrippedLevelReport) {
         let faces = self.input.faces_of(size);
-        let contractions = self.tree.contractions_to(faces);
+        let contractions = self.contractions_to(faces);
         let own = self.skip.is_none().then(|| self.tree.level(contractions));
         let start = Instant::now();
         let strips = match (&mut self.skip, request.filter) {
@@ -219,15 +281,18 @@ impl StripSource {
         input_faces: usize,
         levels: Vec<StrippedLevelReport>,
     ) -> StripReport {
-        let [degenerate_faces, duplicate_faces, non_manifold_edges, inconsistent_edges] =
-            odd_faces(&self.input.mesh, &self.tree);
+        let odd = match &self.each_mesh {
+            Some(own) => own.odd_faces(&self.wedges, &self.tree),
+            None => Odd::of_mesh(&self.input.mesh, &self.tree),
+        };
         StripReport {
             input_faces,
+            each_mesh_once: self.each_mesh.is_some(),
             fused: self.input.fused,
-            degenerate_faces,
-            duplicate_faces,
-            non_manifold_edges,
-            inconsistent_edges,
+            degenerate_faces: odd.degenerate,
+            duplicate_faces: odd.duplicate,
+            non_manifold_edges: odd.non_manifold_edges,
+            inconsistent_edges: odd.inconsistent_edges,
             filter: request.filter,
             quality: quality_name(request.quality),
             effort: request.effort,

@@ -14,6 +14,9 @@ use crate::scene::FuseReport;
 pub struct StripReport {
     /// Number of faces before fusing.
     pub input_faces: usize,
+    /// True if each mesh was stripped once, however many nodes show it. All counts are of what is
+    /// shown, but for missing and extra triangles.
+    pub each_mesh_once: bool,
     /// Changes made by fusing, if it was asked for.
     pub fused: Option<FuseReport>,
     /// Number of degenerate faces, which are left out.
@@ -93,6 +96,13 @@ impl StrippedLevelReport {
         }
     }
 
+    /// Replaces the counts by those of all instances, for a level of at most so many faces.
+    pub(super) fn show(&mut self, faces: usize, triangles: usize, sent: &StripStatistics) {
+        let (size, time) = (std::mem::take(&mut self.size), Duration::from_secs_f64(self.seconds));
+        let (missing, extra) = (self.missing, self.extra);
+        *self = Self { missing, extra, ..Self::new((size, faces), triangles, sent, time) };
+    }
+
     pub(super) fn compared(&mut self, Difference { missing, extra }: Difference) {
         (self.missing, self.extra) = (Some(missing), Some(extra));
     }
@@ -103,13 +113,38 @@ impl StrippedLevelReport {
     }
 }
 
-/// Counts what is odd about the faces of a mesh: degenerate and duplicate faces, non-manifold and
-/// inconsistent edges.
-pub(super) fn odd_faces(mesh: &Mesh, tree: &MergeTree) -> [usize; 4] {
-    let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
-    let degenerate = connectivity.degenerate_faces();
-    let left_out = mesh.faces.len() - tree.faces().len();
-    let [non_manifold, inconsistent] =
-        [connectivity.non_manifold_edges(), connectivity.inconsistent_edges()];
-    [degenerate, left_out - degenerate, non_manifold, inconsistent]
+/// Counts of what is odd about the faces of a mesh.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Odd {
+    pub degenerate: usize,
+    pub duplicate: usize,
+    pub non_manifold_edges: usize,
+    pub inconsistent_edges: usize,
+}
+
+impl Odd {
+    /// Counts what is odd about a mesh of which so many faces have no strips.
+    pub fn of(connectivity: &Connectivity, left_out: usize) -> Self {
+        let degenerate = connectivity.degenerate_faces();
+        Self {
+            degenerate,
+            duplicate: left_out - degenerate,
+            non_manifold_edges: connectivity.non_manifold_edges(),
+            inconsistent_edges: connectivity.inconsistent_edges(),
+        }
+    }
+
+    /// Counts what is odd about a mesh, all of whose faces with strips are in a tree.
+    pub fn of_mesh(mesh: &Mesh, tree: &MergeTree) -> Self {
+        let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
+        Self::of(&connectivity, mesh.faces.len() - tree.faces().len())
+    }
+
+    /// Adds a mesh that is shown a number of times.
+    pub fn add(&mut self, own: &Self, times: usize) {
+        self.degenerate += times * own.degenerate;
+        self.duplicate += times * own.duplicate;
+        self.non_manifold_edges += times * own.non_manifold_edges;
+        self.inconsistent_edges += times * own.inconsistent_edges;
+    }
 }

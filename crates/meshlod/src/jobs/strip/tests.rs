@@ -50,3 +50,60 @@ fn a_mesh_of_degenerate_faces_is_refused() {
     let error = strip(scene, &StripRequest::default(), &()).unwrap_err();
     assert!(matches!(error, JobError::Input(_)), "{error}");
 }
+
+/// A scene that shows two meshes many times, turned, scaled and mirrored.
+fn flock() -> Scene {
+    let mut scene = knot();
+    scene.meshes.push(Scene::from_mesh("torus", samples::torus(400)).meshes[0].clone());
+    let nodes = (0..18u8).map(|i| {
+        let [scale, x] = [f64::from(1 + i % 3), 30.0 * f64::from(i)];
+        let side = if i % 2 == 0 { scale } else { -scale };
+        let transform = [
+            [0.0, scale, 0.0, 0.0],
+            [side, 0.0, 0.0, 0.0],
+            [0.0, 0.0, scale, 0.0],
+            [x, 0.0, 0.0, 1.0],
+        ];
+        let mesh = Some(usize::from(i % 6 == 5));
+        meshlod_io::Node { mesh, transform, ..meshlod_io::Node::default() }
+    });
+    scene.nodes = nodes.collect();
+    scene.roots = (0..18).collect();
+    scene
+}
+
+#[test]
+fn copies_are_stripped_once_and_counted_as_they_are_shown() {
+    let merged = Scene::from_mesh("", flock().flatten());
+    let request = StripRequest { verify: true, ..StripRequest::default() };
+    let [own, all] = [flock(), merged].map(|scene| strip(scene, &request, &()).unwrap().1);
+    assert!(own.each_mesh_once && !all.each_mesh_once);
+    assert_eq!((own.input_faces, own.verified), (all.input_faces, Some(true)));
+    let [own, all] = [&own.levels[0], &all.levels[0]];
+    assert_eq!((own.triangles, own.reached), (all.triangles, true));
+    let [sent, expected] = [own, all].map(|level| level.vertices_sent as f64);
+    assert!((sent / expected - 1.0).abs() < 0.01, "{sent} {expected}");
+    assert!((own.acmr16 / all.acmr16 - 1.0).abs() < 0.05, "{} {}", own.acmr16, all.acmr16);
+}
+
+#[test]
+fn levels_of_copies_show_no_more_than_was_asked_for() {
+    let levels = vec![Target::Ratio(0.5), Target::Faces(3_000), Target::Faces(1)];
+    let request = StripRequest { levels, verify: true, ..StripRequest::default() };
+    let (stripped, report) = strip(flock(), &request, &()).unwrap();
+    assert_eq!(report.verified, Some(true));
+    let [half, some, one] = &report.levels[..] else { panic!() };
+    assert!(half.reached && half.triangles > report.input_faces * 2 / 5, "{half:?}");
+    assert!(some.reached && some.triangles > 2_000, "{some:?}");
+    assert!(!one.reached, "a knot cannot vanish");
+    let strips = stripped.strip_meshes();
+    assert_eq!(strips.len(), 2, "one for each mesh");
+    let glb = meshlod_io::gltf::write_strips_glb(&stripped.scene, &strips).unwrap();
+    let options = meshlod_io::ReadOptions::default();
+    let back = meshlod_io::read_bytes(&glb, meshlod_io::Format::Glb, &mut |_| None, &options);
+    let back = back.unwrap();
+    let instances = back.instances();
+    assert_eq!((instances.len(), shown_faces(&back)), (18, half.triangles));
+    let volumes = [&back, &flock()].map(|scene| crate::scene::shown_sizes(scene).volume);
+    assert!((volumes[0] / volumes[1] - 1.0).abs() < 0.1, "{volumes:?}");
+}

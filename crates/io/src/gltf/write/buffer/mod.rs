@@ -2,6 +2,7 @@
 
 pub(crate) mod accessor_use;
 pub(crate) mod extents;
+pub(crate) mod gaps;
 pub(crate) mod views;
 
 use serde_json::{Map, Value, json};
@@ -12,12 +13,13 @@ use crate::gltf::write::arrays::blob::{Blob, Part, Usage};
 use crate::gltf::write::settings::Bytes;
 use crate::meshopt::{Filter, encode_attributes, encode_triangles};
 use extents::mend_extents;
+use gaps::{close_accessors, close_views, knows_references};
 use views::{copy_views, free_views};
 
 /// Accessors, buffer views and buffer of a document being written.
 ///
-/// Entries of a source document keep their indices, and only free indices are reused, so every
-/// reference stays valid, even in unknown extensions.
+/// Entries of a source document keep their indices, and free indices are reused. Those left over are
+/// removed at the end, unless unknown extensions may refer to the entries behind them.
 #[derive(Default)]
 pub(crate) struct BufferBuilder {
     accessors: Vec<Value>,
@@ -151,18 +153,7 @@ impl BufferBuilder {
     /// Enters the accessors, buffer views and buffer length in the JSON document, and returns the
     /// contents of the buffer.
     pub fn finish(mut self, json: &mut Map<String, Value>) -> Vec<u8> {
-        drop_last(&mut self.accessors, &mut self.free_accessors);
-        // An index that is still free must refer to something valid: a single zero.
-        for at in std::mem::take(&mut self.free_accessors) {
-            let view = self.add_view(&[0; 4]);
-            self.accessors[at] = json!({
-                "bufferView": view, "componentType": component::F32, "count": 1, "type": "SCALAR",
-            });
-        }
-        drop_last(&mut self.views, &mut self.free_views);
-        for at in std::mem::take(&mut self.free_views) {
-            self.views[at] = self.view_of(&[0; 4]).into();
-        }
+        self.close_gaps(json);
         let mut buffer = json
             .remove("buffers")
             .and_then(|buffers| buffers.as_array()?.first()?.as_object().cloned())
@@ -183,6 +174,32 @@ impl BufferBuilder {
             }
         }
         self.bytes
+    }
+
+    /// Removes the entries that are still free, or fills them where others must keep their indices.
+    fn close_gaps(&mut self, json: &mut Map<String, Value>) {
+        drop_last(&mut self.accessors, &mut self.free_accessors);
+        drop_last(&mut self.views, &mut self.free_views);
+        if knows_references(json) {
+            close_accessors(json, &mut self.accessors, &std::mem::take(&mut self.free_accessors));
+            let free = std::mem::take(&mut self.free_views);
+            return close_views(json, &mut self.accessors, &mut self.views, &free);
+        }
+        self.fill_gaps();
+    }
+
+    /// Makes entries that are still free valid: a single zero.
+    fn fill_gaps(&mut self) {
+        for at in std::mem::take(&mut self.free_accessors) {
+            let view = self.add_view(&[0; 4]);
+            self.accessors[at] = json!({
+                "bufferView": view, "componentType": component::F32, "count": 1, "type": "SCALAR",
+            });
+        }
+        drop_last(&mut self.views, &mut self.free_views);
+        for at in std::mem::take(&mut self.free_views) {
+            self.views[at] = self.view_of(&[0; 4]).into();
+        }
     }
 
     /// Appends bytes to the buffer and returns the view that describes them.
@@ -270,5 +287,34 @@ fn drop_last(values: &mut Vec<Value>, free: &mut Vec<usize>) {
     while free.first().is_some_and(|&at| at + 1 == values.len()) {
         values.pop();
         free.remove(0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gltf::document::buffers::Buffers;
+
+    #[test]
+    fn free_entries_go_unless_an_unknown_extension_may_count_on_their_number() {
+        let accessor = |view| json!({ "bufferView": view, "componentType": component::F32, "count": 1, "type": "SCALAR" });
+        let view = |at| json!({ "buffer": 0, "byteOffset": at, "byteLength": 4 });
+        for (name, left) in [("KHR_lights_punctual", 1), ("UNKNOWN_one", 2)] {
+            let mut json = json!({
+                "accessors": [accessor(0), accessor(1)], "bufferViews": [view(0), view(4)],
+                "skins": [{ "inverseBindMatrices": 1 }], "extensions": { name: {} },
+            });
+            let buffers = Buffers::new(vec![vec![1; 8]]);
+            let source = json.clone();
+            let document = Document::new(&source, &buffers).unwrap();
+            let builder = BufferBuilder::of(&document, &[true, false]);
+            let bytes = builder.finish(json.as_object_mut().unwrap());
+            let count = |key: &str| json[key].as_array().unwrap().len();
+            assert_eq!([count("accessors"), count("bufferViews")], [left; 2], "{name}");
+            assert_eq!(json["skins"][0]["inverseBindMatrices"], left - 1, "{name}");
+            let view = json["accessors"][left - 1]["bufferView"].as_u64().unwrap() as usize;
+            let start = json["bufferViews"][view]["byteOffset"].as_u64().unwrap() as usize;
+            assert_eq!(bytes[start..][..4], [1; 4], "{name}");
+        }
     }
 }

@@ -1,0 +1,192 @@
+//! Checking a scene that shows its meshes many times: each mesh once, and where instances meet.
+
+mod between;
+mod merged;
+mod near;
+mod placed;
+#[cfg(test)]
+mod tests;
+
+use std::collections::HashSet;
+
+use meshlod_check::{Kind, ObjectId, Objects, ObjectsBy};
+use meshlod_io::Scene;
+use meshlod_mesh::{FaceId, VertexId};
+
+use self::between::{Between, MOST_SEARCHED, SceneOfCopies, between};
+use self::merged::MergedReport;
+pub use self::placed::PlacedInstances;
+use super::{CheckReport, CheckRequest, Grade, Group, look_through};
+use crate::jobs::{About, JobError, Remark, Watch};
+use crate::numbers::count;
+
+/// Checks the meshes of a scene of copies, and what the copies have in common.
+pub fn check(
+    scene: &Scene,
+    placed: &PlacedInstances,
+    request: &CheckRequest,
+    watch: &dyn Watch,
+) -> Result<CheckReport, JobError> {
+    check_within(MOST_SEARCHED, (scene, placed), request, watch)
+}
+
+/// Checks a scene of copies, and compares instances with each other until so many faces are searched.
+fn check_within(
+    most_searched: usize,
+    (scene, placed): (&Scene, &PlacedInstances),
+    request: &CheckRequest,
+    watch: &dyn Watch,
+) -> Result<CheckReport, JobError> {
+    let meshes = CheckedMeshes::of(scene, placed, request, watch)?;
+    let between = meshes.between(most_searched, request, watch);
+    if watch.is_cancelled() {
+        return Err(JobError::Cancelled);
+    }
+    if between.not_compared > 0 {
+        let text = format_args!(
+            "contacts and vertices at one place are not looked for among {} of {} instances, as too \
+             many faces lie close together",
+            count(between.not_compared),
+            count(placed.instances.len())
+        );
+        watch.remark(&Remark::new(About::Input, text));
+    }
+    Ok(MergedReport::new(&meshes, request).finish(between))
+}
+
+/// Meshes of a scene, each checked in its own place.
+struct CheckedMeshes<'s> {
+    scene: &'s Scene,
+    placed: &'s PlacedInstances,
+    /// By mesh; `None` if it is not shown.
+    reports: Vec<Option<CheckReport>>,
+    /// By instance: the id of its first object.
+    first_objects: Vec<u32>,
+    /// Objects of the merged scene, without their faces.
+    objects: Objects,
+}
+
+impl<'s> CheckedMeshes<'s> {
+    fn of(
+        scene: &'s Scene,
+        placed: &'s PlacedInstances,
+        request: &CheckRequest,
+        watch: &dyn Watch,
+    ) -> Result<Self, JobError> {
+        let mut own = request.clone();
+        if own.options.objects == ObjectsBy::Auto {
+            // Every instance has a name.
+            own.options.objects = ObjectsBy::Names;
+        }
+        let mut reports: Vec<Option<CheckReport>> = vec![None; scene.meshes.len()];
+        for index in placed.instances.iter().map(|own| own.shown.mesh) {
+            if reports[index].is_none() {
+                let mesh = &scene.meshes[index].mesh;
+                reports[index] = Some(look_through(mesh, &own, watch, &mut |_, _| {})?);
+            }
+        }
+        let objects = Objects {
+            of_face: Vec::new(),
+            names: Vec::new(),
+            component_of_face: Vec::new(),
+            components: 0,
+        };
+        let mut meshes = Self { scene, placed, reports, first_objects: Vec::new(), objects };
+        meshes.name_objects(own.options.objects);
+        Ok(meshes)
+    }
+
+    /// Lists the objects of all instances.
+    fn name_objects(&mut self, by: ObjectsBy) {
+        let (mut names, mut components, mut firsts) = (Vec::new(), 0, Vec::new());
+        for own in &self.placed.instances {
+            firsts.push(names.len() as u32);
+            let of_mesh = &self.report(own.shown.mesh).owners.objects;
+            let labels = self.scene.meshes[own.shown.mesh].mesh.objects.as_ref();
+            let own = self.scene.names_of_instance(&own.shown);
+            match by {
+                ObjectsBy::Components => {
+                    let owner = |face| &*own[labels.map_or(0, |labels| labels.of(face) as usize)];
+                    names.extend(named_components(of_mesh, names.len(), owner));
+                }
+                _ => names.extend_from_slice(&own),
+            }
+            components += of_mesh.components;
+        }
+        self.first_objects = firsts;
+        (self.objects.names, self.objects.components) = (names, components);
+    }
+
+    fn report(&self, mesh: usize) -> &CheckReport {
+        self.reports[mesh].as_ref().expect("it is shown")
+    }
+
+    fn of_instance(&self, instance: usize) -> &CheckReport {
+        self.report(self.placed.instances[instance].shown.mesh)
+    }
+
+    /// Returns the id of an object of an instance.
+    fn object(&self, instance: usize, own: ObjectId) -> ObjectId {
+        ObjectId(self.first_objects[instance] + own.0)
+    }
+
+    /// Looks for what instances have in common, if that is asked for.
+    fn between(&self, most_searched: usize, request: &CheckRequest, watch: &dyn Watch) -> Between {
+        let kinds = [Kind::Contact, Kind::CoincidentVertices];
+        if !request.options.kinds.any_of(&kinds) {
+            return Between::default();
+        }
+        let object = |instance: usize, face: FaceId| {
+            let own = &self.of_instance(instance).owners.objects.of_face;
+            self.object(instance, own[face.index()])
+        };
+        let scene = SceneOfCopies { scene: self.scene, placed: self.placed, object: &object };
+        between(&scene, request, most_searched, watch).unwrap_or_default()
+    }
+
+    /// Returns the group of vertices at one place: a touch, if each is of another object.
+    fn group_at_one_place(&self, vertices: &[VertexId]) -> Group {
+        let grade = match self.objects_of(vertices).len() == vertices.len() {
+            true => Grade::Touch,
+            false => Grade::Warning,
+        };
+        Group { grade, kind: Kind::CoincidentVertices }
+    }
+
+    /// Returns the place of a vertex of the merged scene.
+    fn place_of(&self, vertex: VertexId) -> [f64; 3] {
+        let placed = &self.placed.instances[self.placed.of_vertex(vertex)];
+        let mesh = &self.scene.meshes[placed.shown.mesh].mesh;
+        placed.point(mesh.positions[placed.own_vertex(vertex).index()])
+    }
+
+    /// Returns the objects that have some vertices, each once.
+    fn objects_of(&self, vertices: &[VertexId]) -> Vec<ObjectId> {
+        let mut seen = HashSet::new();
+        let object = |v: &VertexId| {
+            let instance = self.placed.of_vertex(*v);
+            let own = self.placed.instances[instance].own_vertex(*v);
+            Some(self.object(instance, self.of_instance(instance).owners.of_vertex(own)?))
+        };
+        vertices.iter().filter_map(object).filter(|object| seen.insert(*object)).collect()
+    }
+}
+
+/// Names the components of an instance, numbered from `first`, by the objects of their first faces.
+fn named_components<'n>(
+    own: &Objects,
+    first: usize,
+    owner: impl Fn(usize) -> &'n str,
+) -> Vec<String> {
+    let mut names = Vec::new();
+    for (face, &component) in own.component_of_face.iter().enumerate() {
+        if component as usize == names.len() {
+            let number = first + names.len();
+            names.push(match owner(face) {
+                "" => format!("component {number}"),
+                owner => format!("{owner}, component {number}"),
+            });
+        }
+    }
+    names
+}
