@@ -2,7 +2,7 @@
 //!
 //! A curve is what a surface leaves in a side of a cell: two neighbours have it alike, edge by edge,
 //! in opposite directions. It is divided where it meets another side, branches or ends. Between
-//! these points Douglas-Peucker keeps what is farther away than a tolerance. So both neighbours keep
+//! these points the algorithm of Douglas and Peucker [DP73] keeps what is farther away than a tolerance. So both neighbours keep
 //! the same points, without hearing of each other.
 
 use meshlod_mesh::VertexId;

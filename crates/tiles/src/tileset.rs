@@ -1,4 +1,4 @@
-//! The files `tileset.json`, which say how tiles refine each other.
+//! Files `tileset.json` [OGC23], which say how tiles refine each other.
 
 use std::collections::BTreeMap;
 

@@ -33,6 +33,7 @@ mod scans;
 mod sides;
 mod strip;
 mod strip_models;
+mod tiles;
 mod topology;
 mod usage;
 mod verbs;

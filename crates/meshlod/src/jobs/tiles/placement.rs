@@ -28,7 +28,7 @@ pub struct Globe {
     pub altitude: f64,
 }
 
-/// Half of the greatest diameter of the ellipsoid, in metres, and its flattening [WGS84].
+/// Half of the greatest diameter of the ellipsoid, in metres, and its flattening [NGA14].
 const RADIUS: f64 = 6_378_137.0;
 const FLATTENING: f64 = 1.0 / 298.257_223_563;
 
@@ -37,7 +37,7 @@ impl Globe {
     /// coordinates about the middle of the earth, in metres; column-major.
     ///
     /// # References
-    /// [WGS84]
+    /// [NGA14]
     pub fn frame(self) -> [[f64; 4]; 4] {
         let (sin_lat, cos_lat) = self.latitude.to_radians().sin_cos();
         let (sin_lon, cos_lon) = self.longitude.to_radians().sin_cos();
