@@ -70,15 +70,15 @@ fn on_grid(plan: &Plan, cell: Cell, tile: &TileMesh) -> (Mesh, f64) {
     let is_border = tile.border_vertices();
     let mut mesh = tile.mesh.clone();
     let mut moved = 0f64;
-    for i in 0..mesh.positions.len() {
+    for (i, is_border) in is_border.into_iter().enumerate() {
         let point = point_of(&mesh, VertexId::new(i));
-        let depth = match is_border[i] {
+        let depth = match is_border {
             true => plan.tree.least_depth_around(point, cell),
             false => cell.depth,
         };
         let step = grid_step(depth);
         let near = point.map(|x| (x + step / 2) & !(step - 1));
-        let near = if is_border[i] { near } else { inside(near, cell, step) }.map(f64::from);
+        let near = if is_border { near } else { inside(near, cell, step) }.map(f64::from);
         let off: f64 = (0..3).map(|axis| (near[axis] - mesh.positions[i][axis]).powi(2)).sum();
         moved = moved.max(off);
         mesh.positions[i] = near;
@@ -150,7 +150,8 @@ fn encode(
             materials: if labels == 0 { vec![None] } else { (0..labels).map(Some).collect() },
         })
         .collect();
-    let nodes = (0..meshes.len()).map(|mesh| Node { mesh: Some(mesh), transform, ..Node::default() });
+    let nodes =
+        (0..meshes.len()).map(|mesh| Node { mesh: Some(mesh), transform, ..Node::default() });
     let scene = Scene {
         nodes: nodes.collect(),
         roots: (0..meshes.len()).collect(),

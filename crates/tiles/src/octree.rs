@@ -62,7 +62,9 @@ impl Octree {
         if (0..3).any(is_out) {
             return None;
         }
-        while let Some(children) = self.nodes[node].children.filter(|_| self.nodes[node].cell.depth < depth) {
+        while let Some(children) =
+            self.nodes[node].children.filter(|_| self.nodes[node].cell.depth < depth)
+        {
             let middle = self.nodes[node].cell.middle();
             let octant = (0..3).fold(0, |octant, axis| {
                 let beyond = 2 * (point[axis] - middle[axis]) + toward[axis];
@@ -111,9 +113,8 @@ mod tests {
         assert_eq!((tree.nodes().len(), tree.depth()), (25, 3));
         let quarter = Cell::ROOT.child(0).child(1);
         let [x, y, z] = quarter.low();
-        let beside = |depth| {
-            tree.nodes()[tree.beside([x, y + 1, z + 1], [-1, 0, 0], depth).unwrap()].cell
-        };
+        let beside =
+            |depth| tree.nodes()[tree.beside([x, y + 1, z + 1], [-1, 0, 0], depth).unwrap()].cell;
         assert_eq!(beside(2), Cell::ROOT.child(0).child(0));
         assert_eq!(beside(3), Cell::ROOT.child(0).child(0).child(1));
         assert_eq!(beside(0), Cell::ROOT);

@@ -190,7 +190,8 @@ impl Counted {
         this.add(fine, 0);
         // Few models have cells that are still crowded; each pass goes through all faces again.
         while depth < MOST_DEPTH {
-            let is_crowded = |(cell, faces): &(&Cell, &usize)| cell.depth == depth && **faces > most;
+            let is_crowded =
+                |(cell, faces): &(&Cell, &usize)| cell.depth == depth && **faces > most;
             let crowded: FxHashMap<Cell, ()> =
                 this.of_cell.iter().filter(is_crowded).map(|(cell, _)| (*cell, ())).collect();
             if crowded.is_empty() {

@@ -189,9 +189,8 @@ impl Reviewer {
         let (to, middle) = (shown.transform, cell.middle());
         let mesh = &scene.meshes[shown.mesh].mesh;
         let place = |at: &[f64; 3]| {
-            let [x, y, z] = [0, 1, 2].map(|row| {
-                to[3][row] + (0..3).map(|axis| to[axis][row] * at[axis]).sum::<f64>()
-            });
+            let [x, y, z] = [0, 1, 2]
+                .map(|row| to[3][row] + (0..3).map(|axis| to[axis][row] * at[axis]).sum::<f64>());
             let own = if self.is_z_up { [x, -z, y] } else { [x, y, z] };
             [0, 1, 2].map(|axis| (own[axis] / self.lattice.step).round() as i32 + middle[axis])
         };

@@ -118,15 +118,30 @@ fn closed_surfaces_stay_closed_at_every_level() {
     ] {
         let before = Connectivity::new(&mesh.faces, mesh.positions.len());
         let mut last = usize::MAX;
-        levels(&mesh, most, |depth| f64::from(400 * (1 << (6 - depth.min(6)))), |depth, tiles| {
-            assert!(sums_cancel(tiles), "depth {depth}");
-            let level = whole(tiles);
-            let connectivity = Connectivity::new(&level.faces, level.positions.len());
-            eprintln!("depth {depth}: {} tiles, {} faces, {} boundary, {} non-manifold", tiles.len(), level.faces.len(), connectivity.boundary_edges(), connectivity.non_manifold_edges());
-            assert_eq!(connectivity.boundary_edges(), 0, "depth {depth}");
-            assert_eq!(connectivity.non_manifold_edges(), before.non_manifold_edges(), "depth {depth}");
-            assert!(level.faces.len() < last);
-            last = level.faces.len();
-        });
+        levels(
+            &mesh,
+            most,
+            |depth| f64::from(400 * (1 << (6 - depth.min(6)))),
+            |depth, tiles| {
+                assert!(sums_cancel(tiles), "depth {depth}");
+                let level = whole(tiles);
+                let connectivity = Connectivity::new(&level.faces, level.positions.len());
+                eprintln!(
+                    "depth {depth}: {} tiles, {} faces, {} boundary, {} non-manifold",
+                    tiles.len(),
+                    level.faces.len(),
+                    connectivity.boundary_edges(),
+                    connectivity.non_manifold_edges()
+                );
+                assert_eq!(connectivity.boundary_edges(), 0, "depth {depth}");
+                assert_eq!(
+                    connectivity.non_manifold_edges(),
+                    before.non_manifold_edges(),
+                    "depth {depth}"
+                );
+                assert!(level.faces.len() < last);
+                last = level.faces.len();
+            },
+        );
     }
 }

@@ -117,8 +117,13 @@ struct FormArgs {
     #[arg(long, value_name = "DEGREES", requires = "lat", allow_negative_numbers = true)]
     lon: Option<f64>,
     /// Height of the model's origin above the ellipsoid, in metres
-    #[arg(long, value_name = "METRES", requires = "lat", default_value_t = 0.0,
-        allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "METRES",
+        requires = "lat",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
     alt: f64,
 }
 

@@ -114,5 +114,8 @@ fn what_cannot_be_tiled_is_told() {
     assert!(!run.path("out").exists());
     // A model of one tile is a tileset, too.
     let report = run.json(&["tiles", "in.ply", "out"]);
-    assert_eq!((report["tiles"].as_u64(), run.json(&["check", "out"])["faces"].as_u64()), (Some(1), Some(1000)));
+    assert_eq!(
+        (report["tiles"].as_u64(), run.json(&["check", "out"])["faces"].as_u64()),
+        (Some(1), Some(1000))
+    );
 }

@@ -130,11 +130,7 @@ pub fn run_tile_task(folder: &Path, task: usize) -> Result<(), JobError> {
 ///
 /// # Errors
 /// A task that is not done, tiles that do not meet, and errors of the system.
-pub fn finish_tiles(
-    folder: &Path,
-    out: &Path,
-    watch: &dyn Watch,
-) -> Result<TilesReport, JobError> {
+pub fn finish_tiles(folder: &Path, out: &Path, watch: &dyn Watch) -> Result<TilesReport, JobError> {
     watch.stage("checking");
     let folder = Folder::new(folder);
     let (plan, _) = planned(&folder)?;

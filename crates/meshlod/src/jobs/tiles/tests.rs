@@ -37,8 +37,13 @@ fn tasks_one_by_one_make_the_same_files() {
     let request = TilesRequest { tile_faces: 2_000, ..TilesRequest::default() };
     let report = tiles(input, folder.path(), &request, &()).unwrap();
     assert_eq!(report.unchanged_tiles, 0);
-    assert!(report.levels.windows(2).all(|pair| pair[0].faces < pair[1].faces
-        && pair[0].error_proved >= pair[1].error_proved));
+    assert!(
+        report
+            .levels
+            .windows(2)
+            .all(|pair| pair[0].faces < pair[1].faces
+                && pair[0].error_proved >= pair[1].error_proved)
+    );
 
     let found = check_tileset(folder.path(), &()).unwrap();
     assert_eq!((found.tiles, &found.findings[..]), (report.tiles, &[][..]));
