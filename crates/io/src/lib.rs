@@ -46,6 +46,7 @@ pub use memory::{read_bytes, write_to};
 pub use meshlod_mesh::{merge_equal_wedges, weld};
 pub use notes::{Note, NoteKind, grouped};
 pub use options::{ReadOptions, Resolve, Weld, WriteOptions};
+pub use polygon::triangulate;
 pub use precision::Precision;
 pub use scene::flatten::{MeshInstance, transform};
 pub use scene::image_file::ImageHeader;
