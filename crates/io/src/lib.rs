@@ -39,7 +39,7 @@ mod vertex_attributes;
 
 pub use error::{FileLocation, IoError, ParseError, Unsupported};
 pub use files::replace::{abandon_files, check_place, remove_abandoned, write_file};
-pub use files::{read, write, write_compressed, write_lods, write_strips};
+pub use files::{read, write, write_compressed, write_lods, write_ply_stream, write_strips};
 pub use format::{Format, StoredDigits};
 pub use limits::merged_instances;
 pub use memory::{read_bytes, write_to};

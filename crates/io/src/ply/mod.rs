@@ -56,6 +56,7 @@ mod layers;
 mod plan;
 mod scalar;
 mod stream;
+mod stream_writer;
 #[cfg(test)]
 mod tests;
 mod text_body;
@@ -80,6 +81,7 @@ pub use extras::PlyExtras;
 pub use face_rows::{FaceRow, FaceRows, RowFault};
 pub(crate) use plan::limits;
 pub use stream::{StreamLayout, VertexRows, stream_layout};
+pub use stream_writer::{StreamShape, StreamWriter};
 pub(crate) use write::write_named;
 pub use write::{write, write_scene};
 
