@@ -39,13 +39,14 @@ mod vertex_attributes;
 
 pub use error::{FileLocation, IoError, ParseError, Unsupported};
 pub use files::replace::{abandon_files, check_place, remove_abandoned, write_file};
-pub use files::{read, write, write_compressed, write_lods, write_strips};
+pub use files::{read, write, write_compressed, write_lods, write_ply_stream, write_strips};
 pub use format::{Format, StoredDigits};
 pub use limits::merged_instances;
 pub use memory::{read_bytes, write_to};
 pub use meshlod_mesh::{merge_equal_wedges, weld};
 pub use notes::{Note, NoteKind, grouped};
 pub use options::{ReadOptions, Resolve, Weld, WriteOptions};
+pub use polygon::triangulate;
 pub use precision::Precision;
 pub use scene::flatten::{MeshInstance, transform};
 pub use scene::image_file::ImageHeader;

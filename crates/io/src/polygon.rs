@@ -28,7 +28,7 @@ const CLEARLY_SHORTER: f64 = 1.0 - 1e-6;
 /// # References
 /// [Mei75] (two ears); [Ebe02] for the reflex-only containment test; differs: a grid over the
 /// reflex corners, a limit on the work, no corner is dropped.
-pub(crate) fn triangulate(positions: &[[f64; 3]], polygon: &[u32], out: &mut Vec<[u32; 3]>) {
+pub fn triangulate(positions: &[[f64; 3]], polygon: &[u32], out: &mut Vec<[u32; 3]>) {
     match polygon.len() {
         0..=2 => {}
         3 => out.push([0, 1, 2]),

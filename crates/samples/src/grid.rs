@@ -33,8 +33,7 @@ pub(crate) fn wrapped(size: Size, place: impl Fn(usize, usize) -> DVec3) -> Mesh
     for r in 0..rows {
         for c in 0..columns {
             mesh.positions.push(place(c, r).into());
-            let quad = [vertex(c, r), vertex(c + 1, r), vertex(c + 1, r + 1), vertex(c, r + 1)];
-            mesh.faces.extend(split(quad));
+            mesh.faces.extend(split(quad(c, r).map(|[c, r]| vertex(c, r))));
         }
     }
     mesh
@@ -54,11 +53,15 @@ pub(crate) fn open(size: Size, place: impl Fn(usize, usize) -> DVec3) -> Mesh {
     }
     for r in 0..rows {
         for c in 0..columns {
-            let quad = [vertex(c, r), vertex(c + 1, r), vertex(c + 1, r + 1), vertex(c, r + 1)];
-            mesh.faces.extend(split(quad));
+            mesh.faces.extend(split(quad(c, r).map(|[c, r]| vertex(c, r))));
         }
     }
     mesh
+}
+
+/// Returns the column and row of each corner of a quad.
+pub(crate) fn quad(column: usize, row: usize) -> [[usize; 2]; 4] {
+    [[column, row], [column + 1, row], [column + 1, row + 1], [column, row + 1]]
 }
 
 /// Splits a quad along its first diagonal.

@@ -44,7 +44,7 @@ pub use plate::plate;
 pub use prism::{plates, prism};
 pub use random::turned;
 pub use sphere::sphere;
-pub use terrain::terrain;
+pub use terrain::{TerrainRows, colored_terrain, terrain, terrain_color};
 pub use torus::{faceted_torus, torus};
 
 use meshlod_mesh::Mesh;
@@ -70,6 +70,13 @@ pub const NAMES: [&str; 14] = [
 /// Maximum number of faces of a sample made by [`by_name`]; larger requests are clamped to it.
 pub const MAX_FACES: usize = 500_000_000;
 
+/// Number of faces of a terrain that shows it well.
+pub const TERRAIN_FACES: usize = 20_000;
+
+/// Maximum number of faces of a sample that is written in passing, such as by [`TerrainRows`]: one
+/// whose vertices still have 32-bit numbers.
+pub const MAX_STREAMED_FACES: usize = 2_000_000_000;
+
 /// Builds the sample mesh of that name with about `faces` faces, or a default number for `None`.
 ///
 /// Returns `None` if the name is unknown.
@@ -87,7 +94,7 @@ pub fn by_seed(name: &str, faces: Option<usize>, seed: u64) -> Option<Mesh> {
         "knot" => knot(faces(10_000)),
         "gyroid" => gyroid(faces(50_000)),
         "plate" => plate(faces(10_000)),
-        "terrain" => terrain(faces(20_000)),
+        "terrain" => terrain(faces(TERRAIN_FACES)),
         "fish" => fish(faces(4_000)),
         "cube" => cube(faces(10_000)),
         "plates" => plates(faces(10_000)),

@@ -1,9 +1,9 @@
 //! Sample mesh of mountains: an open height field of fractal noise.
 
 use glam::{DVec2, DVec3};
-use meshlod_mesh::Mesh;
+use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, WedgeId};
 
-use crate::grid::{self, Size};
+use crate::grid::{self, Size, quad, split};
 
 /// Builds mountains as a height field over the square [-1, 1]² of x and z: an open surface with one
 /// boundary, and +y up.
@@ -11,11 +11,88 @@ use crate::grid::{self, Size};
 /// Faces: `2 n²` with the closest n, off by at most about one part in n; at least 2. The landscape
 /// is the same at any size: more faces only resolve finer rocks.
 pub fn terrain(faces: usize) -> Mesh {
-    let n = (faces as f64 / 2.0).sqrt().round().max(1.0) as usize;
-    grid::open(Size { columns: n, rows: n }, |column, row| {
-        let [x, z] = [column, n - row].map(|i| 2.0 * i as f64 / n as f64 - 1.0);
+    let rows = TerrainRows::new(faces);
+    let size = Size { columns: rows.side, rows: rows.side };
+    grid::open(size, |column, row| rows.place(column, row))
+}
+
+/// Builds [`terrain`] with a colour for each vertex, by its height.
+pub fn colored_terrain(faces: usize) -> Mesh {
+    let mesh = terrain(faces);
+    let colors = mesh.positions.iter().flat_map(|place| terrain_color(place[1]));
+    let layer = Layer {
+        kind: LayerKind::Color(0),
+        name: "color".to_owned(),
+        width: 3,
+        values: colors.map(|x| f32::from(x) / 255.0).collect(),
+    };
+    let corners = mesh.faces.iter().map(|face| face.map(|v| WedgeId(v.0))).collect();
+    let wedge_count = mesh.positions.len();
+    let attributes = Attributes { corners, wedge_count, layers: vec![layer] };
+    Mesh { attributes: Some(attributes), ..mesh }
+}
+
+/// Vertices and faces of [`terrain`] row by row, for terrains that are larger than memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TerrainRows {
+    /// Number of quads along a side.
+    side: usize,
+}
+
+impl TerrainRows {
+    /// Creates the rows of the terrain of about this many faces.
+    pub fn new(faces: usize) -> Self {
+        Self { side: (faces as f64 / 2.0).sqrt().round().max(1.0) as usize }
+    }
+
+    /// Returns the number of rows of vertices, and of vertices in each; there is one row of faces
+    /// less.
+    pub fn count(self) -> usize {
+        self.side + 1
+    }
+
+    /// Returns the number of vertices and of faces.
+    pub fn sizes(self) -> [u64; 2] {
+        let side = self.side as u64;
+        [(side + 1) * (side + 1), 2 * side * side]
+    }
+
+    /// Returns the vertices of a row.
+    pub fn places(self, row: usize) -> impl Iterator<Item = [f64; 3]> {
+        (0..=self.side).map(move |column| self.place(column, row).into())
+    }
+
+    /// Returns the faces between a row of vertices and the next.
+    pub fn faces(self, row: usize) -> impl Iterator<Item = [u32; 3]> {
+        let vertex = move |column, row| (row * (self.side + 1) + column) as u32;
+        (0..self.side).flat_map(move |c| split(quad(c, row).map(|[c, r]| vertex(c, r))))
+    }
+
+    fn place(self, column: usize, row: usize) -> DVec3 {
+        let [x, z] = [column, self.side - row].map(|i| 2.0 * i as f64 / self.side as f64 - 1.0);
         DVec3::new(x, height(DVec2::new(x, z)), z)
-    })
+    }
+}
+
+/// Heights and the colours at them, between which colours are mixed: water, grass, wood, rock and
+/// snow.
+const COLORS: [(f64, [f64; 3]); 6] = [
+    (-0.25, [46.0, 84.0, 92.0]),
+    (-0.12, [110.0, 138.0, 74.0]),
+    (0.02, [70.0, 104.0, 54.0]),
+    (0.16, [116.0, 104.0, 84.0]),
+    (0.30, [146.0, 142.0, 138.0]),
+    (0.42, [240.0, 243.0, 246.0]),
+];
+
+/// Returns the colour of a [`terrain`] at a height, as red, green and blue.
+pub fn terrain_color(height: f64) -> [u8; 3] {
+    let above = COLORS.iter().position(|(from, _)| height < *from).unwrap_or(COLORS.len());
+    let [(low, from), (high, to)] =
+        [above.max(1) - 1, above.min(COLORS.len() - 1)].map(|i| COLORS[i]);
+    let part = if high > low { (height - low) / (high - low) } else { 0.0 };
+    let part = part.clamp(0.0, 1.0);
+    [0, 1, 2].map(|i| (from[i] + part * (to[i] - from[i])).round() as u8)
 }
 
 /// Octaves of noise: the finest has 2,048 cells along a side, enough for millions of faces.

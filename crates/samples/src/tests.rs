@@ -219,3 +219,25 @@ fn a_turned_sample_is_as_large_and_on_no_axis() {
         assert!(turned.faces.iter().all(is_off), "{seed}");
     }
 }
+
+#[test]
+fn terrain_row_by_row_is_the_same() {
+    for faces in [2, 300, 5_000] {
+        let (mesh, rows) = (terrain(faces), TerrainRows::new(faces));
+        let places: Vec<[f64; 3]> = (0..rows.count()).flat_map(|row| rows.places(row)).collect();
+        let of_rows = (0..rows.count() - 1).flat_map(|row| rows.faces(row));
+        let expected = mesh.faces.iter().map(|face| face.map(|v| v.0));
+        assert!(of_rows.eq(expected) && places == mesh.positions);
+        assert_eq!(rows.sizes(), [mesh.positions.len(), mesh.faces.len()].map(|n| n as u64));
+    }
+}
+
+#[test]
+fn colours_of_terrain_rise_from_water_to_snow() {
+    assert_eq!(terrain_color(-9.0), [46, 84, 92]);
+    assert_eq!(terrain_color(0.02), [70, 104, 54]);
+    assert_eq!(terrain_color(0.09), [93, 104, 69]);
+    assert_eq!(terrain_color(9.0), [240, 243, 246]);
+    let mesh = colored_terrain(200);
+    assert_eq!(mesh.validate(), Ok(()));
+}

@@ -82,9 +82,9 @@ pub enum TilesError {
 }
 
 impl TilesError {
-    /// Returns an error of the system at a path.
+    /// Returns an error of the system at a path, or at that of the source which it names.
     pub fn system(path: &Path, error: io::Error) -> Self {
-        Self::Io(IoError::system(path, error))
+        Self::Io(error.downcast().unwrap_or_else(|error| IoError::system(path, error)))
     }
 
     /// Returns the error of a damaged file.

@@ -93,6 +93,60 @@ impl Layout {
         }
     }
 
+    /// Returns the layers that two layouts have in common; of colours, as many components.
+    #[must_use]
+    pub fn common(mut self, other: &Self) -> Self {
+        self.layers.retain_mut(|layer| match other.find(layer) {
+            Some((_, found)) => {
+                layer.width = layer.width.min(found.width);
+                true
+            }
+            None => false,
+        });
+        self
+    }
+
+    /// Returns the names of the layers that another layout lacks.
+    pub fn beyond(&self, other: &Self) -> Vec<String> {
+        let own = self.layers.iter().filter(|layer| other.find(layer).is_none());
+        own.map(|layer| layer.kind().to_string()).collect()
+    }
+
+    /// Returns, for each value of a corner in a layout whose layers this one has, which value it is
+    /// here.
+    pub fn values_of(&self, other: &Self) -> Vec<usize> {
+        let found = |layer: &LayoutLayer| self.find(layer).map(|(at, _)| at..at + layer.width);
+        other.layers.iter().filter_map(found).flatten().collect()
+    }
+
+    /// Returns the layer of the same kind, and its first value.
+    fn find(&self, like: &LayoutLayer) -> Option<(usize, &LayoutLayer)> {
+        let mut at = 0;
+        for layer in &self.layers {
+            if layer.tag == like.tag {
+                return Some((at, layer));
+            }
+            at += layer.width;
+        }
+        None
+    }
+
+    /// Replaces normals without a length by those of their triangles.
+    pub fn fill_normals(&self, places: &[[[f64; 3]; 3]], values: &mut [f32]) {
+        let mut at = 0;
+        for layer in &self.layers {
+            if layer.kind() == LayerKind::Normal {
+                for (corner, values) in values.chunks_exact_mut(self.width()).enumerate() {
+                    let normal = &mut values[at..at + 3];
+                    if normal.iter().all(|&x| x == 0.0) {
+                        normal.copy_from_slice(&unit_normal(&places[corner / 3]));
+                    }
+                }
+            }
+            at += layer.width;
+        }
+    }
+
     /// Returns empty layers, to be filled wedge by wedge.
     pub fn attributes(&self) -> Option<Attributes> {
         let layer = |of: &LayoutLayer| Layer {
@@ -103,6 +157,18 @@ impl Layout {
         };
         let layers = self.layers.iter().map(layer).collect();
         (!self.is_empty()).then(|| Attributes { wedge_count: 0, corners: Vec::new(), layers })
+    }
+}
+
+/// Returns the normal of a triangle; upwards if it has no area.
+fn unit_normal([a, b, c]: &[[f64; 3]; 3]) -> [f32; 3] {
+    let from_a = |p: &[f64; 3]| [p[0] - a[0], p[1] - a[1], p[2] - a[2]];
+    let ([ux, uy, uz], [vx, vy, vz]) = (from_a(b), from_a(c));
+    let normal = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
+    let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
+    match length > 0.0 && length.is_finite() {
+        true => normal.map(|x| (x / length) as f32),
+        false => [0.0, 1.0, 0.0],
     }
 }
 

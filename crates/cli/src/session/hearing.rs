@@ -1,7 +1,9 @@
 //! A session that hears a job: its stages, its steps and its remarks.
 
+use std::error::Error;
 use std::path::Path;
 
+use meshlod::IoError;
 use meshlod::jobs::{About, JobError, Remark, Watch};
 
 use crate::session::Session;
@@ -33,9 +35,9 @@ impl<'s> Hearing<'s> {
             JobError::Request { field, reason } => {
                 Failure::usage(format_args!("{}: {reason}", option(field)))
             }
-            JobError::Input(error) => Failure::at(self.input, error),
-            JobError::Second(error) => Failure::at(self.second, error),
-            JobError::Output(error) => Failure::at(self.output, error),
+            JobError::Input(error) => at(self.input, error),
+            JobError::Second(error) => at(self.second, error),
+            JobError::Output(error) => at(self.output, error),
             error => Failure::new(error),
         }
     }
@@ -60,6 +62,14 @@ impl Watch for Hearing<'_> {
             About::Output => self.session.warn(Failure::at(self.output, text)),
             _ => self.session.warn(text),
         }
+    }
+}
+
+/// Creates the failure of an error at a file, unless the error names one itself.
+fn at(path: &Path, error: Box<dyn Error + Send + Sync>) -> Failure {
+    match error.downcast::<IoError>() {
+        Ok(error) => Failure::from(*error),
+        Err(error) => Failure::at(path, error),
     }
 }
 

@@ -1,5 +1,7 @@
 //! `sample`: writes a procedural mesh.
 
+mod streamed;
+
 use std::path::PathBuf;
 
 use clap::Args;
@@ -16,8 +18,12 @@ use crate::session::failure::Failure;
 use crate::session::files;
 use crate::session::scene_files;
 use crate::text::numbers::{self, count};
+use streamed::StreamedTerrain;
 
 /// Write a procedural mesh of any size
+///
+/// A terrain of millions of faces, of up to 2,000,000,000, is written row by row if OUT is a PLY
+/// file; other samples are made in memory and have at most 500,000,000 faces.
 #[derive(Args)]
 pub struct Sample {
     /// Name of the sample
@@ -32,6 +38,9 @@ pub struct Sample {
     /// Seed of the random parts of boxes and voxels, and of --turned
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
     seed: u64,
+    /// Colour the terrain by its height
+    #[arg(long)]
+    colors: bool,
     /// Turn the mesh in a random direction, so that its flats are on no axis
     #[arg(long)]
     turned: bool,
@@ -42,13 +51,14 @@ pub struct Sample {
 impl Sample {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         files::check_output(&self.output, session)?;
+        if self.colors && self.name != "terrain" {
+            return Err(Failure::usage("--colors: only the terrain has colours"));
+        }
         session.progress.stage("generating");
-        let mesh = samples::by_seed(&self.name, self.faces, self.seed)
-            .ok_or_else(|| Failure::usage(format_args!("no sample is called {}", self.name)))?;
-        let mesh = if self.turned { samples::turned(&mesh, self.seed) } else { mesh };
-        let (vertices, faces) = (mesh.positions.len(), mesh.faces.len());
-        let scene = Scene::from_mesh(&self.name, mesh);
-        scene_files::write(&self.output, &scene, &self.writing, session)?;
+        let [vertices, faces] = match self.streamed() {
+            Some(terrain) => terrain.write(&self.output, session)?.map(|n| n as usize),
+            None => self.write(session)?,
+        };
         let json = json!({
             "name": self.name,
             "file": files::name(&self.output),
@@ -61,9 +71,39 @@ impl Sample {
     }
 }
 
+impl Sample {
+    /// Returns the terrain if it is so large that it is written row by row.
+    fn streamed(&self) -> Option<StreamedTerrain> {
+        let faces = self.faces.filter(|_| self.name == "terrain" && !self.turned)?;
+        let precision = self.writing.options().precision;
+        StreamedTerrain::new(faces, &self.output, self.colors, precision)
+    }
+
+    /// Makes the mesh in memory and writes it; returns the numbers of vertices and faces.
+    fn write(&self, session: &Session) -> Result<[usize; 2], Failure> {
+        if self.faces.is_some_and(|faces| faces > samples::MAX_FACES) {
+            let most = count(samples::MAX_FACES);
+            let reason = format!("--faces must be at most {most}, but for a terrain as PLY");
+            return Err(Failure::usage(reason));
+        }
+        let mesh = match self.faces {
+            Some(faces) if self.colors => Some(samples::colored_terrain(faces)),
+            None if self.colors => Some(samples::colored_terrain(samples::TERRAIN_FACES)),
+            faces => samples::by_seed(&self.name, faces, self.seed),
+        };
+        let mesh = mesh
+            .ok_or_else(|| Failure::usage(format_args!("no sample is called {}", self.name)))?;
+        let mesh = if self.turned { samples::turned(&mesh, self.seed) } else { mesh };
+        let sizes = [mesh.positions.len(), mesh.faces.len()];
+        let scene = Scene::from_mesh(&self.name, mesh);
+        scene_files::write(&self.output, &scene, &self.writing, session)?;
+        Ok(sizes)
+    }
+}
+
 fn faces(text: &str) -> Result<usize, String> {
     match parse::positive(text)? {
-        faces if faces <= samples::MAX_FACES => Ok(faces),
-        _ => Err(format!("it must be at most {}", count(samples::MAX_FACES))),
+        faces if faces <= samples::MAX_STREAMED_FACES => Ok(faces),
+        _ => Err(format!("it must be at most {}", count(samples::MAX_STREAMED_FACES))),
     }
 }

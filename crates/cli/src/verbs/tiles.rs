@@ -1,16 +1,12 @@
 //! `tiles`: writes a model of any size as 3D Tiles, or one of the steps of that.
 
+mod model;
 mod report;
 
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand, ValueEnum};
-use meshlod::Scene;
-use meshlod::jobs::{
-    Globe, TileInput, TilesRequest, Up, finish_tiles, plan_tiles, run_tile_task, tiles,
-};
-use meshlod::tiles::plan::Look;
-use meshlod::tiles::source::SceneSource;
+use meshlod::jobs::{Globe, TilesRequest, Up, finish_tiles, plan_tiles, run_tile_task, tiles};
 use serde_json::json;
 
 use crate::options::args::ReadArgs;
@@ -21,6 +17,7 @@ use crate::session::failure::Failure;
 use crate::session::files;
 use crate::session::hearing::Hearing;
 use crate::text::numbers::{count, plural};
+use model::Model;
 use report::TilesFigures;
 
 /// Write a model of any size as 3D Tiles: a tree of tiles, each level within a proved error
@@ -28,15 +25,18 @@ use report::TilesFigures;
 /// OUT is a folder: tileset.json names the tiles in it. A run that was ended goes on where it
 /// stopped.
 ///
+/// Binary PLY and STL files from 64 MB on are read in passing, with little memory. Of several files,
+/// the layers are kept that all of them have.
+///
 /// The steps plan, task and finish do the same with any number of processes or machines.
 #[derive(Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub struct Tiles {
     #[command(subcommand)]
     step: Option<Step>,
-    /// Mesh to read, or -
+    /// Meshes to read as one model, folders of them, or -
     #[arg(value_name = "IN", required = true)]
-    input: Option<PathBuf>,
+    inputs: Vec<PathBuf>,
     /// Folder to write
     #[arg(value_name = "OUT", required = true)]
     output: Option<PathBuf>,
@@ -62,9 +62,9 @@ enum Step {
 
 #[derive(Args)]
 struct PlanStep {
-    /// Mesh to read, or -
-    #[arg(value_name = "IN")]
-    input: PathBuf,
+    /// Meshes to read as one model, folders of them, or -
+    #[arg(value_name = "IN", required = true)]
+    inputs: Vec<PathBuf>,
     /// Folder for the plan and all that is made by it
     #[arg(value_name = "PLAN")]
     plan: PathBuf,
@@ -167,12 +167,12 @@ impl Tiles {
     }
 
     fn whole(self, session: &Session) -> Result<Answer, Failure> {
-        let (Some(input), Some(output)) = (&self.input, &self.output) else {
+        let ([input, ..], Some(output)) = (&self.inputs[..], &self.output) else {
             return Err(Failure::usage("name a mesh to read and a folder to write"));
         };
         check_folder(output)?;
         let request = self.form.request(self.memory);
-        let model = Model::read(input, &self.reading, session)?;
+        let model = Model::open(&self.inputs, &self.reading, session)?;
         let hearing = Hearing::new(session, input, output);
         let done = tiles(model.input(), output, &request, &hearing);
         let report = done.map_err(|error| hearing.failure(error))?;
@@ -184,8 +184,8 @@ impl Tiles {
 impl PlanStep {
     fn run(self, session: &Session) -> Result<Answer, Failure> {
         let request = self.form.request(None);
-        let model = Model::read(&self.input, &self.reading, session)?;
-        let hearing = Hearing::new(session, &self.input, &self.plan);
+        let model = Model::open(&self.inputs, &self.reading, session)?;
+        let hearing = Hearing::new(session, &self.inputs[0], &self.plan);
         let done = plan_tiles(model.input(), &self.plan, &request, &hearing);
         let tasks = done.map_err(|error| hearing.failure(error))?;
         let plan = files::name(&self.plan);
@@ -214,51 +214,6 @@ impl FinishStep {
         let text = report::text(&self.output, &report);
         Ok(Answer::new(TilesFigures::new(&self.output, report), text))
     }
-}
-
-/// Model that was read for tiles.
-struct Model {
-    source: SceneSource,
-    look: Look,
-    key: String,
-}
-
-impl Model {
-    fn read(path: &Path, reading: &ReadArgs, session: &Session) -> Result<Self, Failure> {
-        let scene = files::read_surface(path, reading, session)?;
-        let look = look(&scene);
-        let key = key(path);
-        Ok(Self { source: SceneSource::new(scene), look, key })
-    }
-
-    fn input(&self) -> TileInput<'_> {
-        TileInput { source: &self.source, look: &self.look, key: &self.key }
-    }
-}
-
-/// Returns the materials of a scene by the labels that its faces have when it is one mesh.
-fn look(scene: &Scene) -> Look {
-    if scene.materials.is_empty() {
-        return Look::default();
-    }
-    let mut materials = scene.materials.clone();
-    // Faces without a material have the last label.
-    materials.push(meshlod::io::Material::default());
-    let labels = materials.iter().map(|material| material.name.clone()).collect();
-    Look { labels, materials, images: scene.images.clone() }
-}
-
-/// Returns a text that is different for another file, and mostly for another content.
-fn key(path: &Path) -> String {
-    let facts = std::fs::metadata(path).ok();
-    let changed = facts.as_ref().and_then(|facts| facts.modified().ok());
-    let seconds = changed.and_then(|at| at.duration_since(std::time::UNIX_EPOCH).ok());
-    format!(
-        "{} {} {}",
-        std::path::absolute(path).unwrap_or_else(|_| path.to_owned()).display(),
-        facts.map_or(0, |facts| facts.len()),
-        seconds.map_or(0, |since| since.as_nanos()),
-    )
 }
 
 /// Fails if a folder holds anything that is not a tileset, before any work is done.

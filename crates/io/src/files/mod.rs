@@ -9,6 +9,8 @@ use write_gltf::write_gltf;
 use write_obj::write_obj;
 use write_ply::write_ply;
 
+pub use write_ply::write_ply_stream;
+
 use self::missing_images::note_missing_images;
 use crate::error::{IoError, Unsupported};
 use crate::files::names::stem;

@@ -31,6 +31,21 @@ pub(super) fn is_label(name: &str) -> bool {
     LABELS.contains(&name)
 }
 
+/// Returns the properties red, green, blue and, where there is one, alpha of a face, under the first
+/// of their names that all three have; empty if there is none.
+pub(super) fn colors_of(properties: &[Property]) -> Vec<Option<usize>> {
+    let usual: &[&str] = &["red", "green", "blue", "alpha"];
+    let sets = [usual].into_iter().chain(OTHER_COLORS);
+    let mut found = sets.map(|names| names.iter().map(|name| one(properties, name)).collect());
+    let is_whole = |of: &Vec<Option<usize>>| of[..3].iter().all(Option::is_some);
+    found.find(is_whole).unwrap_or_default()
+}
+
+/// Returns the index of the scalar property of a name.
+fn one(properties: &[Property], name: &str) -> Option<usize> {
+    properties.iter().position(|p| p.name == name && matches!(p.shape, Shape::One(_)))
+}
+
 /// Use of a property of a face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Role {
@@ -88,9 +103,6 @@ impl FaceValues {
     /// Assigns a use to every property of an element but its vertex list, at index `list`.
     pub fn begin(&mut self, element: &Element, list: usize) {
         let properties = &element.properties;
-        let one = |name: &str| {
-            properties.iter().position(|p| p.name == name && matches!(p.shape, Shape::One(_)))
-        };
         self.roles = vec![Role::Other; properties.len()];
         let is_uvs = |p: &Property| {
             matches!((&*p.name, p.shape), ("texcoord" | "texcoords", Shape::List { .. }))
@@ -98,20 +110,15 @@ impl FaceValues {
         if let Some(uvs) = properties.iter().position(is_uvs) {
             self.roles[uvs] = Role::Uvs;
         }
-        if let Some(texture) = one("texnumber") {
+        if let Some(texture) = one(properties, "texnumber") {
             self.roles[texture] = Role::Texture;
         }
-        let usual: &[&str] = &["red", "green", "blue", "alpha"];
-        let colors = [usual].into_iter().chain(OTHER_COLORS);
-        let colors = colors.map(|names| names.iter().map(|&name| one(name)).collect::<Vec<_>>());
-        if let Some(found) = colors.into_iter().find(|of| of[..3].iter().all(Option::is_some)) {
-            for (i, at) in found.into_iter().enumerate() {
-                let Some(at) = at else { continue };
-                self.roles[at] = Role::Color(i, greatest(&properties[at]));
-                self.has_alpha |= i == 3;
-                if let (0, Shape::One(kind)) = (i, properties[at].shape) {
-                    self.color_kind = Some(kind);
-                }
+        for (i, at) in colors_of(properties).into_iter().enumerate() {
+            let Some(at) = at else { continue };
+            self.roles[at] = Role::Color(i, greatest(&properties[at]));
+            self.has_alpha |= i == 3;
+            if let (0, Shape::One(kind)) = (i, properties[at].shape) {
+                self.color_kind = Some(kind);
             }
         }
         let label = properties.iter().position(|p| match p.shape {

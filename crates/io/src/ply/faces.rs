@@ -3,6 +3,7 @@
 use meshlod_mesh::VertexId;
 
 use super::body::{BodyReader, Row};
+use super::face_rows::no_list;
 use super::face_values::{FaceRow, FaceValues};
 use super::header::{Element, Shape};
 use crate::error::ParseError;
@@ -32,8 +33,7 @@ impl Faces {
         positions: &[[f64; 3]],
     ) -> Result<(), ParseError> {
         let Some(list) = element.face_list() else {
-            let reason = format!("element {} has no list vertex_indices", element.name);
-            return Err(ParseError::part("header", reason));
+            return Err(no_list(element));
         };
         let is_strip = element.name == "tristrips";
         self.values.begin(element, list);

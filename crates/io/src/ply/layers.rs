@@ -17,7 +17,7 @@ pub(super) const OTHER_COLORS: [&[&str]; 2] =
     [&["diffuse_red", "diffuse_green", "diffuse_blue", "diffuse_alpha"], &["r", "g", "b", "a"]];
 
 /// Attribute layer and the properties it is read from.
-#[derive(Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct LayerColumns {
     pub kind: LayerKind,
     pub name: String,

@@ -66,6 +66,54 @@ impl Scalar {
         matches!(self, Self::I64 | Self::U64) && value.abs() >= 9_007_199_254_740_992.0
     }
 
+    /// Returns the value that some bytes begin with; 64-bit integers from 2^53 are rounded, all
+    /// others exact.
+    #[inline]
+    pub fn number(self, bytes: &[u8], is_big: bool) -> f64 {
+        let mut number = 0.0;
+        self.column(is_big, [bytes].into_iter(), |_, value| number = value);
+        number
+    }
+
+    /// Returns the index that some bytes begin with; `None` for a negative number or a fraction.
+    #[inline]
+    pub fn index(self, bytes: &[u8], is_big: bool) -> Option<u64> {
+        match self {
+            Self::U8 => Some(bytes[0].into()),
+            Self::U32 => Some(u32::from_le_bytes(little(bytes, is_big)).into()),
+            Self::I32 => i32::from_le_bytes(little(bytes, is_big)).try_into().ok(),
+            Self::U64 => Some(u64::from_le_bytes(little(bytes, is_big))),
+            Self::I64 => i64::from_le_bytes(little(bytes, is_big)).try_into().ok(),
+            _ => {
+                let number = self.number(bytes, is_big);
+                (number >= 0.0 && number.fract() == 0.0).then_some(number as u64)
+            }
+        }
+    }
+
+    /// Hands on the values that some rows begin with, with the number of the row, like
+    /// [`Scalar::number`].
+    #[inline]
+    pub fn column<'a>(
+        self,
+        is_big: bool,
+        rows: impl Iterator<Item = &'a [u8]>,
+        put: impl FnMut(usize, f64),
+    ) {
+        match self {
+            Self::I8 => each(is_big, rows, |raw| i8::from_le_bytes(raw).into(), put),
+            Self::U8 => each(is_big, rows, |raw| u8::from_le_bytes(raw).into(), put),
+            Self::I16 => each(is_big, rows, |raw| i16::from_le_bytes(raw).into(), put),
+            Self::U16 => each(is_big, rows, |raw| u16::from_le_bytes(raw).into(), put),
+            Self::I32 => each(is_big, rows, |raw| i32::from_le_bytes(raw).into(), put),
+            Self::U32 => each(is_big, rows, |raw| u32::from_le_bytes(raw).into(), put),
+            Self::I64 => each(is_big, rows, |raw| i64::from_le_bytes(raw) as f64, put),
+            Self::U64 => each(is_big, rows, |raw| u64::from_le_bytes(raw) as f64, put),
+            Self::F32 => each(is_big, rows, |raw| f32::from_le_bytes(raw).into(), put),
+            Self::F64 => each(is_big, rows, f64::from_le_bytes, put),
+        }
+    }
+
     /// Returns the size of a value of this type in binary PLY, in bytes.
     pub fn size(self) -> usize {
         match self {
@@ -90,4 +138,27 @@ impl Scalar {
             Self::F32 | Self::F64 => return None,
         })
     }
+}
+
+/// Hands on the number that each row begins with, by the type of its bytes.
+#[inline]
+fn each<'a, const N: usize>(
+    is_big: bool,
+    rows: impl Iterator<Item = &'a [u8]>,
+    value: impl Fn([u8; N]) -> f64,
+    mut put: impl FnMut(usize, f64),
+) {
+    for (row, bytes) in rows.enumerate() {
+        put(row, value(little(bytes, is_big)));
+    }
+}
+
+/// Returns the first bytes of a row in little-endian order.
+#[inline]
+fn little<const N: usize>(bytes: &[u8], is_big: bool) -> [u8; N] {
+    let mut raw = *bytes.first_chunk().expect("a row holds the number");
+    if is_big {
+        raw.reverse();
+    }
+    raw
 }

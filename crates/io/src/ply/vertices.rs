@@ -85,7 +85,7 @@ fn types(element: &Element, columns: &[LayerColumns]) -> Vec<(String, Scalar)> {
 }
 
 /// Returns the indices of the properties x, y and z.
-fn coordinates(element: &Element) -> Result<[usize; 3], ParseError> {
+pub(super) fn coordinates(element: &Element) -> Result<[usize; 3], ParseError> {
     let mut xyz = [0; 3];
     for (at, name) in xyz.iter_mut().zip(["x", "y", "z"]) {
         let found = element
@@ -141,32 +141,31 @@ impl Vertices {
                 }
                 layer.values.push(value);
             }
-            self.not_finite += make_finite(layer, columns.columns.len());
+            let from = layer.values.len() - columns.columns.len();
+            self.not_finite += make_finite(layer.kind, &mut layer.values[from..]);
         }
         Ok(())
     }
 }
 
-/// Replaces values that are not finite among the last `width` of a layer by 0, and counts them. A
-/// normal becomes zero as a whole, and is later computed and counted like other zero normals.
-fn make_finite(layer: &mut Layer, width: usize) -> usize {
-    let from = layer.values.len() - width;
-    let last = &mut layer.values[from..];
-    let odd = last.iter().filter(|x| !x.is_finite()).count();
+/// Replaces values of a vertex that are not finite by 0, and counts them. A normal becomes zero as
+/// a whole, and is later computed and counted like other zero normals.
+pub(super) fn make_finite(kind: LayerKind, values: &mut [f32]) -> usize {
+    let odd = values.iter().filter(|x| !x.is_finite()).count();
     if odd == 0 {
         return 0;
     }
-    if layer.kind == LayerKind::Normal {
-        last.fill(0.0);
+    if kind == LayerKind::Normal {
+        values.fill(0.0);
         return 0;
     }
-    last.iter_mut().filter(|x| !x.is_finite()).for_each(|x| *x = 0.0);
+    values.iter_mut().filter(|x| !x.is_finite()).for_each(|x| *x = 0.0);
     odd
 }
 
 impl LayerColumns {
     /// Creates the layer, empty, with capacity for the given number of wedges.
-    fn layer(&self, wedges: usize) -> Layer {
+    pub(super) fn layer(&self, wedges: usize) -> Layer {
         let width = self.columns.len();
         let values = Vec::with_capacity(wedges * width);
         Layer { kind: self.kind, name: self.name.clone(), width, values }

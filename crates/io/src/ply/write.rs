@@ -15,7 +15,7 @@ use crate::scene::{Image, Scene};
 use crate::vertex_attributes::{SplitMesh, SplitVertex, split_at_seams_of};
 
 /// Bytes buffered before they are written.
-const BLOCK: usize = 1 << 16;
+pub(super) const BLOCK: usize = 1 << 16;
 
 /// Writes a mesh as a binary little-endian PLY file, without its materials.
 ///
@@ -152,21 +152,40 @@ fn header(
     columns: &[LayerEncoder<'_>],
     faces: &FaceEncoder<'_>,
 ) -> String {
-    let vertices = rows.len(&plan.mesh);
+    let remarks = extras.remarks.iter().map(|line| one_line(line, str::trim));
+    let textures = plan.textures.iter().map(|name| format!("comment TextureFile {name}"));
+    let vertices = rows.len(&plan.mesh) as u64;
+    let of_vertex = columns.iter().flat_map(LayerEncoder::properties).collect();
+    let of_face = faces.properties().into_iter().collect();
+    header_text(
+        remarks.chain(textures).collect(),
+        width,
+        (vertices, of_vertex),
+        (plan.mesh.faces.len() as u64, of_face),
+    )
+}
+
+/// Returns the text of a header: remarks, and the number and properties of vertices and faces,
+/// beside their coordinates and indices.
+pub(super) fn header_text(
+    remarks: Vec<String>,
+    width: Width,
+    (vertices, of_vertex): (u64, Vec<String>),
+    (faces, of_face): (u64, Vec<String>),
+) -> String {
     let mut lines = vec!["ply".to_owned(), "format binary_little_endian 1.0".to_owned()];
-    lines.extend(extras.remarks.iter().map(|line| one_line(line, str::trim)));
-    lines.extend(plan.textures.iter().map(|name| format!("comment TextureFile {name}")));
+    lines.extend(remarks);
     lines.push(format!("element vertex {vertices}"));
     let coordinate = match width {
         Width::F32 => "float",
         Width::F64 => "double",
     };
     lines.extend(["x", "y", "z"].map(|name| format!("property {coordinate} {name}")));
-    columns.iter().for_each(|column| lines.extend(column.properties()));
-    lines.push(format!("element face {}", plan.mesh.faces.len()));
+    lines.extend(of_vertex);
+    lines.push(format!("element face {faces}"));
     let index = if i32::try_from(vertices).is_ok() { "int" } else { "uint" };
     lines.push(format!("property list uchar {index} vertex_indices"));
-    lines.extend(faces.properties());
+    lines.extend(of_face);
     lines.push("end_header\n".to_owned());
     lines.join("\n")
 }
@@ -211,7 +230,7 @@ impl<'a> LayerEncoder<'a> {
     }
 }
 
-fn append_position(position: [f64; 3], width: Width, block: &mut Vec<u8>) {
+pub(super) fn append_position(position: [f64; 3], width: Width, block: &mut Vec<u8>) {
     for x in position {
         match width {
             Width::F32 => block.extend_from_slice(&(x as f32).to_le_bytes()),
@@ -220,7 +239,7 @@ fn append_position(position: [f64; 3], width: Width, block: &mut Vec<u8>) {
     }
 }
 
-fn flush_if_full(block: &mut Vec<u8>, out: &mut dyn Write) -> Result<()> {
+pub(super) fn flush_if_full(block: &mut Vec<u8>, out: &mut dyn Write) -> Result<()> {
     if block.len() >= BLOCK {
         out.write_all(block)?;
         block.clear();
@@ -240,6 +259,6 @@ fn check_fits_f32(mesh: &Mesh) -> Result<()> {
     }
 }
 
-fn invalid(reason: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Error {
+pub(super) fn invalid(reason: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Error {
     Error::new(ErrorKind::InvalidInput, reason)
 }

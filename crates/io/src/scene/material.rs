@@ -115,6 +115,17 @@ impl Material {
         let maps = self.mtl.iter().filter_map(|line| Some(line.map.as_ref()?.image));
         own.into_iter().flatten().chain(maps)
     }
+
+    /// Adds a number to the index of each image, for images that come behind others.
+    pub fn shift_images(&mut self, by: usize) {
+        let Shading { metallic_image, roughness_image, normal_image, .. } = &mut self.shading;
+        let own = [&mut self.base_color_image, metallic_image, roughness_image, normal_image];
+        own.into_iter().flatten().for_each(|image| *image += by);
+        let Shading { emission_image, opacity_image, .. } = &mut self.shading;
+        [emission_image, opacity_image].into_iter().flatten().for_each(|image| *image += by);
+        let maps = self.mtl.iter_mut().filter_map(|line| line.map.as_mut());
+        maps.for_each(|map| map.image += by);
+    }
 }
 
 impl Shading {

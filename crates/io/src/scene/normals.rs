@@ -53,6 +53,21 @@ pub(crate) fn compute_missing(mesh: &mut Mesh, is_meant: impl Fn(usize) -> bool)
     mesh.attributes = Some(attributes);
 }
 
+/// Returns a normal scaled to unit length, unless it differs from that by rounding only; `None` if
+/// it has no length.
+pub(crate) fn unit(normal: [f32; 3]) -> Option<[f32; 3]> {
+    unit_within(normal, ROUNDING)
+}
+
+fn unit_within(normal: [f32; 3], rounding: f64) -> Option<[f32; 3]> {
+    let squared: f32 = normal.iter().map(|x| x * x).sum();
+    if (f64::from(squared) - 1.0).abs() <= 2.0 * rounding {
+        return Some(normal);
+    }
+    let exact = DVec3::from(normal.map(f64::from));
+    exact.try_normalize().map(|unit| unit.to_array().map(|x| x as f32))
+}
+
 #[derive(Default)]
 struct Counts {
     scaled: usize,
@@ -67,14 +82,10 @@ fn make_mesh_unit(mesh: &mut Mesh, rounding: f64, bare: &[bool]) -> Counts {
     for layer in attributes.layers.iter_mut().filter(|layer| layer.kind == LayerKind::Normal) {
         let mut missing = vec![];
         for (wedge, normal) in layer.values.as_chunks_mut::<3>().0.iter_mut().enumerate() {
-            let squared: f32 = normal.iter().map(|x| x * x).sum();
-            if (f64::from(squared) - 1.0).abs() <= 2.0 * rounding {
-                continue;
-            }
-            let exact = DVec3::from(normal.map(f64::from));
-            match exact.try_normalize() {
+            match unit_within(*normal, rounding) {
+                Some(unit) if unit == *normal => {}
                 Some(unit) => {
-                    *normal = unit.to_array().map(|x| x as f32);
+                    *normal = unit;
                     counts.scaled += 1;
                 }
                 None => missing.push(wedge),

@@ -12,54 +12,83 @@ use crate::notes::Note;
 
 const HEADER: usize = 80;
 const PREAMBLE: usize = HEADER + 4;
-/// Bytes of a facet: normal and three corners as 32-bit floats, and two bytes without a fixed
-/// meaning.
-const FACET: usize = 50;
+/// Bytes of a facet of a binary file: normal and three corners as 32-bit floats, and two bytes
+/// without a fixed meaning.
+pub const FACET: usize = 50;
 
 /// Counts of writers that stream facets before they know how many there are.
-const UNKNOWN: [usize; 2] = [0, u32::MAX as usize];
+const UNKNOWN: [u64; 2] = [0, u32::MAX as u64];
 
-/// Reports whether the length of the file matches its count of facets exactly.
-pub(super) fn has_fitting_length(bytes: &[u8]) -> bool {
-    claimed(bytes).is_some_and(|count| {
-        count.checked_mul(FACET).and_then(|n| n.checked_add(PREAMBLE)) == Some(bytes.len())
-    })
+/// Reports whether the length of a file matches its count of facets exactly.
+pub(super) fn has_fitting_length(head: &[u8], length: u64) -> bool {
+    claimed(head).is_some_and(|count| facet_at(count) == length)
 }
 
-fn claimed(bytes: &[u8]) -> Option<usize> {
-    let count = bytes.get(HEADER..)?.first_chunk()?;
-    Some(u32::from_le_bytes(*count) as usize)
+fn claimed(head: &[u8]) -> Option<u64> {
+    let count = head.get(HEADER..)?.first_chunk()?;
+    Some(u32::from_le_bytes(*count).into())
+}
+
+/// Facets of a file.
+pub(super) struct Facets {
+    pub count: u64,
+    /// True if the header does not say how many there are.
+    pub is_unknown: bool,
+}
+
+/// Counts the facets of a file of a length in bytes, by its beginning.
+pub(super) fn facets(head: &[u8], length: u64) -> Result<Facets, ParseError> {
+    let end = usize::try_from(length).unwrap_or(usize::MAX);
+    let Some(claimed) = claimed(head) else {
+        let reason = "not an STL file: it neither begins with \"solid\" as text does, nor is it \
+                      as long as a binary header";
+        return Err(ParseError::byte(end, reason));
+    };
+    let body = length - facet_at(0);
+    let (there, is_whole) = (body / FACET as u64, body.is_multiple_of(FACET as u64));
+    let is_unknown = UNKNOWN.contains(&claimed) && there > 0 && is_whole;
+    let count = if is_unknown { there } else { claimed };
+    if there < count {
+        let reason = format!("the file ends inside facet {there} of {count}");
+        return Err(ParseError::byte(end, reason));
+    }
+    if count == 0 {
+        return Err(ParseError::byte(HEADER, "no faces: the number of facets is 0"));
+    }
+    Ok(Facets { count, is_unknown })
+}
+
+/// Returns the byte of a binary file that a facet begins at, counted from 0.
+pub fn facet_at(facet: u64) -> u64 {
+    PREAMBLE as u64 + facet * FACET as u64
+}
+
+/// Returns the corners of facet `facet` of `count`, by the [`FACET`] bytes of its row.
+///
+/// # Errors
+/// A coordinate that is not finite.
+pub fn corners(row: &[u8; FACET], facet: u64, count: u64) -> Result<[[f64; 3]; 3], ParseError> {
+    let corners = [12, 24, 36].map(|at| [0, 4, 8].map(|axis| float(row, at + axis)));
+    match corners.iter().find(|corner| !corner.iter().all(|x| x.is_finite())) {
+        None => Ok(corners),
+        Some(corner) => {
+            let reason =
+                format!("facet {facet} of {count} has a coordinate that is not finite: {corner:?}");
+            Err(ParseError::byte(facet_at(facet) as usize, reason))
+        }
+    }
 }
 
 /// Reads the facets declared in the header, and notes data beyond corners and normals.
 pub(super) fn read(bytes: &[u8]) -> Result<(Mesh, Vec<Note>), ParseError> {
-    let Some(claimed) = claimed(bytes) else {
-        let reason = "not an STL file: it neither begins with \"solid\" as text does, nor is it \
-                      as long as a binary header";
-        return Err(ParseError::byte(bytes.len(), reason));
-    };
+    let Facets { count, is_unknown } = facets(bytes, bytes.len() as u64)?;
+    let claimed = count as usize;
     let body = &bytes[PREAMBLE..];
-    let there = body.len() / FACET;
-    let is_unknown = UNKNOWN.contains(&claimed) && there > 0 && body.len().is_multiple_of(FACET);
-    let claimed = if is_unknown { there } else { claimed };
-    if there < claimed {
-        let reason = format!("the file ends inside facet {there} of {claimed}");
-        return Err(ParseError::byte(bytes.len(), reason));
-    }
-    if claimed == 0 {
-        return Err(ParseError::byte(HEADER, "no faces: the number of facets is 0"));
-    }
     let mut welder = Welder::with_facets(claimed);
     let mut faces = Vec::with_capacity(claimed);
     let mut colored = 0;
-    for (i, facet) in body.chunks_exact(FACET).take(claimed).enumerate() {
-        let corners = [12, 24, 36].map(|at| [0, 4, 8].map(|axis| float(facet, at + axis)));
-        if let Some(corner) = corners.iter().find(|c| !c.iter().all(|x| x.is_finite())) {
-            let reason =
-                format!("facet {i} of {claimed} has a coordinate that is not finite: {corner:?}");
-            return Err(ParseError::byte(PREAMBLE + i * FACET, reason));
-        }
-        faces.push(corners.map(|corner| welder.vertex(corner)));
+    for (i, facet) in body.as_chunks::<FACET>().0.iter().take(claimed).enumerate() {
+        faces.push(corners(facet, i as u64, count)?.map(|corner| welder.vertex(corner)));
         colored += usize::from(facet[48..] != [0; 2]);
     }
     let mut notes = vec![

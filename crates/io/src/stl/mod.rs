@@ -20,12 +20,12 @@ use crate::error::ParseError;
 use crate::precision::Precision;
 use crate::scene::Scene;
 
-pub use binary::write;
+pub use binary::{FACET, corners, facet_at, write};
 pub use text::write as write_ascii;
 
 /// Bytes at the beginning searched for zeros to recognise binary files. A binary file of one facet
 /// is shorter than this, and its facet contains a zero byte in practice.
-const SNIFFED: usize = 512;
+pub const SNIFFED: usize = 512;
 
 /// Parses an STL file, binary or text, without its notes: see [`read_scene`].
 ///
@@ -47,11 +47,26 @@ pub fn read_scene(bytes: &[u8]) -> Result<Scene, ParseError> {
     if bytes.is_empty() {
         return Err(ParseError::byte(0, "the file is empty"));
     }
-    if is_text(bytes) {
+    if is_text(bytes, bytes.len() as u64) {
         return text::read(bytes);
     }
     let (mesh, notes) = binary::read(bytes)?;
     Ok(Scene { notes, ..Scene::from_mesh("", mesh) })
+}
+
+/// Returns the number of facets in a binary file of a length in bytes, by its first [`SNIFFED`]
+/// bytes or all; `None` if it is text. They are in it, as [`facet_at`] says.
+///
+/// # Errors
+/// Those of [`read_scene`] about the number of facets.
+pub fn binary_facets(head: &[u8], length: u64) -> Result<Option<u64>, ParseError> {
+    if head.is_empty() {
+        return Err(ParseError::byte(0, "the file is empty"));
+    }
+    match is_text(head, length) {
+        true => Ok(None),
+        false => binary::facets(head, length).map(|facets| Some(facets.count)),
+    }
 }
 
 /// Writes the meshes that a scene shows as one: as text if the scene was read from several solids,
@@ -64,12 +79,14 @@ pub fn write_scene(scene: &Scene, precision: Precision, out: &mut dyn Write) -> 
     if scene.has_solids { write_ascii(&mesh, precision, out) } else { write(&mesh, out) }
 }
 
-/// Reports whether a file is text. Binary files that begin with "solid" are recognised by a length
+/// Reports whether a file of a length in bytes, which begins with `bytes`, is text. Binary files that begin with "solid" are recognised by a length
 /// that matches their count, or by zero bytes near the beginning.
-fn is_text(bytes: &[u8]) -> bool {
+fn is_text(bytes: &[u8], length: u64) -> bool {
     let begins =
         bytes.trim_ascii_start().get(..5).is_some_and(|w| w.eq_ignore_ascii_case(b"solid"));
-    begins && !binary::has_fitting_length(bytes) && !bytes[..bytes.len().min(SNIFFED)].contains(&0)
+    begins
+        && !binary::has_fitting_length(bytes, length)
+        && !bytes[..bytes.len().min(SNIFFED)].contains(&0)
 }
 
 /// Returns the unit normal of a triangle, or zero if it has no area.

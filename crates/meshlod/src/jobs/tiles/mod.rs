@@ -9,7 +9,7 @@ use std::fs::{self, File};
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use meshlod_io::write_file;
+use meshlod_io::{IoError, write_file};
 use meshlod_tiles::TilesError;
 use meshlod_tiles::errors::find_errors;
 use meshlod_tiles::folder::Folder;
@@ -222,6 +222,8 @@ fn failure(error: TilesError) -> JobError {
     match error {
         TilesError::NoFaces | TilesError::NoExtent => JobError::input(error),
         TilesError::NoTask { .. } | TilesError::NotDone { .. } => JobError::request("", error),
+        TilesError::Io(error @ IoError::Parse { .. }) => JobError::input(error),
+        TilesError::Io(error) => JobError::output(error),
         error => JobError::output(error),
     }
 }

@@ -1,43 +1,12 @@
-//! Where triangles come from: a scene in memory, or a file that is read in passing.
+//! Triangles of a scene in memory.
 
 use std::io;
 
 use meshlod_io::Scene;
 use meshlod_mesh::{Bounds, Mesh};
 
+use super::{MOST_TRIANGLES, Source, Triangles};
 use crate::layout::Layout;
-
-/// Largest number of triangles that a source hands on at a time.
-pub const MOST_TRIANGLES: usize = 1 << 16;
-
-/// Triangles of a model in any order, which can be gone through several times.
-pub trait Source {
-    /// Returns what the corners have beside their places.
-    fn layout(&self) -> &Layout;
-
-    /// Returns the bounding box of all triangles, in model units.
-    ///
-    /// # Errors
-    /// Errors of the file.
-    fn bounds(&self) -> io::Result<Bounds>;
-
-    /// Hands on all triangles, at most [`MOST_TRIANGLES`] at a time.
-    ///
-    /// # Errors
-    /// Errors of the file, and of `take`.
-    fn triangles(&self, take: &mut dyn FnMut(&Triangles) -> io::Result<()>) -> io::Result<()>;
-}
-
-/// Some triangles of a model.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Triangles {
-    /// Places of the three corners of each, in model units.
-    pub places: Vec<[[f64; 3]; 3]>,
-    /// Values of the corners, by [`Layout::width`]; three times as many a triangle.
-    pub values: Vec<f32>,
-    /// Material of each, by index; 0 if there are none.
-    pub materials: Vec<u16>,
-}
 
 /// Scene in memory.
 #[derive(Debug)]
