@@ -24,7 +24,12 @@ pub trait Coarsen {
     ///
     /// # Errors
     /// The method decides.
-    fn coarsen(&self, mesh: &Mesh, locks: Vec<Lock>, error: f64) -> Result<(Mesh, f64), Self::Error>;
+    fn coarsen(
+        &self,
+        mesh: &Mesh,
+        locks: Vec<Lock>,
+        error: f64,
+    ) -> Result<(Mesh, f64), Self::Error>;
 
     /// Returns the error at which a mesh has a number of faces.
     ///
@@ -57,7 +62,8 @@ pub fn coarser<C: Coarsen>(
     let border = simplify_border(&tile, cell, tree, OF_CURVES * error);
     let moved = 2.0 * border.distance;
     take_border(&mut tile, border);
-    let edges: Vec<[Point; 2]> = tile.border.iter().map(|edge| edge.map(|v| tile.point(v))).collect();
+    let edges: Vec<[Point; 2]> =
+        tile.border.iter().map(|edge| edge.map(|v| tile.point(v))).collect();
     let locks = tile.border_vertices().into_iter();
     let locks = locks.map(|is_border| if is_border { Lock::Locked } else { Lock::Free }).collect();
     let (mesh, distance) = method.coarsen(&tile.mesh, locks, error)?;

@@ -101,8 +101,8 @@ impl Side<'_> {
             *before.entry(b).or_default() += 1;
         }
         let is_anchor = |v: VertexId| {
-            let through = next.get(&v).is_some_and(|next| next.len() == 1)
-                && before.get(&v) == Some(&1);
+            let through =
+                next.get(&v).is_some_and(|next| next.len() == 1) && before.get(&v) == Some(&1);
             !through || self.cell.sides_of(self.at(v)).count_ones() > 1
         };
         let mut chains = Vec::new();
@@ -119,8 +119,10 @@ impl Side<'_> {
         };
         for &[a, b] in edges.iter().filter(|[a, _]| is_anchor(*a)) {
             let vertices = follow(a, b, &mut done);
-            let is_alone = |v: VertexId| self.cell.sides_of(self.at(v)).count_ones() == 1
-                && next.get(&v).map_or(0, Vec::len) + before.get(&v).unwrap_or(&0) == 1;
+            let is_alone = |v: VertexId| {
+                self.cell.sides_of(self.at(v)).count_ones() == 1
+                    && next.get(&v).map_or(0, Vec::len) + before.get(&v).unwrap_or(&0) == 1
+            };
             let last = vertices[vertices.len() - 1];
             let is_piece = is_alone(a) && is_alone(last);
             // Both neighbours start at the end with the lesser point.
@@ -163,7 +165,8 @@ impl Side<'_> {
     /// Returns the place in a list of the vertex that is farthest from another, and its distance.
     fn farthest_from(&self, from: VertexId, vertices: &[VertexId]) -> (usize, f64) {
         let from = self.at(from);
-        let all = vertices.iter().map(|&v| (distance_to_segment(self.at(v), [from, from]), self.at(v)));
+        let all =
+            vertices.iter().map(|&v| (distance_to_segment(self.at(v), [from, from]), self.at(v)));
         farthest(all).expect("there are vertices")
     }
 
@@ -171,7 +174,8 @@ impl Side<'_> {
     fn close(&mut self, vertices: &[VertexId]) {
         let around = vertices[1..].windows(2);
         self.result.flaps.extend(around.map(|pair| [vertices[0], pair[1], pair[0]]));
-        self.result.distance = self.result.distance.max(self.farthest_from(vertices[0], vertices).1);
+        self.result.distance =
+            self.result.distance.max(self.farthest_from(vertices[0], vertices).1);
     }
 
     /// Returns the places in a chain of the vertices that stay.
@@ -246,9 +250,7 @@ impl Side<'_> {
 fn farthest(all: impl Iterator<Item = (f64, Point)>) -> Option<(usize, f64)> {
     let mut best: Option<(usize, f64, Point)> = None;
     for (i, (distance, at)) in all.enumerate() {
-        if best.is_none_or(|(_, most, point)| {
-            distance > most || (distance == most && at < point)
-        }) {
+        if best.is_none_or(|(_, most, point)| distance > most || (distance == most && at < point)) {
             best = Some((i, distance, at));
         }
     }

@@ -71,7 +71,8 @@ fn probes(plan: &Plan) -> Vec<usize> {
         blocks.iter().map(|block| block.pieces as usize).sum()
     };
     let is_probe = |&task: &usize| {
-        plan.cell(task).is_ok_and(|cell| cell.depth > 0) && 4 * pieces(task) >= plan.options.most_faces
+        plan.cell(task).is_ok_and(|cell| cell.depth > 0)
+            && 4 * pieces(task) >= plan.options.most_faces
     };
     let all: Vec<usize> = (0..plan.tasks.len()).filter(is_probe).collect();
     let step = all.len().div_ceil(PROBED).max(1);

@@ -174,7 +174,8 @@ impl Folder {
         let mut file = File::open(&path).map_err(system)?;
         let blocks = &plan.blocks[plan.tasks[task] as usize];
         let has_materials = !plan.labels.is_empty();
-        read_blocks(&mut file, blocks, &plan.layout, has_materials, &mut builder).map_err(system)?;
+        read_blocks(&mut file, blocks, &plan.layout, has_materials, &mut builder)
+            .map_err(system)?;
         Ok(builder.leaf(plan.cell(task)?))
     }
 
@@ -204,11 +205,8 @@ impl Folder {
         record: TileRecord,
     ) -> Result<TileRecord, TilesError> {
         let mesh = tile_file::encode(tile, &plan.layout);
-        let record = TileRecord {
-            bytes: content.len() as u64,
-            checksum: crc32fast::hash(&mesh),
-            ..record
-        };
+        let record =
+            TileRecord { bytes: content.len() as u64, checksum: crc32fast::hash(&mesh), ..record };
         write_file(&self.content(record.cell), content)?;
         write_file(&self.mesh_file(record.cell), &mesh)?;
         write_file(&self.record_file(record.cell), &json(&record))?;

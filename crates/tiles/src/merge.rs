@@ -76,10 +76,10 @@ impl Joined {
             self.add_attributes(attributes, &mesh.faces, (&vertices, &is_border));
         }
         if let Some(labels) = &mesh.materials {
-            let own = self.mesh.materials.get_or_insert_with(|| Labels {
-                names: labels.names.clone(),
-                of_face: Vec::new(),
-            });
+            let own = self
+                .mesh
+                .materials
+                .get_or_insert_with(|| Labels { names: labels.names.clone(), of_face: Vec::new() });
             own.of_face.extend(&labels.of_face);
         }
         self.mesh.faces.extend(mesh.faces.iter().map(|face| face.map(|v| vertices[v.index()])));
@@ -94,7 +94,8 @@ impl Joined {
     ) {
         let own = self.mesh.attributes.get_or_insert_with(|| {
             let layers = attributes.layers.iter();
-            let layers = layers.map(|layer| meshlod_mesh::Layer { values: Vec::new(), ..layer.clone() });
+            let layers =
+                layers.map(|layer| meshlod_mesh::Layer { values: Vec::new(), ..layer.clone() });
             Attributes { wedge_count: 0, corners: Vec::new(), layers: layers.collect() }
         });
         let mut homes = vec![None; attributes.wedge_count];
@@ -130,7 +131,8 @@ impl Joined {
 }
 
 fn is_close(a: &Attributes, of_a: WedgeId, b: &Attributes, of_b: WedgeId) -> bool {
-    a.layers.iter().zip(&b.layers).all(|(a, b)| {
-        a.of(of_a).iter().zip(b.of(of_b)).all(|(x, y)| (x - y).abs() <= SAME)
-    })
+    a.layers
+        .iter()
+        .zip(&b.layers)
+        .all(|(a, b)| a.of(of_a).iter().zip(b.of(of_b)).all(|(x, y)| (x - y).abs() <= SAME))
 }

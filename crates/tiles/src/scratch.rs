@@ -168,7 +168,10 @@ pub fn read_blocks(
             let indices = indices.as_chunks().0;
             let index = [0, 1, 2].map(|corner| usize::from(u16::from_le_bytes(indices[corner])));
             if index.iter().any(|&i| i >= corners) {
-                return Err(io::Error::new(io::ErrorKind::InvalidData, "the scratch file is damaged"));
+                return Err(io::Error::new(
+                    io::ErrorKind::InvalidData,
+                    "the scratch file is damaged",
+                ));
             }
             let corner = index.map(|i| (points[i], &values[i * width..][..width]));
             let material = materials.get(i).map_or(0, |&bytes| u16::from_le_bytes(bytes));

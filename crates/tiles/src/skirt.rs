@@ -17,17 +17,16 @@ pub fn skirt(plan: &Plan, cell: Cell, tile: &TileMesh, mesh: &Mesh) -> Option<Me
         return None;
     }
     let normals = normals(mesh);
-    let edges: FxHashMap<[VertexId; 2], ()> =
-        tile.border.iter().map(|&edge| (edge, ())).collect();
+    let edges: FxHashMap<[VertexId; 2], ()> = tile.border.iter().map(|&edge| (edge, ())).collect();
     let mut new = Mesh { positions: mesh.positions.clone(), ..Mesh::default() };
     new.attributes = mesh.attributes.clone().map(|mut attributes| {
         attributes.corners.clear();
         attributes
     });
-    new.materials = mesh.materials.as_ref().map(|labels| Labels {
-        names: labels.names.clone(),
-        of_face: Vec::new(),
-    });
+    new.materials = mesh
+        .materials
+        .as_ref()
+        .map(|labels| Labels { names: labels.names.clone(), of_face: Vec::new() });
     let mut low: FxHashMap<VertexId, VertexId> = FxHashMap::default();
     for (face, corners) in mesh.faces.iter().enumerate() {
         for i in 0..3 {

@@ -161,7 +161,8 @@ impl Writer<'_> {
         let [low, high] = self.bounds(task);
         let middle = self.records[task].cell.middle();
         let step = self.plan.lattice.step;
-        let center = [0, 1, 2].map(|axis| (0.5 * (low[axis] + high[axis]) - f64::from(middle[axis])) * step);
+        let center =
+            [0, 1, 2].map(|axis| (0.5 * (low[axis] + high[axis]) - f64::from(middle[axis])) * step);
         let half = [0, 1, 2].map(|axis| 0.5 * (high[axis] - low[axis]) * step);
         let [x, y, z] = self.axes(center);
         let [a, b, c] = self.axes(half).map(f64::abs);
@@ -195,9 +196,8 @@ impl Writer<'_> {
         let by = self.axes(middle);
         let to = self.plan.options.placement;
         let mut placed = to;
-        placed[3] = [0, 1, 2, 3].map(|row| {
-            to[3][row] + (0..3).map(|axis| to[axis][row] * by[axis]).sum::<f64>()
-        });
+        placed[3] = [0, 1, 2, 3]
+            .map(|row| to[3][row] + (0..3).map(|axis| to[axis][row] * by[axis]).sum::<f64>());
         placed
     }
 }

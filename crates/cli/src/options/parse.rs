@@ -5,8 +5,8 @@ use std::fmt;
 pub use meshlod::Bound;
 use meshlod::{Format, Method, Target};
 
-use crate::options::number::{is_end_of_thousands, metres, without_separators};
 pub use crate::options::number::{bytes, number, whole};
+use crate::options::number::{is_end_of_thousands, metres, without_separators};
 use crate::text::numbers::{count, plural, value};
 
 /// Requested size of a simplified mesh.

@@ -59,12 +59,13 @@ mod tests {
 
     #[test]
     fn frames_stand_upright_on_the_ellipsoid() {
-        let at = |latitude, longitude, altitude| {
-            Globe { latitude, longitude, altitude }.frame()
-        };
+        let at = |latitude, longitude, altitude| Globe { latitude, longitude, altitude }.frame();
         let [east, north, up, place] = at(0.0, 0.0, 100.0);
         assert_eq!(place, [RADIUS + 100.0, 0.0, 0.0, 1.0]);
-        assert_eq!((east, north, up), ([0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [1.0, 0.0, 0.0, 0.0]));
+        assert_eq!(
+            (east, north, up),
+            ([0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [1.0, 0.0, 0.0, 0.0])
+        );
         let pole = at(90.0, 0.0, 0.0)[3];
         assert!((pole[2] - 6_356_752.314_245).abs() < 1e-5 && pole[0].abs() < 1e-5);
     }

@@ -53,7 +53,8 @@ impl TilesRequest {
         }
         if let Some(globe) = self.globe {
             let Globe { latitude, longitude, altitude } = globe;
-            let is_sound = latitude.abs() <= 90.0 && longitude.abs() <= 360.0 && altitude.is_finite();
+            let is_sound =
+                latitude.abs() <= 90.0 && longitude.abs() <= 360.0 && altitude.is_finite();
             if !is_sound {
                 let reason = "must be a latitude within 90 degrees, a longitude and a height";
                 return Err(JobError::request("globe", reason));

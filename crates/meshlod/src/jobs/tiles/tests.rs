@@ -37,8 +37,13 @@ fn tasks_one_by_one_make_the_same_files() {
     let request = TilesRequest { tile_faces: 2_000, ..TilesRequest::default() };
     let report = tiles(input, folder.path(), &request, &()).unwrap();
     assert_eq!(report.unchanged_tiles, 0);
-    assert!(report.levels.windows(2).all(|pair| pair[0].faces < pair[1].faces
-        && pair[0].error_proved >= pair[1].error_proved));
+    assert!(
+        report
+            .levels
+            .windows(2)
+            .all(|pair| pair[0].faces < pair[1].faces
+                && pair[0].error_proved >= pair[1].error_proved)
+    );
 
     let plan = other.path().join("plan");
     let tasks = plan_tiles(input, &plan, &request, &()).unwrap();
@@ -48,5 +53,8 @@ fn tasks_one_by_one_make_the_same_files() {
     (0..tasks).for_each(|task| run_tile_task(&plan, task).unwrap());
     let out = other.path().join("out");
     assert_eq!(finish_tiles(&plan, &out, &()).unwrap(), report);
-    assert_eq!(files(&out), files(folder.path()).into_iter().filter(|(name, _)| !name.starts_with(".plan")).collect());
+    assert_eq!(
+        files(&out),
+        files(folder.path()).into_iter().filter(|(name, _)| !name.starts_with(".plan")).collect()
+    );
 }
