@@ -8,6 +8,7 @@ use crate::cell::Cell;
 use crate::lattice::BITS;
 use crate::plan::{Look, Plan};
 use crate::skirt::skirt;
+use crate::texture::{TileLook, repack};
 use crate::tile::{TileMesh, point_of};
 
 /// Bits of a coordinate along the side of a cell. A bit more is for skirts.
@@ -46,6 +47,8 @@ pub fn content(
     tile: &TileMesh,
 ) -> Result<Content, Unsupported> {
     let (mut mesh, moved) = on_grid(plan, cell, tile);
+    let halvings = plan.tree.deepest_in(cell) - cell.depth;
+    let shown = repack(look, &mut mesh, halvings.into());
     let skirts = plan.options.skirts.then(|| skirt(plan, cell, tile, &mesh)).flatten();
     drop_degenerate(&mut mesh);
     let faces = mesh.faces.len();
@@ -60,7 +63,7 @@ pub fn content(
     });
     let mut meshes = vec![mesh];
     meshes.extend(skirts);
-    let glb = encode((plan, look), cell, meshes)?;
+    let glb = encode((plan, shown), cell, meshes)?;
     Ok(Content { glb, faces, moved, bounds })
 }
 
@@ -70,9 +73,9 @@ fn on_grid(plan: &Plan, cell: Cell, tile: &TileMesh) -> (Mesh, f64) {
     let is_border = tile.border_vertices();
     let mut mesh = tile.mesh.clone();
     let mut moved = 0f64;
-    for i in 0..mesh.positions.len() {
+    for (i, is_border) in is_border.into_iter().enumerate() {
         let point = point_of(&mesh, VertexId::new(i));
-        let depth = match is_border[i] {
+        let depth = match is_border {
             true => plan.tree.least_depth_around(point, cell),
             false => cell.depth,
         };
@@ -114,7 +117,7 @@ fn drop_degenerate(mesh: &mut Mesh) {
 
 /// Encodes meshes in steps of the lattice as a GLB about the middle of the cell, in model units.
 fn encode(
-    (plan, look): (&Plan, &Look),
+    (plan, shown): (&Plan, TileLook),
     cell: Cell,
     meshes: Vec<Mesh>,
 ) -> Result<Vec<u8>, Unsupported> {
@@ -129,7 +132,7 @@ fn encode(
         }
         mesh
     };
-    let labels = look.labels.len();
+    let labels = plan.labels.len();
     let names = ["surface", "skirt"].into_iter();
     let meshes: Vec<SceneMesh> = names
         .zip(meshes)
@@ -139,13 +142,14 @@ fn encode(
             materials: if labels == 0 { vec![None] } else { (0..labels).map(Some).collect() },
         })
         .collect();
-    let nodes = (0..meshes.len()).map(|mesh| Node { mesh: Some(mesh), transform, ..Node::default() });
+    let nodes =
+        (0..meshes.len()).map(|mesh| Node { mesh: Some(mesh), transform, ..Node::default() });
     let scene = Scene {
         nodes: nodes.collect(),
         roots: (0..meshes.len()).collect(),
         meshes,
-        materials: look.materials.clone(),
-        images: look.images.clone(),
+        materials: shown.materials,
+        images: shown.images,
         ..Scene::default()
     };
     let grid = f64::from(grid_step(cell.depth));

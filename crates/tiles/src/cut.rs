@@ -115,7 +115,7 @@ impl<'t> Cutter<'t> {
             return None;
         }
         let side = sides.trailing_zeros() as usize;
-        let (normal, way) = (side / 2, if side % 2 == 0 { -1 } else { 1 });
+        let (normal, way) = (side / 2, if side.is_multiple_of(2) { -1 } else { 1 });
         let mut toward = [0; 3];
         toward[normal] = way;
         let mut depth = cell.depth;
@@ -126,8 +126,7 @@ impl<'t> Cutter<'t> {
             }
             let middle = node.cell.middle();
             let side = |point: Point, axis: usize| (point[axis] - middle[axis]).signum();
-            let is_between =
-                |&axis: &usize| axis != normal && side(a, axis) * side(b, axis) < 0;
+            let is_between = |&axis: &usize| axis != normal && side(a, axis) * side(b, axis) < 0;
             if let Some(axis) = (0..3).find(is_between) {
                 return Some((axis, middle[axis]));
             }

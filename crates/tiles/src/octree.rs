@@ -49,6 +49,26 @@ impl Octree {
         self.nodes.last().map_or(0, |node| node.cell.depth)
     }
 
+    /// Returns the depth of the deepest leaf in a cell of the tree.
+    pub fn deepest_in(&self, cell: Cell) -> u8 {
+        let children = |node: &OctreeNode| {
+            node.children.map_or(&[][..], |first| &self.nodes[first as usize..][..8])
+        };
+        let mut top = &self.nodes[0];
+        while let Some(next) = children(top).iter().find(|next| next.cell.contains(cell.middle()))
+            && top.cell != cell
+        {
+            top = next;
+        }
+        let mut open = vec![top];
+        let mut deepest = cell.depth;
+        while let Some(node) = open.pop() {
+            deepest = deepest.max(node.cell.depth);
+            open.extend(children(node));
+        }
+        deepest
+    }
+
     /// Returns the index of the cell of at most a depth that is beyond one or two sides of another,
     /// at a point of these sides: `toward` has 1 on an axis for the far side, -1 for the near one,
     /// and 0 where the point decides. `None` outside the whole.
@@ -62,7 +82,9 @@ impl Octree {
         if (0..3).any(is_out) {
             return None;
         }
-        while let Some(children) = self.nodes[node].children.filter(|_| self.nodes[node].cell.depth < depth) {
+        while let Some(children) =
+            self.nodes[node].children.filter(|_| self.nodes[node].cell.depth < depth)
+        {
             let middle = self.nodes[node].cell.middle();
             let octant = (0..3).fold(0, |octant, axis| {
                 let beyond = 2 * (point[axis] - middle[axis]) + toward[axis];
@@ -111,13 +133,19 @@ mod tests {
         assert_eq!((tree.nodes().len(), tree.depth()), (25, 3));
         let quarter = Cell::ROOT.child(0).child(1);
         let [x, y, z] = quarter.low();
-        let beside = |depth| {
-            tree.nodes()[tree.beside([x, y + 1, z + 1], [-1, 0, 0], depth).unwrap()].cell
-        };
+        let beside =
+            |depth| tree.nodes()[tree.beside([x, y + 1, z + 1], [-1, 0, 0], depth).unwrap()].cell;
         assert_eq!(beside(2), Cell::ROOT.child(0).child(0));
         assert_eq!(beside(3), Cell::ROOT.child(0).child(0).child(1));
         assert_eq!(beside(0), Cell::ROOT);
         assert!(tree.beside([0, 5, 5], [-1, 0, 0], 3).is_none());
+    }
+
+    #[test]
+    fn the_deepest_leaf_in_a_cell_is_found() {
+        let (tree, near) = (corner(3), Cell::ROOT.child(0));
+        let cells = [Cell::ROOT, near, near.child(0), near.child(1), Cell::ROOT.child(7)];
+        assert_eq!(cells.map(|cell| tree.deepest_in(cell)), [3, 3, 3, 2, 1]);
     }
 
     #[test]

@@ -17,6 +17,7 @@ use crate::layout::Layout;
 use crate::octree::Octree;
 use crate::scratch::{Blocks, ScratchWriter};
 use crate::source::{Source, Triangles};
+use crate::texture::DecodedImages;
 
 /// Depth of the grid in whose cells faces are counted first.
 const FIRST_DEPTH: u8 = 7;
@@ -81,6 +82,8 @@ pub struct Look {
     pub materials: Vec<Material>,
     /// Images of the materials.
     pub images: Vec<Image>,
+    /// These images decoded.
+    pub decoded: DecodedImages,
 }
 
 impl Plan {
@@ -190,7 +193,8 @@ impl Counted {
         this.add(fine, 0);
         // Few models have cells that are still crowded; each pass goes through all faces again.
         while depth < MOST_DEPTH {
-            let is_crowded = |(cell, faces): &(&Cell, &usize)| cell.depth == depth && **faces > most;
+            let is_crowded =
+                |(cell, faces): &(&Cell, &usize)| cell.depth == depth && **faces > most;
             let crowded: FxHashMap<Cell, ()> =
                 this.of_cell.iter().filter(is_crowded).map(|(cell, _)| (*cell, ())).collect();
             if crowded.is_empty() {

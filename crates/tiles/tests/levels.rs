@@ -1,40 +1,20 @@
 //! Tiles of sample meshes, in memory: their curves meet at every level, and levels stay closed.
 
+mod common;
+
 use std::collections::BTreeMap;
 
-use meshlod_mesh::{Connectivity, Lock, Locks, Mesh};
+use common::Kernel;
+use meshlod_mesh::{Connectivity, Mesh};
 use meshlod_samples as samples;
-use meshlod_simplify::{Options, SimplifyError, Target, contract_to};
 use meshlod_tiles::chain::chain_sum;
-use meshlod_tiles::coarser::{Coarsen, coarser};
+use meshlod_tiles::coarser::coarser;
 use meshlod_tiles::cut::Cutter;
 use meshlod_tiles::lattice::Point;
 use meshlod_tiles::layout::Layout;
 use meshlod_tiles::merge::merge;
 use meshlod_tiles::tile::TileBuilder;
 use meshlod_tiles::{Cell, Lattice, Octree, TileMesh};
-
-struct Kernel;
-
-impl Coarsen for Kernel {
-    type Error = SimplifyError;
-
-    fn coarsen(
-        &self,
-        mesh: &Mesh,
-        locks: Vec<Lock>,
-        error: f64,
-    ) -> Result<(Mesh, f64), SimplifyError> {
-        let locks = Locks { of_vertex: locks, ties: Vec::new() };
-        let options = Options { locks, ..Options::default() };
-        let (mesh, _) = contract_to(mesh, Target::Error(error), &options)?;
-        Ok((mesh, error))
-    }
-
-    fn loss(&self, _: &Mesh, _: usize) -> Result<f64, SimplifyError> {
-        Ok(0.0)
-    }
-}
 
 /// Points of the faces of a mesh on the lattice.
 fn points(mesh: &Mesh) -> Vec<[Point; 3]> {
@@ -118,15 +98,30 @@ fn closed_surfaces_stay_closed_at_every_level() {
     ] {
         let before = Connectivity::new(&mesh.faces, mesh.positions.len());
         let mut last = usize::MAX;
-        levels(&mesh, most, |depth| f64::from(400 * (1 << (6 - depth.min(6)))), |depth, tiles| {
-            assert!(sums_cancel(tiles), "depth {depth}");
-            let level = whole(tiles);
-            let connectivity = Connectivity::new(&level.faces, level.positions.len());
-            eprintln!("depth {depth}: {} tiles, {} faces, {} boundary, {} non-manifold", tiles.len(), level.faces.len(), connectivity.boundary_edges(), connectivity.non_manifold_edges());
-            assert_eq!(connectivity.boundary_edges(), 0, "depth {depth}");
-            assert_eq!(connectivity.non_manifold_edges(), before.non_manifold_edges(), "depth {depth}");
-            assert!(level.faces.len() < last);
-            last = level.faces.len();
-        });
+        levels(
+            &mesh,
+            most,
+            |depth| f64::from(400 * (1 << (6 - depth.min(6)))),
+            |depth, tiles| {
+                assert!(sums_cancel(tiles), "depth {depth}");
+                let level = whole(tiles);
+                let connectivity = Connectivity::new(&level.faces, level.positions.len());
+                eprintln!(
+                    "depth {depth}: {} tiles, {} faces, {} boundary, {} non-manifold",
+                    tiles.len(),
+                    level.faces.len(),
+                    connectivity.boundary_edges(),
+                    connectivity.non_manifold_edges()
+                );
+                assert_eq!(connectivity.boundary_edges(), 0, "depth {depth}");
+                assert_eq!(
+                    connectivity.non_manifold_edges(),
+                    before.non_manifold_edges(),
+                    "depth {depth}"
+                );
+                assert!(level.faces.len() < last);
+                last = level.faces.len();
+            },
+        );
     }
 }

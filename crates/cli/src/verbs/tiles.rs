@@ -117,8 +117,13 @@ struct FormArgs {
     #[arg(long, value_name = "DEGREES", requires = "lat", allow_negative_numbers = true)]
     lon: Option<f64>,
     /// Height of the model's origin above the ellipsoid, in metres
-    #[arg(long, value_name = "METRES", requires = "lat", default_value_t = 0.0,
-        allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "METRES",
+        requires = "lat",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
     alt: f64,
 }
 
@@ -240,7 +245,7 @@ fn look(scene: &Scene) -> Look {
     // Faces without a material have the last label.
     materials.push(meshlod::io::Material::default());
     let labels = materials.iter().map(|material| material.name.clone()).collect();
-    Look { labels, materials, images: scene.images.clone() }
+    Look { labels, materials, images: scene.images.clone(), ..Look::default() }
 }
 
 /// Returns a text that is different for another file, and mostly for another content.

@@ -124,11 +124,7 @@ pub fn run_tile_task(folder: &Path, task: usize) -> Result<(), JobError> {
 ///
 /// # Errors
 /// A task that is not done, tiles that do not meet, and errors of the system.
-pub fn finish_tiles(
-    folder: &Path,
-    out: &Path,
-    watch: &dyn Watch,
-) -> Result<TilesReport, JobError> {
+pub fn finish_tiles(folder: &Path, out: &Path, watch: &dyn Watch) -> Result<TilesReport, JobError> {
     watch.stage("checking");
     let folder = Folder::new(folder);
     let (plan, _) = planned(&folder)?;
@@ -157,7 +153,8 @@ fn planned(folder: &Folder) -> Result<(Plan, Look), JobError> {
     let none = || JobError::request("", format!("{}: no plan of tiles", folder.path().display()));
     let plan = folder.plan().map_err(failure)?.ok_or_else(none)?;
     let images = folder.images(&plan).map_err(failure)?;
-    let look = Look { labels: plan.labels.clone(), materials: plan.materials.clone(), images };
+    let (labels, materials) = (plan.labels.clone(), plan.materials.clone());
+    let look = Look { labels, materials, images, ..Look::default() };
     Ok((plan, look))
 }
 
