@@ -28,7 +28,7 @@ type DecodedKey = (usize, bool);
 /// Image, its role, and how often it is halved.
 pub(super) type EncodedKey = (usize, Role, u32);
 
-/// What a material uses an image for.
+/// Use of an image by a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) enum Role {
     /// Colours.
