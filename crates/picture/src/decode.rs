@@ -43,7 +43,7 @@ impl Texture {
         Self::decode_averaged(bytes, Averaging::Light)
     }
 
-    /// Decodes a file like [`Texture::decode`], given how large images are averaged.
+    /// Decodes a file like [`Texture::decode`], given how large images and mipmaps are averaged.
     ///
     /// # Errors
     /// Errors of [`Texture::decode`].

@@ -6,7 +6,7 @@ use crate::{PictureError, Texture};
 /// Maximum number of texels of a decoded texture: 4096 by 4096 take 64 MiB, 85 with mipmaps.
 const MAX_TEXELS: u64 = 1 << 24;
 
-/// Mean of the texels that become one in a smaller version of an image.
+/// Mean of the texels that become one in a smaller version of an image, such as a mipmap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Averaging {
     /// Averages colours in linear light, and alpha as it is stored.
@@ -87,7 +87,8 @@ impl Shrinker {
     /// Fewer rows or pixels than the image has.
     pub fn finish(self) -> Result<Texture, PictureError> {
         let [width, height] = self.image_size.map(|side| side / self.factor as u32);
-        Ok(Texture::new(width, height, &self.texels)?.of_image(self.image_size))
+        let texture = Texture::new_averaged(width, height, &self.texels, self.averaging)?;
+        Ok(texture.of_image(self.image_size))
     }
 }
 

@@ -2,9 +2,9 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::PictureError;
 use crate::error::{check_length, check_size};
 use crate::srgb::{DECODE, encode};
+use crate::{Averaging, PictureError};
 
 /// Texture image in sRGB that repeats over the plane of texture coordinates, with its mipmaps.
 ///
@@ -29,16 +29,29 @@ const MAX_PROBES: f32 = 8.0;
 impl Texture {
     /// Creates a texture from RGBA texels: four bytes each, row after row from the top.
     ///
-    /// Alpha is ignored.
+    /// Alpha is ignored when drawing. Mipmaps average colours in linear light.
     ///
     /// # Errors
     /// A side of zero or above [`MAX_SIDE`](crate::MAX_SIDE), or not `4 * width * height` bytes.
     pub fn new(width: u32, height: u32, rgba: &[u8]) -> Result<Self, PictureError> {
+        Self::new_averaged(width, height, rgba, Averaging::Light)
+    }
+
+    /// Creates a texture like [`Texture::new`], given how mipmaps average texels.
+    ///
+    /// # Errors
+    /// Errors of [`Texture::new`].
+    pub fn new_averaged(
+        width: u32,
+        height: u32,
+        rgba: &[u8],
+        averaging: Averaging,
+    ) -> Result<Self, PictureError> {
         check_size(width.into(), height.into())?;
         check_length("texture bytes", rgba.len(), 4 * width as usize * height as usize)?;
         let texels = rgba.chunks_exact(4).map(|t| [t[0], t[1], t[2], t[3]]).collect();
         let mut levels = vec![Level { width, height, texels }];
-        while let Some(half) = levels.last().and_then(Level::half) {
+        while let Some(half) = levels.last().and_then(|level| level.half(averaging)) {
             levels.push(half);
         }
         Ok(Self { levels, image_size: [width, height] })
@@ -114,24 +127,36 @@ impl Texture {
 }
 
 impl Level {
-    /// Computes the next mip level: the mean of every two by two texels in linear light. The last
-    /// row or column of an odd side is ignored. Returns `None` for a single texel.
-    fn half(&self) -> Option<Self> {
+    /// Computes the next mip level: the mean of every two by two texels, alpha as it is stored. The
+    /// last row or column of an odd side is ignored. Returns `None` for a single texel.
+    fn half(&self, averaging: Averaging) -> Option<Self> {
         if self.width == 1 && self.height == 1 {
             return None;
         }
         let [width, height] = [self.width, self.height].map(|side| (side / 2).max(1));
         let mut texels = Vec::with_capacity(width as usize * height as usize);
         for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
-            let mut sum = Vec3::ZERO;
-            for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-                let [x, y] = [(2 * x + dx).min(self.width - 1), (2 * y + dy).min(self.height - 1)];
-                sum += self.texel(x, y);
+            let four = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(dx, dy)| {
+                [(2 * x + dx).min(self.width - 1), (2 * y + dy).min(self.height - 1)]
+            });
+            let mut mean = self.mean_value(four);
+            if averaging == Averaging::Light {
+                let sum: Vec3 = four.iter().map(|&[x, y]| self.texel(x, y)).sum();
+                mean[..3].copy_from_slice(&(sum * 0.25).to_array().map(encode));
             }
-            let [r, g, b] = (sum * 0.25).to_array().map(encode);
-            texels.push([r, g, b, 255]);
+            texels.push(mean);
         }
         Some(Self { width, height, texels })
+    }
+
+    /// Averages four texels as they are stored.
+    fn mean_value(&self, four: [[u32; 2]; 4]) -> [u8; 4] {
+        let mut sum = [2u32; 4];
+        for [x, y] in four {
+            let texel = self.texels[y as usize * self.width as usize + x as usize];
+            (0..4).for_each(|channel| sum[channel] += u32::from(texel[channel]));
+        }
+        sum.map(|sum| (sum / 4) as u8)
     }
 
     fn texel(&self, x: u32, y: u32) -> Vec3 {
@@ -196,6 +221,16 @@ mod tests {
         let step = [Vec2::X * 40.0, Vec2::Y * 40.0];
         let far = four().sample(Vec2::new(0.3, 0.9), step);
         assert!((far - Vec3::splat(0.5)).abs().max_element() < 0.005, "{far}");
+    }
+
+    #[test]
+    fn mipmaps_average_light_or_values_and_keep_alpha() {
+        let rgba = [[0, 0, 0, 100], [255, 255, 255, 201]].concat();
+        for (averaging, grey) in [(Averaging::Light, 188), (Averaging::Values, 128)] {
+            let texture = Texture::new_averaged(2, 1, &rgba, averaging).unwrap();
+            let levels: Vec<_> = texture.levels().collect();
+            assert_eq!(levels[1], (1, 1, &[[grey, grey, grey, 151]][..]));
+        }
     }
 
     #[test]

@@ -7,7 +7,7 @@ use crate::cell::Cell;
 use crate::chords::{divide_chords, divide_edges};
 use crate::curves::{SimplerBorder, simplify_border};
 use crate::lattice::Point;
-use crate::octree::Octree;
+use crate::octree::TileTree;
 use crate::tile::TileMesh;
 
 /// Part of the error of a level within which its border curves are simplified.
@@ -55,7 +55,7 @@ pub struct Coarser {
 /// Errors of the method.
 pub fn coarser<C: Coarsen>(
     mut tile: TileMesh,
-    (cell, tree): (Cell, &Octree),
+    (cell, tree): (Cell, &TileTree),
     error: f64,
     method: &C,
 ) -> Result<Coarser, C::Error> {

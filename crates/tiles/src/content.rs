@@ -8,6 +8,7 @@ use crate::cell::Cell;
 use crate::lattice::{BITS, Point};
 use crate::plan::{Look, Plan};
 use crate::skirt::skirt;
+use crate::texture::{TileLook, repack};
 use crate::tile::{TileMesh, point_of};
 
 /// Bits of a coordinate along the side of a cell. A bit more is for skirts.
@@ -46,6 +47,8 @@ pub fn content(
     tile: &TileMesh,
 ) -> Result<Content, Unsupported> {
     let (mut mesh, moved) = on_grid(plan, cell, tile);
+    let halvings = plan.tree.deepest_in(cell) - cell.depth;
+    let shown = repack(look, &mut mesh, halvings.into());
     let skirts = plan.options.skirts.then(|| skirt(plan, cell, tile, &mesh)).flatten();
     drop_degenerate(&mut mesh);
     let faces = mesh.faces.len();
@@ -60,7 +63,7 @@ pub fn content(
     });
     let mut meshes = vec![mesh];
     meshes.extend(skirts);
-    let glb = encode((plan, look), cell, meshes)?;
+    let glb = encode((plan, shown), cell, meshes)?;
     Ok(Content { glb, faces, moved, bounds })
 }
 
@@ -125,7 +128,7 @@ fn drop_degenerate(mesh: &mut Mesh) {
 
 /// Encodes meshes in steps of the lattice as a GLB about the middle of the cell, in model units.
 fn encode(
-    (plan, look): (&Plan, &Look),
+    (plan, shown): (&Plan, TileLook),
     cell: Cell,
     meshes: Vec<Mesh>,
 ) -> Result<Vec<u8>, Unsupported> {
@@ -140,7 +143,7 @@ fn encode(
         }
         mesh
     };
-    let labels = look.labels.len();
+    let labels = plan.labels.len();
     let names = ["surface", "skirt"].into_iter();
     let meshes: Vec<SceneMesh> = names
         .zip(meshes)
@@ -156,8 +159,8 @@ fn encode(
         nodes: nodes.collect(),
         roots: (0..meshes.len()).collect(),
         meshes,
-        materials: look.materials.clone(),
-        images: look.images.clone(),
+        materials: shown.materials,
+        images: shown.images,
         ..Scene::default()
     };
     let grid = f64::from(grid_step(cell.depth));

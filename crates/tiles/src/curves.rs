@@ -10,7 +10,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::cell::Cell;
 use crate::lattice::Point;
-use crate::octree::Octree;
+use crate::octree::TileTree;
 use crate::tile::TileMesh;
 
 /// Border of a tile after its curves have been simplified.
@@ -30,7 +30,7 @@ pub struct SimplerBorder {
 pub fn simplify_border(
     tile: &TileMesh,
     cell: Cell,
-    tree: &Octree,
+    tree: &TileTree,
     tolerance: f64,
 ) -> SimplerBorder {
     let mut result = SimplerBorder::default();
@@ -51,7 +51,7 @@ pub fn simplify_border(
 }
 
 /// Returns true if what is beyond a side of a cell is shown by a leaf at this depth.
-fn meets_leaf(tree: &Octree, cell: Cell, side: usize) -> bool {
+fn meets_leaf(tree: &TileTree, cell: Cell, side: usize) -> bool {
     let (axis, is_far) = (side / 2, side % 2 == 1);
     let mut point = cell.middle();
     point[axis] = if is_far { cell.high()[axis] } else { cell.low()[axis] };

@@ -8,7 +8,7 @@
 
 use crate::cell::Cell;
 use crate::lattice::{Point, nearest_odd};
-use crate::octree::Octree;
+use crate::octree::TileTree;
 
 /// Corner of a piece of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,12 +25,12 @@ pub type Piece = [Corner; 3];
 /// Cuts triangles along an octree.
 #[derive(Debug)]
 pub struct Cutter<'t> {
-    tree: &'t Octree,
+    tree: &'t TileTree,
 }
 
 impl<'t> Cutter<'t> {
     /// Creates the cutter for an octree.
-    pub fn new(tree: &'t Octree) -> Self {
+    pub fn new(tree: &'t TileTree) -> Self {
         Self { tree }
     }
 

@@ -24,7 +24,7 @@ pub enum TilesError {
     Damaged {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Its fault.
         reason: String,
     },
     /// A file of a tileset is not JSON.
@@ -32,7 +32,7 @@ pub enum TilesError {
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Its fault.
         reason: String,
     },
     /// A tileset that another program has made.

@@ -20,7 +20,7 @@ pub struct Folder {
     path: PathBuf,
 }
 
-/// What is known of a tile that is done.
+/// Record of a tile that is done.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TileRecord {
     /// The tile.

@@ -1,4 +1,4 @@
-//! Lattice of whole numbers that all vertices are moved to before anything else.
+//! TileLattice of whole numbers that all vertices are moved to before anything else.
 //!
 //! Vertices have odd coordinates, planes between cells even ones. So no vertex of the input is ever
 //! on a plane, and no face is in one: what is on a plane has been put there by a cut.
@@ -16,9 +16,9 @@ pub const END: i32 = 1 << BITS;
 /// cells has an even one on that axis.
 pub type Point = [i32; 3];
 
-/// Lattice over the bounding box of a model, the same for everything that is made of it.
+/// TileLattice over the bounding box of a model, the same for everything that is made of it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Lattice {
+pub struct TileLattice {
     /// Place of the point 0, 0, 0, in model units: a multiple of the step on each axis, if the model
     /// is not too far away from the origin for that.
     pub origin: [f64; 3],
@@ -26,7 +26,7 @@ pub struct Lattice {
     pub step: f64,
 }
 
-impl Lattice {
+impl TileLattice {
     /// Returns the lattice over a box; `None` if that has no extent, or one beyond the numbers.
     pub fn over(bounds: &Bounds) -> Option<Self> {
         let sides = [0, 1, 2].map(|axis| bounds.max[axis] - bounds.min[axis]);
@@ -73,7 +73,7 @@ mod tests {
     #[test]
     fn vertices_are_odd_and_close() {
         let bounds = Bounds { min: [-1.0, 500_000.25, 0.0], max: [2.0, 500_001.0, 0.0] };
-        let lattice = Lattice::over(&bounds).unwrap();
+        let lattice = TileLattice::over(&bounds).unwrap();
         assert_eq!(lattice.step.log2().fract(), 0.0);
         for place in [bounds.min, bounds.max, bounds.center(), [0.1, 500_000.7, 0.0]] {
             let point = lattice.point(place);
@@ -88,8 +88,8 @@ mod tests {
     fn what_has_no_extent_has_no_lattice() {
         let point = Bounds { min: [1.0; 3], max: [1.0; 3] };
         let huge = Bounds { min: [-1e308; 3], max: [1e308; 3] };
-        assert!(Lattice::over(&point).is_none() && Lattice::over(&huge).is_none());
-        assert!(Lattice::over(&Bounds::EMPTY).is_none());
+        assert!(TileLattice::over(&point).is_none() && TileLattice::over(&huge).is_none());
+        assert!(TileLattice::over(&Bounds::EMPTY).is_none());
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! What a corner of a face has beside its point, and its bytes in scratch files.
+//! Values that a corner of a face has beside its point, and their bytes in scratch files.
 
 use meshlod_mesh::{Attributes, Layer, LayerKind};
 use serde::{Deserialize, Serialize};

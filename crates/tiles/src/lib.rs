@@ -28,12 +28,13 @@ pub mod scratch;
 mod skirt;
 pub mod source;
 pub mod task;
+pub mod texture;
 pub mod tile;
 mod tile_file;
 pub mod tileset;
 
 pub use cell::Cell;
 pub use error::TilesError;
-pub use lattice::Lattice;
-pub use octree::Octree;
+pub use lattice::TileLattice;
+pub use octree::TileTree;
 pub use tile::TileMesh;

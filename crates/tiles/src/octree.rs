@@ -1,37 +1,37 @@
-//! Octree of the tiles: which cells are divided, and what is beside a cell.
+//! TileTree of the tiles: which cells are divided, and what is beside a cell.
 
 use serde::{Deserialize, Serialize};
 
 use crate::cell::{Cell, MOST_DEPTH};
 use crate::lattice::Point;
 
-/// Octree whose leaves hold about as many faces as a tile may have.
+/// TileTree whose leaves hold about as many faces as a tile may have.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Octree {
+pub struct TileTree {
     /// All cells; the root is the first, and cells come before those that they are divided into.
-    nodes: Vec<OctreeNode>,
+    nodes: Vec<TreeNode>,
 }
 
 /// Cell of the octree, and those that it is divided into.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct OctreeNode {
+pub struct TreeNode {
     /// The cell.
     pub cell: Cell,
     /// Index of the first of its eight children, which follow each other; `None` for a leaf.
     pub children: Option<u32>,
 }
 
-impl Octree {
+impl TileTree {
     /// Divides cells from the root on for as long as `is_crowded`, but not beyond
     /// [`MOST_DEPTH`].
     pub fn divide(mut is_crowded: impl FnMut(Cell) -> bool) -> Self {
-        let mut nodes = vec![OctreeNode { cell: Cell::ROOT, children: None }];
+        let mut nodes = vec![TreeNode { cell: Cell::ROOT, children: None }];
         let mut next = 0;
         while next < nodes.len() {
             let cell = nodes[next].cell;
             if cell.depth < MOST_DEPTH && is_crowded(cell) {
                 nodes[next].children = Some(nodes.len() as u32);
-                let child = |octant| OctreeNode { cell: cell.child(octant), children: None };
+                let child = |octant| TreeNode { cell: cell.child(octant), children: None };
                 nodes.extend((0..8).map(child));
             }
             next += 1;
@@ -40,13 +40,33 @@ impl Octree {
     }
 
     /// Returns all cells: the root first, and cells before those that they are divided into.
-    pub fn nodes(&self) -> &[OctreeNode] {
+    pub fn nodes(&self) -> &[TreeNode] {
         &self.nodes
     }
 
     /// Returns the depth of the deepest leaf.
     pub fn depth(&self) -> u8 {
         self.nodes.last().map_or(0, |node| node.cell.depth)
+    }
+
+    /// Returns the depth of the deepest leaf in a cell of the tree.
+    pub fn deepest_in(&self, cell: Cell) -> u8 {
+        let children = |node: &TreeNode| {
+            node.children.map_or(&[][..], |first| &self.nodes[first as usize..][..8])
+        };
+        let mut top = &self.nodes[0];
+        while let Some(next) = children(top).iter().find(|next| next.cell.contains(cell.middle()))
+            && top.cell != cell
+        {
+            top = next;
+        }
+        let mut open = vec![top];
+        let mut deepest = cell.depth;
+        while let Some(node) = open.pop() {
+            deepest = deepest.max(node.cell.depth);
+            open.extend(children(node));
+        }
+        deepest
     }
 
     /// Returns the index of the cell of at most a depth that is beyond one or two sides of another,
@@ -103,8 +123,8 @@ mod tests {
     use super::*;
 
     /// Divided along the diagonal from the origin, down to a depth.
-    fn corner(depth: u8) -> Octree {
-        Octree::divide(|cell| cell.depth < depth && cell.at == [0; 3])
+    fn corner(depth: u8) -> TileTree {
+        TileTree::divide(|cell| cell.depth < depth && cell.at == [0; 3])
     }
 
     #[test]
@@ -119,6 +139,13 @@ mod tests {
         assert_eq!(beside(3), Cell::ROOT.child(0).child(0).child(1));
         assert_eq!(beside(0), Cell::ROOT);
         assert!(tree.beside([0, 5, 5], [-1, 0, 0], 3).is_none());
+    }
+
+    #[test]
+    fn the_deepest_leaf_in_a_cell_is_found() {
+        let (tree, near) = (corner(3), Cell::ROOT.child(0));
+        let cells = [Cell::ROOT, near, near.child(0), near.child(1), Cell::ROOT.child(7)];
+        assert_eq!(cells.map(|cell| tree.deepest_in(cell)), [3, 3, 3, 2, 1]);
     }
 
     #[test]

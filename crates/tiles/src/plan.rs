@@ -12,11 +12,12 @@ use serde::{Deserialize, Serialize};
 use crate::cell::{Cell, MOST_DEPTH};
 use crate::cut::{Cutter, Piece};
 use crate::error::TilesError;
-use crate::lattice::{BITS, Lattice, Point};
+use crate::lattice::{BITS, Point, TileLattice};
 use crate::layout::Layout;
-use crate::octree::Octree;
+use crate::octree::TileTree;
 use crate::scratch::{Blocks, ScratchWriter};
 use crate::source::{Source, Triangles};
+use crate::texture::DecodedImages;
 
 /// Depth of the grid in whose cells faces are counted first.
 const FIRST_DEPTH: u8 = 7;
@@ -24,7 +25,7 @@ const FIRST_DEPTH: u8 = 7;
 /// Depths that a crowded cell of the grid is counted anew by.
 const MORE_DEPTHS: u8 = 4;
 
-/// What tiles are made to be.
+/// Size and form of tiles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TileOptions {
@@ -46,13 +47,13 @@ pub struct TileOptions {
 pub struct Plan {
     /// Number that is different for another model or request.
     pub key: String,
-    /// What tiles are made to be.
+    /// Size and form of tiles.
     pub options: TileOptions,
-    /// Lattice of all vertices.
-    pub lattice: Lattice,
-    /// Octree of the tiles.
-    pub tree: Octree,
-    /// What corners have beside their points.
+    /// TileLattice of all vertices.
+    pub lattice: TileLattice,
+    /// TileTree of the tiles.
+    pub tree: TileTree,
+    /// Values that corners have beside their points.
     pub layout: Layout,
     /// Names of the labels of materials.
     pub labels: Vec<String>,
@@ -81,6 +82,8 @@ pub struct Look {
     pub materials: Vec<Material>,
     /// Images of the materials.
     pub images: Vec<Image>,
+    /// These images decoded.
+    pub decoded: DecodedImages,
 }
 
 impl Plan {
@@ -100,12 +103,12 @@ impl Plan {
         if bounds.is_empty() {
             return Err(TilesError::NoFaces);
         }
-        let lattice = Lattice::over(&bounds).ok_or(TilesError::NoExtent)?;
+        let lattice = TileLattice::over(&bounds).ok_or(TilesError::NoExtent)?;
         let counted = Counted::of(source, &lattice, options.most_faces).map_err(system)?;
         if counted.faces == 0 {
             return Err(TilesError::NoFaces);
         }
-        let tree = Octree::divide(|cell| counted.faces_in(cell) > options.most_faces);
+        let tree = TileTree::divide(|cell| counted.faces_in(cell) > options.most_faces);
         let layout = source.layout().clone();
         let leaves = tree.nodes().iter().filter(|node| node.children.is_none()).count();
         let sizes = [leaves, tree.nodes().len()];
@@ -152,7 +155,7 @@ impl Plan {
 }
 
 /// Returns the nodes of all tiles that have faces, the last ones first.
-fn tasks(tree: &Octree, blocks: &Blocks) -> Vec<u32> {
+fn tasks(tree: &TileTree, blocks: &Blocks) -> Vec<u32> {
     let mut is_used = vec![false; tree.nodes().len()];
     let mut tasks = Vec::new();
     for (i, node) in tree.nodes().iter().enumerate().rev() {
@@ -176,7 +179,7 @@ struct Counted {
 }
 
 impl Counted {
-    fn of(source: &dyn Source, lattice: &Lattice, most: usize) -> io::Result<Self> {
+    fn of(source: &dyn Source, lattice: &TileLattice, most: usize) -> io::Result<Self> {
         let mut this = Self { faces: 0, degenerate: 0, of_cell: FxHashMap::default() };
         let mut fine: FxHashMap<Cell, usize> = FxHashMap::default();
         source.triangles(&mut |some| {
@@ -234,7 +237,7 @@ fn above(cell: Cell, depth: u8) -> Cell {
 
 /// Returns the cell of a depth that each triangle has its middle in; `None` where two corners are
 /// at one point.
-fn cells_of(some: &Triangles, lattice: &Lattice, depth: u8) -> Vec<Option<Cell>> {
+fn cells_of(some: &Triangles, lattice: &TileLattice, depth: u8) -> Vec<Option<Cell>> {
     let cell = |places: &[[f64; 3]; 3]| {
         let [a, b, c] = places.map(|place| lattice.point(place));
         if a == b || b == c || c == a {
@@ -252,7 +255,7 @@ const CUT_AT_ONCE: usize = 2048;
 /// Cuts all triangles of a source, and writes their pieces.
 fn scatter<W: io::Write>(
     source: &dyn Source,
-    (lattice, tree): (&Lattice, &Octree),
+    (lattice, tree): (&TileLattice, &TileTree),
     mut writer: ScratchWriter<'_, W>,
 ) -> io::Result<Blocks> {
     let cutter = Cutter::new(tree);

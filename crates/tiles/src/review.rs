@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use crate::cell::Cell;
 use crate::error::TilesError;
-use crate::lattice::{END, Lattice, Point};
+use crate::lattice::{END, Point, TileLattice};
 
 /// Part of the size of the model by which boxes may be too small: rounding.
 const ROUNDING: f64 = 1e-9;
@@ -18,7 +18,7 @@ const ROUNDING: f64 = 1e-9;
 /// Largest depth of external tilesets in each other.
 const MOST_FILES: usize = 64;
 
-/// What a review of a tileset has found.
+/// Findings of a review of a tileset.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TilesetReview {
     /// Number of tiles.
@@ -27,7 +27,7 @@ pub struct TilesetReview {
     pub faces: usize,
     /// Number of levels.
     pub levels: usize,
-    /// What is wrong, one line each.
+    /// Faults, one line each.
     pub findings: Vec<String>,
 }
 
@@ -73,7 +73,7 @@ type Edges = FxHashMap<[Point; 2], i64>;
 
 struct Reviewer {
     folder: PathBuf,
-    lattice: Lattice,
+    lattice: TileLattice,
     is_z_up: bool,
     review: TilesetReview,
     leaves: Vec<(Cell, Edges)>,

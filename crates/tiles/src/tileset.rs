@@ -21,7 +21,7 @@ pub struct TilesetFile {
     pub text: Vec<u8>,
 }
 
-/// What is known of all tiles together.
+/// All tiles together.
 #[derive(Debug)]
 pub struct Finished {
     /// The files; the first is `tileset.json`.

@@ -1,58 +1,38 @@
 //! Tiles of sample meshes, in memory: their curves meet at every level, and levels stay closed.
 
+mod common;
+
 use std::collections::BTreeMap;
 
-use meshlod_mesh::{Connectivity, Lock, Locks, Mesh};
+use common::Kernel;
+use meshlod_mesh::{Connectivity, Mesh};
 use meshlod_samples as samples;
-use meshlod_simplify::{Options, SimplifyError, Target, contract_to};
 use meshlod_tiles::chain::chain_sum;
-use meshlod_tiles::coarser::{Coarsen, coarser};
+use meshlod_tiles::coarser::coarser;
 use meshlod_tiles::cut::Cutter;
 use meshlod_tiles::lattice::Point;
 use meshlod_tiles::layout::Layout;
 use meshlod_tiles::merge::merge;
 use meshlod_tiles::tile::TileBuilder;
-use meshlod_tiles::{Cell, Lattice, Octree, TileMesh};
-
-struct Kernel;
-
-impl Coarsen for Kernel {
-    type Error = SimplifyError;
-
-    fn coarsen(
-        &self,
-        mesh: &Mesh,
-        locks: Vec<Lock>,
-        error: f64,
-    ) -> Result<(Mesh, f64), SimplifyError> {
-        let locks = Locks { of_vertex: locks, ties: Vec::new() };
-        let options = Options { locks, ..Options::default() };
-        let (mesh, _) = contract_to(mesh, Target::Error(error), &options)?;
-        Ok((mesh, error))
-    }
-
-    fn loss(&self, _: &Mesh, _: usize) -> Result<f64, SimplifyError> {
-        Ok(0.0)
-    }
-}
+use meshlod_tiles::{Cell, TileLattice, TileMesh, TileTree};
 
 /// Points of the faces of a mesh on the lattice.
 fn points(mesh: &Mesh) -> Vec<[Point; 3]> {
-    let lattice = Lattice::over(&mesh.bounds()).unwrap();
+    let lattice = TileLattice::over(&mesh.bounds()).unwrap();
     let at: Vec<Point> = mesh.positions.iter().map(|&at| lattice.point(at)).collect();
     mesh.faces.iter().map(|face| face.map(|v| at[v.index()])).collect()
 }
 
-/// Octree whose leaves hold the centres of at most so many triangles.
-fn octree(triangles: &[[Point; 3]], most: usize) -> Octree {
+/// TileTree whose leaves hold the centres of at most so many triangles.
+fn octree(triangles: &[[Point; 3]], most: usize) -> TileTree {
     let centres: Vec<Point> = triangles
         .iter()
         .map(|[a, b, c]| [0, 1, 2].map(|axis| (a[axis] + b[axis] + c[axis]) / 3))
         .collect();
-    Octree::divide(|cell| centres.iter().filter(|&&at| cell.contains(at)).count() > most)
+    TileTree::divide(|cell| centres.iter().filter(|&&at| cell.contains(at)).count() > most)
 }
 
-fn leaves(triangles: &[[Point; 3]], tree: &Octree) -> BTreeMap<Cell, TileMesh> {
+fn leaves(triangles: &[[Point; 3]], tree: &TileTree) -> BTreeMap<Cell, TileMesh> {
     let mut builders: BTreeMap<usize, TileBuilder> = BTreeMap::new();
     let cutter = Cutter::new(tree);
     let none: &[f32] = &[];

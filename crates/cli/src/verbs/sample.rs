@@ -91,8 +91,8 @@ impl Sample {
             None if self.colors => Some(samples::colored_terrain(samples::TERRAIN_FACES)),
             faces => samples::by_seed(&self.name, faces, self.seed),
         };
-        let mesh = mesh
-            .ok_or_else(|| Failure::usage(format_args!("no sample is called {}", self.name)))?;
+        let mesh =
+            mesh.ok_or_else(|| Failure::usage(format_args!("no sample is called {}", self.name)))?;
         let mesh = if self.turned { samples::turned(&mesh, self.seed) } else { mesh };
         let sizes = [mesh.positions.len(), mesh.faces.len()];
         let scene = Scene::from_mesh(&self.name, mesh);

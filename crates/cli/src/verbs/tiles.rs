@@ -33,7 +33,7 @@ use report::TilesFigures;
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub struct Tiles {
     #[command(subcommand)]
-    step: Option<Step>,
+    step: Option<TileStep>,
     /// Meshes to read as one model, folders of them, or -
     #[arg(value_name = "IN", required = true)]
     inputs: Vec<PathBuf>,
@@ -49,9 +49,9 @@ pub struct Tiles {
     reading: ReadArgs,
 }
 
-/// Step of making tiles.
+/// TileStep of making tiles.
 #[derive(Subcommand)]
-enum Step {
+enum TileStep {
     /// Cut a model into the pieces of its tiles, and plan how to make them
     Plan(PlanStep),
     /// Make one tile of a plan; those that it is made from come before it
@@ -159,9 +159,9 @@ impl FormArgs {
 impl Tiles {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         match self.step {
-            Some(Step::Plan(step)) => step.run(session),
-            Some(Step::Task(step)) => step.run(session),
-            Some(Step::Finish(step)) => step.run(session),
+            Some(TileStep::Plan(step)) => step.run(session),
+            Some(TileStep::Task(step)) => step.run(session),
+            Some(TileStep::Finish(step)) => step.run(session),
             None => self.whole(session),
         }
     }

@@ -140,7 +140,7 @@ fn look(scene: &Scene) -> Look {
     // Faces without a material have the last label.
     materials.push(Material::default());
     let labels = materials.iter().map(|material| material.name.clone()).collect();
-    Look { labels, materials, images: scene.images.clone() }
+    Look { labels, materials, images: scene.images.clone(), ..Look::default() }
 }
 
 /// Returns a text that is different for another file, and mostly for another content.

@@ -168,7 +168,8 @@ fn planned(folder: &Folder) -> Result<(Plan, Look), JobError> {
     let none = || JobError::request("", format!("{}: no plan of tiles", folder.path().display()));
     let plan = folder.plan().map_err(failure)?.ok_or_else(none)?;
     let images = folder.images(&plan).map_err(failure)?;
-    let look = Look { labels: plan.labels.clone(), materials: plan.materials.clone(), images };
+    let (labels, materials) = (plan.labels.clone(), plan.materials.clone());
+    let look = Look { labels, materials, images, ..Look::default() };
     Ok((plan, look))
 }
 

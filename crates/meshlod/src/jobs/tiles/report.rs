@@ -49,7 +49,7 @@ pub struct TilesetReport {
     pub levels: usize,
     /// Number of faces of all tiles, without skirts.
     pub faces: usize,
-    /// What is wrong, one line each.
+    /// Faults, one line each.
     pub findings: Vec<String>,
 }
 

@@ -36,26 +36,17 @@ pub(super) fn versions(bytes: &[u8], is_color: bool) -> Vec<ImageVersion> {
     let averaging = if is_color { Averaging::Light } else { Averaging::Values };
     let Ok(texture) = Texture::decode_averaged(bytes, averaging) else { return versions };
     let levels: Vec<_> = texture.levels().collect();
-    let (size, first) = ([levels[0].0, levels[0].1], levels[0].2);
     whole.side = texture.image_size().into_iter().max().unwrap_or(u32::MAX);
-    let mut means = Halved { size, texels: first.to_vec() };
     // Of an image that was made smaller to decode it, the first level is a version, too.
-    let is_whole = texture.image_size() == size;
-    for &(width, height, colors) in &levels[usize::from(is_whole)..] {
-        if [width, height] != means.size {
-            means = means.half();
-        }
+    let is_whole = texture.image_size() == [levels[0].0, levels[0].1];
+    for &(width, height, texels) in &levels[usize::from(is_whole)..] {
         let (last, side) = (&versions[versions.len() - 1], width.max(height));
         // Such a PNG would hardly be small enough: it takes a fourth of a byte for each texel.
         if last.side <= LEAST_SIDE || width as usize * height as usize > last.bytes.len() {
             continue;
         }
-        let mut texels = means.texels.clone();
-        if is_color {
-            let pairs = texels.iter_mut().zip(colors);
-            pairs.for_each(|(mean, color)| mean[..3].copy_from_slice(&color[..3]));
-        }
-        let Ok(picture) = Picture::new(width, height, texels.into_flattened()) else { continue };
+        let rgba = texels.as_flattened().to_vec();
+        let Ok(picture) = Picture::new(width, height, rgba) else { continue };
         let bytes = picture.png();
         let step = if side <= LEAST_SIDE { 1 } else { STEP };
         if step * bytes.len() < last.bytes.len() {
@@ -64,30 +55,6 @@ pub(super) fn versions(bytes: &[u8], is_color: bool) -> Vec<ImageVersion> {
     }
     versions.reverse();
     versions
-}
-
-/// Image halved some times, each value the mean of four.
-struct Halved {
-    size: [u32; 2],
-    texels: Vec<[u8; 4]>,
-}
-
-impl Halved {
-    fn half(&self) -> Self {
-        let [width, height] = self.size;
-        let size = self.size.map(|side| (side / 2).max(1));
-        let at = |x: u32, y: u32| {
-            let (x, y) = (x.min(width - 1), y.min(height - 1));
-            self.texels[y as usize * width as usize + x as usize].map(u32::from)
-        };
-        let mean = |x: u32, y: u32| {
-            let four = [at(x, y), at(x + 1, y), at(x, y + 1), at(x + 1, y + 1)];
-            std::array::from_fn(|k| ((four.iter().map(|t| t[k]).sum::<u32>() + 2) / 4) as u8)
-        };
-        let rows = 0..size[1];
-        let texels = rows.flat_map(|y| (0..size[0]).map(move |x| (2 * x, 2 * y)));
-        Self { size, texels: texels.map(|(x, y)| mean(x, y)).collect() }
-    }
 }
 
 #[cfg(test)]
