@@ -131,7 +131,7 @@ const TWICE: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[
         "uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
 
 /// Lines to run, in an order in which each has its input.
-const LINES: [&str; 52] = [
+const LINES: [&str; 57] = [
     "sample knot in.ply --faces 2000",
     "info in.ply",
     "check in.ply --locks locks.json",

@@ -15,12 +15,12 @@ pub struct FaceRows {
     /// Type of the indices.
     index: Scalar,
     /// Parts of a row, in order.
-    parts: Vec<Part>,
+    parts: Vec<RowPart>,
 }
 
 /// Part of a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Part {
+enum RowPart {
     /// Numbers that are skipped, by their bytes.
     Bytes(usize),
     /// List that is skipped.
@@ -31,7 +31,7 @@ enum Part {
 
 /// Row of a face.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct FaceRow {
+pub struct RowLayout {
     /// Size of the row, in bytes.
     pub size: usize,
     /// Number of corners.
@@ -53,18 +53,18 @@ impl FaceRows {
     pub(super) fn new(element: &Element, start: u64, is_big: bool) -> Result<Self, ParseError> {
         let list = element.face_list().ok_or_else(|| no_list(element))?;
         let mut index = Scalar::U32;
-        let mut parts: Vec<Part> = Vec::new();
+        let mut parts: Vec<RowPart> = Vec::new();
         for (at, property) in element.properties.iter().enumerate() {
             let part = match property.shape {
                 Shape::List { length, item } if at == list => {
                     index = item;
-                    Part::Vertices { length }
+                    RowPart::Vertices { length }
                 }
-                Shape::List { length, item } => Part::List { length, item },
-                Shape::One(kind) => Part::Bytes(kind.size()),
+                Shape::List { length, item } => RowPart::List { length, item },
+                Shape::One(kind) => RowPart::Bytes(kind.size()),
             };
             match (part, parts.last_mut()) {
-                (Part::Bytes(more), Some(Part::Bytes(size))) => *size += more,
+                (RowPart::Bytes(more), Some(RowPart::Bytes(size))) => *size += more,
                 _ => parts.push(part),
             }
         }
@@ -75,16 +75,16 @@ impl FaceRows {
     ///
     /// # Errors
     /// Bytes that end inside the row, and a list of negative length.
-    pub fn row(&self, bytes: &[u8]) -> Result<FaceRow, RowFault> {
-        let mut row = FaceRow::default();
+    pub fn row(&self, bytes: &[u8]) -> Result<RowLayout, RowFault> {
+        let mut row = RowLayout::default();
         for &part in &self.parts {
             let size = match part {
-                Part::Bytes(size) => size as u64,
-                Part::List { length, item } => {
+                RowPart::Bytes(size) => size as u64,
+                RowPart::List { length, item } => {
                     let (size, count) = self.length(length, &bytes[row.size..], row.size)?;
                     size as u64 + count.saturating_mul(item.size() as u64)
                 }
-                Part::Vertices { length } => {
+                RowPart::Vertices { length } => {
                     let (size, count) = self.length(length, &bytes[row.size..], row.size)?;
                     row.corners = usize::try_from(count).unwrap_or(usize::MAX);
                     row.indices = row.size + size;
@@ -120,7 +120,7 @@ impl FaceRows {
     /// The first index that is not one of `vertices` vertices, counted from 0.
     pub fn vertices(
         &self,
-        row: FaceRow,
+        row: RowLayout,
         bytes: &[u8],
         vertices: u64,
         corners: &mut Vec<u64>,

@@ -78,7 +78,7 @@ use text_body::TextBody;
 use vertices::Vertices;
 
 pub use extras::PlyExtras;
-pub use face_rows::{FaceRow, FaceRows, RowFault};
+pub use face_rows::{FaceRows, RowFault, RowLayout};
 pub(crate) use plan::limits;
 pub use stream::{StreamLayout, VertexRows, stream_layout};
 pub use stream_writer::{StreamShape, StreamWriter};

@@ -70,10 +70,10 @@ impl DecodedImages {
 
 /// Values that are made once, of which the last used ones are kept.
 #[derive(Debug)]
-struct Kept<K, V>(Arc<Mutex<Slots<K, V>>>);
+struct Kept<K, V>(Arc<Mutex<Decodings<K, V>>>);
 
 #[derive(Debug)]
-struct Slots<K, V> {
+struct Decodings<K, V> {
     of: FxHashMap<K, Slot<V>>,
     /// Number of uses so far.
     uses: u64,
@@ -94,7 +94,7 @@ impl<K, V> Clone for Kept<K, V> {
 
 impl<K, V> Default for Kept<K, V> {
     fn default() -> Self {
-        Self(Arc::new(Mutex::new(Slots { of: FxHashMap::default(), uses: 0 })))
+        Self(Arc::new(Mutex::new(Decodings { of: FxHashMap::default(), uses: 0 })))
     }
 }
 
@@ -112,12 +112,12 @@ impl<K: Copy + Eq + Hash, V: Clone> Kept<K, V> {
         value
     }
 
-    fn slots<T>(&self, work: impl FnOnce(&mut Slots<K, V>) -> T) -> T {
+    fn slots<T>(&self, work: impl FnOnce(&mut Decodings<K, V>) -> T) -> T {
         work(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
-impl<K: Copy + Eq + Hash, V> Slots<K, V> {
+impl<K: Copy + Eq + Hash, V> Decodings<K, V> {
     /// Returns the slot of a value, as the last used one.
     fn slot(&mut self, key: K) -> &mut Slot<V> {
         self.uses += 1;

@@ -22,7 +22,7 @@ pub struct Model {
 }
 
 /// File of a model.
-struct Part {
+struct ModelPart {
     source: Box<dyn Source>,
     look: Look,
 }
@@ -38,21 +38,21 @@ impl Model {
             inputs.iter().map(|input| files_in(input)).collect::<Result<Vec<_>, _>>()?.concat();
         // What is read as a whole is in memory at the same time.
         let least = LEAST_STREAMED / paths.len().max(1) as u64;
-        let open = |path: &PathBuf| Part::open(path, least, reading, session);
+        let open = |path: &PathBuf| ModelPart::open(path, least, reading, session);
         let parts = paths.iter().map(open).collect::<Result<Vec<_>, _>>()?;
         let key = paths.iter().map(|path| key(path)).collect::<Vec<_>>().join("\n");
         Self::join(parts, key, session)
     }
 
-    fn join(mut parts: Vec<Part>, key: String, session: &Session) -> Result<Self, Failure> {
+    fn join(mut parts: Vec<ModelPart>, key: String, session: &Session) -> Result<Self, Failure> {
         if parts.len() == 1 {
-            let Part { source, look } = parts.remove(0);
+            let ModelPart { source, look } = parts.remove(0);
             return Ok(Self { source, look, key });
         }
         let mut look = Look::default();
         let is_plain = parts.iter().all(|part| part.look.labels.is_empty());
         let mut sources = Vec::with_capacity(parts.len());
-        for Part { source, look: own } in parts {
+        for ModelPart { source, look: own } in parts {
             let first = match is_plain {
                 true => 0,
                 false => add(&mut look, own)?,
@@ -72,7 +72,7 @@ impl Model {
     }
 }
 
-impl Part {
+impl ModelPart {
     /// Opens a file, in passing from a number of bytes on where that is possible.
     fn open(
         path: &Path,
