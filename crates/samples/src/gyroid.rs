@@ -10,7 +10,7 @@ use crate::tetrahedra::polygonize;
 /// Periods of the gyroid across the lattice.
 const PERIODS: f64 = 3.0;
 /// Level whose inside is kept: below 0, so that tubes are thinner than tunnels.
-const LEVEL: f64 = -0.3;
+pub(crate) const LEVEL: f64 = -0.3;
 /// Radius of the ball, which stays clear of the border of the lattice.
 const RADIUS: f64 = 0.97;
 /// Width of the rounding along the edges that the ball cuts, in units of length.

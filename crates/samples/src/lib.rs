@@ -10,7 +10,7 @@
 //!
 //! | files, in reading order | hold |
 //! |---|---|
-//! | `sphere`, `torus`, `knot`, `gyroid`, `tetrahedra` | smooth shapes |
+//! | `sphere`, `torus`, `knot`, `gyroid`, `gyroid_slabs`, `tetrahedra` | smooth shapes |
 //! | `plate`, `blocks`, `prism` | hard ones |
 //! | `terrain`, `fish` | natural ones |
 //! | `grid`, `random` | what they share |
@@ -25,6 +25,7 @@ mod blocks;
 mod fish;
 mod grid;
 mod gyroid;
+mod gyroid_slabs;
 mod knot;
 mod plate;
 mod prism;
@@ -39,6 +40,7 @@ mod torus;
 pub use blocks::{boxes, cube, stairs, voxels};
 pub use fish::fish;
 pub use gyroid::gyroid;
+pub use gyroid_slabs::GyroidSlabs;
 pub use knot::knot;
 pub use plate::plate;
 pub use prism::{plates, prism};
@@ -73,8 +75,8 @@ pub const MAX_FACES: usize = 500_000_000;
 /// Number of faces of a terrain that shows it well.
 pub const TERRAIN_FACES: usize = 20_000;
 
-/// Maximum number of faces of a sample that is written in passing, such as by [`TerrainRows`]: one
-/// whose vertices still have 32-bit numbers.
+/// Maximum number of faces of a sample that is written in passing, by [`TerrainRows`] or [`GyroidSlabs`]:
+/// vertices still have 32-bit numbers.
 pub const MAX_STREAMED_FACES: usize = 2_000_000_000;
 
 /// Builds the sample mesh of that name with about `faces` faces, or a default number for `None`.

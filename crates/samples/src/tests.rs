@@ -241,3 +241,26 @@ fn colours_of_terrain_rise_from_water_to_snow() {
     let mesh = colored_terrain(200);
     assert_eq!(mesh.validate(), Ok(()));
 }
+
+#[test]
+fn gyroids_slab_by_slab_are_closed_and_connected() {
+    for faces in [0, 200_000, 500_000] {
+        let slabs = GyroidSlabs::new(faces);
+        let mut mesh = Mesh::default();
+        let places = slabs.places(|some| {
+            mesh.positions.extend(some);
+            Ok::<(), ()>(())
+        });
+        let of_faces = slabs.faces(|some| {
+            mesh.faces.extend(some.iter().map(|face| face.map(VertexId)));
+            Ok::<(), ()>(())
+        });
+        assert_eq!((places, of_faces), (Ok(()), Ok(())));
+        let sizes = [mesh.positions.len(), mesh.faces.len()];
+        assert_eq!(slabs.sizes(), sizes.map(|n| n as u64));
+        let off = sizes[1].abs_diff(faces);
+        assert!(faces == 0 || off < faces / 10, "{faces}: {}", sizes[1]);
+        assert_eq!(face_components(&mesh.faces, sizes[0]).1, 1);
+        assert_watertight("gyroid by slabs", &mesh);
+    }
+}

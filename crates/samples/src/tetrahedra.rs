@@ -5,6 +5,9 @@
 //! one triangle or one quad. So neighbours agree, and the result is a closed 2-manifold for *any*
 //! signs, which marching cubes does not guarantee.
 
+use std::convert::Infallible;
+use std::ops::ControlFlow;
+
 use glam::DVec3;
 use meshlod_mesh::{Mesh, VertexId};
 
@@ -16,22 +19,64 @@ use crate::grid::split;
 /// `field` must not be negative on the border of the cube, or the surface ends there.
 /// Cost: O(cells³) calls of `field`, and O(cells²) memory besides the mesh.
 pub(crate) fn polygonize(cells: usize, field: impl Fn(DVec3) -> f64) -> Mesh {
-    let mut march = March {
-        cells,
-        field: &field,
-        below: Layer::default(),
-        above: Layer::sampled(cells, 0, &field),
-        mesh: Mesh::default(),
-    };
-    for z in 0..cells {
-        march.below = std::mem::replace(&mut march.above, Layer::sampled(cells, z + 1, &field));
-        for y in 0..cells {
-            for x in 0..cells {
+    let mut mesh = Mesh::default();
+    let lattice = Lattice { cells, value: |_: [usize; 3], place| field(place), field: &field };
+    let _ = march(&lattice, true, |slab| {
+        mesh.positions.extend(&slab.places);
+        mesh.faces.extend(slab.faces.iter().map(|face| face.map(VertexId)));
+        ControlFlow::<Infallible>::Continue(())
+    });
+    mesh
+}
+
+/// Lattice over the cube [-1, 1]³, and the field on it.
+pub(crate) struct Lattice<V, F> {
+    /// Number of cells per side.
+    pub cells: usize,
+    /// Value of the field at a point of the lattice, by its numbers and its place.
+    pub value: V,
+    /// Value of the field at any place.
+    pub field: F,
+}
+
+/// Vertices and faces between two layers of the lattice, but for the vertices of the slab before.
+#[derive(Default)]
+pub(crate) struct Slab {
+    /// Number of vertices.
+    pub vertices: u32,
+    /// Their places, where these are wanted.
+    pub places: Vec<[f64; 3]>,
+    /// Faces; vertices are numbered from slab to slab.
+    pub faces: Vec<[u32; 3]>,
+}
+
+/// Builds the surface of [`polygonize`] slab by slab, until `take` breaks off.
+pub(crate) fn march<V, F, B>(
+    lattice: &Lattice<V, F>,
+    wants_places: bool,
+    mut take: impl FnMut(&Slab) -> ControlFlow<B>,
+) -> ControlFlow<B>
+where
+    V: Fn([usize; 3], DVec3) -> f64,
+    F: Fn(DVec3) -> f64,
+{
+    let (below, above) = (Layer::default(), Layer::sampled(lattice, 0));
+    let (first, slab) = (0, Slab::default());
+    let mut march = March { lattice, wants_places, below, above, first, slab };
+    for z in 0..lattice.cells {
+        march.below = std::mem::replace(&mut march.above, Layer::sampled(lattice, z + 1));
+        for y in 0..lattice.cells {
+            for x in 0..lattice.cells {
                 march.cube([x, y, z]);
             }
         }
+        take(&march.slab)?;
+        march.first += march.slab.vertices;
+        march.slab.vertices = 0;
+        march.slab.places.clear();
+        march.slab.faces.clear();
     }
-    march.mesh
+    ControlFlow::Continue(())
 }
 
 /// Least distance of a vertex from a lattice point, as a fraction of its edge, so that no face
@@ -51,16 +96,22 @@ struct Layer {
 }
 
 impl Layer {
-    fn sampled(cells: usize, z: usize, field: &impl Fn(DVec3) -> f64) -> Self {
-        let side = cells + 1;
-        let values = (0..side * side).map(|i| field(place(cells, [i % side, i / side, z])));
+    fn sampled<V: Fn([usize; 3], DVec3) -> f64, F>(lattice: &Lattice<V, F>, z: usize) -> Self {
+        let side = lattice.cells + 1;
+        let points = (0..side * side).map(|i| [i % side, i / side, z]);
+        let values = points.map(|point| (lattice.value)(point, place(lattice.cells, point)));
         Self { values: values.collect(), vertices: vec![[NONE; 8]; side * side] }
     }
 }
 
 /// Returns the position of a lattice point.
 fn place(cells: usize, point: [usize; 3]) -> DVec3 {
-    DVec3::from(point.map(|i| 2.0 * i as f64 / cells as f64 - 1.0))
+    DVec3::from(point.map(|i| coordinate(cells, i)))
+}
+
+/// Returns the coordinate of a lattice point on an axis.
+pub(crate) fn coordinate(cells: usize, i: usize) -> f64 {
+    2.0 * i as f64 / cells as f64 - 1.0
 }
 
 /// Permutations of the axes, even ones first. A tetrahedron runs from the lowest corner of a cube
@@ -70,15 +121,17 @@ const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2,
 /// A corner of a cube: one bit per axis, counted from the lowest corner.
 type CubeCorner = usize;
 
-struct March<'a, F> {
-    cells: usize,
-    field: &'a F,
+struct March<'a, V, F> {
+    lattice: &'a Lattice<V, F>,
+    wants_places: bool,
     below: Layer,
     above: Layer,
-    mesh: Mesh,
+    /// Number of vertices before the slab.
+    first: u32,
+    slab: Slab,
 }
 
-impl<F: Fn(DVec3) -> f64> March<'_, F> {
+impl<V, F: Fn(DVec3) -> f64> March<'_, V, F> {
     fn cube(&mut self, cube: [usize; 3]) {
         let inside: [bool; 8] = std::array::from_fn(|corner| self.value(cube, corner) < 0.0);
         if inside == [inside[0]; 8] {
@@ -100,44 +153,47 @@ impl<F: Fn(DVec3) -> f64> March<'_, F> {
         match count {
             1 => {
                 let face = [vertex(a, b), vertex(a, c), vertex(a, d)];
-                self.mesh.faces.push(face);
+                self.slab.faces.push(face);
             }
             2 => {
                 let quad = [vertex(a, c), vertex(a, d), vertex(b, d), vertex(b, c)];
-                self.mesh.faces.extend(split(quad));
+                self.slab.faces.extend(split(quad));
             }
             3 => {
                 let face = [vertex(a, d), vertex(b, d), vertex(c, d)];
-                self.mesh.faces.push(face);
+                self.slab.faces.push(face);
             }
             _ => {}
         }
     }
 
     /// Returns the vertex on an edge whose ends are on different sides of the surface.
-    fn vertex(&mut self, cube: [usize; 3], from: CubeCorner, to: CubeCorner) -> VertexId {
+    fn vertex(&mut self, cube: [usize; 3], from: CubeCorner, to: CubeCorner) -> u32 {
         let (low, high) = (from & to, from | to);
         let (slot, direction) = (self.slot(cube, low), low ^ high);
         let layer = if low & 4 == 0 { &self.below } else { &self.above };
         let known = layer.vertices[slot][direction];
         if known != NONE {
-            return VertexId(known);
+            return known;
         }
-        let id = VertexId::new(self.mesh.positions.len());
-        self.mesh.positions.push(self.crossing(cube, low, high).into());
+        let id = self.first + self.slab.vertices;
+        self.slab.vertices += 1;
+        if self.wants_places {
+            self.slab.places.push(self.crossing(cube, low, high).into());
+        }
         let layer = if low & 4 == 0 { &mut self.below } else { &mut self.above };
-        layer.vertices[slot][direction] = id.0;
+        layer.vertices[slot][direction] = id;
         id
     }
 
     /// Finds the sign change of the field between two lattice points.
     fn crossing(&self, cube: [usize; 3], low: CubeCorner, high: CubeCorner) -> DVec3 {
-        let [start, end] = [low, high].map(|corner| place(self.cells, at(cube, corner)));
+        let [start, end] = [low, high].map(|corner| place(self.lattice.cells, at(cube, corner)));
         let starts_inside = self.value(cube, low) < 0.0;
         let (mut near, mut far) = (0.0, 1.0);
         for _ in 0..BISECTIONS {
             let middle = 0.5 * (near + far);
-            if ((self.field)(start.lerp(end, middle)) < 0.0) == starts_inside {
+            if ((self.lattice.field)(start.lerp(end, middle)) < 0.0) == starts_inside {
                 near = middle;
             } else {
                 far = middle;
@@ -154,7 +210,7 @@ impl<F: Fn(DVec3) -> f64> March<'_, F> {
     /// Returns the index of a corner in its layer.
     fn slot(&self, cube: [usize; 3], corner: CubeCorner) -> usize {
         let [x, y, _] = at(cube, corner);
-        y * (self.cells + 1) + x
+        y * (self.lattice.cells + 1) + x
     }
 }
 

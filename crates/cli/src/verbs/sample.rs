@@ -18,12 +18,13 @@ use crate::session::failure::Failure;
 use crate::session::files;
 use crate::session::scene_files;
 use crate::text::numbers::{self, count};
-use streamed::StreamedTerrain;
+use streamed::Streamed;
 
 /// Write a procedural mesh of any size
 ///
-/// A terrain of millions of faces, of up to 2,000,000,000, is written row by row if OUT is a PLY
-/// file; other samples are made in memory and have at most 500,000,000 faces.
+/// From 4,000,000 faces on, terrain and gyroid are written in passing if OUT is a PLY file, up to
+/// 2,000,000,000 faces; others are made in memory and have at most 500,000,000. That gyroid has more
+/// periods, not smaller faces, and fills a cube.
 #[derive(Args)]
 pub struct Sample {
     /// Name of the sample
@@ -56,7 +57,10 @@ impl Sample {
         }
         session.progress.stage("generating");
         let [vertices, faces] = match self.streamed() {
-            Some(terrain) => terrain.write(&self.output, session)?.map(|n| n as usize),
+            Some(sample) => {
+                let precision = self.writing.options().precision;
+                sample.write(&self.output, precision, session)?.map(|n| n as usize)
+            }
             None => self.write(session)?,
         };
         let json = json!({
@@ -72,18 +76,17 @@ impl Sample {
 }
 
 impl Sample {
-    /// Returns the terrain if it is so large that it is written row by row.
-    fn streamed(&self) -> Option<StreamedTerrain> {
-        let faces = self.faces.filter(|_| self.name == "terrain" && !self.turned)?;
-        let precision = self.writing.options().precision;
-        StreamedTerrain::new(faces, &self.output, self.colors, precision)
+    /// Returns the sample if it is so large that it is written in passing.
+    fn streamed(&self) -> Option<Streamed> {
+        let faces = self.faces.filter(|_| !self.turned)?;
+        Streamed::new(&self.name, faces, &self.output, self.colors)
     }
 
     /// Makes the mesh in memory and writes it; returns the numbers of vertices and faces.
     fn write(&self, session: &Session) -> Result<[usize; 2], Failure> {
         if self.faces.is_some_and(|faces| faces > samples::MAX_FACES) {
             let most = count(samples::MAX_FACES);
-            let reason = format!("--faces must be at most {most}, but for a terrain as PLY");
+            let reason = format!("--faces must be at most {most}, but for terrain and gyroid as PLY");
             return Err(Failure::usage(reason));
         }
         let mesh = match self.faces {
