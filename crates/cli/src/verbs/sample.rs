@@ -86,7 +86,8 @@ impl Sample {
     fn write(&self, session: &Session) -> Result<[usize; 2], Failure> {
         if self.faces.is_some_and(|faces| faces > samples::MAX_FACES) {
             let most = count(samples::MAX_FACES);
-            let reason = format!("--faces must be at most {most}, but for terrain and gyroid as PLY");
+            let reason =
+                format!("--faces must be at most {most}, but for terrain and gyroid as PLY");
             return Err(Failure::usage(reason));
         }
         let mesh = match self.faces {
