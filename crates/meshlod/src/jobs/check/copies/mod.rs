@@ -1,19 +1,21 @@
 //! Checking a scene that shows its meshes many times: each mesh once, and where instances meet.
 
 mod between;
+mod collapsed;
 mod merged;
 mod near;
 mod placed;
 #[cfg(test)]
 mod tests;
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 
-use meshlod_check::{Kind, ObjectId, Objects, ObjectsBy};
+use meshlod_check::{Kind, Kinds, ObjectId, Objects, ObjectsBy};
 use meshlod_io::Scene;
 use meshlod_mesh::{FaceId, VertexId};
 
 use self::between::{Between, MOST_SEARCHED, SceneOfCopies, between};
+use self::collapsed::bits;
 use self::merged::MergedReport;
 pub use self::placed::PlacedInstances;
 use super::{CheckReport, CheckRequest, Grade, Group, look_through};
@@ -43,15 +45,25 @@ fn check_within(
         return Err(JobError::Cancelled);
     }
     if between.not_compared > 0 {
-        let text = format_args!(
-            "contacts and vertices at one place are not looked for among {} of {} instances, as too \
-             many faces lie close together",
-            count(between.not_compared),
-            count(placed.instances.len())
-        );
-        watch.remark(&Remark::new(About::Input, text));
+        let numbers = [between.not_compared, placed.instances.len()];
+        watch.remark(&Remark::new(About::Input, incomplete(numbers, request.options.kinds)));
     }
     Ok(MergedReport::new(&meshes, request).finish(between))
+}
+
+/// Says how many instances of all were not compared, and what may be missing of these kinds.
+fn incomplete([not_compared, all]: [usize; 2], kinds: Kinds) -> String {
+    let missing = match [Kind::Contact, Kind::CoincidentVertices].map(|kind| kinds.contains(kind)) {
+        [true, true] => "Contacts and coincident vertices",
+        [true, false] => "Contacts",
+        [false, _] => "Coincident vertices",
+    };
+    format!(
+        "{} of {} instances were not compared: too many faces lie close together. {missing} may be \
+         missing.",
+        count(not_compared),
+        count(all)
+    )
 }
 
 /// Meshes of a scene, each checked in its own place.
@@ -151,6 +163,19 @@ impl<'s> CheckedMeshes<'s> {
             false => Grade::Warning,
         };
         Group { grade, kind: Kind::CoincidentVertices }
+    }
+
+    /// Returns those lists of some vertices of an instance, in order, that the report of its mesh has:
+    /// two or more at one place of the mesh.
+    fn at_one_place_in_mesh(&self, vertices: &[VertexId]) -> Vec<Vec<VertexId>> {
+        let placed = &self.placed.instances[self.placed.of_vertex(vertices[0])];
+        let mesh = &self.scene.meshes[placed.shown.mesh].mesh;
+        let mut lists: BTreeMap<[u64; 3], Vec<VertexId>> = BTreeMap::new();
+        for &v in vertices {
+            let place = bits(mesh.positions[placed.own_vertex(v).index()]);
+            lists.entry(place).or_default().push(v);
+        }
+        lists.into_values().filter(|list| list.len() > 1).collect()
     }
 
     /// Returns the place of a vertex of the merged scene.

@@ -7,6 +7,7 @@ use meshlod_mesh::{FaceId, Mesh, VertexId};
 
 use crate::jobs::JobError;
 use crate::jobs::copies::Copies;
+use crate::numbers::count;
 use crate::scene::place::similarity;
 
 /// The instances of a scene of copies, with their ids in the mesh that they would be merged into.
@@ -54,9 +55,9 @@ impl PlacedInstances {
             true => Ok(Some(all)),
             false => Err(JobError::input(format!(
                 "shows {} faces and {} vertices, but ids end at {}: check its meshes alone",
-                all.faces,
-                all.vertices,
-                u32::MAX
+                count(all.faces),
+                count(all.vertices),
+                count(u32::MAX as usize)
             ))),
         }
     }
@@ -72,11 +73,8 @@ impl PlacedInstances {
     }
 }
 
-/// Returns true if the meshes of a scene are valid, and nothing that it shows is beyond the numbers.
+/// Returns true if the meshes of a scene are valid, and no coordinate of an instance overflows.
 fn are_finite(scene: &Scene) -> bool {
-    let reach = |mesh: &Mesh| {
-        mesh.positions.as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs()))
-    };
     let reaches: Vec<f64> = scene.meshes.iter().map(|mesh| reach(&mesh.mesh)).collect();
     let is_near = |shown: &MeshInstance| {
         let entries = shown.transform.as_flattened().iter();
@@ -87,11 +85,28 @@ fn are_finite(scene: &Scene) -> bool {
         && scene.instances().iter().all(is_near)
 }
 
+/// Returns the largest coordinate of a mesh, without its sign.
+pub fn reach(mesh: &Mesh) -> f64 {
+    mesh.positions.as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs()))
+}
+
 impl PlacedMesh {
     /// Returns a point of the mesh where the instance has it.
     pub fn point(&self, at: [f64; 3]) -> [f64; 3] {
         let world = DMat4::from_cols_array_2d(&self.shown.transform);
         if self.is_moved { world.transform_point3(at.into()).to_array() } else { at }
+    }
+
+    /// Returns the largest number that moving a point of the mesh adds up, in units of the mesh:
+    /// `reach` is its largest coordinate. Zero if the mesh is not moved.
+    pub fn summands(&self, reach: f64) -> f64 {
+        if !self.is_moved {
+            return 0.0;
+        }
+        let [x, y, z, at] = self.shown.transform;
+        let largest = |row: &[f64]| row.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let turned = [x, y, z].iter().map(|axis| largest(axis)).fold(0.0, f64::max) * reach;
+        (3.0 * turned + largest(&at[..3])) / self.scale
     }
 
     pub fn vertex(&self, own: VertexId) -> VertexId {
