@@ -7,6 +7,7 @@ use meshlod_check::{CheckOptions, Finding, Kind, ObjectId, ObjectsBy};
 use meshlod_io::Scene;
 use meshlod_mesh::{FaceId, Labels, Mesh, VertexId};
 
+use super::collapsed::{bits, collapsed};
 use super::near::NearFaces;
 use super::placed::PlacedInstances;
 use crate::jobs::Watch;
@@ -20,7 +21,8 @@ pub struct Between {
     /// Number of contacts of each group, and the first of each.
     pub counts: BTreeMap<Group, usize>,
     pub listed: Vec<Finding>,
-    /// Vertices of several instances at one place, each list sorted, by lowest vertex.
+    /// Vertices at one place that are of several instances, or apart in their mesh: each list sorted,
+    /// by lowest vertex.
     pub coincident: Vec<Vec<VertexId>>,
     /// Number of instances that were not compared with each other, as there are too many faces.
     pub not_compared: usize,
@@ -55,7 +57,12 @@ pub fn between(
     watch: &dyn Watch,
 ) -> Option<Between> {
     let near = NearFaces::of(scene.scene, scene.placed)?;
-    let (found, coincident) = (Between::default(), HashMap::new());
+    let (found, mut coincident) = (Between::default(), HashMap::<_, Vec<VertexId>>::new());
+    if request.options.kinds.contains(Kind::CoincidentVertices) {
+        for (place, vertices) in collapsed(scene.scene, scene.placed) {
+            coincident.entry(place).or_default().extend(vertices);
+        }
+    }
     let mut search = Search { scene, request, found, coincident };
     let (mut batch, mut left) = (Batch::default(), LOOKS * most_searched);
     let count = scene.placed.instances.len();
@@ -106,7 +113,7 @@ struct Search<'s> {
     scene: &'s SceneOfCopies<'s>,
     request: &'s CheckRequest,
     found: Between,
-    /// Vertices of several instances by their place, as bits.
+    /// Vertices that are of several instances, or apart in their mesh, by their place as bits.
     coincident: HashMap<[u64; 3], Vec<VertexId>>,
 }
 
@@ -155,8 +162,7 @@ impl Search<'_> {
         if vertices.iter().all(|v| instance(v) == first) {
             return;
         }
-        // Zero has two signs.
-        let place = merged.mesh.positions[vertices[0].index()].map(|x| (x + 0.0).to_bits());
+        let place = bits(merged.mesh.positions[vertices[0].index()]);
         self.coincident.entry(place).or_default().extend(vertices.iter().map(own));
     }
 

@@ -21,8 +21,8 @@ pub(super) struct MergedReport<'m> {
     report: CheckReport,
     counts: BTreeMap<Group, usize>,
     listed: Vec<(Finding, Details)>,
-    /// Lists of vertices at one place that are part of a list of several instances: each by its
-    /// instance and first vertex.
+    /// Lists of vertices at one place of a mesh that are part of a longer list: each by its instance
+    /// and first vertex.
     joined: HashSet<(usize, VertexId)>,
 }
 
@@ -115,15 +115,18 @@ impl<'m> MergedReport<'m> {
         }
     }
 
-    /// Adds vertices of several instances at one place, in place of those that a mesh has there.
+    /// Adds vertices at one place, of several instances or apart in their mesh, instead of the lists
+    /// of vertices that a mesh has there.
     fn add_joined(&mut self, vertices: Vec<VertexId>) {
         let placed = self.meshes.placed;
         for own in vertices.chunk_by(|a, b| placed.of_vertex(*a) == placed.of_vertex(*b)) {
-            if own.len() > 1 {
-                let instance = placed.of_vertex(own[0]);
-                self.joined.insert((instance, placed.instances[instance].own_vertex(own[0])));
-                let group = self.meshes.group_at_one_place(own);
-                *self.counts.entry(group).or_default() -= 1;
+            let instance = placed.of_vertex(own[0]);
+            for list in self.meshes.at_one_place_in_mesh(own) {
+                self.joined.insert((instance, placed.instances[instance].own_vertex(list[0])));
+                let group = self.meshes.group_at_one_place(&list);
+                let count = self.counts.entry(group).or_default();
+                debug_assert!(*count > 0, "the report of the mesh counts it");
+                *count = count.saturating_sub(1);
             }
         }
         let group = self.meshes.group_at_one_place(&vertices);

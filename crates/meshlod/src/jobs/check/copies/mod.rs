@@ -1,19 +1,21 @@
 //! Checking a scene that shows its meshes many times: each mesh once, and where instances meet.
 
 mod between;
+mod collapsed;
 mod merged;
 mod near;
 mod placed;
 #[cfg(test)]
 mod tests;
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 
 use meshlod_check::{Kind, ObjectId, Objects, ObjectsBy};
 use meshlod_io::Scene;
 use meshlod_mesh::{FaceId, VertexId};
 
 use self::between::{Between, MOST_SEARCHED, SceneOfCopies, between};
+use self::collapsed::bits;
 use self::merged::MergedReport;
 pub use self::placed::PlacedInstances;
 use super::{CheckReport, CheckRequest, Grade, Group, look_through};
@@ -151,6 +153,19 @@ impl<'s> CheckedMeshes<'s> {
             false => Grade::Warning,
         };
         Group { grade, kind: Kind::CoincidentVertices }
+    }
+
+    /// Returns those lists of some vertices of an instance, in order, that the report of its mesh has:
+    /// two or more at one place of the mesh.
+    fn at_one_place_in_mesh(&self, vertices: &[VertexId]) -> Vec<Vec<VertexId>> {
+        let placed = &self.placed.instances[self.placed.of_vertex(vertices[0])];
+        let mesh = &self.scene.meshes[placed.shown.mesh].mesh;
+        let mut lists: BTreeMap<[u64; 3], Vec<VertexId>> = BTreeMap::new();
+        for &v in vertices {
+            let place = bits(mesh.positions[placed.own_vertex(v).index()]);
+            lists.entry(place).or_default().push(v);
+        }
+        lists.into_values().filter(|list| list.len() > 1).collect()
     }
 
     /// Returns the place of a vertex of the merged scene.

@@ -74,9 +74,6 @@ impl PlacedInstances {
 
 /// Returns true if the meshes of a scene are valid, and nothing that it shows is beyond the numbers.
 fn are_finite(scene: &Scene) -> bool {
-    let reach = |mesh: &Mesh| {
-        mesh.positions.as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs()))
-    };
     let reaches: Vec<f64> = scene.meshes.iter().map(|mesh| reach(&mesh.mesh)).collect();
     let is_near = |shown: &MeshInstance| {
         let entries = shown.transform.as_flattened().iter();
@@ -87,11 +84,28 @@ fn are_finite(scene: &Scene) -> bool {
         && scene.instances().iter().all(is_near)
 }
 
+/// Returns the largest coordinate of a mesh, without its sign.
+pub fn reach(mesh: &Mesh) -> f64 {
+    mesh.positions.as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs()))
+}
+
 impl PlacedMesh {
     /// Returns a point of the mesh where the instance has it.
     pub fn point(&self, at: [f64; 3]) -> [f64; 3] {
         let world = DMat4::from_cols_array_2d(&self.shown.transform);
         if self.is_moved { world.transform_point3(at.into()).to_array() } else { at }
+    }
+
+    /// Returns the largest number that moving a point of the mesh adds up, in units of the mesh:
+    /// `reach` is its largest coordinate. Zero if the mesh is not moved.
+    pub fn summands(&self, reach: f64) -> f64 {
+        if !self.is_moved {
+            return 0.0;
+        }
+        let [x, y, z, at] = self.shown.transform;
+        let largest = |row: &[f64]| row.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let turned = [x, y, z].iter().map(|axis| largest(axis)).fold(0.0, f64::max) * reach;
+        (3.0 * turned + largest(&at[..3])) / self.scale
     }
 
     pub fn vertex(&self, own: VertexId) -> VertexId {

@@ -1,12 +1,12 @@
 use glam::{DMat4, DQuat, DVec3};
-use meshlod_check::{CheckOptions, Finding, ObjectsBy};
+use meshlod_check::{CheckOptions, Finding, Kinds, ObjectsBy};
 use meshlod_io::{Node, SceneMesh};
 use meshlod_mesh::{Labels, Mesh};
 use meshlod_samples as samples;
 
 use super::*;
+use crate::jobs::ListedFinding;
 use crate::jobs::check::check as check_mesh;
-use crate::jobs::{ListedFinding, check_scene};
 
 /// A scene of meshes in turn, one for each transform.
 fn scene(meshes: Vec<Mesh>, transforms: &[DMat4]) -> Scene {
@@ -48,9 +48,13 @@ fn odd_box() -> Mesh {
     mesh
 }
 
+fn check_copies(scene: &Scene, request: &CheckRequest) -> CheckReport {
+    let placed = PlacedInstances::of(scene).unwrap().expect("a scene of copies");
+    check(scene, &placed, request, &()).unwrap()
+}
+
 fn assert_as_merged(scene: &Scene, request: &CheckRequest) {
-    assert!(PlacedInstances::of(scene).unwrap().is_some(), "a scene of copies");
-    let own = check_scene(scene.clone(), request, &()).unwrap();
+    let own = check_copies(scene, request);
     let merged = check_mesh(&scene.flatten(), request, &()).unwrap();
     assert_eq!(own.to_string(), merged.to_string());
     assert!(own.groups().eq(merged.groups()), "{:?}", own.groups().collect::<Vec<_>>());
@@ -72,6 +76,7 @@ fn assert_as_merged(scene: &Scene, request: &CheckRequest) {
 /// Compares findings but for the rounding of lengths.
 fn assert_alike(own: ListedFinding<'_>, merged: ListedFinding<'_>) {
     assert_eq!((own.group, own.objects), (merged.group, merged.objects));
+    assert_eq!(own.place.is_some(), merged.place.is_some(), "{own:?} {merged:?}");
     let places = own.place.into_iter().flatten().zip(merged.place.into_iter().flatten());
     places.for_each(|(a, b)| assert!((a - b).abs() < 1e-9, "{own:?} {merged:?}"));
     let text = |found: &Finding| match found {
@@ -124,7 +129,7 @@ fn turned_scaled_and_mirrored_copies_are_as_they_are_shown() {
     // Inside out.
     open.faces.extend(moved.map(|[a, b, c]| [a, c, b]));
     let scene = scene(vec![samples::torus(200), open], &transforms);
-    let report = check_scene(scene.clone(), &CheckRequest::default(), &()).unwrap();
+    let report = check_copies(&scene, &CheckRequest::default());
     assert!(report.summary.count(Kind::Contact) > 100 && report.summary.count(Kind::InsideOut) > 5);
     let request = CheckRequest { limit: 1_000_000, ..CheckRequest::default() };
     assert_as_merged(&scene, &request);
@@ -133,9 +138,37 @@ fn turned_scaled_and_mirrored_copies_are_as_they_are_shown() {
 #[test]
 fn copies_at_one_place_share_all_they_have() {
     let placed = scene(vec![samples::sphere(60)], &[DMat4::IDENTITY; 8]);
-    let report = check_scene(placed.clone(), &CheckRequest::default(), &()).unwrap();
+    let report = check_copies(&placed, &CheckRequest::default());
     assert_eq!(report.contacts.len(), 28);
     assert_as_merged(&placed, &CheckRequest::default());
+}
+
+/// A box with corners that a sine of pi puts beside others, which are there once or twice.
+fn seamed_box() -> Mesh {
+    let mut mesh = odd_box();
+    let corner = |x: f64, y: f64| [x, y, 0.0];
+    let first = mesh.positions.len();
+    mesh.positions.extend([corner(6e-17, 0.0), corner(0.0, 6e-17), corner(0.0, 6e-17)]);
+    mesh.positions.extend([corner(0.5, 2.0), corner(0.5, 2.0 + 4e-16), corner(0.5, 3.0)]);
+    let face = |ids: [usize; 3]| ids.map(|i| VertexId::new(first + i));
+    mesh.faces.extend([[0, 3, 5], [1, 4, 5], [2, 5, 3]].map(face));
+    mesh
+}
+
+#[test]
+fn vertices_that_collapse_where_an_instance_is_count_as_in_the_merged_mesh() {
+    let (close, apart) = (lattice(1.0), lattice(16.0));
+    let turned: Vec<DMat4> =
+        lattice(5.0).iter().map(|to| *to * DMat4::from_rotation_z(0.5)).collect();
+    for transforms in [close, apart, turned, vec![DMat4::from_translation(DVec3::splat(3.0)); 5]] {
+        // Faces along the seam cross others in the mesh, but not once they have collapsed.
+        let kinds = Kinds::NONE.with(Kind::CoincidentVertices);
+        for limit in [0, 2, 100_000] {
+            let options = CheckOptions { kinds, ..CheckOptions::default() };
+            let request = CheckRequest { options, limit };
+            assert_as_merged(&scene(vec![seamed_box()], &transforms), &request);
+        }
+    }
 }
 
 #[derive(Default)]
