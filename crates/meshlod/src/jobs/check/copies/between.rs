@@ -1,6 +1,6 @@
 //! Contacts of instances with each other, and vertices that they have at one place.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::ControlFlow;
 
 use meshlod_check::{CheckOptions, Finding, Kind, ObjectId, ObjectsBy};
@@ -34,13 +34,19 @@ pub struct Between {
 /// faces take as long as with 2^20, and 100,000 take 100 MB less.
 const BATCH: usize = 1 << 18;
 
+/// Most faces of a batch, which holds all pairs of its instances with later ones if it has fewer.
+const MOST_IN_BATCH: usize = 4 * BATCH;
+
 /// Most faces that are searched: a few seconds.
 pub const MOST_SEARCHED: usize = 1 << 23;
 
 /// Most faces that are looked at for each that may be searched.
 const LOOKS: usize = 8;
 
-/// A scene of copies. `object` gives the object of a face of an instance.
+/// A batch that is given up as crowded costs this part of the search: it takes some seconds itself.
+const CROWDED: usize = 8;
+
+/// A scene of copies, with a function from a face of an instance to its object.
 #[derive(Clone, Copy)]
 pub struct SceneOfCopies<'s> {
     pub scene: &'s Scene,
@@ -63,23 +69,26 @@ pub fn between(
             coincident.entry(place).or_default().extend(vertices);
         }
     }
-    let mut search = Search { scene, request, found, coincident };
-    let (mut batch, mut left) = (Batch::default(), LOOKS * most_searched);
+    let left = LOOKS * most_searched;
+    let price_of_crowded = left / CROWDED;
+    let mut search = Search { scene, request, found, coincident, left, price_of_crowded };
+    let mut batch = Batch::default();
     let count = scene.placed.instances.len();
     for instance in (0..count).take_while(|_| !watch.is_cancelled()) {
         for other in near.after(instance) {
             let pair = near.pair([instance, other]);
-            let searched: usize = pair.faces.iter().map(Vec::len).sum();
-            let cost = 1 + pair.visited + LOOKS * searched;
-            if cost > left {
+            let added = batch.add([instance, other], pair.faces);
+            if !search.pay(1 + pair.visited + LOOKS * added) {
                 search.run(&batch);
                 return Some(search.give_up(count - instance));
             }
-            left -= cost;
-            batch.add([instance, other], pair.faces);
-            if batch.faces >= BATCH {
+            if batch.faces >= MOST_IN_BATCH {
                 search.run(&std::mem::take(&mut batch));
             }
+        }
+        // All faces of a batch are compared with each other: pairs of another batch are lost work.
+        if batch.faces >= BATCH {
+            search.run(&std::mem::take(&mut batch));
         }
     }
     search.run(&batch);
@@ -90,21 +99,28 @@ pub fn between(
 #[derive(Default)]
 struct Batch {
     pairs: Vec<[usize; 2]>,
-    /// By instance, maybe several times each.
-    faces_of: BTreeMap<usize, Vec<FaceId>>,
+    faces_of: BTreeMap<usize, HashSet<FaceId>>,
     faces: usize,
 }
 
 impl Batch {
-    fn add(&mut self, pair: [usize; 2], faces: [Vec<FaceId>; 2]) {
+    /// Adds a pair; returns how many of its faces are new.
+    fn add(&mut self, pair: [usize; 2], faces: [Vec<FaceId>; 2]) -> usize {
         if faces.iter().any(Vec::is_empty) {
-            return;
+            return 0;
         }
         self.pairs.push(pair);
+        let before = self.faces;
         for (instance, faces) in pair.into_iter().zip(faces) {
-            self.faces += faces.len();
-            self.faces_of.entry(instance).or_default().extend(faces);
+            let known = self.faces_of.entry(instance).or_default();
+            self.faces += faces.into_iter().filter(|face| known.insert(*face)).count();
         }
+        self.faces - before
+    }
+
+    /// Returns the number of instances that are compared with later ones.
+    fn compared(&self) -> usize {
+        self.pairs.chunk_by(|a, b| a[0] == b[0]).count()
     }
 }
 
@@ -115,30 +131,51 @@ struct Search<'s> {
     found: Between,
     /// Vertices that are of several instances, or apart in their mesh, by their place as bits.
     coincident: HashMap<[u64; 3], Vec<VertexId>>,
+    /// Work that may still be done, in faces looked at.
+    left: usize,
+    price_of_crowded: usize,
 }
 
 impl Search<'_> {
+    /// Takes work from what is left; false if there is not so much.
+    fn pay(&mut self, work: usize) -> bool {
+        let is_left = work <= self.left;
+        self.left = self.left.saturating_sub(work);
+        is_left
+    }
+
     fn run(&mut self, batch: &Batch) {
-        let kinds = [Kind::Contact, Kind::CoincidentVertices, Kind::Crowded];
-        let wanted = kinds.into_iter().filter(|kind| self.request.options.kinds.contains(*kind));
+        let is_wanted = |kind: &Kind| self.request.options.kinds.contains(*kind);
+        let kinds = [Kind::Contact, Kind::CoincidentVertices].into_iter().filter(is_wanted);
+        // Pairs that are lost are counted, whether or not that is to be a finding.
+        let crowded = is_wanted(&Kind::Contact).then_some(Kind::Crowded);
         let options = CheckOptions {
-            kinds: wanted.collect(),
+            kinds: kinds.chain(crowded).collect(),
             objects: ObjectsBy::Names,
             ..self.request.options
         };
         let merged = MergedFaces::of(self.scene, batch);
+        let (mut heard, mut is_crowded) = (0, false);
         let flow = meshlod_check::check(&merged.mesh, &options, &mut |finding| {
+            heard += 1;
             match finding {
                 Finding::Contact { .. } => self.add_contact(&merged, &batch.pairs, finding),
                 Finding::CoincidentVertices { vertices } => self.add_place(&merged, vertices),
-                _ => self.found.is_crowded = true,
+                _ => is_crowded = true,
             }
             ControlFlow::Continue(())
         });
+        // What is left may be less: that ends the search at the next pair.
+        self.pay(LOOKS * heard);
+        if is_crowded {
+            self.pay(self.price_of_crowded);
+            self.found.is_crowded |= self.request.options.kinds.contains(Kind::Crowded);
+            self.found.not_compared += batch.compared();
+        }
         debug_assert!(flow.is_continue(), "nothing ends it");
     }
 
-    /// Adds a contact of a pair of the batch: other pairs have a batch of their own.
+    /// Adds a contact of a pair of the batch: another pair has its turn in a later batch.
     fn add_contact(&mut self, merged: &MergedFaces, pairs: &[[usize; 2]], finding: &Finding) {
         let &Finding::Contact { objects, faces, intersection } = finding else { return };
         let faces = faces.map(|face| merged.faces[face.index()]);
@@ -168,7 +205,9 @@ impl Search<'_> {
 
     /// Returns what was found before so many instances were compared with each other.
     fn give_up(mut self, not_compared: usize) -> Between {
-        self.found.not_compared = not_compared;
+        // One of them may be in a batch that was crowded.
+        let all = self.scene.placed.instances.len();
+        self.found.not_compared = all.min(self.found.not_compared + not_compared);
         self.found.is_crowded = self.request.options.kinds.contains(Kind::Crowded);
         self.finish()
     }
@@ -199,9 +238,8 @@ impl MergedFaces {
     fn of(scene: &SceneOfCopies<'_>, batch: &Batch) -> Self {
         let (mut merged, mut of_face) = (Self::default(), Vec::new());
         for (&instance, faces) in &batch.faces_of {
-            let mut faces = faces.clone();
+            let mut faces: Vec<FaceId> = faces.iter().copied().collect();
             faces.sort_unstable();
-            faces.dedup();
             merged.add(scene, instance, &faces);
             of_face.extend(faces.iter().map(|face| (scene.object)(instance, *face)));
         }

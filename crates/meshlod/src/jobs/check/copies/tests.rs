@@ -5,8 +5,8 @@ use meshlod_mesh::{Labels, Mesh};
 use meshlod_samples as samples;
 
 use super::*;
-use crate::jobs::ListedFinding;
 use crate::jobs::check::check as check_mesh;
+use crate::jobs::{ListedFinding, check_scene};
 
 /// A scene of meshes in turn, one for each transform.
 fn scene(meshes: Vec<Mesh>, transforms: &[DMat4]) -> Scene {
@@ -178,6 +178,24 @@ impl Watch for Heard {
     fn remark(&self, remark: &Remark) {
         self.0.lock().unwrap().push(remark.text.clone());
     }
+}
+
+#[test]
+fn small_scenes_are_merged() {
+    let scene = scene(vec![odd_box()], &lattice(1.0));
+    let report = check_scene(scene.clone(), &CheckRequest::default(), &()).unwrap();
+    assert_eq!(report.owners.objects.of_face.len(), report.faces, "only a merged mesh has owners");
+    assert!(check_copies(&scene, &CheckRequest::default()).owners.objects.of_face.is_empty());
+}
+
+#[test]
+fn instances_of_a_crowded_batch_are_not_compared() {
+    let scene = scene(vec![samples::sphere(60)], &[DMat4::IDENTITY; 220]);
+    let placed = PlacedInstances::of(&scene).unwrap().unwrap();
+    let heard = Heard::default();
+    check(&scene, &placed, &CheckRequest::default(), &heard).unwrap();
+    let heard = heard.0.into_inner().unwrap();
+    assert!(heard[0].contains("219 of 220 instances"), "{heard:?}");
 }
 
 #[test]
