@@ -46,7 +46,8 @@ pub fn verdict(inspection: &Inspection) -> String {
         plural(warnings)
     );
     match (errors + warnings, touches) {
-        (0, 0) => "clean".into(),
+        (0, 0) if inspection.report.is_clean() => "clean".into(),
+        (0, 0) => "nothing found, but not all was compared".into(),
         (_, 0) => defects,
         (_, 1) => format!("{defects}; 1 place where objects touch"),
         _ => format!("{defects}; {} places where objects touch", count(touches)),

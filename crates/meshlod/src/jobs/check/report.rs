@@ -29,6 +29,9 @@ pub struct CheckReport {
     pub findings: Vec<Finding>,
     /// Maximum number of findings listed of each group.
     pub limit: usize,
+    /// Number of instances of a scene of [copies](super::check_scene) that were not compared with
+    /// others, as too many faces lie close together: what they have in common may be missing.
+    pub not_compared: usize,
     /// Contacts by pairs of objects.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub contacts: Contacts,
@@ -75,6 +78,7 @@ impl CheckReport {
             summary: Summary::default(),
             findings: Vec::new(),
             limit: request.limit,
+            not_compared: 0,
             contacts: Contacts::default(),
             groups: BTreeMap::new(),
             details: Vec::new(),
@@ -106,9 +110,9 @@ impl CheckReport {
         self.details.push(details);
     }
 
-    /// Returns true if nothing was found.
+    /// Returns true if nothing was found in a search that is complete.
     pub fn is_clean(&self) -> bool {
-        self.summary.total() == 0
+        self.summary.total() == 0 && self.not_compared == 0
     }
 
     /// Returns true if a finding is an error.

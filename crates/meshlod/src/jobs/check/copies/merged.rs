@@ -44,6 +44,7 @@ impl<'m> MergedReport<'m> {
         let times = self.times();
         self.count_own(&times);
         self.add_pairs(&times);
+        self.report.not_compared = between.not_compared;
         self.add_between(between);
         self.list_own();
         self.list_in_order();

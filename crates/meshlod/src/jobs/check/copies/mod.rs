@@ -10,7 +10,7 @@ mod tests;
 
 use std::collections::{BTreeMap, HashSet};
 
-use meshlod_check::{Kind, ObjectId, Objects, ObjectsBy};
+use meshlod_check::{Kind, Kinds, ObjectId, Objects, ObjectsBy};
 use meshlod_io::Scene;
 use meshlod_mesh::{FaceId, VertexId};
 
@@ -45,15 +45,25 @@ fn check_within(
         return Err(JobError::Cancelled);
     }
     if between.not_compared > 0 {
-        let text = format_args!(
-            "contacts and vertices at one place are not looked for among {} of {} instances, as too \
-             many faces lie close together",
-            count(between.not_compared),
-            count(placed.instances.len())
-        );
-        watch.remark(&Remark::new(About::Input, text));
+        let numbers = [between.not_compared, placed.instances.len()];
+        watch.remark(&Remark::new(About::Input, incomplete(numbers, request.options.kinds)));
     }
     Ok(MergedReport::new(&meshes, request).finish(between))
+}
+
+/// Says how many instances of all were not compared, and what may be missing of these kinds.
+fn incomplete([not_compared, all]: [usize; 2], kinds: Kinds) -> String {
+    let missing = match [Kind::Contact, Kind::CoincidentVertices].map(|kind| kinds.contains(kind)) {
+        [true, true] => "Contacts and coincident vertices",
+        [true, false] => "Contacts",
+        [false, _] => "Coincident vertices",
+    };
+    format!(
+        "{} of {} instances were not compared: too many faces lie close together. {missing} may be \
+         missing.",
+        count(not_compared),
+        count(all)
+    )
 }
 
 /// Meshes of a scene, each checked in its own place.

@@ -1,5 +1,5 @@
 use glam::{DMat4, DQuat, DVec3};
-use meshlod_check::{CheckOptions, Finding, Kinds, ObjectsBy};
+use meshlod_check::{CheckOptions, Finding, ObjectsBy};
 use meshlod_io::{Node, SceneMesh};
 use meshlod_mesh::{Labels, Mesh};
 use meshlod_samples as samples;
@@ -189,6 +189,21 @@ fn small_scenes_are_merged() {
 }
 
 #[test]
+fn a_search_that_is_not_complete_finds_nothing_clean() {
+    let scene = scene(vec![samples::sphere(60)], &lattice(0.9));
+    let placed = PlacedInstances::of(&scene).unwrap().unwrap();
+    let kinds = Kinds::NONE.with(Kind::CoincidentVertices);
+    let options = CheckOptions { kinds, ..CheckOptions::default() };
+    let (request, heard) = (CheckRequest { options, limit: 0 }, Heard::default());
+    let report = check_within(10, (&scene, &placed), &request, &heard).unwrap();
+    assert_eq!((report.summary.total(), report.is_clean()), (0, false));
+    assert!(report.not_compared > 0);
+    let heard = heard.0.into_inner().unwrap();
+    assert!(heard[0].ends_with("together. Coincident vertices may be missing."), "{heard:?}");
+    assert!(check(&scene, &placed, &request, &()).unwrap().is_clean());
+}
+
+#[test]
 fn instances_of_a_crowded_batch_are_not_compared() {
     let scene = scene(vec![samples::sphere(60)], &[DMat4::IDENTITY; 220]);
     let placed = PlacedInstances::of(&scene).unwrap().unwrap();
@@ -209,5 +224,10 @@ fn instances_that_are_not_compared_are_told() {
     assert!(contacts[0] > 0 && contacts[0] < contacts[1], "{contacts:?}");
     assert_eq!([&report, &all].map(|report| report.summary.count(Kind::Crowded)), [1, 0]);
     let heard = heard.0.into_inner().unwrap();
-    assert!(heard[0].contains("not looked for among 1"), "{heard:?}");
+    let text = format!(
+        "{} of 18 instances were not compared: too many faces lie close together. Contacts and \
+         coincident vertices may be missing.",
+        report.not_compared
+    );
+    assert_eq!(heard, [text]);
 }
