@@ -128,7 +128,8 @@ fn meshes_of_strips(
         true => Ok(shown),
         false => {
             let (all, shown) = (instances.len(), shown.len());
-            let reason = format!("are {strips}, the scene has {all} instances of {shown} meshes");
+            let reason =
+                format!("there are {strips}, but the scene has {all} instances of {shown} meshes");
             Err(Unsupported::new("strips", reason))
         }
     }

@@ -1,6 +1,6 @@
 //! Strips of scenes that show meshes many times: of each mesh once, counted as often as it is shown.
 
-use meshlod_io::{Node, Scene};
+use meshlod_io::{MeshInstance, Node, Scene};
 use meshlod_mesh::{Connectivity, VertexId};
 use meshlod_strip::{MergeTree, StripStatistics, StripWedge, Strips};
 
@@ -14,7 +14,8 @@ pub(super) struct EachMesh {
     pub scene: Scene,
     /// Number of instances of each mesh, in the order of that scene.
     times: Vec<usize>,
-    /// Their first faces in that scene, merged into one mesh.
+    /// Their first faces in that scene, merged into one mesh. Those of a mesh without faces are those
+    /// of the next.
     first_faces: Vec<usize>,
 }
 
@@ -35,7 +36,7 @@ impl EachMesh {
             first_faces: Vec::new(),
         };
         let mut faces = 0;
-        for shown in copies.largest() {
+        for shown in each_shown(scene, &copies) {
             let node = &scene.nodes[shown.node];
             own.scene.roots.push(own.scene.nodes.len());
             own.scene.nodes.push(Node {
@@ -51,9 +52,13 @@ impl EachMesh {
         Some(own)
     }
 
-    /// Returns the largest number of times that a mesh is shown.
+    /// Returns the largest number of times that a mesh with faces is shown.
     pub fn most_times(&self) -> usize {
-        self.times.iter().copied().max().unwrap_or(1)
+        let shown = self.scene.nodes.iter().zip(&self.times);
+        let has_faces = |node: &Node| {
+            node.mesh.is_some_and(|mesh| !self.scene.meshes[mesh].mesh.faces.is_empty())
+        };
+        shown.filter(|(node, _)| has_faces(node)).map(|(_, times)| *times).max().unwrap_or(1)
     }
 
     /// Returns the number of faces that are shown of some faces of the tree.
@@ -104,4 +109,13 @@ impl EachMesh {
         }
         all
     }
+}
+
+/// Returns an instance of each mesh that a scene shows, by mesh: the largest, or the first of a mesh
+/// without faces.
+fn each_shown(scene: &Scene, copies: &Copies) -> Vec<MeshInstance> {
+    let mut shown: Vec<MeshInstance> = copies.largest().chain(scene.instances()).collect();
+    shown.sort_by_key(|shown| shown.mesh);
+    shown.dedup_by_key(|shown| shown.mesh);
+    shown
 }

@@ -87,6 +87,38 @@ fn copies_are_stripped_once_and_counted_as_they_are_shown() {
 }
 
 #[test]
+fn copies_of_a_mesh_without_faces_stay_beside_those_that_are_stripped() {
+    for at in [0, 1, 2] {
+        let mut scene = flock();
+        let mut wire = scene.meshes[0].clone();
+        wire.mesh.faces.clear();
+        scene.meshes.insert(at, wire);
+        for node in &mut scene.nodes {
+            node.mesh = node.mesh.map(|mesh| mesh + usize::from(mesh >= at));
+        }
+        for i in 18..60 {
+            scene.nodes.push(meshlod_io::Node { mesh: Some(at), ..scene.nodes[i % 18].clone() });
+            scene.roots.push(i);
+        }
+        let levels = vec![Target::Ratio(1.0), Target::Ratio(0.5)];
+        let request = StripRequest { levels, ..StripRequest::default() };
+        let (stripped, report) = strip(scene, &request, &()).unwrap();
+        let expected = strip(flock(), &request, &()).unwrap().1;
+        let triangles = |report: &StripReport| -> Vec<usize> {
+            report.levels.iter().map(|level| level.triangles).collect()
+        };
+        assert!(report.each_mesh_once);
+        assert_eq!(triangles(&report), triangles(&expected));
+        let strips = stripped.strip_meshes();
+        let glb = meshlod_io::gltf::write_strips_glb(&stripped.scene, &strips).unwrap();
+        let options = meshlod_io::ReadOptions::default();
+        let back = meshlod_io::read_bytes(&glb, meshlod_io::Format::Glb, &mut |_| None, &options);
+        // A new glTF has a degenerate triangle where a mesh has no faces.
+        assert_eq!(shown_faces(&back.unwrap()), report.input_faces + 42, "{at}");
+    }
+}
+
+#[test]
 fn levels_of_copies_show_no_more_than_was_asked_for() {
     let levels = vec![Target::Ratio(0.5), Target::Faces(3_000), Target::Faces(1)];
     let request = StripRequest { levels, verify: true, ..StripRequest::default() };
