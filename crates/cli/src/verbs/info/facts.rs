@@ -45,8 +45,6 @@ struct MeshCounts {
     objects: usize,
     #[serde(skip)]
     wedges: usize,
-    #[serde(skip)]
-    open: usize,
 }
 
 impl Facts {
@@ -69,7 +67,7 @@ impl Facts {
                 true => counts.objects,
                 false => counts.components,
             },
-            closed: counts.open == 0,
+            closed: counts.are_closed(),
             bounds,
             diagonal: bounds.diagonal(),
             area,
@@ -158,8 +156,12 @@ impl MeshCounts {
                 .as_ref()
                 .map_or(usize::from(!mesh.faces.is_empty()), labels_in_use),
             wedges: wedges.unwrap_or(mesh.positions.len()),
-            open: usize::from(!connectivity.is_closed()),
         }
+    }
+
+    /// Returns true if there are edges, each of two faces, as [`Connectivity::is_closed`] does.
+    fn are_closed(&self) -> bool {
+        self.edges > 0 && self.boundary_edges == 0 && self.non_manifold_edges == 0
     }
 
     /// Adds a mesh that is shown a number of times.
@@ -176,7 +178,6 @@ impl MeshCounts {
         self.components += times * own.components;
         self.objects += times * own.objects;
         self.wedges += times * own.wedges;
-        self.open += times * own.open;
     }
 }
 
@@ -233,6 +234,20 @@ mod tests {
     use meshlod::samples;
 
     use super::*;
+
+    #[test]
+    fn a_mesh_without_faces_opens_none() {
+        let mut scene = Scene::from_mesh("ball", samples::sphere(80));
+        let points = Mesh::new(vec![[0.0; 3]], Vec::new());
+        scene.meshes.push(Scene::from_mesh("points", points).meshes[0].clone());
+        scene.nodes.push(Node { mesh: Some(1), ..Node::default() });
+        scene.roots = vec![0, 1];
+        assert!(Facts::of(&scene).closed);
+        scene.roots = vec![1];
+        assert!(!Facts::of(&scene).closed);
+        scene.roots = Vec::new();
+        assert!(!Facts::of(&scene).closed, "nothing is closed if nothing is there");
+    }
 
     #[test]
     fn copies_count_as_the_mesh_that_they_are_merged_into() {
