@@ -41,7 +41,7 @@ fn advice(report: &Report, topology: Topology, stuck: Stuck) -> Vec<String> {
         let holes = if stuck.holes == 1 { "hole stays" } else { "holes stay" };
         advice.push(format!("{} {holes}: repair --holes N closes holes", count(stuck.holes)));
     }
-    if stuck.meshes > 1 && (refused(Refusal::Link) || refused(Refusal::LastFaces)) {
+    if stuck.by_meshes() && (refused(Refusal::Link) || refused(Refusal::LastFaces)) {
         let meshes = count(stuck.meshes);
         advice
             .push(format!("each of {meshes} meshes keeps a face: convert to .ply makes them one"));

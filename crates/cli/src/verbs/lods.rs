@@ -78,7 +78,7 @@ impl Lods {
         let figures = self.figures(&report, layout);
         let text = self.text(&report, layout);
         let guide = self.guide(&report, &world_bounds(&chain.scene), layout);
-        let coarsest = chain.levels.last().map(|level| Stuck::of(&level.meshes));
+        let coarsest = chain.levels.last().map(|level| Stuck::of(&chain.scene, &level.meshes));
         let stuck = coarsest.filter(|_| !report.run.reached).unwrap_or_default();
         self.write(layout, chain, &report, session)?;
         write_file(&self.guide_file(), format!("{guide:#}\n").as_bytes())?;

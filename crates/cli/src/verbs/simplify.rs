@@ -145,7 +145,7 @@ impl Simplify {
             Some(error) => error_bound::warning(error),
             None if report.run.reached => return,
             None => {
-                let stuck = Stuck::of(scene.meshes.iter().map(|mesh| &mesh.mesh));
+                let stuck = Stuck::of(scene, scene.meshes.iter().map(|mesh| &mesh.mesh));
                 simplify_report::why_not_reached(&report.run, request.constraints.topology, stuck)
             }
         };
