@@ -59,8 +59,8 @@ pub(crate) fn close_views(
     free: &[usize],
 ) {
     let new = remove(views, free);
-    let values = json.iter_mut().map(|(_, value)| value).chain(accessors);
-    values.for_each(|value| renumber_views(value, &new));
+    renumber_views_of(json, &new);
+    accessors.iter_mut().for_each(|value| renumber_views(value, &new));
 }
 
 /// Removes these entries; returns the new index of each entry that stays.
@@ -100,15 +100,19 @@ fn renumber_at(value: &mut Value, path: &[&str], new: &[usize]) {
 fn renumber_views(value: &mut Value, new: &[usize]) {
     match value {
         Value::Array(values) => values.iter_mut().for_each(|value| renumber_views(value, new)),
-        Value::Object(entries) => {
-            for (key, value) in entries {
-                match key == "bufferView" {
-                    true => renumber(value, new),
-                    false => renumber_views(value, new),
-                }
-            }
-        }
+        Value::Object(entries) => renumber_views_of(entries, new),
         _ => {}
+    }
+}
+
+/// Renumbers the views of an object, but for its extras, whose keys mean what the application says.
+fn renumber_views_of(entries: &mut Map<String, Value>, new: &[usize]) {
+    for (key, value) in entries {
+        match key.as_str() {
+            "bufferView" => renumber(value, new),
+            "extras" => {}
+            _ => renumber_views(value, new),
+        }
     }
 }
 
@@ -163,6 +167,16 @@ mod tests {
         assert_eq!(json["images"][0]["bufferView"], 2);
         let sparse = json!({ "bufferView": 0, "sparse": { "values": { "bufferView": 1 } } });
         assert_eq!(accessors, [sparse]);
+    }
+
+    #[test]
+    fn extras_keep_their_numbers() {
+        let extras = json!({ "bufferView": 1 });
+        let mut json = object(json!({ "extras": extras, "images": [{ "extras": extras }] }));
+        let mut accessors = [json!({ "bufferView": 1, "extras": [extras] })];
+        close_views(&mut json, &mut accessors, &mut vec![Value::Null; 2], &[0]);
+        assert_eq!(json, object(json!({ "extras": extras, "images": [{ "extras": extras }] })));
+        assert_eq!(accessors, [json!({ "bufferView": 0, "extras": [extras] })]);
     }
 
     #[test]
