@@ -20,6 +20,7 @@ pub(super) fn compute_normals(mesh: &mut Mesh, corners: &[[CornerIds; 3]]) -> Op
         return None;
     }
     compute_missing(mesh, is_bare);
-    let what = format!("of {} faces without normals, computed from the faces around", grouped(all));
+    let what =
+        format!("of {} faces that lack normals, computed from the faces around", grouped(all));
     Some(Note::changed(count, &what, &what))
 }

@@ -175,7 +175,7 @@ fn faces_without_normals_get_those_around_and_are_counted() {
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 1 0 0\nf 1//1 2//1 3//1\nf 1 4 2\n";
     let scene = scene(text);
     let notes: Vec<String> = scene.notes.iter().map(|note| note.to_string()).collect();
-    assert_eq!(notes, ["1 of 2 faces without normals, computed from the faces around"]);
+    assert_eq!(notes, ["1 of 2 faces that lack normals, computed from the faces around"]);
     let attributes = scene.meshes[0].mesh.attributes.as_ref().unwrap();
     let normals = attributes.layer(LayerKind::Normal).unwrap();
     let at = |face: usize| attributes.corners[face].map(|wedge| normals.of(wedge).to_vec());

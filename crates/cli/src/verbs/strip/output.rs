@@ -57,8 +57,8 @@ pub(super) fn write(
 }
 
 /// Builds JSON lists of the vertices of each strip. They are numbered as in the input, each of whose
-/// meshes may be there once, or as in the fused mesh, whose positions are then listed; in a mesh with attributes or several objects or
-/// materials they are wedges, each with where its values are.
+/// meshes may be there once, or as in the fused mesh, whose positions are then listed. In a mesh with
+/// attributes, several objects or materials they are wedges, each with where its values are.
 fn lists(Stripped { mesh, tree, levels, .. }: &Stripped, report: &StripReport) -> Value {
     let strips = |(strips, level): (&Strips, &StrippedLevelReport)| {
         let lists = strips.iter().map(|strip| strip.iter().map(|v| v.0).collect::<Vec<_>>());

@@ -30,7 +30,8 @@ pub const CONTACT_KINDS: [(IntersectionKind, &str); 4] = [
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Contacts {
     pairs: BTreeMap<[ObjectId; 2], ObjectPair>,
-    /// Pairs that copies of a mesh have as those that are listed, and how many of them only touch.
+    /// Number of pairs within copies of a mesh that are counted but not listed, and how many of them
+    /// only touch. Each is a repetition of a pair that is listed for another copy.
     unlisted: usize,
     unlisted_touching: usize,
 }

@@ -1,20 +1,13 @@
 //! Vertices that rounding puts at one place.
 
-use meshlod_codec::Malformed;
 use meshlod_mesh::Mesh;
 use rayon::prelude::*;
-
-use crate::jobs::JobError;
 
 /// Counts the vertices of a mesh that decode to the place of another one, from which they were apart.
 ///
 /// Cost: O(n log n), n = vertices.
-pub(super) fn coinciding_vertices(
-    mesh: &Mesh,
-    decoded: Result<Mesh, Malformed>,
-) -> Result<usize, JobError> {
-    let decoded = decoded.map_err(JobError::output)?;
-    Ok(count_places(mesh).saturating_sub(count_places(&decoded)))
+pub(super) fn coinciding_vertices(mesh: &Mesh, decoded: &Mesh) -> usize {
+    count_places(mesh).saturating_sub(count_places(decoded))
 }
 
 /// Counts the different places of the vertices of faces with three corners: no file has others.
@@ -42,14 +35,13 @@ mod tests {
         let mut mesh = meshlod_fixtures::tetrahedron();
         let mut rounded = mesh.clone();
         rounded.positions[1] = rounded.positions[0];
-        let count = |mesh: &Mesh, decoded: &Mesh| coinciding_vertices(mesh, Ok(decoded.clone()));
-        assert_eq!(count(&mesh, &mesh).unwrap(), 0);
-        assert_eq!(count(&mesh, &rounded).unwrap(), 1);
-        assert_eq!(count(&rounded, &rounded).unwrap(), 0, "they were not apart");
+        assert_eq!(coinciding_vertices(&mesh, &mesh), 0);
+        assert_eq!(coinciding_vertices(&mesh, &rounded), 1);
+        assert_eq!(coinciding_vertices(&rounded, &rounded), 0, "they were not apart");
         // Vertices that no file has.
         let whole = mesh.clone();
         mesh.positions.extend([[7.0; 3], [8.0; 3]]);
         mesh.faces.push([4, 4, 0].map(VertexId::new));
-        assert_eq!(count(&mesh, &whole).unwrap(), 0);
+        assert_eq!(coinciding_vertices(&mesh, &whole), 0);
     }
 }

@@ -23,7 +23,8 @@ pub(super) fn pack(
 ) -> Result<Packed, JobError> {
     let (scheme, strips) = spelled(scheme);
     let done = meshlod_codec::compress(mesh, scheme, target, bounds).map_err(refused)?;
-    let coinciding = coinciding_vertices(mesh, done.compressed.decode())?;
+    let decoded = done.compressed.decode().map_err(JobError::output)?;
+    let coinciding = coinciding_vertices(mesh, &decoded);
     let compressed = match strips {
         Some(quality) => with_strips(done.compressed, quality).map_err(JobError::input)?,
         None => done.compressed,

@@ -31,11 +31,12 @@ pub(super) fn pack(
         error => JobError::input(error),
     })?;
     let decoded = TransportFile::open(&done.bytes).and_then(|file| file.decode());
+    let decoded = decoded.map_err(JobError::output)?;
     Ok(Packed {
         sizes: sizes(&done),
         scene: done.sizes.resources,
         vertices: done.vertices,
-        coinciding: Some(coinciding_vertices(mesh, decoded)?),
+        coinciding: Some(coinciding_vertices(mesh, &decoded)),
         faces: done.faces,
         pieces: PieceCount::Blocks(done.blocks),
         strips: None,

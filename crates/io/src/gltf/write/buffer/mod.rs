@@ -297,7 +297,10 @@ mod tests {
 
     #[test]
     fn free_entries_go_unless_an_unknown_extension_may_count_on_their_number() {
-        let accessor = |view| json!({ "bufferView": view, "componentType": component::F32, "count": 1, "type": "SCALAR" });
+        let accessor = |view| {
+            let kind = component::F32;
+            json!({ "bufferView": view, "componentType": kind, "count": 1, "type": "SCALAR" })
+        };
         let view = |at| json!({ "buffer": 0, "byteOffset": at, "byteLength": 4 });
         for (name, left) in [("KHR_lights_punctual", 1), ("UNKNOWN_one", 2)] {
             let mut json = json!({

@@ -12,8 +12,8 @@ use super::placed::{PlacedInstances, PlacedMesh, reach};
 /// that a transform adds up: each of the two places is off by a few roundings.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// Returns the vertices of each instance that its transform moves to one place though they are apart
-/// in the mesh, with that place, by the ids of the merged mesh.
+/// Returns the vertices that the transform of an instance moves to one place though they are apart
+/// in its mesh, with that place, by the ids of the merged mesh.
 ///
 /// Exported cylinders have a seam with 6e-17 on one side and 0 on the other.
 pub fn collapsed(scene: &Scene, placed: &PlacedInstances) -> Vec<([u64; 3], Vec<VertexId>)> {

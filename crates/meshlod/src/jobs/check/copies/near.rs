@@ -36,7 +36,7 @@ impl<'s> NearFaces<'s> {
         let bounds = |own: &PlacedMesh| instance_bounds(&own.shown, &points[own.shown.mesh]);
         let boxes: Vec<Bounds> = placed.instances.par_iter().map(bounds).collect();
         let instances: Vec<usize> = (0..boxes.len()).filter(|&i| !boxes[i].is_empty()).collect();
-        // A face from corner to corner has the box as its own.
+        // Each box is stored as a degenerate face between two opposite corners.
         let corners = instances.iter().flat_map(|&i| [boxes[i].min, boxes[i].max]).collect();
         let face = |i: usize| [2 * i, 2 * i + 1, 2 * i + 1].map(VertexId::new);
         let tree = Bvh::new(&Mesh::new(corners, (0..instances.len()).map(face).collect())).ok()?;
@@ -61,8 +61,8 @@ impl<'s> NearFaces<'s> {
         found
     }
 
-    /// Returns the faces of two instances that may meet: all that do are among them, and all around
-    /// a point that they share.
+    /// Returns the faces of two instances that may meet. None that meets the other instance is left
+    /// out, and at a point that both instances have, all faces of both are returned.
     pub fn pair(&self, [a, b]: [usize; 2]) -> NearPair {
         let (mut of_a, looked) = self.within(a, &self.boxes[b]);
         let (of_b, looked_too) = self.within(b, &self.hull(a, &of_a));
@@ -71,7 +71,7 @@ impl<'s> NearFaces<'s> {
         NearPair { faces: [of_a, of_b], visited: looked + looked_too }
     }
 
-    /// Returns the faces of an instance that meet a box by their own, and how many were looked at.
+    /// Returns the faces of an instance whose bounding boxes meet a box, and how many were looked at.
     fn within(&self, instance: usize, reach: &Bounds) -> (Vec<FaceId>, usize) {
         let own = &self.placed.instances[instance];
         let (mut found, mut visited) = (Vec::new(), 0);
@@ -89,7 +89,8 @@ impl<'s> NearFaces<'s> {
         (found, visited)
     }
 
-    /// Returns a box around a box in world space, in the space of the mesh of an instance.
+    /// Moves a box from world space to the space of an instance's mesh, and returns the box around it
+    /// there, a little larger than rounding needs.
     fn in_mesh(&self, instance: usize, of: &Bounds) -> Bounds {
         let world = DMat4::from_cols_array_2d(&self.placed.instances[instance].shown.transform);
         let own = &self.boxes[instance];
@@ -121,7 +122,8 @@ impl<'s> NearFaces<'s> {
     }
 }
 
-/// Rounding of places that are moved to the space of a mesh and back, as a part of their coordinates.
+/// Greatest rounding error of a place that is moved to the space of a mesh and back, relative to its
+/// coordinates.
 const ROUNDING: f64 = 1e-12;
 
 /// Returns true if two boxes have a point in common.

@@ -7,6 +7,7 @@ use meshlod_mesh::{FaceId, Mesh, VertexId};
 
 use crate::jobs::JobError;
 use crate::jobs::copies::Copies;
+use crate::numbers::count;
 use crate::scene::place::similarity;
 
 /// The instances of a scene of copies, with their ids in the mesh that they would be merged into.
@@ -54,9 +55,9 @@ impl PlacedInstances {
             true => Ok(Some(all)),
             false => Err(JobError::input(format!(
                 "shows {} faces and {} vertices, but ids end at {}: check its meshes alone",
-                all.faces,
-                all.vertices,
-                u32::MAX
+                count(all.faces),
+                count(all.vertices),
+                count(u32::MAX as usize)
             ))),
         }
     }
@@ -72,7 +73,7 @@ impl PlacedInstances {
     }
 }
 
-/// Returns true if the meshes of a scene are valid, and nothing that it shows is beyond the numbers.
+/// Returns true if the meshes of a scene are valid, and no coordinate of an instance overflows.
 fn are_finite(scene: &Scene) -> bool {
     let reaches: Vec<f64> = scene.meshes.iter().map(|mesh| reach(&mesh.mesh)).collect();
     let is_near = |shown: &MeshInstance| {
