@@ -72,8 +72,8 @@ const MERGED: usize = 1 << 20;
 /// A scene of more than a million faces that shows its meshes many times, in similar shapes, is not
 /// merged. Each mesh is checked
 /// once, in its own place: its findings count for every instance, and are listed for the first.
-/// Contacts of instances are found where their bounding boxes meet. Where too many do, the report has
-/// a finding of the kind `crowded`, and `watch` hears how many instances were not compared.
+/// Contacts of instances are found where their bounding boxes meet. Where too many do, a scene of up to
+/// eight million faces is merged after all; of a larger one, the report has a finding of the kind `crowded`, and `watch` hears how many instances were not compared.
 ///
 /// # Errors
 /// [`JobError::Cancelled`], and copies with more than 2^32 faces or vertices in all.
@@ -83,10 +83,13 @@ pub fn check_scene(
     watch: &dyn Watch,
 ) -> Result<CheckReport, JobError> {
     watch.stage("checking");
-    match copies::PlacedInstances::of(&scene)? {
-        Some(placed) if placed.faces > MERGED => copies::check(&scene, &placed, request, watch),
-        _ => look_through(&scene.into_mesh(), request, watch, &mut |_, _| {}),
+    if let Some(placed) = copies::PlacedInstances::of(&scene)?
+        && placed.faces > MERGED
+        && let Some(report) = copies::check(&scene, &placed, request, watch)?
+    {
+        return Ok(report);
     }
+    look_through(&scene.into_mesh(), request, watch, &mut |_, _| {})
 }
 
 /// Checks a mesh, and shows `visit` every finding.

@@ -22,14 +22,24 @@ use super::{CheckReport, CheckRequest, Grade, Group, look_through};
 use crate::jobs::{About, JobError, Remark, Watch};
 use crate::numbers::count;
 
-/// Checks the meshes of a scene of copies, and what the copies have in common.
+/// Checks the meshes of a scene of copies, and what the copies have in common; `None` if these overlap
+/// so much that it is less work to check the merged scene.
 pub fn check(
     scene: &Scene,
     placed: &PlacedInstances,
     request: &CheckRequest,
     watch: &dyn Watch,
-) -> Result<CheckReport, JobError> {
-    check_within(MOST_SEARCHED, (scene, placed), request, watch)
+) -> Result<Option<CheckReport>, JobError> {
+    let most_searched = MOST_SEARCHED.min(placed.faces);
+    let report = check_within(most_searched, (scene, placed), request, watch)?;
+    if report.not_compared > 0 && placed.faces <= MOST_SEARCHED {
+        return Ok(None);
+    }
+    if report.not_compared > 0 {
+        let numbers = [report.not_compared, placed.instances.len()];
+        watch.remark(&Remark::new(About::Input, incomplete(numbers, request.options.kinds)));
+    }
+    Ok(Some(report))
 }
 
 /// Checks a scene of copies, and compares instances with each other until so many faces are searched.
@@ -41,14 +51,10 @@ fn check_within(
 ) -> Result<CheckReport, JobError> {
     let meshes = CheckedMeshes::of(scene, placed, request, watch)?;
     let between = meshes.between(most_searched, request, watch);
-    if watch.is_cancelled() {
-        return Err(JobError::Cancelled);
+    match watch.is_cancelled() {
+        true => Err(JobError::Cancelled),
+        false => Ok(MergedReport::new(&meshes, request).finish(between)),
     }
-    if between.not_compared > 0 {
-        let numbers = [between.not_compared, placed.instances.len()];
-        watch.remark(&Remark::new(About::Input, incomplete(numbers, request.options.kinds)));
-    }
-    Ok(MergedReport::new(&meshes, request).finish(between))
 }
 
 /// Says how many instances of all were not compared, and what may be missing of these kinds.
