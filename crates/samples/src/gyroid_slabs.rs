@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use glam::DVec3;
 
 use crate::gyroid::LEVEL;
-use crate::tetrahedra::{Lattice, Slab, march};
+use crate::tetrahedra::{FieldLattice, Slab, march};
 
 /// Cells of a period, about: enough for round tubes.
 const CELLS: f64 = 24.0;
@@ -88,7 +88,7 @@ impl GyroidSlabs {
         let in_box = |p: DVec3, field: f64| field.max(p.abs().max_element() - half);
         let table: Vec<(f64, f64)> =
             (0..=cells).map(|i| waves(crate::tetrahedra::coordinate(cells, i))).collect();
-        let lattice = Lattice {
+        let lattice = FieldLattice {
             cells,
             value: |point: [usize; 3], p| in_box(p, labyrinth(point.map(|i| table[i]))),
             field: |p: DVec3| in_box(p, labyrinth(p.to_array().map(waves))),

@@ -20,7 +20,7 @@ use crate::grid::split;
 /// Cost: O(cells³) calls of `field`, and O(cells²) memory besides the mesh.
 pub(crate) fn polygonize(cells: usize, field: impl Fn(DVec3) -> f64) -> Mesh {
     let mut mesh = Mesh::default();
-    let lattice = Lattice { cells, value: |_: [usize; 3], place| field(place), field: &field };
+    let lattice = FieldLattice { cells, value: |_: [usize; 3], place| field(place), field: &field };
     let _ = march(&lattice, true, |slab| {
         mesh.positions.extend(&slab.places);
         mesh.faces.extend(slab.faces.iter().map(|face| face.map(VertexId)));
@@ -30,7 +30,7 @@ pub(crate) fn polygonize(cells: usize, field: impl Fn(DVec3) -> f64) -> Mesh {
 }
 
 /// Lattice over the cube [-1, 1]³, and the field on it.
-pub(crate) struct Lattice<V, F> {
+pub(crate) struct FieldLattice<V, F> {
     /// Number of cells per side.
     pub cells: usize,
     /// Value of the field at a point of the lattice, by its numbers and its place.
@@ -52,7 +52,7 @@ pub(crate) struct Slab {
 
 /// Builds the surface of [`polygonize`] slab by slab, until `take` breaks off.
 pub(crate) fn march<V, F, B>(
-    lattice: &Lattice<V, F>,
+    lattice: &FieldLattice<V, F>,
     wants_places: bool,
     mut take: impl FnMut(&Slab) -> ControlFlow<B>,
 ) -> ControlFlow<B>
@@ -96,7 +96,7 @@ struct Layer {
 }
 
 impl Layer {
-    fn sampled<V: Fn([usize; 3], DVec3) -> f64, F>(lattice: &Lattice<V, F>, z: usize) -> Self {
+    fn sampled<V: Fn([usize; 3], DVec3) -> f64, F>(lattice: &FieldLattice<V, F>, z: usize) -> Self {
         let side = lattice.cells + 1;
         let points = (0..side * side).map(|i| [i % side, i / side, z]);
         let values = points.map(|point| (lattice.value)(point, place(lattice.cells, point)));
@@ -122,7 +122,7 @@ const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2,
 type CubeCorner = usize;
 
 struct March<'a, V, F> {
-    lattice: &'a Lattice<V, F>,
+    lattice: &'a FieldLattice<V, F>,
     wants_places: bool,
     below: Layer,
     above: Layer,

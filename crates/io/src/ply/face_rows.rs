@@ -75,6 +75,7 @@ impl FaceRows {
     ///
     /// # Errors
     /// Bytes that end inside the row, and a list of negative length.
+    #[inline]
     pub fn row(&self, bytes: &[u8]) -> Result<RowLayout, RowFault> {
         let mut row = RowLayout::default();
         for &part in &self.parts {
@@ -118,6 +119,7 @@ impl FaceRows {
     ///
     /// # Errors
     /// The first index that is not one of `vertices` vertices, counted from 0.
+    #[inline]
     pub fn vertices(
         &self,
         row: RowLayout,

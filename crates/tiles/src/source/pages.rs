@@ -10,8 +10,8 @@ use meshlod_io::ply::VertexRows;
 
 use super::file::PlacedFile;
 
-/// Bytes of a page, about: 4 KiB. On a terrain of 100 million faces 4 KiB and 64 KiB took as long;
-/// where vertices are in no order, a page is read for each corner, and small ones are faster.
+/// Bytes of a page, about. On a terrain of 20 million faces pages of 16 and 64 KiB took as long;
+/// 200,000 faces of vertices in no order took 4.8 s, and with those pages 11 s and 37 s.
 const PAGE: usize = 1 << 12;
 
 /// Bytes of the decoded vertices in all caches together.

@@ -180,7 +180,7 @@ impl<'s> Window<'s> {
 
 /// Triangles of a group, to be filled one after the other.
 struct Slots<'t> {
-    places: &'t mut [[[f64; 3]; 3]],
+    places: &'t mut [[f64; 3]],
     values: &'t mut [f32],
     /// Number of values of a corner.
     width: usize,
@@ -192,7 +192,7 @@ impl Slots<'_> {
     /// Fills the next corner.
     #[inline]
     fn put(&mut self, place: [f64; 3], values: &[f32]) {
-        self.places[self.at / 3][self.at % 3] = place;
+        self.places[self.at] = place;
         self.values[self.at * self.width..][..self.width].copy_from_slice(values);
         self.at += 1;
     }
@@ -218,7 +218,10 @@ impl PlySource {
             let (own, rest) = places.split_at_mut(group.triangles);
             let (own_values, rest_values) = values.split_at_mut(group.triangles * 3 * width);
             (places, values) = (rest, rest_values);
-            work.push((group, Slots { places: own, values: own_values, width, at: 0 }));
+            work.push((
+                group,
+                Slots { places: own.as_flattened_mut(), values: own_values, width, at: 0 },
+            ));
         }
         // The first error in the order of the file, whichever thread found one first.
         let decoded: Vec<io::Result<()>> = work
@@ -255,7 +258,7 @@ impl PlySource {
                 _ => self.cut(&mut polygon, &mut slots, cache)?,
             }
         }
-        self.layout.fill_normals(slots.places, slots.values);
+        self.layout.fill_normals(slots.places.as_chunks().0, slots.values);
         Ok(())
     }
 
