@@ -9,6 +9,9 @@ use crate::lattice::{BITS, Point};
 /// Depth at which cells are so small that they are not divided further: eight vertices a side.
 pub const MOST_DEPTH: u8 = 18;
 
+/// Bits of a coordinate along the side of a cell in the content of a tile. A bit more is for skirts.
+const GRID_BITS: u32 = 15;
+
 /// Cell of the octree over the lattice; the root has depth 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Cell {
@@ -16,6 +19,12 @@ pub struct Cell {
     pub depth: u8,
     /// Number of cells of this depth before it, on each axis.
     pub at: [u32; 3],
+}
+
+/// Returns the number of steps between points of the grid that contents of a depth are on, a power
+/// of two.
+pub(crate) fn grid_step(depth: u8) -> i32 {
+    1 << (BITS - u32::from(depth)).saturating_sub(GRID_BITS)
 }
 
 impl Cell {

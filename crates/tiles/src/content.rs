@@ -4,15 +4,12 @@ use meshlod_io::gltf::{Compression, PositionGrid, write_compressed_glb};
 use meshlod_io::{Node, Scene, SceneMesh, Unsupported};
 use meshlod_mesh::{Mesh, VertexId};
 
-use crate::cell::Cell;
-use crate::lattice::{BITS, Point};
+use crate::cell::{Cell, grid_step};
+use crate::lattice::Point;
 use crate::plan::{Look, Plan};
 use crate::skirt::skirt;
 use crate::texture::{TileLook, repack};
 use crate::tile::{TileMesh, point_of};
-
-/// Bits of a coordinate along the side of a cell. A bit more is for skirts.
-const GRID_BITS: u32 = 15;
 
 /// Column-major matrix from axes whose z is up to those of glTF, whose y is up.
 const TO_Y_UP: [[f64; 4]; 4] =
@@ -29,11 +26,6 @@ pub struct Content {
     pub moved: f64,
     /// Least and greatest coordinates, in steps of the lattice.
     pub bounds: [[f64; 3]; 2],
-}
-
-/// Returns the number of steps between points of the grid of a level, a power of two.
-pub(crate) fn grid_step(depth: u8) -> i32 {
-    1 << (BITS - u32::from(depth)).saturating_sub(GRID_BITS)
 }
 
 /// Makes the content of a tile. Vertices that it shares with others are on the coarsest grid of all

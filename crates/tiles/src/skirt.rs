@@ -3,8 +3,7 @@
 use meshlod_mesh::{Labels, Mesh, VertexId};
 use rustc_hash::FxHashMap;
 
-use crate::cell::Cell;
-use crate::content::grid_step;
+use crate::cell::{Cell, grid_step};
 use crate::plan::Plan;
 use crate::tile::TileMesh;
 
