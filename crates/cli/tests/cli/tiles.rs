@@ -117,3 +117,27 @@ fn what_cannot_be_tiled_is_told() {
     let found = run.json(&["check", "out"]);
     assert_eq!((&found["tiles"], &found["faces"]), (&1.into(), &report["input_faces"]));
 }
+
+#[test]
+fn parts_that_tiles_lack_are_named() {
+    let run = Run::new();
+    std::fs::write(run.path("named.obj"), TWO_OBJECTS).unwrap();
+    let done = run.run(&["tiles", "named.obj", "out"]);
+    assert_eq!(done.code, 0, "{done:?}");
+    assert!(done.only_line().contains("left out: 2 names of objects (left, right)"), "{done:?}");
+    let refused = told(&run, &["tiles", "named.obj", "strict", "--strict"], 1);
+    assert!(refused.contains("names of objects") && !run.path("strict").exists(), "{refused}");
+}
+
+const TWO_OBJECTS: &str = "\
+o left
+v 0 0 0
+v 1 0 0
+v 0 1 0
+f 1 2 3
+o right
+v 5 0 0
+v 6 0 0
+v 5 1 0
+f 4 5 6
+";

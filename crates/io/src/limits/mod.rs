@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use meshlod_mesh::{FaceLayerKind, Mesh};
+use meshlod_mesh::{FaceLayerKind, LayerKind, Mesh};
 
 use crate::format::Format;
 use crate::format::facts::{Comments, Holds, VertexSharing};
@@ -105,6 +105,24 @@ impl Scene {
         let names = if self.source.is_some() { Vec::new() } else { self.object_names() };
         let note = Note::left_out(names.len(), "name of an object", "names of objects");
         vec![note.named(names)]
+    }
+
+    /// Lists the parts that tiles of the scene lack, which have its faces, materials, images, normals,
+    /// texture coordinates and colours.
+    pub fn tile_limits(&self) -> Vec<Note> {
+        let is_kept = |kind: LayerKind| {
+            matches!(kind, LayerKind::Normal | LayerKind::Uv(_) | LayerKind::Color(_))
+        };
+        let all = self.meshes.iter().filter_map(|mesh| mesh.mesh.attributes.as_ref());
+        let lost = all.flat_map(|own| &own.layers).filter(|layer| !is_kept(layer.kind));
+        let names: BTreeSet<&str> = lost.map(|layer| &*layer.name).collect();
+        let layers = Note::left_out(names.len(), "layer of vertices", "layers of vertices");
+        // Putting all instances together is what tiles are for.
+        let graph = self.graph_limits().into_iter().skip(1);
+        let mut notes: Vec<Note> = graph.chain(self.whole_mesh_limits()).collect();
+        notes.extend([layers.named(names), self.face_scalar_limits()]);
+        notes.retain(|note| note.count > 0);
+        notes
     }
 
     /// Counts the vertices that no face uses.

@@ -14,6 +14,9 @@ use crate::session::failure::Failure;
 use crate::session::files;
 use crate::text::numbers::count;
 
+/// Largest number of materials.
+const MOST_MATERIALS: usize = u16::MAX as usize;
+
 /// Model that tiles are made of.
 pub struct Model {
     source: Box<dyn Source>,
@@ -90,7 +93,11 @@ impl ModelPart {
             return Ok(Self { source: streamed.source, look: Look::default() });
         }
         let scene = files::read_surface(path, reading, session)?;
+        session.note(path, &scene.tile_limits())?;
         let look = look(&scene);
+        if look.labels.len() > MOST_MATERIALS {
+            return Err(Failure::at(path, too_many_materials()));
+        }
         Ok(Self { source: Box::new(SceneSource::new(scene)), look })
     }
 }
@@ -102,16 +109,18 @@ fn add(all: &mut Look, mut own: Look) -> Result<u16, Failure> {
         own.materials.push(Material::default());
     }
     let (first, images) = (all.labels.len(), all.images.len());
-    let most = usize::from(u16::MAX);
-    if first + own.labels.len() > most {
-        let reason = format!("the files have more than {} materials", count(most));
-        return Err(Failure::new(reason));
+    if first + own.labels.len() > MOST_MATERIALS {
+        return Err(Failure::new(too_many_materials()));
     }
     own.materials.iter_mut().for_each(|material| material.shift_images(images));
     all.labels.append(&mut own.labels);
     all.materials.append(&mut own.materials);
     all.images.append(&mut own.images);
     Ok(first as u16)
+}
+
+fn too_many_materials() -> String {
+    format!("more than {} materials; tiles number them by 16 bits", count(MOST_MATERIALS))
 }
 
 /// Returns the files of a folder that are read, by name; of a file or pipe, itself.
