@@ -3,6 +3,7 @@
 use meshlod_io::gltf::{Compression, PositionGrid, write_compressed_glb};
 use meshlod_io::{Node, Scene, SceneMesh, Unsupported};
 use meshlod_mesh::{Mesh, VertexId};
+use rustc_hash::FxHashMap;
 
 use crate::cell::{Cell, grid_step};
 use crate::lattice::Point;
@@ -64,7 +65,7 @@ pub fn content(
 fn on_grid(plan: &Plan, cell: Cell, tile: &TileMesh) -> (Mesh, f64) {
     let is_border = tile.border_vertices();
     let mut mesh = tile.mesh.clone();
-    let mut moved = 0f64;
+    let mut on_side = Vec::with_capacity(is_border.len());
     for (i, is_border) in is_border.into_iter().enumerate() {
         let point = point_of(&mesh, VertexId::new(i));
         let depth = match is_border {
@@ -73,15 +74,37 @@ fn on_grid(plan: &Plan, cell: Cell, tile: &TileMesh) -> (Mesh, f64) {
         };
         let step = grid_step(depth);
         let near = point.map(|x| (x + step / 2) & !(step - 1));
-        let near = if is_border { near } else { inside(near, cell, step) }.map(f64::from);
-        let off: f64 = (0..3).map(|axis| (near[axis] - mesh.positions[i][axis]).powi(2)).sum();
-        moved = moved.max(off);
-        mesh.positions[i] = near;
+        on_side.push(!is_border && cell.sides_of(near) != 0);
+        mesh.positions[i] = near.map(f64::from);
     }
+    for v in open_ends(&mesh, &on_side) {
+        let near = inside(point_of(&mesh, v), cell, grid_step(cell.depth));
+        mesh.positions[v.index()] = near.map(f64::from);
+    }
+    let pairs = mesh.positions.iter().zip(&tile.mesh.positions);
+    let moved = pairs.map(|(a, b)| (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum());
+    let moved = moved.fold(0.0, f64::max);
     (mesh, moved.sqrt())
 }
 
-/// Moves a point on a side of a cell inside: only the vertices that tiles share are on sides.
+/// Returns those of some vertices that are ends of open edges.
+fn open_ends(mesh: &Mesh, of: &[bool]) -> Vec<VertexId> {
+    let mut sums: FxHashMap<[VertexId; 2], i32> = FxHashMap::default();
+    for &[a, b, c] in mesh.faces.iter().filter(|face| face.iter().any(|v| of[v.index()])) {
+        let edges = [[a, b], [b, c], [c, a]].into_iter();
+        for [from, to] in edges.filter(|edge| edge.iter().any(|v| of[v.index()])) {
+            let sum = if from < to { 1 } else { -1 };
+            *sums.entry([from.min(to), from.max(to)]).or_default() += sum;
+        }
+    }
+    let open = sums.into_iter().filter(|(_, sum)| *sum != 0).flat_map(|(edge, _)| edge);
+    let mut ends: Vec<VertexId> = open.filter(|v| of[v.index()]).collect();
+    ends.sort_unstable();
+    ends.dedup();
+    ends
+}
+
+/// Moves a point on a side of a cell inside. Of open edges, only those that tiles share are in sides.
 fn inside(point: Point, cell: Cell, step: i32) -> Point {
     let (low, high) = (cell.low(), cell.high());
     [0, 1, 2].map(|axis| match point[axis] {
