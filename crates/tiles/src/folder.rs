@@ -93,7 +93,14 @@ impl Folder {
         for folder in [self.path.clone(), self.path.join("tiles"), self.content_folder()] {
             fs::create_dir_all(&folder).map_err(|error| TilesError::system(&folder, error))?;
         }
-        Ok(())
+        // Tells the folder of a plan that was ended early from any other.
+        let lock = self.lock_file();
+        File::create(&lock).map(drop).map_err(|error| TilesError::system(&lock, error))
+    }
+
+    /// Returns the path of the file that a process locks while it works on the plan.
+    pub fn lock_file(&self) -> PathBuf {
+        self.path.join("lock")
     }
 
     /// Returns the path of the scratch file.
@@ -211,6 +218,36 @@ impl Folder {
         write_file(&self.mesh_file(record.cell), &mesh)?;
         write_file(&self.record_file(record.cell), &json(&record))?;
         Ok(record)
+    }
+
+    /// Removes all files of the plan, and the folder if nothing else is in it.
+    pub fn remove(&self) {
+        self.forget_tiles();
+        let images = fs::read_dir(&self.path).into_iter().flatten().flatten();
+        let is_image = |name: &str| name.starts_with("image-") || name.starts_with("pieces-");
+        let images = images
+            .map(|entry| entry.path())
+            .filter(|path| path.file_name().and_then(|name| name.to_str()).is_some_and(is_image));
+        for file in images.chain([self.scratch(), self.plan_file(), self.lock_file()]) {
+            let _ = fs::remove_file(file);
+        }
+        let _ = fs::remove_dir(&self.path);
+    }
+
+    /// Removes all tiles that were made, as of another plan.
+    pub fn forget_tiles(&self) {
+        for part in [self.path.join("tiles"), self.content_folder()] {
+            let _ = fs::remove_dir_all(part);
+        }
+    }
+
+    /// Returns true if the folder is there and holds anything but files of a plan: a plan is made in
+    /// a folder of its own, as its files are replaced and removed.
+    pub fn is_foreign(&self) -> bool {
+        let is_plan =
+            ["plan.json", "lock", "pieces"].iter().any(|name| self.path.join(name).exists());
+        let is_used = fs::read_dir(&self.path).is_ok_and(|mut entries| entries.next().is_some());
+        is_used && !is_plan
     }
 
     /// Removes the mesh of a tile that nothing is made from any more.

@@ -1,4 +1,4 @@
-//! TileLattice of whole numbers that all vertices are moved to before anything else.
+//! Lattice of whole numbers that all vertices are moved to before anything else.
 //!
 //! Vertices have odd coordinates, planes between cells even ones. So no vertex of the input is ever
 //! on a plane, and no face is in one: what is on a plane has been put there by a cut.
@@ -16,7 +16,7 @@ pub const END: i32 = 1 << BITS;
 /// cells has an even one on that axis.
 pub type Point = [i32; 3];
 
-/// TileLattice over the bounding box of a model, the same for everything that is made of it.
+/// Lattice over the bounding box of a model, the same for everything that is made of it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TileLattice {
     /// Place of the point 0, 0, 0, in model units: a multiple of the step on each axis, if the model

@@ -1,11 +1,11 @@
-//! TileTree of the tiles: which cells are divided, and what is beside a cell.
+//! Octree of the tiles: which cells are divided, and what is beside a cell.
 
 use serde::{Deserialize, Serialize};
 
 use crate::cell::{Cell, MOST_DEPTH};
 use crate::lattice::Point;
 
-/// TileTree whose leaves hold about as many faces as a tile may have.
+/// Octree whose leaves hold about as many faces as a tile may have.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TileTree {
     /// All cells; the root is the first, and cells come before those that they are divided into.

@@ -45,13 +45,13 @@ pub struct TileOptions {
 /// Plan of all tiles.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Plan {
-    /// Number that is different for another model or request.
+    /// Text that is different for another model.
     pub key: String,
     /// Size and form of tiles.
     pub options: TileOptions,
-    /// TileLattice of all vertices.
+    /// Lattice of all vertices.
     pub lattice: TileLattice,
-    /// TileTree of the tiles.
+    /// Octree of the tiles.
     pub tree: TileTree,
     /// Values that corners have beside their points.
     pub layout: Layout,

@@ -225,9 +225,14 @@ fn check_folder(path: &Path) -> Result<(), Failure> {
         return Err(Failure::at(path, "is a file; name a folder for the tiles"));
     }
     let Ok(mut entries) = std::fs::read_dir(path) else { return Ok(()) };
-    let is_ours = ["tileset.json", ".plan"].iter().any(|name| path.join(name).exists());
+    let is_ours = path.join(".plan").exists() || is_written_by_us(&path.join("tileset.json"));
     match entries.next().is_none() || is_ours {
         true => Ok(()),
         false => Err(Failure::at(path, "holds other files; name a new folder for the tiles")),
     }
+}
+
+/// Returns true for a tileset that this program has written, whose tiles may be replaced.
+fn is_written_by_us(tileset: &Path) -> bool {
+    std::fs::read_to_string(tileset).is_ok_and(|text| text.contains("\"generator\":\"meshlod "))
 }

@@ -112,6 +112,18 @@ fn what_cannot_be_tiled_is_told() {
         assert!(line_told.contains(reason), "{line:?}: {line_told}");
     }
     assert!(!run.path("out").exists());
+    // Folders with other files are not touched, whatever these are called.
+    for folder in ["used/tiles", "used/content"] {
+        fs::create_dir_all(run.path(folder)).unwrap();
+        fs::write(run.path(folder).join("mine.txt"), "mine").unwrap();
+    }
+    fs::write(run.path("used/tileset.json"), "{}").unwrap();
+    for line in [&["tiles", "in.ply", "used"][..], &["tiles", "plan", "in.ply", "used"]] {
+        let done = run.run(line);
+        assert!(done.code != 0 && done.err.contains("holds other files"), "{done:?}");
+    }
+    assert!(files(&run.path("used")).contains_key("tiles/mine.txt"));
+    assert!(files(&run.path("used")).contains_key("content/mine.txt"));
     // A model of one tile is a tileset, too.
     let report = run.json(&["tiles", "in.ply", "out"]);
     let found = run.json(&["check", "out"]);

@@ -6,8 +6,9 @@
 //! `--json`. The command, the Python package and the viewer only translate: arguments into
 //! requests, reports into text.
 //!
-//! A job reads no file and writes none. [`AnyFile`](crate::AnyFile) opens what it works on,
-//! [`Output`](crate::Output) says where the result goes and in which format.
+//! A job reads no file and writes none, but for `tiles`, whose plan is a folder.
+//! [`AnyFile`](crate::AnyFile) opens what it works on, [`Output`](crate::Output) says where the
+//! result goes and in which format.
 
 #[cfg(feature = "multires")]
 mod build;

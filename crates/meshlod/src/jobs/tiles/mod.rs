@@ -60,12 +60,13 @@ pub fn tiles(
     request: &TilesRequest,
     watch: &dyn Watch,
 ) -> Result<TilesReport, JobError> {
+    request.options()?;
     let folder = Folder::new(out.join(PLAN));
-    let was_there = out.exists();
     let _lock = locked(&folder)?;
     if let Err(error) = plan_tiles(input, folder.path(), request, watch) {
         // Nothing is left that a next run could go on from.
-        let _ = fs::remove_dir_all(if was_there { folder.path() } else { out });
+        folder.remove();
+        let _ = fs::remove_dir(out);
         return Err(error);
     }
     let (plan, look) = planned(&folder)?;
@@ -96,12 +97,12 @@ pub fn plan_tiles(
     {
         return Ok(plan.tasks.len());
     }
-    // What is left of another plan.
-    if folder.path().is_dir() {
-        for part in ["tiles", "content"] {
-            let _ = fs::remove_dir_all(folder.path().join(part));
-        }
+    if folder.is_foreign() {
+        let path = folder.path().display();
+        let reason = format!("{path}: holds other files; name a new folder for the plan");
+        return Err(JobError::request("", reason));
     }
+    folder.forget_tiles();
     folder.make().map_err(failure)?;
     watch.stage("cutting into tiles");
     let part = folder.path().join(format!("pieces-{}.part", std::process::id()));
@@ -133,7 +134,7 @@ pub fn run_tile_task(folder: &Path, task: usize) -> Result<(), JobError> {
 pub fn finish_tiles(folder: &Path, out: &Path, watch: &dyn Watch) -> Result<TilesReport, JobError> {
     watch.stage("checking");
     let folder = Folder::new(folder);
-    let (plan, _) = planned(&folder)?;
+    let plan = plan_in(&folder)?;
     let finished = finish(&plan, &folder).map_err(failure)?;
     let tiles = out.join(TILES);
     let system = |path: &Path| {
@@ -149,8 +150,7 @@ pub fn finish_tiles(folder: &Path, out: &Path, watch: &dyn Watch) -> Result<Tile
         write_file(&out.join(&file.name), &file.text).map_err(JobError::output)?;
     }
     let report = TilesReport::of(&plan, &finished);
-    // It would only take space.
-    let _ = fs::remove_dir_all(folder.path());
+    folder.remove();
     Ok(report)
 }
 
@@ -165,18 +165,22 @@ pub fn check_tileset(folder: &Path, watch: &dyn Watch) -> Result<TilesetReport, 
 
 /// Reads a plan and the materials of its model.
 fn planned(folder: &Folder) -> Result<(Plan, Look), JobError> {
-    let none = || JobError::request("", format!("{}: no plan of tiles", folder.path().display()));
-    let plan = folder.plan().map_err(failure)?.ok_or_else(none)?;
+    let plan = plan_in(folder)?;
     let images = folder.images(&plan).map_err(failure)?;
     let (labels, materials) = (plan.labels.clone(), plan.materials.clone());
     let look = Look { labels, materials, images, ..Look::default() };
     Ok((plan, look))
 }
 
+fn plan_in(folder: &Folder) -> Result<Plan, JobError> {
+    let none = || JobError::request("", format!("{}: no plan of tiles", folder.path().display()));
+    folder.plan().map_err(failure)?.ok_or_else(none)
+}
+
 /// Locks a folder against other processes for as long as the file is open.
 fn locked(folder: &Folder) -> Result<File, JobError> {
     folder.make().map_err(failure)?;
-    let path = folder.path().join("lock");
+    let path = folder.lock_file();
     let file = File::create(&path).map_err(|error| failure(TilesError::system(&path, error)))?;
     match file.try_lock() {
         Ok(()) => Ok(file),
