@@ -1,4 +1,5 @@
-//! Steps of schools of 1,000 to 1,000,000 members, each looking at its neighbours in every step.
+//! Steps of schools of 1,000 to 1,000,000 members, each looking at its neighbours in every step. Run
+//! as a test, small schools alone.
 //!
 //! A table of members per millisecond and mean neighbours goes to stderr. Set `RAYON_NUM_THREADS`
 //! to 1 for the figures of one thread; CPU time is that of all threads, where Linux tells it.
@@ -14,6 +15,8 @@ use meshlod_school::simulation::{
 
 /// Numbers of members.
 const SIZES: [usize; 4] = [1_000, 10_000, 100_000, 1_000_000];
+/// How many of them are run as a test.
+const TESTED: usize = 2;
 /// Steps before measuring, in which members spread out evenly.
 const WARM_UP: usize = 60;
 
@@ -81,10 +84,14 @@ fn tables() {
 }
 
 fn steps(criterion: &mut Criterion) {
-    tables();
+    let is_measured = std::env::args().any(|argument| argument == "--bench");
+    let sizes = if is_measured { &SIZES[..] } else { &SIZES[..TESTED] };
+    if is_measured {
+        tables();
+    }
     let mut group = criterion.benchmark_group("step");
     group.sample_size(10);
-    for size in SIZES {
+    for &size in sizes {
         let mut simulation = warm(&school(size));
         group.throughput(Throughput::Elements(size as u64));
         group.bench_function(BenchmarkId::from_parameter(size), |b| b.iter(|| simulation.step()));
@@ -92,9 +99,12 @@ fn steps(criterion: &mut Criterion) {
     group.finish();
     let mut group = criterion.benchmark_group("snapshot");
     group.sample_size(10);
-    let (simulation, mut flock) = (warm(&school(100_000)), Flock::default());
-    group.throughput(Throughput::Elements(100_000));
-    group.bench_function("100000", |b| b.iter(|| simulation.snapshot(0.5, &mut flock)));
+    let size = sizes[sizes.len() - 1].min(100_000);
+    let (simulation, mut flock) = (warm(&school(size)), Flock::default());
+    group.throughput(Throughput::Elements(size as u64));
+    group.bench_function(BenchmarkId::from_parameter(size), |b| {
+        b.iter(|| simulation.snapshot(0.5, &mut flock))
+    });
     group.finish();
 }
 
