@@ -89,7 +89,8 @@ export class Model {
         this.positions = grown(this.positions, 3 * nodes);
         this.updateOf = grown(this.updateOf, nodes, NONE);
         this.rank = grown(this.rank, nodes, NONE);
-        if (this.header.isLossless) this.exact = grown(this.exact ?? new Float64Array(0), 3 * nodes, NaN);
+        if (this.header.isLossless)
+            this.exact = grown(this.exact ?? new Float64Array(0), 3 * nodes, NaN);
         this.parents = grown(this.parents, updates, NONE);
         this.levels = grown(this.levels, updates);
         this.flags = grown(this.flags, updates);
@@ -130,7 +131,9 @@ export class Model {
 
     /** Returns true if an update and the one of its first child are one step. */
     isFused(update: number): boolean {
-        return (this.flags[update] & FUSED) !== 0 && this.updateOf[this.firstChild(update)] !== NONE;
+        return (
+            (this.flags[update] & FUSED) !== 0 && this.updateOf[this.firstChild(update)] !== NONE
+        );
     }
 
     /** Returns true if an update is the second part of one step. */

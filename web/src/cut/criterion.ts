@@ -40,7 +40,10 @@ export class Criterion {
 
     /** Returns true if the update of a ball is required. */
     requires(x: number, y: number, z: number, radius: number, error: number): boolean {
-        return this.exceeds(x, y, z, radius, error) && (this.isEverywhere || this.region.meetsBall(x, y, z, radius));
+        return (
+            this.exceeds(x, y, z, radius, error) &&
+            (this.isEverywhere || this.region.meetsBall(x, y, z, radius))
+        );
     }
 
     private exceeds(x: number, y: number, z: number, radius: number, error: number): boolean {
@@ -64,10 +67,17 @@ export class Criterion {
         );
     }
 
-    private exceedsIn(min: [number, number, number], max: [number, number, number], error: number): boolean {
+    private exceedsIn(
+        min: [number, number, number],
+        max: [number, number, number],
+        error: number,
+    ): boolean {
         const { slope, most } = this;
         if (!this.isPerspective) return error > most || most === 0;
-        return slope === 0 || slope * slope * squareToBox([this.x, this.y, this.z], min, max) < error * error;
+        return (
+            slope === 0 ||
+            slope * slope * squareToBox([this.x, this.y, this.z], min, max) < error * error
+        );
     }
 
     /** True if nothing but the place of the eye, and the slope, decide. */

@@ -76,7 +76,8 @@ export class Cut {
     update(query: Query, limits: Limits = {}): CutChange {
         const { frame } = this.model;
         const refine = new Criterion(query, frame);
-        this.keep = this.hysteresis > 0 ? new Criterion(query, frame, 1 / (1 + this.hysteresis)) : null;
+        this.keep =
+            this.hysteresis > 0 ? new Criterion(query, frame, 1 / (1 + this.hysteresis)) : null;
         this.refine = refine;
         this.front.triangles.begin();
         const meter = new Meter(limits);
@@ -226,7 +227,8 @@ export class Cut {
         while (toMerge.length > 0 && meter.mayChangeMore()) {
             const update = toMerge.pop() as number;
             const node = model.parents[update];
-            if (front.state(node) !== State.Split || this.mayStay(update) || !front.merge(update)) continue;
+            if (front.state(node) !== State.Split || this.mayStay(update) || !front.merge(update))
+                continue;
             meter.change.merges++;
             this.queueAbove(node);
             front.gather(node);
@@ -243,6 +245,8 @@ export class Cut {
         const { model, toMerge } = this;
         if (node < model.roots) return;
         const update = model.creator(node);
-        toMerge.push(model.isFusedWithParent(update) ? model.creator(model.parents[update]) : update);
+        toMerge.push(
+            model.isFusedWithParent(update) ? model.creator(model.parents[update]) : update,
+        );
     }
 }

@@ -79,7 +79,8 @@ export class Front {
     private add(a: number, b: number, c: number): void {
         const { triangles, heads } = this;
         const at = 3 * triangles.add();
-        if (triangles.wedges) for (let k = 0; k < 3; k++) triangles.wedges[at + k] = this.corners[k];
+        if (triangles.wedges)
+            for (let k = 0; k < 3; k++) triangles.wedges[at + k] = this.corners[k];
         triangles.attach(at, a, heads);
         triangles.attach(at + 1, b, heads);
         triangles.attach(at + 2, c, heads);
@@ -218,7 +219,9 @@ export class Front {
         const first = model.firstChild(update);
         const isFused = model.isFused(update);
         const inner = isFused ? model.updateOf[first] : NONE;
-        const parts = isFused ? [first + 1, model.firstChild(inner), model.firstChild(inner) + 1] : [first + 1, first];
+        const parts = isFused
+            ? [first + 1, model.firstChild(inner), model.firstChild(inner) + 1]
+            : [first + 1, first];
         if (!parts.every((child) => this.state(child) === State.Active)) return false;
         const level = model.levels[update];
         const isNeeded = (node: number) => this.above[node] <= level && !parts.includes(node);

@@ -37,12 +37,19 @@ export class Meter {
 
     mayChangeMore(): boolean {
         const { change, most, until } = this;
-        return change.splits + change.merges < most && (until === Infinity || performance.now() < until);
+        return (
+            change.splits + change.merges < most &&
+            (until === Infinity || performance.now() < until)
+        );
     }
 
     /** Counts an inspection; returns true if another one is allowed. */
     mayInspectMore(): boolean {
         const count = ++this.change.inspected;
-        return count % INSPECTIONS_PER_CLOCK !== 0 || this.inspectUntil === Infinity || performance.now() < this.inspectUntil;
+        return (
+            count % INSPECTIONS_PER_CLOCK !== 0 ||
+            this.inspectUntil === Infinity ||
+            performance.now() < this.inspectUntil
+        );
     }
 }

@@ -63,11 +63,13 @@ export function checkQuery({ focus, tolerance }: Query): void {
 function checkCamera({ eye, look, up, fov, viewport }: Camera): void {
     checkFinite("the camera", [...eye, ...look, ...up]);
     const sees = fov > 0 && fov < Math.PI && viewport.every((side) => side > 0);
-    if (!sees) throw new RangeError("the camera sees nothing: its field of view or its picture is empty");
+    if (!sees)
+        throw new RangeError("the camera sees nothing: its field of view or its picture is empty");
 }
 
 function checkFinite(what: string, numbers: readonly number[]): void {
-    if (!numbers.every(Number.isFinite)) throw new RangeError(`a coordinate of ${what} is not finite`);
+    if (!numbers.every(Number.isFinite))
+        throw new RangeError(`a coordinate of ${what} is not finite`);
 }
 
 function checkLength(what: string, length: number): void {

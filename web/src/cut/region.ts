@@ -23,13 +23,15 @@ export function regionOf(focus: Focus, frame: Frame): Region {
     if ("point" in focus) return sphere(point(focus.point), 0);
     if ("segment" in focus) return segment(point(focus.segment[0]), point(focus.segment[1]));
     if ("box" in focus) return box(point(focus.box[0]), point(focus.box[1]));
-    if ("sphere" in focus) return sphere(point(focus.sphere.center), focus.sphere.radius * (1 / frame.unit));
+    if ("sphere" in focus)
+        return sphere(point(focus.sphere.center), focus.sphere.radius * (1 / frame.unit));
     return frustum(focus.frustum, point(focus.frustum.eye));
 }
 
 function sphere([x, y, z]: Point, reach: number): Region {
     return {
-        meetsBall: (cx, cy, cz, radius) => square(cx - x, cy - y, cz - z) <= (reach + radius) * (reach + radius),
+        meetsBall: (cx, cy, cz, radius) =>
+            square(cx - x, cy - y, cz - z) <= (reach + radius) * (reach + radius),
         meetsBox: (min, max) => squareToBox([x, y, z], min, max) <= reach * reach,
         key: [1, x, y, z, reach],
     };
@@ -49,7 +51,9 @@ function segment(a: Point, b: Point): Region {
     const meetsBall = (x: number, y: number, z: number, radius: number) => {
         const along = (x - a[0]) * dx + (y - a[1]) * dy + (z - a[2]) * dz;
         const t = squared > 0 ? clamp(along / squared, 0, 1) : 0;
-        return square(x - (a[0] + t * dx), y - (a[1] + t * dy), z - (a[2] + t * dz)) <= radius * radius;
+        return (
+            square(x - (a[0] + t * dx), y - (a[1] + t * dy), z - (a[2] + t * dz)) <= radius * radius
+        );
     };
     return { meetsBall, meetsBox: () => true, key: [3, ...a, ...b] };
 }
@@ -64,7 +68,13 @@ function frustum(camera: Camera, eye: Point): Region {
         const normal = unit([0, 1, 2].map((k) => part * forward[k] + sign * axis[k]) as Point);
         return [...normal, normal[0] * eye[0] + normal[1] * eye[1] + normal[2] * eye[2]];
     };
-    const planes = [plane(1, right, 0), plane(wide, right, 1), plane(wide, right, -1), plane(high, up, 1), plane(high, up, -1)];
+    const planes = [
+        plane(1, right, 0),
+        plane(wide, right, 1),
+        plane(wide, right, -1),
+        plane(high, up, 1),
+        plane(high, up, -1),
+    ];
     const meetsBall = (x: number, y: number, z: number, radius: number) =>
         planes.every(([nx, ny, nz, least]) => nx * x + ny * y + nz * z + radius >= least);
     return { meetsBall, meetsBox: () => true, key: [4, ...planes.flat()] };
@@ -92,7 +102,11 @@ function square(x: number, y: number, z: number): number {
 
 /** Returns the square of the distance of a point from a box. */
 export function squareToBox([x, y, z]: Point, min: Point, max: Point): number {
-    return square(x - clamp(x, min[0], max[0]), y - clamp(y, min[1], max[1]), z - clamp(z, min[2], max[2]));
+    return square(
+        x - clamp(x, min[0], max[0]),
+        y - clamp(y, min[1], max[1]),
+        z - clamp(z, min[2], max[2]),
+    );
 }
 
 function clamp(x: number, min: number, max: number): number {

@@ -38,7 +38,8 @@ export class Schedule {
         const key = criterion.key;
         const last = this.lastKey;
         this.lastKey = key;
-        const isSame = last !== null && last.length === key.length && last.every((x, i) => x === key[i]);
+        const isSame =
+            last !== null && last.length === key.length && last.every((x, i) => x === key[i]);
         return this.follow(criterion.hasViewpoint ? criterion : null) || isSame;
     }
 
@@ -53,7 +54,8 @@ export class Schedule {
         // Rounded up at every step, however many and short they are.
         if (step > 0) this.path = nextDouble(this.path + step * (1 + SLACK));
         if (!(this.path <= LONGEST_PATH)) return false;
-        for (let octave = 0; octave < OCTAVES; octave++) if (this.counts[octave] > 0) this.collect(octave, from);
+        for (let octave = 0; octave < OCTAVES; octave++)
+            if (this.counts[octave] > 0) this.collect(octave, from);
         return true;
     }
 
@@ -103,7 +105,8 @@ export class Schedule {
 
     private enter(node: number, slack: number): void {
         const steps = Math.max(Math.trunc(slack * (2 ** FINEST / STEPS)), 1);
-        const log = steps < 2 ** 32 ? 31 - Math.clz32(steps) : 63 - Math.clz32(Math.floor(steps / 2 ** 32));
+        const log =
+            steps < 2 ** 32 ? 31 - Math.clz32(steps) : 63 - Math.clz32(Math.floor(steps / 2 ** 32));
         const octave = Math.min(log, OCTAVES - 1);
         const most = (2 * STEPS) / 2 ** (FINEST - octave);
         const at = stepAt(this.path + Math.min(slack, most), octave);

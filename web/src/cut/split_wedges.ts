@@ -44,7 +44,9 @@ export class SplitWedges {
     around(child: number, at: number, had: number): number {
         const { record, wedges } = this;
         if (record === undefined) return wedges.first[child];
-        return record.isContinued ? this.below(child, had) : wedges.at(child, record.ofFace(this.rankOf(at)));
+        return record.isContinued
+            ? this.below(child, had)
+            : wedges.at(child, record.ofFace(this.rankOf(at)));
     }
 
     /** Returns how many faces of the star come before one, by the ranks of their nodes. */
@@ -68,7 +70,8 @@ export class SplitWedges {
         const local = parent - wedges.first[this.node];
         const skipped = this.before(child);
         const count = wedges.countOf(child);
-        for (let i = 0; i < count; i++) if (record.parent(skipped + i) === local && local !== LOST) return first + i;
+        for (let i = 0; i < count; i++)
+            if (record.parent(skipped + i) === local && local !== LOST) return first + i;
         return first;
     }
 
@@ -105,8 +108,10 @@ export class SplitWedges {
     /** Returns the wedge at a wing in the face that it follows around the node, or else precedes. */
     private atWing(node: number): number {
         const { star } = this;
-        for (let i = 0; i < star.count; i++) if (star.a[i] === node) return this.wedge(after(star.corners[i]));
-        for (let i = 0; i < star.count; i++) if (star.b[i] === node) return this.wedge(before(star.corners[i]));
+        for (let i = 0; i < star.count; i++)
+            if (star.a[i] === node) return this.wedge(after(star.corners[i]));
+        for (let i = 0; i < star.count; i++)
+            if (star.b[i] === node) return this.wedge(before(star.corners[i]));
         return this.wedges.first[node];
     }
 

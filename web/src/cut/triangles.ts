@@ -142,7 +142,11 @@ export class Triangles {
         let at = head[node];
         for (let i = 0; i < MOST_SEARCHED && at !== NONE; i++) {
             const t = 3 * slotOf(at);
-            if (!without.includes(nodes[t]) && !without.includes(nodes[t + 1]) && !without.includes(nodes[t + 2])) {
+            if (
+                !without.includes(nodes[t]) &&
+                !without.includes(nodes[t + 1]) &&
+                !without.includes(nodes[t + 2])
+            ) {
                 if (last === NONE) head[node] = next[at];
                 else next[last] = next[at];
                 return at;

@@ -51,7 +51,8 @@ export class FieldCut {
         this.criterion = criterion;
         this.front.triangles.begin();
         const meter = new Meter(limits);
-        if (this.schedule.goesOn(criterion)) this.toInsert = this.toInsert.filter((index) => this.requires(index));
+        if (this.schedule.goesOn(criterion))
+            this.toInsert = this.toInsert.filter((index) => this.requires(index));
         else this.restart();
         this.inspectPending(meter);
         this.insert(meter);
@@ -97,7 +98,8 @@ export class FieldCut {
         if (schedule.addAgain(index, model.positions)) return;
         flags[index] &= ~SCHEDULED;
         const { grid } = model;
-        const isBelow = () => grid.parents(grid.place(index)).some((parent) => flags[grid.index(parent)] & OPENED);
+        const isBelow = () =>
+            grid.parents(grid.place(index)).some((parent) => flags[grid.index(parent)] & OPENED);
         if (this.front.has(index) || isBelow()) this.inspect(index);
         else flags[index] &= ~OPENED;
     }
@@ -121,7 +123,12 @@ export class FieldCut {
         if (!wasOpen && (isOpen || isIn)) this.queueDependents(place);
     }
 
-    private reschedule(index: number, place: GridPoint, isRequired: boolean, isOpen: boolean): boolean {
+    private reschedule(
+        index: number,
+        place: GridPoint,
+        isRequired: boolean,
+        isOpen: boolean,
+    ): boolean {
         const { model, criterion } = this;
         const own = criterion.reach(model.ownRadius(index), model.error(index));
         const nested = criterion.reach(model.nestedRadius(index), model.error(index));
@@ -162,7 +169,10 @@ export class FieldCut {
         const { grid } = this.model;
         if (!front.has(next)) {
             const place = grid.place(next);
-            const missing = grid.parents(place).map((parent) => grid.index(parent)).filter((parent) => !front.has(parent));
+            const missing = grid
+                .parents(place)
+                .map((parent) => grid.index(parent))
+                .filter((parent) => !front.has(parent));
             if (missing.length > 0) return void stack.push(...missing);
             front.insert(place);
             meter.change.splits++;
@@ -188,7 +198,11 @@ export class FieldCut {
     }
 }
 
-function distance([x, y, z]: readonly [number, number, number], positions: Float32Array, at: number): number {
+function distance(
+    [x, y, z]: readonly [number, number, number],
+    positions: Float32Array,
+    at: number,
+): number {
     const [dx, dy, dz] = [x - positions[at], y - positions[at + 1], z - positions[at + 2]];
     return Math.sqrt(dx * dx + dy * dy + dz * dz);
 }

@@ -37,7 +37,9 @@ export class FieldFront {
         const extent = grid.extent(triangle);
         if (extent === Extent.Outside) return;
         // Every triangle across the border is bisected.
-        const isShown = extent === Extent.Inside && (isFinest(triangle) || !this.has(grid.index(middle(triangle.ends))));
+        const isShown =
+            extent === Extent.Inside &&
+            (isFinest(triangle) || !this.has(grid.index(middle(triangle.ends))));
         if (isShown) this.add(triangle);
         else halvesOf(triangle).forEach((half) => this.start(half));
     }
@@ -102,7 +104,12 @@ export class FieldFront {
         const { grid, looksDown } = this.model;
         const b = grid.index(triangle.ends[0]);
         const c = grid.index(triangle.ends[1]);
-        this.triangles.replace(slot, grid.index(triangle.apex), looksDown ? c : b, looksDown ? b : c);
+        this.triangles.replace(
+            slot,
+            grid.index(triangle.apex),
+            looksDown ? c : b,
+            looksDown ? b : c,
+        );
         this.slots[this.keyOf(triangle)] = slot;
     }
 }

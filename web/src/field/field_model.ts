@@ -45,9 +45,11 @@ export class FieldModel {
         }
         // The corners of the square are never inserted.
         for (const { apex, ends } of grid.roots()) {
-            for (const corner of [apex, ...ends]) if (grid.holds(corner)) this.errors[grid.index(corner)] = FORCED;
+            for (const corner of [apex, ...ends])
+                if (grid.holds(corner)) this.errors[grid.index(corner)] = FORCED;
         }
-        for (let depth = grid.depth - 1; depth >= 0; depth--) grid.insertedAt(depth, (place) => this.finish(place));
+        for (let depth = grid.depth - 1; depth >= 0; depth--)
+            grid.insertedAt(depth, (place) => this.finish(place));
     }
 
     /** Number of vertices of all levels. */
@@ -98,7 +100,8 @@ export class FieldModel {
         const [x, y, z] = this.center(place);
         for (const parent of grid.parents(place)) {
             const [px, py, pz] = this.center(parent);
-            const around = (Math.sqrt(square(px - x, py - y, pz - z)) + this.nestedRadius(index)) * SLACK;
+            const around =
+                (Math.sqrt(square(px - x, py - y, pz - z)) + this.nestedRadius(index)) * SLACK;
             const above = grid.index(parent);
             errors[above] = Math.max(errors[above], errors[index]);
             nested[above] = Math.max(nested[above], lengthCode(around));
@@ -131,8 +134,16 @@ export class FieldModel {
     private deviation({ apex, ends: [a, b] }: RightTriangle): number {
         const { grid } = this;
         const base = this.height(grid.index(apex));
-        const [ax, ay, az] = [a.column - apex.column, a.row - apex.row, this.height(grid.index(a)) - base];
-        const [bx, by, bz] = [b.column - apex.column, b.row - apex.row, this.height(grid.index(b)) - base];
+        const [ax, ay, az] = [
+            a.column - apex.column,
+            a.row - apex.row,
+            this.height(grid.index(a)) - base,
+        ];
+        const [bx, by, bz] = [
+            b.column - apex.column,
+            b.row - apex.row,
+            this.height(grid.index(b)) - base,
+        ];
         const area = ax * by - ay * bx;
         const across = (az * by - bz * ay) / area;
         const along = (bz * ax - az * bx) / area;
@@ -196,5 +207,9 @@ function inUnits(placement: Placement, frame: Frame): Placement {
     const first = toUnits(frame, pointAt(placement, { column: 0, row: 0 }, 0));
     const { up, step } = placement;
     const scale = 1 / frame.unit;
-    return { ...placement, origin: [first[(up + 1) % 3], first[(up + 2) % 3]], step: [step[0] * scale, step[1] * scale] };
+    return {
+        ...placement,
+        origin: [first[(up + 1) % 3], first[(up + 2) % 3]],
+        step: [step[0] * scale, step[1] * scale],
+    };
 }

@@ -74,8 +74,14 @@ export class Grid {
         if (any === 0 || step === side) return null;
         if (column & row & step) {
             // Cells halved along the rising and the falling diagonal alternate as on a chessboard.
-            const rising: [GridPoint, GridPoint] = [point(column - step, row - step), point(column + step, row + step)];
-            const falling: [GridPoint, GridPoint] = [point(column + step, row - step), point(column - step, row + step)];
+            const rising: [GridPoint, GridPoint] = [
+                point(column - step, row - step),
+                point(column + step, row + step),
+            ];
+            const falling: [GridPoint, GridPoint] = [
+                point(column + step, row - step),
+                point(column - step, row + step),
+            ];
             const isRising = ((column ^ row) & (2 * step)) === 0;
             return isRising ? { ends: rising, apexes: falling } : { ends: falling, apexes: rising };
         }
@@ -85,7 +91,10 @@ export class Grid {
         const apexes: GridPoint[] = [];
         if (beside > 0) apexes.push(point(column - along, row - across));
         if (beside < side) apexes.push(point(column + along, row + across));
-        return { ends: [point(column - across, row - along), point(column + across, row + along)], apexes };
+        return {
+            ends: [point(column - across, row - along), point(column + across, row + along)],
+            apexes,
+        };
     }
 
     /** Returns the vertices that one depends on. */
@@ -120,7 +129,10 @@ export class Grid {
         const diamond = this.diamond(place);
         if (!diamond) return [];
         const [a, b] = diamond.ends;
-        return diamond.apexes.map((apex) => ({ apex, ends: turn(apex, a, b) > 0 ? [a, b] : [b, a] }));
+        return diamond.apexes.map((apex) => ({
+            apex,
+            ends: turn(apex, a, b) > 0 ? [a, b] : [b, a],
+        }));
     }
 
     /** Returns the corners of a vertex's diamond. */
@@ -146,7 +158,8 @@ export class Grid {
         const isSide = depth % 2 === 1;
         for (let row = isSide ? 0 : step; row < this.rows; row += isSide ? step : 2 * step) {
             const first = isSide && row & step ? 0 : step;
-            for (let column = first; column < this.columns; column += 2 * step) visit({ column, row });
+            for (let column = first; column < this.columns; column += 2 * step)
+                visit({ column, row });
         }
     }
 }
@@ -161,7 +174,10 @@ export function middle([a, b]: [GridPoint, GridPoint]): GridPoint {
 }
 
 /** Returns the halves of a triangle. */
-export function halvesOf({ apex, ends: [start, end] }: RightTriangle): [RightTriangle, RightTriangle] {
+export function halvesOf({
+    apex,
+    ends: [start, end],
+}: RightTriangle): [RightTriangle, RightTriangle] {
     const at = middle([start, end]);
     return [
         { apex: at, ends: [apex, start] },

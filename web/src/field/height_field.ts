@@ -36,7 +36,11 @@ export interface HeightField {
 }
 
 /** Returns the point of the model at a height over a place of the grid. */
-export function pointAt({ up, origin, step }: Placement, { column, row }: GridPoint, height: number): Vector {
+export function pointAt(
+    { up, origin, step }: Placement,
+    { column, row }: GridPoint,
+    height: number,
+): Vector {
     const point: [number, number, number] = [0, 0, 0];
     point[(up + 1) % 3] = origin[0] + column * step[0];
     point[(up + 2) % 3] = origin[1] + row * step[1];
@@ -62,7 +66,10 @@ export function decodeField(file: Uint8Array): HeightField {
             throw new MlodError(NAME, "its checksum does not match: the file is damaged");
         }
         const field = new BodyReader(file.subarray(BODY)).read(!isWhole);
-        must(isWhole || field.parts < field.allParts, "its stated length is wrong: the file is damaged");
+        must(
+            isWhole || field.parts < field.allParts,
+            "its stated length is wrong: the file is damaged",
+        );
         return field;
     });
 }
@@ -96,13 +103,26 @@ class BodyReader {
         const rows = this.view.getUint32(this.next(4), true);
         must(columns >= 2 && rows >= 2 && columns * rows < 2 ** 31, "its size is invalid");
         const [x, y, dx, dy, ...fit] = Array.from({ length: 7 }, () => this.double());
-        const placement = { up, looksDown: looksDown === 1, origin: [x, y], step: [dx, dy] } as const;
+        const placement = {
+            up,
+            looksDown: looksDown === 1,
+            origin: [x, y],
+            step: [dx, dy],
+        } as const;
         const last = [x + (columns - 1) * dx, y + (rows - 1) * dy];
-        const areNear = [x, y, ...last, ...fit].every((length) => Math.abs(length) < MOST_COORDINATE);
-        must(areNear && dx > 0 && dy > 0 && fit.every((length) => length >= 0), "its placement is invalid");
+        const areNear = [x, y, ...last, ...fit].every(
+            (length) => Math.abs(length) < MOST_COORDINATE,
+        );
+        must(
+            areNear && dx > 0 && dy > 0 && fit.every((length) => length >= 0),
+            "its placement is invalid",
+        );
         const grid = new Grid(columns, rows);
         const least = Math.ceil(grid.count / MOST_PER_BYTE);
-        must(this.bytes.length >= least || (isPrefix && grid.count <= FREE_HEIGHTS), "it is too short for its size");
+        must(
+            this.bytes.length >= least || (isPrefix && grid.count <= FREE_HEIGHTS),
+            "it is too short for its size",
+        );
         const { codes, parts } = this.readCodes(grid, isPrefix);
         const rest = this.bytes.subarray(this.at);
         const isPadding = rest.every((byte) => byte === 0) && this.bytes.length === least;
@@ -139,7 +159,8 @@ class BodyReader {
         must(planes.length === count * width, "its heights are too few");
         const residuals = new BigUint64Array(count);
         const low = new Uint8Array(residuals.buffer);
-        for (let k = 0; k < width; k++) for (let i = 0; i < count; i++) low[8 * i + k] = planes[k * count + i];
+        for (let k = 0; k < width; k++)
+            for (let i = 0; i < count; i++) low[8 * i + k] = planes[k * count + i];
         return residuals;
     }
 }
@@ -161,8 +182,15 @@ class Codes {
             return places;
         }
         const { side } = grid;
-        const corners = [[0, 0], [side, 0], [0, side], [side, side]];
-        return corners.map(([column, row]) => ({ column, row })).filter((place) => grid.holds(place));
+        const corners = [
+            [0, 0],
+            [side, 0],
+            [0, side],
+            [side, side],
+        ];
+        return corners
+            .map(([column, row]) => ({ column, row }))
+            .filter((place) => grid.holds(place));
     }
 
     /** Adds heights, each to the one that is predicted; without residuals these alone. */
@@ -178,7 +206,9 @@ class Codes {
         const { grid, all } = this;
         const diamond = grid.diamond(place);
         if (!diamond) return place.column === 0 && place.row === 0 ? 0n : all[0];
-        const [a, b] = diamond.ends.filter((end) => grid.holds(end)).map((end) => all[grid.index(end)]);
+        const [a, b] = diamond.ends
+            .filter((end) => grid.holds(end))
+            .map((end) => all[grid.index(end)]);
         if (b !== undefined) return (a + b) / 2n;
         if (a !== undefined) return a;
         const known = grid.corners(place).find((corner) => grid.holds(corner));
@@ -191,7 +221,10 @@ class Codes {
             must(Math.abs(Number(code)) <= MOST_CELLS, "a height is out of range");
             return Number(code) * step;
         });
-        must(heights.every((height) => Math.abs(height) < MOST_COORDINATE), "a height is out of range");
+        must(
+            heights.every((height) => Math.abs(height) < MOST_COORDINATE),
+            "a height is out of range",
+        );
         return heights;
     }
 
@@ -199,7 +232,10 @@ class Codes {
     ofBits(): Float64Array {
         const bits = this.all.map((code) => (code < 0n ? code ^ 0x7fffffffffffffffn : code));
         const heights = new Float64Array(bits.buffer);
-        must(heights.every((height) => Math.abs(height) < MOST_COORDINATE), "a height is out of range");
+        must(
+            heights.every((height) => Math.abs(height) < MOST_COORDINATE),
+            "a height is out of range",
+        );
         return heights;
     }
 }

@@ -64,9 +64,17 @@ function readFaces(model: Model, input: Streams): void {
 
 function readExactRoots(model: Model, input: Streams): void {
     const flags = input.take(model.roots);
-    must(flags.every((flag) => flag <= 1), "it has flags unknown to this program");
+    must(
+        flags.every((flag) => flag <= 1),
+        "it has flags unknown to this program",
+    );
     const all = Uint32Array.from({ length: model.roots }, (_, root) => root);
-    readExact(model, all.filter((root) => flags[root] === 1), () => true, input);
+    readExact(
+        model,
+        all.filter((root) => flags[root] === 1),
+        () => true,
+        input,
+    );
 }
 
 /** Returns the sums of differences. */

@@ -75,14 +75,22 @@ function readFields(input: Streams, count: number): Fields {
 /** Adds the updates to the model, and the positions of their children. */
 function placeUpdates(model: Model, chunk: ChunkEntry, fields: Fields): void {
     const { gaps, flags } = fields;
-    const known = OPEN | FUSED | NON_FAN | (model.header.isLossless ? EXACT[0] | EXACT[1] : 0) | (model.wedges ? RECORDED : 0);
+    const known =
+        OPEN |
+        FUSED |
+        NON_FAN |
+        (model.header.isLossless ? EXACT[0] | EXACT[1] : 0) |
+        (model.wedges ? RECORDED : 0);
     const plane = new TangentPlane(model);
     let next = 0;
     for (let i = 0; i < chunk.updates; i++) {
         const at = (why: string) => `its update ${i}: ${why}`;
         must((flags[i] & ~known) === 0, at("it has flags unknown to this program"));
         const inFile = gaps[i] + next;
-        must(inFile < model.roots + 2 * (chunk.first + i), at("it splits a node that does not exist yet"));
+        must(
+            inFile < model.roots + 2 * (chunk.first + i),
+            at("it splits a node that does not exist yet"),
+        );
         next = inFile + 1;
         must(fields.levels[i] < 0x10000, at("its level is out of range"));
         must(fields.errors[i] <= GREATEST_ERROR, at("its error is out of range"));
@@ -107,7 +115,13 @@ function parentHere(model: Model, inFile: number): number {
 }
 
 /** Decodes the positions of an update's children; returns what is wrong with the update. */
-function placeChildren(model: Model, update: number, plane: TangentPlane, fields: Fields, i: number): string | null {
+function placeChildren(
+    model: Model,
+    update: number,
+    plane: TangentPlane,
+    fields: Fields,
+    i: number,
+): string | null {
     const { header, positions } = model;
     const { offsets } = fields;
     const parent = model.parents[update];
@@ -124,17 +138,22 @@ function placeChildren(model: Model, update: number, plane: TangentPlane, fields
         const sum = 2 * (h + Math.round(positions[3 * parent + axis] / header.cell)) + (d & 1);
         const first = (sum - d) / 2;
         const second = (sum + d) / 2;
-        if (Math.max(Math.abs(first), Math.abs(second)) > header.mostCells) return "its children are out of range";
+        if (Math.max(Math.abs(first), Math.abs(second)) > header.mostCells)
+            return "its children are out of range";
         positions[at + axis] = first * header.cell;
         positions[at + 3 + axis] = second * header.cell;
-        if (!isFinitePlace(model, positions[at + axis], axis) || !isFinitePlace(model, positions[at + 3 + axis], axis)) {
+        if (
+            !isFinitePlace(model, positions[at + axis], axis) ||
+            !isFinitePlace(model, positions[at + 3 + axis], axis)
+        ) {
             return "its children are out of range";
         }
         if (axis === 0) dx = d;
         else if (axis === 1) dy = d;
         else dz = d;
     }
-    const radius = radiusCode(Math.sqrt(dx * dx + dy * dy + dz * dz) * header.cell) + fields.radii[i];
+    const radius =
+        radiusCode(Math.sqrt(dx * dx + dy * dy + dz * dz) * header.cell) + fields.radii[i];
     if (radius < 0 || radius > 255) return "its radius is out of range";
     model.radii[update] = radius;
     return linkUpdate(model, update);
@@ -146,10 +165,13 @@ function linkUpdate(model: Model, update: number): string | null {
     const parent = model.parents[update];
     const above = parent < model.roots ? NONE : model.creator(parent);
     const most = above === NONE ? MOST_LEVELS : levels[above];
-    if (levels[update] === 0 || levels[update] >= most) return "its level is not between 0 and that of the update above it";
-    if (above !== NONE && errors[above] < errors[update]) return "its error exceeds that of the update above it";
+    if (levels[update] === 0 || levels[update] >= most)
+        return "its level is not between 0 and that of the update above it";
+    if (above !== NONE && errors[above] < errors[update])
+        return "its error exceeds that of the update above it";
     for (let k = 2 * update; k < 2 * update + 2; k++) {
-        if (wings[k] >= MOST_RANK && wings[k] < LAST_WING) return "the rank of a wing is out of range";
+        if (wings[k] >= MOST_RANK && wings[k] < LAST_WING)
+            return "the rank of a wing is out of range";
     }
     if (model.updateOf[parent] !== NONE) return "its node is split by another update, too";
     model.updateOf[parent] = update;
@@ -163,17 +185,24 @@ function readNonFans(model: Model, chunk: ChunkEntry, flags: Uint8Array, input: 
         if (!(flags[i] & NON_FAN)) continue;
         const second = input.numbers(2 * input.one());
         const created = input.numbers(3 * input.one());
-        const areThere = second.every((node) => node < nodes) && created.every((node) => node < nodes);
+        const areThere =
+            second.every((node) => node < nodes) && created.every((node) => node < nodes);
         must(areThere && created.length <= 6, `its update ${i}: the faces it creates are invalid`);
         const here = (node: number) => model.nodeHere(node);
         const faces: number[] = [];
         for (let at = 0; at < created.length; at += 3) {
             const [a, b, c] = created.subarray(at, at + 3);
-            must(a !== b && b !== c && c !== a, `its update ${i}: the faces it creates are invalid`);
+            must(
+                a !== b && b !== c && c !== a,
+                `its update ${i}: the faces it creates are invalid`,
+            );
             const face = [a, b, c].map(here);
             if (!face.includes(NONE)) faces.push(...face);
         }
-        model.nonFans.set(start + i, { second: second.map(here), created: Uint32Array.from(faces) });
+        model.nonFans.set(start + i, {
+            second: second.map(here),
+            created: Uint32Array.from(faces),
+        });
     }
 }
 
@@ -181,7 +210,8 @@ function readNonFans(model: Model, chunk: ChunkEntry, flags: Uint8Array, input: 
 function readExactChildren(model: Model, start: number, flags: Uint8Array, input: Streams): void {
     const nodes: number[] = [];
     for (let i = 0; i < flags.length; i++) {
-        for (const k of [0, 1]) if (flags[i] & EXACT[k]) nodes.push(model.firstChild(start + i) + k);
+        for (const k of [0, 1])
+            if (flags[i] & EXACT[k]) nodes.push(model.firstChild(start + i) + k);
     }
     const isKnown = (i: number) => model.parents[model.creator(nodes[i])] !== NONE;
     readExact(model, Uint32Array.from(nodes), isKnown, input);
@@ -190,8 +220,12 @@ function readExactChildren(model: Model, start: number, flags: Uint8Array, input
         const parent = model.parents[start + i];
         if (parent === NONE || Number.isNaN(exact[3 * parent])) continue;
         const child = model.firstChild(start + i);
-        const isSame = (node: number) => [0, 1, 2].every((k) => Object.is(exact[3 * node + k], exact[3 * parent + k]));
-        must(isSame(child) || isSame(child + 1), `its update ${i}: no child continues its vertex of the finest mesh`);
+        const isSame = (node: number) =>
+            [0, 1, 2].every((k) => Object.is(exact[3 * node + k], exact[3 * parent + k]));
+        must(
+            isSame(child) || isSame(child + 1),
+            `its update ${i}: no child continues its vertex of the finest mesh`,
+        );
     }
 }
 

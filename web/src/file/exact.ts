@@ -11,7 +11,12 @@ const double = new Float64Array(1);
 const bits = new BigUint64Array(double.buffer);
 
 /** Reads the exact positions of nodes, in order, where their lattice positions are known. */
-export function readExact(model: Model, nodes: Uint32Array, isKnown: (i: number) => boolean, input: Streams): void {
+export function readExact(
+    model: Model,
+    nodes: Uint32Array,
+    isKnown: (i: number) => boolean,
+    input: Streams,
+): void {
     const exact = model.exact;
     if (!exact) return;
     const axes = [0, 1, 2].map(() => {

@@ -67,7 +67,15 @@ export const FIXED_LENGTH = 88;
 const CHUNK_LENGTH = 44;
 const RESOURCE_LENGTH = 12;
 const MOST_UPDATES = 2 ** 29;
-const FLAGS = { lossless: 1, wedges: 2, oldResources: 4, resources: 8, stages: 16, old: 96, predicted: 128 };
+const FLAGS = {
+    lossless: 1,
+    wedges: 2,
+    oldResources: 4,
+    resources: 8,
+    stages: 16,
+    old: 96,
+    predicted: 128,
+};
 
 /** Throws an error about the header. */
 function bad(why: string): never {
@@ -125,9 +133,20 @@ export function readHeader(bytes: Uint8Array): Header {
         bad("its origin is not finite, or its unit is no power of two");
     }
     const isLength = (x: number) => x >= 0 && x < Infinity;
-    if (!isLength(double(72)) || !isLength(double(80))) bad("its diagonal or rounding is no length");
-    const base = { name: "the coarsest mesh", at: length, length: view.getUint32(28, true), checksum: view.getUint32(32, true) };
-    const sections = readIndex(view, base.at + base.length, has(FLAGS.resources), has(FLAGS.oldResources));
+    if (!isLength(double(72)) || !isLength(double(80)))
+        bad("its diagonal or rounding is no length");
+    const base = {
+        name: "the coarsest mesh",
+        at: length,
+        length: view.getUint32(28, true),
+        checksum: view.getUint32(32, true),
+    };
+    const sections = readIndex(
+        view,
+        base.at + base.length,
+        has(FLAGS.resources),
+        has(FLAGS.oldResources),
+    );
     const roots = view.getUint32(20, true);
     if (sections.updates > MOST_UPDATES || roots > MOST_UPDATES) bad("it has too many updates");
     return {
@@ -153,7 +172,11 @@ function readIndex(view: DataView, at: number, hasResources: boolean, hasOld: bo
     const resources: ResourceEntry[] = [];
     const count = view.getUint32(36, true);
     const end = FIXED_LENGTH + CHUNK_LENGTH * count;
-    const waiting = hasResources ? readResources(view, end, count) : hasOld ? readOld(view, end, count) : [];
+    const waiting = hasResources
+        ? readResources(view, end, count)
+        : hasOld
+          ? readOld(view, end, count)
+          : [];
     let updates = 0;
     for (let before = 0; before <= count; before++) {
         while (waiting.length > 0 && waiting[0].after <= before) {
@@ -200,7 +223,8 @@ function readResources(view: DataView, at: number, chunks: number): ResourceEntr
         return { name: `resource ${i}`, at: 0, length: word(0), checksum: word(1), after: word(2) };
     });
     const isSorted = entries.every((entry, i) => i === 0 || entries[i - 1].after <= entry.after);
-    if (!isSorted || entries.some((entry) => entry.after > chunks)) bad("its resources are out of order");
+    if (!isSorted || entries.some((entry) => entry.after > chunks))
+        bad("its resources are out of order");
     return entries;
 }
 
@@ -218,7 +242,10 @@ function readOld(view: DataView, at: number, chunks: number): ResourceEntry[] {
 /** Throws unless bytes have the length and the checksum of their section. */
 export function check(section: Section, bytes: Uint8Array): void {
     if (bytes.length !== section.length || crc32(bytes) !== section.checksum) {
-        throw new MlodError(section.name, `its checksum does not match at byte ${section.at}: the file is damaged`);
+        throw new MlodError(
+            section.name,
+            `its checksum does not match at byte ${section.at}: the file is damaged`,
+        );
     }
 }
 

@@ -17,8 +17,8 @@ export class BitModels {
         const { probabilities, seen } = this;
         const before = probabilities[at];
         const twice = 2 * seen[at] + 3;
-        if (bit) probabilities[at] = before + ((2 * (65535 - before)) / twice | 0);
-        else probabilities[at] = before - ((2 * before) / twice | 0);
+        if (bit) probabilities[at] = before + (((2 * (65535 - before)) / twice) | 0);
+        else probabilities[at] = before - (((2 * before) / twice) | 0);
         if (seen[at] < MOST_SEEN) seen[at]++;
     }
 

@@ -36,7 +36,10 @@ export class Streams {
         must(planes <= 4, "a number takes too many bytes");
         if (planes === 0) this.charge(count);
         else this.charge(0);
-        must(planes === 0 || this.at + planes * count <= this.bytes.length, "its content ends too early");
+        must(
+            planes === 0 || this.at + planes * count <= this.bytes.length,
+            "its content ends too early",
+        );
         const numbers = new Uint32Array(count);
         for (let plane = 0; plane < planes; plane++) {
             const bytes = this.take(count);
@@ -63,7 +66,10 @@ export class Streams {
         const planes = this.take(1)[0];
         must(planes <= 8, "a number takes too many bytes");
         if (planes === 0) this.charge(count);
-        must(planes === 0 || this.at + planes * count <= this.bytes.length, "its content ends too early");
+        must(
+            planes === 0 || this.at + planes * count <= this.bytes.length,
+            "its content ends too early",
+        );
         const long = new BigUint64Array(count);
         const bytes = new Uint8Array(long.buffer);
         for (let plane = 0; plane < planes; plane++) {

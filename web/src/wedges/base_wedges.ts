@@ -12,12 +12,16 @@ export function readBaseWedges(model: Model, input: Streams): Wedges {
     const materials = readNames(input);
     const objects = readNames(input);
     const pairs = input.numbers(2 * input.one());
-    const isLabel = (label: number, i: number) => label < ((i & 1 ? objects : materials)?.length ?? 1);
+    const isLabel = (label: number, i: number) =>
+        label < ((i & 1 ? objects : materials)?.length ?? 1);
     must(pairs.length > 0 && pairs.every(isLabel), "a material or object is out of range");
     const wedges = new Wedges(layers, materials, objects, pairs);
     wedges.append(input.numbers(model.roots));
     wedges.base = input.numbers(3 * model.header.baseFaces);
-    must(wedges.base.every((wedge) => wedge < wedges.count), "a wedge is out of range");
+    must(
+        wedges.base.every((wedge) => wedge < wedges.count),
+        "a wedge is out of range",
+    );
     for (let column = 0; column < wedges.columns; column++) {
         let last = 0;
         input.signed(wedges.count).forEach((step, wedge) => {

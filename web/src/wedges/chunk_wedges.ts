@@ -15,7 +15,13 @@ import type { Wedges } from "./wedges.ts";
 const MOST_CREATED = 2;
 
 /** Reads the wedges of the updates from `start` on, given their flags and the classes of their sizes. */
-export function readChunkWedges(model: Model, start: number, flags: Uint8Array, sizes: Uint8Array, input: Streams): void {
+export function readChunkWedges(
+    model: Model,
+    start: number,
+    flags: Uint8Array,
+    sizes: Uint8Array,
+    input: Streams,
+): void {
     const wedges = model.wedges as Wedges;
     const before = wedges.count;
     const recorded: number[] = [];
@@ -31,12 +37,20 @@ export function readChunkWedges(model: Model, start: number, flags: Uint8Array, 
     const { rows, columns } = wedges;
     for (let i = 0; i < flags.length; i++) {
         family.gather(start + i);
-        family.inCodingOrder((wedge, role) => models.decode(decoder, role, sizes[i], rows, wedge * columns));
+        family.inCodingOrder((wedge, role) =>
+            models.decode(decoder, role, sizes[i], rows, wedge * columns),
+        );
     }
     must(decoder.isAtEnd, "it has more attribute values than wedges");
 }
 
-function appendNodes(wedges: Wedges, start: number, flags: Uint8Array, recorded: number[], input: Streams): void {
+function appendNodes(
+    wedges: Wedges,
+    start: number,
+    flags: Uint8Array,
+    recorded: number[],
+    input: Streams,
+): void {
     const listed = input.numbers(2 * recorded.length);
     const counts = new Uint32Array(2 * flags.length).fill(1);
     recorded.forEach((update, i) => {
@@ -54,7 +68,9 @@ function readRecords(model: Model, wedges: Wedges, recorded: number[], input: St
         return [wedges.countOf(first), wedges.countOf(first + 1)];
     });
     let all = 0;
-    lengths.forEach((more, i) => (all += lengths[i] = more + counts[i][0] + counts[i][1] + faces[i]));
+    lengths.forEach(
+        (more, i) => (all += lengths[i] = more + counts[i][0] + counts[i][1] + faces[i]),
+    );
     must(all < 2 ** 32, "a record is too long");
     const decoder = new RangeDecoder(input.coded(all));
     const models = new NumberModels();
@@ -67,7 +83,13 @@ function readRecords(model: Model, wedges: Wedges, recorded: number[], input: St
 }
 
 /** Decodes a record of which the children have `first` and `second` wedges. */
-function readRecord(decoder: RangeDecoder, models: NumberModels, length: number, first: number, second: number): Uint16Array {
+function readRecord(
+    decoder: RangeDecoder,
+    models: NumberModels,
+    length: number,
+    first: number,
+    second: number,
+): Uint16Array {
     const parents = first + second;
     const others = length > parents + MOST_CREATED ? 1 : 2;
     const shape = 4 * (Math.min(first, 4) - 1) + Math.min(second, 4) - 1;
@@ -86,7 +108,13 @@ function readRecord(decoder: RangeDecoder, models: NumberModels, length: number,
 }
 
 /** Reads the pairs of wedges without a parent; others have their parent's. */
-function readLabels(wedges: Wedges, family: Family, start: number, count: number, input: Streams): void {
+function readLabels(
+    wedges: Wedges,
+    family: Family,
+    start: number,
+    count: number,
+    input: Streams,
+): void {
     const each = (visit: (i: number) => void) => {
         for (let update = start; update < start + count; update++) {
             family.gather(update);

@@ -53,14 +53,20 @@ export class Known {
         let number = 0;
         const columnsOf = (layer: Layer): LayerColumns => {
             const bits = layer.directionBits;
-            const directions = bits === null ? null : { plane: new OctahedralPlane(2 ** bits - 1), number: number++ };
-            const leeways = Array.from({ length: layer.columns }, (_, column) => layer.leeway(column));
+            const directions =
+                bits === null
+                    ? null
+                    : { plane: new OctahedralPlane(2 ** bits - 1), number: number++ };
+            const leeways = Array.from({ length: layer.columns }, (_, column) =>
+                layer.leeway(column),
+            );
             return { layer, directions, leeways };
         };
         const all = wedges.layers.map(columnsOf);
         const isTangent = ({ layer }: LayerColumns) => layer.kind === "tangent";
         this.layers = [...all.filter((layer) => !isTangent(layer)), ...all.filter(isTangent)];
-        this.normals = this.layers.find(({ layer }) => layer.kind === "normal")?.directions?.number ?? -1;
+        this.normals =
+            this.layers.find(({ layer }) => layer.kind === "normal")?.directions?.number ?? -1;
         this.directionLayers = number;
     }
 
@@ -88,7 +94,13 @@ export class Known {
         const { last } = directions.plane;
         // Only damaged files are out of range.
         const clamp = (x: number) => Math.min(Math.max(x, 0), last);
-        unfold(clamp(x), clamp(y), last, this.directions, this.directionAt(wedge, directions.number));
+        unfold(
+            clamp(x),
+            clamp(y),
+            last,
+            this.directions,
+            this.directionAt(wedge, directions.number),
+        );
     }
 
     private directionAt(wedge: number, number: number): number {
@@ -126,7 +138,12 @@ export class Known {
     }
 
     /** Returns the place of a wedge among those after the split one, or −1. */
-    private followed(wedge: number, other: number, { own, after }: SortedStar, count: number): number {
+    private followed(
+        wedge: number,
+        other: number,
+        { own, after }: SortedStar,
+        count: number,
+    ): number {
         for (let i = 0, place = 0; i < count; i++) {
             if (own[i] !== wedge) continue;
             if (after[i] === other) return place;
@@ -150,7 +167,12 @@ export class Known {
     }
 
     /** Writes the changes of the columns of a layer that are no direction, given the shares of known wedges. */
-    changes({ layer, directions }: LayerColumns, slopes: Slopes, shares: Float64Array, to: Int32Array): void {
+    changes(
+        { layer, directions }: LayerColumns,
+        slopes: Slopes,
+        shares: Float64Array,
+        to: Int32Array,
+    ): void {
         // The handedness of tangents has no slope.
         if (directions) return void to.fill(0, 0, layer.columns);
         const { sums } = this;
@@ -167,7 +189,14 @@ export class Known {
      * Writes the predicted place of the direction of a wedge, near to that of another, given the shares
      * of known wedges on the way there.
      */
-    directionNear(wedge: number, from: number, columns: LayerColumns, slopes: Slopes, shares: Float64Array, to: Int32Array): void {
+    directionNear(
+        wedge: number,
+        from: number,
+        columns: LayerColumns,
+        slopes: Slopes,
+        shares: Float64Array,
+        to: Int32Array,
+    ): void {
         const { layer, directions } = columns;
         if (!directions) return;
         const all = this.directions;
@@ -188,11 +217,18 @@ export class Known {
             y -= along * ny;
             z -= along * nz;
         }
-        if (!(x * x + y * y + z * z > 1e-6)) [x, y, z] = [all[start], all[start + 1], all[start + 2]];
+        if (!(x * x + y * y + z * z > 1e-6))
+            [x, y, z] = [all[start], all[start + 1], all[start + 2]];
         project(x, y, z, directions.plane.last, this.sums);
         const { rows, columns: width } = this.wedges;
         const at = from * width + layer.start;
-        directions.plane.near(toInt32(this.sums[0]), toInt32(this.sums[1]), rows[at], rows[at + 1], to);
+        directions.plane.near(
+            toInt32(this.sums[0]),
+            toInt32(this.sums[1]),
+            rows[at],
+            rows[at + 1],
+            to,
+        );
     }
 
     /** Returns the line along which tangents turn about the normal: its axis, and its slope. */
@@ -204,7 +240,10 @@ export class Known {
         const [x, y, z] = [all[t], all[t + 1], all[t + 2]];
         const [nx, ny, nz] = [all[n], all[n + 1], all[n + 2]];
         const { last } = directions.plane;
-        const [from, to] = [[0, 0], [0, 0]];
+        const [from, to] = [
+            [0, 0],
+            [0, 0],
+        ];
         const ax = x + STEP * (ny * z - nz * y);
         const ay = y + STEP * (nz * x - nx * z);
         const az = z + STEP * (nx * y - ny * x);

@@ -5,10 +5,25 @@ import type { Streams } from "../file/streams.ts";
 import { unfold } from "./octahedral.ts";
 
 /** Kinds of layers, in the order of their numbers in files. */
-export const KINDS = ["normal", "uv", "color", "tangent", "joints", "weights", "other", "labels"] as const;
+export const KINDS = [
+    "normal",
+    "uv",
+    "color",
+    "tangent",
+    "joints",
+    "weights",
+    "other",
+    "labels",
+] as const;
 export type LayerKind = (typeof KINDS)[number];
 
-const WIDTHS: Partial<Record<LayerKind, number>> = { normal: 3, uv: 2, tangent: 4, joints: 4, weights: 4 };
+const WIDTHS: Partial<Record<LayerKind, number>> = {
+    normal: 3,
+    uv: 2,
+    tangent: 4,
+    joints: 4,
+    weights: 4,
+};
 const MOST_WIDTH = 64;
 const MOST_LAYERS = 4096;
 const LEAST_EXPONENT = -149;
@@ -61,7 +76,8 @@ export class Layer {
         }
         let isFinite = true;
         for (let k = 0; k < this.width; k++) {
-            to[place + k] = this.coding === STEPS ? rows[at + k] * this.step : floatOf(rows[at + k]);
+            to[place + k] =
+                this.coding === STEPS ? rows[at + k] * this.step : floatOf(rows[at + k]);
             isFinite &&= Number.isFinite(to[place + k]);
         }
         return isFinite;
@@ -86,7 +102,10 @@ export function readLayers(input: Streams): Layer[] {
     for (let i = 0; i < count; i++) {
         const [kind, set, width, coding, parameter] = input.numbers(5);
         const layer = new Layer(KINDS[kind], set, input.text(), width, coding, parameter, start);
-        must(kind < KINDS.length && set < 256 && isCoding(layer.kind, width, coding, parameter), "an attribute layer is invalid");
+        must(
+            kind < KINDS.length && set < 256 && isCoding(layer.kind, width, coding, parameter),
+            "an attribute layer is invalid",
+        );
         layers.push(layer);
         start += layer.columns;
     }
@@ -97,5 +116,8 @@ function isCoding(kind: LayerKind, width: number, coding: number, parameter: num
     const isWidth = width >= 1 && width <= MOST_WIDTH && (WIDTHS[kind] ?? width) === width;
     const isDirection = kind === "normal" || kind === "tangent";
     if (coding === DIRECTIONS) return isWidth && isDirection && parameter >= 3 && parameter <= 16;
-    return isWidth && (coding === BITS || (coding === STEPS && parameter <= MOST_EXPONENT - LEAST_EXPONENT));
+    return (
+        isWidth &&
+        (coding === BITS || (coding === STEPS && parameter <= MOST_EXPONENT - LEAST_EXPONENT))
+    );
 }

@@ -113,7 +113,14 @@ export class Slopes {
         this.share(this.around, true, x, y, z, shares);
     }
 
-    private share(m: Symmetric, onlyAround: boolean, x: number, y: number, z: number, shares: Float64Array): void {
+    private share(
+        m: Symmetric,
+        onlyAround: boolean,
+        x: number,
+        y: number,
+        z: number,
+        shares: Float64Array,
+    ): void {
         const { directions, scales, weights, isAround, to, from } = this;
         const ax = m.xx * x + m.xy * y + m.xz * z;
         const ay = m.xy * x + m.yy * y + m.yz * z;
@@ -121,7 +128,8 @@ export class Slopes {
         shares.fill(0, 0, this.count);
         for (let at = 0; at < this.steps; at++) {
             if (onlyAround && !isAround[at]) continue;
-            const dot = directions[3 * at] * ax + directions[3 * at + 1] * ay + directions[3 * at + 2] * az;
+            const dot =
+                directions[3 * at] * ax + directions[3 * at + 1] * ay + directions[3 * at + 2] * az;
             const part = (onlyAround ? scales[at] : weights[at] * scales[at]) * dot;
             shares[to[at]] += part;
             shares[from[at]] -= part;

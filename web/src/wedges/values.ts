@@ -55,7 +55,11 @@ export class ValueDecoder {
         const first: number[] = [];
         for (const update of byLevel(model, start)) {
             first.length = 0;
-            if (front.state(model.parents[update]) !== State.Active || !front.maySplit(update, first)) continue;
+            if (
+                front.state(model.parents[update]) !== State.Active ||
+                !front.maySplit(update, first)
+            )
+                continue;
             this.sortStar();
             front.apply(update);
             this.family.gather(update);
@@ -118,7 +122,11 @@ export class ValueDecoder {
         const { positions } = this.model;
         const { nodeOf } = this.known;
         const [a, b] = [3 * nodeOf[to], 3 * nodeOf[from]];
-        return [positions[a] - positions[b], positions[a + 1] - positions[b + 1], positions[a + 2] - positions[b + 2]];
+        return [
+            positions[a] - positions[b],
+            positions[a + 1] - positions[b + 1],
+            positions[a + 2] - positions[b + 2],
+        ];
     }
 
     /** Computes the values of a pair: those of the first child's wedge `a`, the parent's `p`, the second's `b`. */
@@ -140,7 +148,13 @@ export class ValueDecoder {
         }
     }
 
-    private solveDirections(columns: LayerColumns, a: number, p: number, b: number, part: number): void {
+    private solveDirections(
+        columns: LayerColumns,
+        a: number,
+        p: number,
+        b: number,
+        part: number,
+    ): void {
         const { known, slopes, place, other } = this;
         const { layer, directions, leeways } = columns;
         const { rows, columns: width } = this.wedges;
@@ -171,7 +185,13 @@ export class ValueDecoder {
         known.setCode(b, columns, second[0], second[1]);
     }
 
-    private solveNumbers(columns: LayerColumns, a: number, p: number, b: number, part: number): void {
+    private solveNumbers(
+        columns: LayerColumns,
+        a: number,
+        p: number,
+        b: number,
+        part: number,
+    ): void {
         const { known, slopes, changes, asides } = this;
         const { layer, directions, leeways } = columns;
         const { rows, columns: width } = this.wedges;
@@ -205,7 +225,11 @@ export class ValueDecoder {
             const row = wedge * width + layer.start;
             if (directions) {
                 known.directionNear(wedge, base, columns, slopes, toFirst, place);
-                directions.plane.code((place[0] + rows[row]) | 0, (place[1] + rows[row + 1]) | 0, place);
+                directions.plane.code(
+                    (place[0] + rows[row]) | 0,
+                    (place[1] + rows[row + 1]) | 0,
+                    place,
+                );
                 known.setCode(wedge, columns, place[0], place[1]);
             }
             known.changes(columns, slopes, toFirst, changes);
@@ -232,6 +256,7 @@ function byLevel({ levels, updates }: Model, start: number): Uint32Array {
         sum += count;
     }
     const sorted = new Uint32Array(updates - start);
-    for (let update = start; update < updates; update++) sorted[counts[0x10000 - levels[update]]++] = update;
+    for (let update = start; update < updates; update++)
+        sorted[counts[0x10000 - levels[update]]++] = update;
     return sorted;
 }

@@ -42,9 +42,7 @@ export function decompress(bytes: Uint8Array, most: number): Uint8Array {
 }
 
 function word(bytes: Uint8Array, at: number): number {
-    return (
-        (bytes[at] | (bytes[at + 1] << 8) | (bytes[at + 2] << 16) | (bytes[at + 3] << 24)) >>> 0
-    );
+    return (bytes[at] | (bytes[at + 1] << 8) | (bytes[at + 2] << 16) | (bytes[at + 3] << 24)) >>> 0;
 }
 
 /** Bytes that grow up to a limit. */
@@ -92,7 +90,7 @@ class Frame {
         at += isSingle ? 0 : 1;
         at += [isSingle ? 1 : 0, 2, 4, 8][flags >> 6];
         this.start = this.output.length;
-        for (let isLast = false; !isLast; ) {
+        for (let isLast = false; !isLast;) {
             must(at + 3 <= bytes.length, "its compressed data is cut off");
             const head = bytes[at] | (bytes[at + 1] << 8) | (bytes[at + 2] << 16);
             isLast = (head & 1) !== 0;
@@ -138,7 +136,14 @@ class Frame {
         const modes = bytes[at++];
         must((modes & 3) === 0, "a block is of a later form");
         [LITERALS, OFFSETS, MATCHES].forEach((code, k) => {
-            const read = readTable((modes >> (6 - 2 * k)) & 3, code, this.tables[k], bytes, at, end);
+            const read = readTable(
+                (modes >> (6 - 2 * k)) & 3,
+                code,
+                this.tables[k],
+                bytes,
+                at,
+                end,
+            );
             this.tables[k] = read.table;
             at = read.end;
         });
@@ -157,7 +162,8 @@ class Frame {
         const width = [10, 10, 14, 18][form];
         const mask = (1 << width) - 1;
         const count = (head >>> 4) & mask;
-        const packed = form === 3 ? (head >>> 22) | (bytes[at + 4] << 10) : (head >>> (4 + width)) & mask;
+        const packed =
+            form === 3 ? (head >>> 22) | (bytes[at + 4] << 10) : (head >>> (4 + width)) & mask;
         at += size;
         const last = at + packed;
         must(count <= MOST_IN_BLOCK && last <= end, "literals are cut off");
@@ -178,7 +184,12 @@ class Frame {
         const { bytes } = this;
         const head = word(bytes, at);
         const size = [1, 2, 1, 3][form];
-        const count = [(head >> 3) & 31, (head >> 4) & 0xfff, (head >> 3) & 31, (head >> 4) & 0xfffff][form];
+        const count = [
+            (head >> 3) & 31,
+            (head >> 4) & 0xfff,
+            (head >> 3) & 31,
+            (head >> 4) & 0xfffff,
+        ][form];
         at += size;
         const last = at + (type === 0 ? count : 1);
         must(count <= MOST_IN_BLOCK && last <= end, "literals are cut off");
@@ -214,7 +225,8 @@ class Frame {
             const matchCode = ofMatches.symbols[match];
             const length = MATCH_LENGTHS[0][matchCode] + bits.read(MATCH_LENGTHS[1][matchCode]);
             const literalCode = ofLiterals.symbols[literal];
-            const own = LITERAL_LENGTHS[0][literalCode] + bits.read(LITERAL_LENGTHS[1][literalCode]);
+            const own =
+                LITERAL_LENGTHS[0][literalCode] + bits.read(LITERAL_LENGTHS[1][literalCode]);
             must(bits.left >= 0 && used + own <= this.literals.length, "sequences are cut off");
             if (own > 0) this.append(this.literals, used, used + own);
             used += own;
@@ -261,7 +273,7 @@ class Frame {
         output.reserve(length);
         const { bytes } = output;
         let to = output.length;
-        for (let at = from, end = from + length; at < end; ) bytes[to++] = bytes[at++];
+        for (let at = from, end = from + length; at < end;) bytes[to++] = bytes[at++];
         output.length = to;
     }
 }

@@ -89,11 +89,14 @@ export function readFseTable(
         left -= Math.abs(value - 1);
         probabilities.push(value - 1);
         if (value !== 1) continue;
-        for (let more = 3; more === 3; ) {
+        for (let more = 3; more === 3;) {
             more = peek(2);
             bit += 2;
             for (let i = 0; i < more; i++) probabilities.push(0);
-            must(probabilities.length <= last + 1 && bit <= 8 * end, "an entropy code is malformed");
+            must(
+                probabilities.length <= last + 1 && bit <= 8 * end,
+                "an entropy code is malformed",
+            );
         }
     }
     must(left === 0 && bit <= 8 * end, "an entropy code is malformed");
