@@ -21,5 +21,7 @@ await build({
     logLevel: "warning",
 });
 const files = tests.map((name) => join(out, name.replace(/\.ts$/, ".mjs")));
-const { status } = spawnSync(process.execPath, ["--test", ...files], { stdio: "inherit" });
+const { status } = spawnSync(process.execPath, ["--test", "--test-timeout=60000", ...files], {
+    stdio: "inherit",
+});
 process.exit(status ?? 1);

@@ -77,8 +77,10 @@ export class Geometry {
 
     /** Takes in what the last update of a cut has written; returns the patch, or null if nothing changed. */
     follow(cut: Slots): GeometryPatch | null {
-        const { touched } = cut;
-        if (touched.length === 0 && !this.isNew) return null;
+        const touched = this.isNew
+            ? Array.from({ length: cut.slots }, (_, slot) => slot)
+            : cut.touched;
+        if (touched.length === 0) return null;
         this.corners = grown(this.corners, 3 * cut.slots, NONE);
         this.partOf = grown(this.partOf, cut.slots, NONE);
         this.placeIn = grown(this.placeIn, cut.slots);

@@ -13,7 +13,7 @@ import type {
     SceneInfo,
     StreamLimits,
 } from "./messages.ts";
-import { Session } from "./session.ts";
+import type { Session } from "./session.ts";
 
 /** Who hears of what happens to a stream. */
 export interface StreamListener {
@@ -117,12 +117,12 @@ function workerPort(worker: Worker): Port {
     };
 }
 
+/** A session on this thread, whose code is only loaded where there is one. */
 function localPort(): Port {
     let hear: (event: Event) => void = () => undefined;
-    const session = new Session((event) => hear(event));
-    return {
-        send: (request) => session.receive(request),
-        listen: (listener) => (hear = listener),
-        close: () => session.receive({ kind: "close" }),
-    };
+    const session: Promise<Session> = import("./session.ts").then(
+        ({ Session }) => new Session((event) => hear(event)),
+    );
+    const send = (request: Request) => void session.then((session) => session.receive(request));
+    return { send, listen: (listener) => (hear = listener), close: () => send({ kind: "close" }) };
 }

@@ -109,7 +109,8 @@ function dropTextures(document: JsonObject, images: ReadonlyMap<number, Uint8Arr
                 typeof inner === "object" &&
                 inner !== null &&
                 "index" in inner;
-            if (isTexture && !isThere((inner as JsonObject).index)) delete value[key];
+            if (isTexture && !isThere((inner as JsonObject).index))
+                Reflect.deleteProperty(value, key);
             else visit(inner);
         }
     };

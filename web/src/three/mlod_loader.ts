@@ -1,7 +1,8 @@
 /** Loader of `.mlod` files for three.js. */
 
 import { Loader } from "three";
-import { open, workerOf } from "../index.ts";
+import { open } from "../load/stream.ts";
+import { workerOf } from "../load/worker_url.ts";
 import type { GeometryPatch, StreamLimits, StreamOptions } from "../index.ts";
 import { SharedLevels } from "./levels.ts";
 import { MlodMesh } from "./mlod_mesh.ts";

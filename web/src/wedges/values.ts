@@ -54,12 +54,11 @@ export class ValueDecoder {
         front.grow();
         const first: number[] = [];
         for (const update of byLevel(model, start)) {
+            const node = model.parents[update];
             first.length = 0;
-            if (
-                front.state(model.parents[update]) !== State.Active ||
-                !front.maySplit(update, first)
-            )
-                continue;
+            // What depends on a chunk that is missing has no values.
+            if (node === NONE || front.state(node) !== State.Active) continue;
+            if (!front.maySplit(update, first)) continue;
             this.sortStar();
             front.apply(update);
             this.family.gather(update);
