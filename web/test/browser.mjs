@@ -29,7 +29,10 @@ const server = createServer((request, response) => {
     } catch {
         return response.writeHead(404).end();
     }
-    const type = { "Content-Type": TYPES[extname(path)] ?? "application/octet-stream", ETag: '"1"' };
+    const type = {
+        "Content-Type": TYPES[extname(path)] ?? "application/octet-stream",
+        ETag: '"1"',
+    };
     const range = /bytes=(\d+)-(\d+)/.exec(request.headers.range ?? "");
     if (!range) return response.writeHead(200, type).end(body);
     const [at, end] = [Number(range[1]), Math.min(Number(range[2]) + 1, body.length)];

@@ -38,11 +38,21 @@ async function run() {
         }
     }
     const { covered, holes } = look(renderer);
-    const materials = mesh.material.map((material) => `${material.type}${material.map ? " map" : ""}`);
+    const materials = mesh.material.map(
+        (material) => `${material.type}${material.map ? " map" : ""}`,
+    );
     const copy = mesh.clone();
     mesh.dispose();
     copy.dispose();
-    return { error: null, faces, bytes: mesh.progress.bytes, covered, holes, hit: hits > 0, materials };
+    return {
+        error: null,
+        faces,
+        bytes: mesh.progress.bytes,
+        covered,
+        holes,
+        hit: hits > 0,
+        materials,
+    };
 }
 
 /** Returns the part of the picture that is covered, and background pixels all of whose neighbours are covered. */

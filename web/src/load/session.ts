@@ -45,8 +45,15 @@ export class Session {
     private opened = 0;
     private isStepping = false;
     private isFetching = false;
+    private isAsked = false;
+    private hasFailed = false;
 
     constructor(private readonly post: (event: Event) => void) {}
+
+    /** True if nothing more is fetched. */
+    private get isOver(): boolean {
+        return this.hasFailed || this.abort.signal.aborted;
+    }
 
     /** Takes a request. */
     receive(request: Request): void {
@@ -55,13 +62,13 @@ export class Session {
         else void this.guard(this.open(request.origin, request.limits));
     }
 
-    /** Tells of an error once; what is shown stays. */
+    /** Tells of an error once. Nothing more is fetched, but the levels that are there are shown. */
     private async guard(work: Promise<void>): Promise<void> {
         try {
             await work;
         } catch (error) {
-            if (this.abort.signal.aborted) return;
-            this.abort.abort();
+            if (this.isOver) return;
+            this.hasFailed = true;
             const [section, why] =
                 error instanceof MlodError
                     ? [error.section, error.why]
@@ -192,13 +199,15 @@ export class Session {
 
     /** Fetches what the query needs, piece after piece, until nothing is missing. */
     private async fetch(): Promise<void> {
+        this.isAsked = true;
         if (this.isFetching) return;
         this.isFetching = true;
         try {
-            while (
-                !this.abort.signal.aborted &&
-                ((await this.fetchResource()) || (await this.fetchChunks()))
-            );
+            // Another query may come just when nothing is missing any more.
+            while (this.isAsked && !this.isOver) {
+                this.isAsked = false;
+                while ((await this.fetchResource()) || (await this.fetchChunks()));
+            }
         } finally {
             this.isFetching = false;
         }
@@ -207,7 +216,7 @@ export class Session {
     /** Fetches the chunks of one request; returns false if none is missing. */
     private async fetchChunks(): Promise<boolean> {
         const { levels, header } = this;
-        if (!levels || !header) return false;
+        if (!levels || !header || this.isOver) return false;
         const run = this.runOf(levels.wanted(this.query), header);
         if (run.length === 0) return false;
         const sections = run.map((number) => header.chunks[number]);
@@ -243,7 +252,7 @@ export class Session {
     private async fetchResource(): Promise<boolean> {
         const { header, levels } = this;
         const entry = header?.resources[this.nextResource];
-        if (!header || !levels || !entry) return false;
+        if (!header || !levels || !entry || this.isOver) return false;
         if (entry.after > levels.reached && levels.wanted(this.query).length > 0) return false;
         const bytes = unpackResource(entry.name, await this.read(entry));
         const number = this.nextResource++;
