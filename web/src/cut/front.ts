@@ -143,7 +143,7 @@ export class Front {
     private addCreated(): void {
         const { created, splitWedges } = this;
         for (let at = 0; at < created.length; at += 3) {
-            const face = created.slice(at, at + 3);
+            const face = [created[at], created[at + 1], created[at + 2]];
             // In a damaged file a face may have any nodes.
             if (!face.every((node) => this.state(node) === State.Active)) continue;
             splitWedges?.created(face, at / 3, this.corners);

@@ -17,12 +17,45 @@ const ALONG = 0.25;
 const OWN = 8;
 const MOST_AROUND = 64;
 
-/** Faces around a vertex that is split: two nodes, their wedges, and the wedge of the vertex. */
+/**
+ * Faces around a vertex that is split, sorted by the ranks of their nodes and then by wedges: the wedge
+ * of the vertex, and those at the nodes after and before it.
+ */
 export class SortedStar {
     count = 0;
     readonly own: number[] = [];
     readonly after: number[] = [];
     readonly before: number[] = [];
+    private readonly ranksAfter: number[] = [];
+    private readonly ranksBefore: number[] = [];
+
+    /** Inserts a face where it belongs. */
+    insert(a: number, b: number, own: number, after: number, before: number): void {
+        let at = this.count++;
+        for (; at > 0 && this.isAbove(at - 1, a, b, own, after, before); at--)
+            this.move(at - 1, at);
+        this.ranksAfter[at] = a;
+        this.ranksBefore[at] = b;
+        this.own[at] = own;
+        this.after[at] = after;
+        this.before[at] = before;
+    }
+
+    private isAbove(i: number, a: number, b: number, own: number, after: number, before: number) {
+        if (this.ranksAfter[i] !== a) return this.ranksAfter[i] > a;
+        if (this.ranksBefore[i] !== b) return this.ranksBefore[i] > b;
+        if (this.after[i] !== after) return this.after[i] > after;
+        if (this.before[i] !== before) return this.before[i] > before;
+        return this.own[i] > own;
+    }
+
+    private move(from: number, to: number): void {
+        this.ranksAfter[to] = this.ranksAfter[from];
+        this.ranksBefore[to] = this.ranksBefore[from];
+        this.own[to] = this.own[from];
+        this.after[to] = this.after[from];
+        this.before[to] = this.before[from];
+    }
 }
 
 /** A layer as it is predicted. */
@@ -201,7 +234,9 @@ export class Known {
         if (!directions) return;
         const all = this.directions;
         const start = this.directionAt(from, directions.number);
-        let [x, y, z] = [all[start], all[start + 1], all[start + 2]];
+        let x = all[start];
+        let y = all[start + 1];
+        let z = all[start + 2];
         for (let i = 0; i < slopes.count; i++) {
             const at = this.directionAt(slopes.wedges[i], directions.number);
             const share = shares[i];
@@ -211,7 +246,9 @@ export class Known {
         }
         if (layer.kind === "tangent" && this.normals >= 0) {
             const at = this.directionAt(wedge, this.normals);
-            const [nx, ny, nz] = [all[at], all[at + 1], all[at + 2]];
+            const nx = all[at];
+            const ny = all[at + 1];
+            const nz = all[at + 2];
             const along = x * nx + y * ny + z * nz;
             x -= along * nx;
             y -= along * ny;

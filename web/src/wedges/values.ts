@@ -74,23 +74,17 @@ export class ValueDecoder {
         const { corners, a, b, count } = this.front.star;
         const wedges = this.front.triangles.wedges as Uint32Array;
         const { rank } = this.model;
-        const order = Array.from({ length: count }, (_, i) => i);
-        const wedge = (i: number, ahead: number) =>
-            wedges[ahead === 0 ? corners[i] : ahead === 1 ? after(corners[i]) : before(corners[i])];
-        order.sort(
-            (i, j) =>
-                rank[a[i]] - rank[a[j]] ||
-                rank[b[i]] - rank[b[j]] ||
-                wedge(i, 1) - wedge(j, 1) ||
-                wedge(i, 2) - wedge(j, 2) ||
-                wedge(i, 0) - wedge(j, 0),
-        );
-        star.count = count;
-        order.forEach((i, at) => {
-            star.own[at] = wedge(i, 0);
-            star.after[at] = wedge(i, 1);
-            star.before[at] = wedge(i, 2);
-        });
+        star.count = 0;
+        for (let i = 0; i < count; i++) {
+            const corner = corners[i];
+            star.insert(
+                rank[a[i]],
+                rank[b[i]],
+                wedges[corner],
+                wedges[after(corner)],
+                wedges[before(corner)],
+            );
+        }
     }
 
     /** Notes how the wedges of an update are related. */
