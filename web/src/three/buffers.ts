@@ -5,6 +5,7 @@ import type { FileInfo, GeometryPatch, LayerInfo } from "../index.ts";
 
 /** Number of ranges that are uploaded by themselves; more become one. */
 const MOST_RANGES = 32;
+const MOST_WAITING = 1024;
 const LEAST_CAPACITY = 256;
 
 /** An attribute of the geometry, and its place among the numbers of a vertex. */
@@ -94,6 +95,8 @@ function markRanges(attribute: BufferAttribute, elements: Uint32Array, width: nu
     for (const [from, to] of ranges.length > MOST_RANGES ? all : ranges) {
         attribute.addUpdateRange(from * width, (to - from) * width);
     }
+    // What is not drawn for long is uploaded as a whole.
+    if (attribute.updateRanges.length > MOST_WAITING) attribute.clearUpdateRanges();
     attribute.needsUpdate = true;
 }
 

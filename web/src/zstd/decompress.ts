@@ -13,6 +13,7 @@ import {
     OFFSETS,
     readTable,
 } from "./sequences.ts";
+import { xxh64 } from "./xxh64.ts";
 
 const FRAME = 0xfd2fb528;
 const SKIPPABLE = 0x184d2a50;
@@ -43,6 +44,13 @@ export function decompress(bytes: Uint8Array, most: number): Uint8Array {
 
 function word(bytes: Uint8Array, at: number): number {
     return (bytes[at] | (bytes[at + 1] << 8) | (bytes[at + 2] << 16) | (bytes[at + 3] << 24)) >>> 0;
+}
+
+/** Returns the length of a frame's content that its header states. */
+function sizeOf(bytes: Uint8Array, at: number, count: number): number {
+    let size = count === 2 ? 256 : 0;
+    for (let k = 0; k < count; k++) size += bytes[at + k] * 2 ** (8 * k);
+    return size;
 }
 
 /** Bytes that grow up to a limit. */
@@ -88,7 +96,9 @@ class Frame {
         const isSingle = (flags & 32) !== 0;
         must((flags & 11) === 0, "its compressed data needs a dictionary, or is of a later form");
         at += isSingle ? 0 : 1;
-        at += [isSingle ? 1 : 0, 2, 4, 8][flags >> 6];
+        const sizeBytes = [isSingle ? 1 : 0, 2, 4, 8][flags >> 6];
+        const size = sizeOf(bytes, at, sizeBytes);
+        at += sizeBytes;
         this.start = this.output.length;
         for (let isLast = false; !isLast;) {
             must(at + 3 <= bytes.length, "its compressed data is cut off");
@@ -96,9 +106,13 @@ class Frame {
             isLast = (head & 1) !== 0;
             at = this.readBlock((head >> 1) & 3, head >> 3, at + 3);
         }
-        at += flags & 4;
-        must(at <= bytes.length, "its compressed data is cut off");
-        return at;
+        const isLong = sizeBytes === 0 || this.output.length - this.start === size;
+        must(isLong, "its content has another length than it states");
+        if ((flags & 4) === 0) return at;
+        must(at + 4 <= bytes.length, "its compressed data is cut off");
+        const content = this.output.bytes.subarray(this.start, this.output.length);
+        must(word(bytes, at) === xxh64(content), "its checksum does not match");
+        return at + 4;
     }
 
     private readBlock(type: number, size: number, at: number): number {
