@@ -59,7 +59,7 @@ try {
     assert.equal(result.error, null);
     assert.ok(result.faces[1] > result.faces[0], "closer is finer");
     assert.ok(result.covered > 0.02 && result.hit, "the mesh is drawn, and rays hit it");
-    assert.equal(result.holes, 0, "pixels of the background inside the silhouette");
+    assert.deepEqual(result.holes, [0, 0, 0], "pixels of the background inside the silhouette");
 } finally {
     await browser.close();
     server.close();

@@ -17,17 +17,27 @@ async function run() {
     scene.add(mesh);
     const { center, diagonal } = mesh.info;
     const faces = [];
-    for (const distance of [20, 1.5]) {
+    const looks = [];
+    // From far away, from near, and from near at the finest level.
+    for (const [distance, pixels] of [
+        [20, 1],
+        [1.5, 1],
+        [1.5, 0],
+    ]) {
         camera.position.set(center[0], center[1], center[2] + distance * diagonal);
         camera.lookAt(...center);
+        mesh.pixels = pixels;
         const isDone = () => mesh.progress?.done && mesh.progress.missing === 0;
         for (let frame = 0, still = 0; frame < 600 && still < 10; frame++) {
             mesh.update(camera, renderer);
+            // A face that is seen from behind is no crack.
+            for (const material of mesh.material) material.side = THREE.DoubleSide;
             renderer.render(scene, camera);
             await new Promise((resolve) => setTimeout(resolve, 16));
             still = isDone() ? still + 1 : 0;
         }
         faces.push(mesh.progress.faces);
+        looks.push(look(renderer));
     }
     const ray = new THREE.Raycaster();
     let hits = 0;
@@ -37,7 +47,8 @@ async function run() {
             hits += ray.intersectObject(mesh).length;
         }
     }
-    const { covered, holes } = look(renderer);
+    const holes = looks.map((look) => look.holes);
+    const { covered } = looks[1];
     const materials = mesh.material.map(
         (material) => `${material.type}${material.map ? " map" : ""}`,
     );
