@@ -1,7 +1,8 @@
 /**
  * Levels of detail that stream: `.mlod` files, read in a browser.
  *
- * `open` shows a file while it comes; `decode` and `Cut` are its parts for those who have the bytes.
+ * `open` shows a file while it comes; `decode` and `Cut` are its parts for those who have the
+ * bytes.
  */
 
 export { MlodError } from "./error.ts";

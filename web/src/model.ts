@@ -37,7 +37,8 @@ interface Run {
 /**
  * Nodes and updates of the chunks that have been read.
  *
- * Nodes are numbered roots first, then the children of each update. Updates are numbered as they are
+ * Nodes are numbered roots first, then the children of each update. Updates are numbered as they
+ * are
  * read; `rank` has the numbers that nodes have by their place in the forest, which do not depend on
  * what else has been read. Arrays may be longer than they need to be.
  */

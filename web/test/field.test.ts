@@ -49,7 +49,8 @@ test("flipped bits of a height field are noticed, also in a prefix", { skip }, (
         const part = wrong.subarray(0, length);
         try {
             const found = decodeField(part);
-            // Some bits of a frame mean nothing; a length that is too great is a part that is cut off.
+            // Some bits of a frame mean nothing; a length that is too great is a part that is cut
+            // off.
             const isSame = found.heights.every((height, i) => height === prefix.heights[i]);
             assert.ok(found.parts < prefix.parts || isSame, `${at}`);
         } catch (error) {

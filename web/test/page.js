@@ -66,7 +66,10 @@ async function run() {
     };
 }
 
-/** Returns the part of the picture that is covered, and background pixels all of whose neighbours are covered. */
+/**
+ * Returns the part of the picture that is covered, and background pixels all of whose neighbours
+ * are covered.
+ */
 function look(renderer) {
     const gl = renderer.getContext();
     const pixels = new Uint8Array(4 * SIZE * SIZE);

@@ -67,7 +67,7 @@ test("parts are fetched by ranges, and only these", async () => {
     });
 });
 
-test("a server without ranges sends the whole file, of which parts are there as they come", async () => {
+test("of a server without ranges, parts of the whole file are there as they come", async () => {
     const answer = (_: IncomingMessage, response: ServerResponse) => {
         response.writeHead(200).write(file.subarray(0, 300));
         setTimeout(() => response.end(file.subarray(300)), 100);
@@ -146,7 +146,7 @@ function finest(from: string | Uint8Array, listener: StreamListener = {}): Promi
     });
 }
 
-test("a stream shows all faces of a file from a server, and tells how far it has come", async () => {
+test("a stream shows all faces of a file on a server, and how far it has come", async () => {
     const body = Buffer.from(vectorFile());
     await serving(
         (request, response) => sendRange(body, request, response),

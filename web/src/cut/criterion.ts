@@ -1,4 +1,6 @@
-/** The criterion of a query: whether it requires an update, judged by its ball and error in units. */
+/**
+ * The criterion of a query: whether it requires an update, judged by its ball and error in units.
+ */
 
 import type { ChunkEntry } from "../file/header.ts";
 import { toUnits } from "../frame.ts";
@@ -8,7 +10,10 @@ import type { Query } from "./query.ts";
 import { regionOf, squareToBox } from "./region.ts";
 import type { Region } from "./region.ts";
 
-/** A query in units. It requires every ball that holds one that it requires and has no smaller error. */
+/**
+ * A query in units. It requires every ball that holds one that it requires and has no smaller
+ * error.
+ */
 export class Criterion {
     private readonly region: Region;
     /** True if the tolerance grows with the distance from the eye: `slope` is its part of that. */
@@ -85,7 +90,10 @@ export class Criterion {
         return this.isEverywhere && this.isPerspective;
     }
 
-    /** Returns the distance below which the viewpoint requires an update, or NaN if that never changes. */
+    /**
+     * Returns the distance below which the viewpoint requires an update, or NaN if that never
+     * changes.
+     */
     reach(radius: number, error: number): number {
         if (!this.hasViewpoint) return NaN;
         const reach = radius + error / this.slope;

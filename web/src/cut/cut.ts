@@ -1,4 +1,6 @@
-/** A cut that follows a sequence of queries, refined and coarsened only where the query has moved. */
+/**
+ * A cut that follows a sequence of queries, refined and coarsened only where the query has moved.
+ */
 
 import { ERRORS, RADII } from "../file/lengths.ts";
 import { NONE, grown } from "../model.ts";
@@ -68,7 +70,8 @@ export class Cut {
      * goes on from there.
      *
      * The result is the smallest cut that satisfies the query. What a change costs depends on what
-     * changes if only the eye of a camera that looks at everything has moved; otherwise every vertex
+     * changes if only the eye of a camera that looks at everything has moved; otherwise every
+     * vertex
      * is inspected as well.
      *
      * @throws RangeError if the query is invalid; the cut is unchanged
@@ -114,7 +117,9 @@ export class Cut {
         for (let root = 0; root < this.model.roots; root++) this.uninspected.push(root);
     }
 
-    /** Inspects the updates that are due, then goes on with those not yet seen, coarse before fine. */
+    /**
+     * Inspects the updates that are due, then goes on with those not yet seen, coarse before fine.
+     */
     private inspectPending(meter: Meter): void {
         const { model, schedule, uninspected } = this;
         while (schedule.due.length > 0) {
@@ -144,7 +149,10 @@ export class Cut {
         this.inspect(model.updateOf[node], node);
     }
 
-    /** Queues an update for a split or a merge as the query demands, and schedules its next inspection. */
+    /**
+     * Queues an update for a split or a merge as the query demands, and schedules its next
+     * inspection.
+     */
     private inspect(update: number, node: number): void {
         const state = this.front.state(node);
         const isRequired = this.requires(this.refine, update);
@@ -221,7 +229,9 @@ export class Cut {
         this.inspectChildren(next);
     }
 
-    /** Undoes updates that are neither required nor depended on, and then those that become free. */
+    /**
+     * Undoes updates that are neither required nor depended on, and then those that become free.
+     */
     private merge(meter: Meter): void {
         const { model, front, toMerge } = this;
         while (toMerge.length > 0 && meter.mayChangeMore()) {

@@ -92,7 +92,10 @@ export class Front {
         this.triangles.gather(this.heads[node], this.star);
     }
 
-    /** Returns true if an update's node, which must be active, may be split; else appends what comes first. */
+    /**
+     * Returns true if an update's node, which must be active, may be split; else appends what comes
+     * first.
+     */
     maySplit(update: number, first: number[]): boolean {
         const { model, star } = this;
         this.gather(model.parents[update]);
@@ -110,7 +113,9 @@ export class Front {
         }
     }
 
-    /** Splits an update's node, which must be active, if it may be; else appends what comes first. */
+    /**
+     * Splits an update's node, which must be active, if it may be; else appends what comes first.
+     */
     split(update: number, first: number[]): boolean {
         const may = this.maySplit(update, first);
         if (may) this.apply(update);
@@ -151,7 +156,10 @@ export class Front {
         }
     }
 
-    /** Moves the faces of the second child to the front of the star; returns how many, and notes created faces. */
+    /**
+     * Moves the faces of the second child to the front of the star; returns how many, and notes
+     * created faces.
+     */
     private partitionStar(update: number): number {
         const { model, star, created } = this;
         const first = model.firstChild(update);
@@ -194,7 +202,10 @@ export class Front {
         return run;
     }
 
-    /** Returns the node of a wing, by its rank among the nodes that a face follows; `NONE` if there is none. */
+    /**
+     * Returns the node of a wing, by its rank among the nodes that a face follows; `NONE` if there
+     * is none.
+     */
     private wing(code: number): number {
         const { star } = this;
         const { a, b, count } = star;
@@ -269,7 +280,10 @@ export class Front {
         return true;
     }
 
-    /** Removes a triangle that is left in the list of one vertex; the lists of some others are invalid. */
+    /**
+     * Removes a triangle that is left in the list of one vertex; the lists of some others are
+     * invalid.
+     */
     private remove(slot: number, wing: number, invalid: readonly number[]): void {
         const { triangles, heads } = this;
         if (triangles.unlink(slot, wing, heads, MOST_SEARCHED)) return triangles.remove(slot);

@@ -34,7 +34,10 @@ export interface Query {
     tolerance: Tolerance;
 }
 
-/** Returns the size of a pixel in the middle of the picture, as a part of the distance from the camera. */
+/**
+ * Returns the size of a pixel in the middle of the picture, as a part of the distance from the
+ * camera.
+ */
 export function pixelOf({ fov, viewport }: Camera): number {
     return (2 * Math.tan(0.5 * fov)) / viewport[1];
 }

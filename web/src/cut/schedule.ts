@@ -1,4 +1,7 @@
-/** When updates are inspected again: not before the viewpoint may have crossed a sphere about their ball. */
+/**
+ * When updates are inspected again: not before the viewpoint may have crossed a sphere about their
+ * ball.
+ */
 
 import { grown } from "../model.ts";
 import type { Criterion } from "./criterion.ts";
@@ -14,7 +17,9 @@ const LONGEST_PATH = 1e3;
 /** Part of the way by which an entry is early, to allow for rounding. */
 const SLACK = 1e-12;
 
-/** Nodes by the length of the viewpoint's path at which they are due; each is on it once at most. */
+/**
+ * Nodes by the length of the viewpoint's path at which they are due; each is on it once at most.
+ */
 export class Schedule {
     /** Nodes due now. */
     readonly due: number[] = [];
@@ -43,7 +48,10 @@ export class Schedule {
         return this.follow(criterion.hasViewpoint ? criterion : null) || isSame;
     }
 
-    /** Moves the viewpoint, and collects what is due; returns false if everything has to be inspected. */
+    /**
+     * Moves the viewpoint, and collects what is due; returns false if everything has to be
+     * inspected.
+     */
     private follow(viewpoint: Criterion | null): boolean {
         const last = this.viewpoint;
         this.viewpoint = viewpoint;
@@ -73,7 +81,9 @@ export class Schedule {
         for (const ring of this.rings) ring.length = 0;
     }
 
-    /** Schedules a node that has just been inspected; returns false if its decision never changes. */
+    /**
+     * Schedules a node that has just been inspected; returns false if its decision never changes.
+     */
     add(node: number, positions: Float32Array, least: number, most: number): boolean {
         this.least[node] = least;
         this.most[node] = most;

@@ -105,7 +105,9 @@ export class SplitWedges {
         }
     }
 
-    /** Returns the wedge at a wing in the face that it follows around the node, or else precedes. */
+    /**
+     * Returns the wedge at a wing in the face that it follows around the node, or else precedes.
+     */
     private atWing(node: number): number {
         const { star } = this;
         for (let i = 0; i < star.count; i++)

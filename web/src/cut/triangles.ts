@@ -135,7 +135,10 @@ export class Triangles {
         return false;
     }
 
-    /** Takes out a corner near the start of a list whose triangle has none of some nodes; `NONE` if there is none. */
+    /**
+     * Takes out a corner near the start of a list whose triangle has none of some nodes; `NONE` if
+     * there is none.
+     */
     unlinkWithout(node: number, head: Uint32Array, without: readonly number[]): number {
         const { nodes, next } = this;
         let last = NONE;

@@ -182,7 +182,9 @@ export class FieldCut {
         stack.pop();
     }
 
-    /** Removes vertices that are neither required nor depended on, and then those that become free. */
+    /**
+     * Removes vertices that are neither required nor depended on, and then those that become free.
+     */
     private remove(meter: Meter): void {
         const { front, model } = this;
         const { grid } = model;

@@ -6,7 +6,9 @@ import { FieldSlots } from "./field_slots.ts";
 import { Extent, halvesOf, isFinest, middle, sideOf } from "./grid.ts";
 import type { GridPoint, RightTriangle } from "./grid.ts";
 
-/** A triangle is known by the vertex at its right angle, and the side on which its hypotenuse lies. */
+/**
+ * A triangle is known by the vertex at its right angle, and the side on which its hypotenuse lies.
+ */
 export class FieldFront {
     readonly triangles = new FieldSlots();
     /** Vertices of the coarsest level, and the first one that may be inserted. */

@@ -1,4 +1,6 @@
-/** All levels of a height field: of each vertex its error, and the balls by which queries judge it. */
+/**
+ * All levels of a height field: of each vertex its error, and the balls by which queries judge it.
+ */
 
 import { lengthCode, lengthOf } from "../file/lengths.ts";
 import { toUnits } from "../frame.ts";
@@ -22,7 +24,9 @@ export class FieldModel {
     readonly positions: Float32Array;
     private readonly placement: Placement;
     private readonly errors: Uint16Array;
-    /** Radii of the balls around what an insertion removes, and of those that hold all dependents'. */
+    /**
+     * Radii of the balls around what an insertion removes, and of those that hold all dependents'.
+     */
     private readonly own: Uint16Array;
     private readonly nested: Uint16Array;
 
@@ -163,7 +167,10 @@ export class FieldModel {
     }
 }
 
-/** Returns the first and last columns of a triangle in a row; sides are along rows, columns or diagonals. */
+/**
+ * Returns the first and last columns of a triangle in a row; sides are along rows, columns or
+ * diagonals.
+ */
 function columnsAt(row: number, corners: GridPoint[]): [number, number] {
     let [first, last] = [Infinity, 0];
     corners.forEach((from, k) => {

@@ -32,7 +32,8 @@ interface Fields {
 }
 
 /**
- * Decodes a chunk behind all others of the model. Chunks come in the order of the file; what depends
+ * Decodes a chunk behind all others of the model. Chunks come in the order of the file; what
+ * depends
  * on one that was left out is no part of any cut.
  *
  * @throws MlodError if the chunk is damaged; the model is of no use then

@@ -88,7 +88,8 @@ export function magicOf(bytes: Uint8Array): string {
 }
 
 /**
- * Returns how many bytes of a file the header takes, as far as its first bytes tell: with fewer, ask
+ * Returns how many bytes of a file the header takes, as far as its first bytes tell: with fewer,
+ * ask
  * again once these are there.
  *
  * @throws MlodError for a file of another format or version

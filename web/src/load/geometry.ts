@@ -75,7 +75,10 @@ export class Geometry {
 
     constructor(private readonly vertices: Vertices) {}
 
-    /** Takes in what the last update of a cut has written; returns the patch, or null if nothing changed. */
+    /**
+     * Takes in what the last update of a cut has written; returns the patch, or null if nothing
+     * changed.
+     */
     follow(cut: Slots): GeometryPatch | null {
         const touched = this.isNew
             ? Array.from({ length: cut.slots }, (_, slot) => slot)

@@ -40,7 +40,9 @@ export class Levels {
         return this.last + 1;
     }
 
-    /** Returns the numbers of the chunks that a query needs and that are not in memory, in order. */
+    /**
+     * Returns the numbers of the chunks that a query needs and that are not in memory, in order.
+     */
     wanted(query: Query): number[] {
         const criterion = new Criterion(query, this.header.frame);
         const { chunks } = this.header;

@@ -22,7 +22,10 @@ export interface Slot {
     ordinal: number;
 }
 
-/** A part of the scene behind its head: key frames, a smaller version of an image, or an image itself. */
+/**
+ * A part of the scene behind its head: key frames, a smaller version of an image, or an image
+ * itself.
+ */
 export interface ScenePart {
     kind: "animations" | "preview" | "image";
     image: number;

@@ -13,7 +13,9 @@ export class MlodLoader extends Loader<MlodMesh> {
     worker: (() => Worker) | null = workerOf;
     /** Limits of each stream. */
     limits: StreamLimits = {};
-    /** Hears of errors after a mesh has been shown, such as of a file that changes on the server. */
+    /**
+     * Hears of errors after a mesh has been shown, such as of a file that changes on the server.
+     */
     onStreamError: (error: Error) => void = (error) => console.error(error);
 
     override load(

@@ -14,7 +14,10 @@ import type { Wedges } from "./wedges.ts";
 /** Greatest number of faces that an update creates. */
 const MOST_CREATED = 2;
 
-/** Reads the wedges of the updates from `start` on, given their flags and the classes of their sizes. */
+/**
+ * Reads the wedges of the updates from `start` on, given their flags and the classes of their
+ * sizes.
+ */
 export function readChunkWedges(
     model: Model,
     start: number,

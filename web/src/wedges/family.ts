@@ -86,7 +86,9 @@ export class Family {
         return local < wedges.countOf(node) ? wedges.first[node] + local : NONE;
     }
 
-    /** Visits the wedges in the order in which their residuals are coded: by pairs, then the others. */
+    /**
+     * Visits the wedges in the order in which their residuals are coded: by pairs, then the others.
+     */
     inCodingOrder(visit: (wedge: number, role: number) => void): void {
         const { start, count, ofFirst, partners } = this;
         for (let i = ofFirst; i < count; i++) {

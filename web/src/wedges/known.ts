@@ -18,7 +18,8 @@ const OWN = 8;
 const MOST_AROUND = 64;
 
 /**
- * Faces around a vertex that is split, sorted by the ranks of their nodes and then by wedges: the wedge
+ * Faces around a vertex that is split, sorted by the ranks of their nodes and then by wedges: the
+ * wedge
  * of the vertex, and those at the nodes after and before it.
  */
 export class SortedStar {
@@ -140,7 +141,10 @@ export class Known {
         return 3 * (wedge * this.directionLayers + number);
     }
 
-    /** Fits slopes to the steps around a wedge that is split, and above it; with a child, to that, too. */
+    /**
+     * Fits slopes to the steps around a wedge that is split, and above it; with a child, to that,
+     * too.
+     */
     fit(wedge: number, child: number, star: SortedStar, slopes: Slopes): void {
         slopes.clear();
         const own = this.add(wedge, slopes);
@@ -199,7 +203,10 @@ export class Known {
         }
     }
 
-    /** Writes the changes of the columns of a layer that are no direction, given the shares of known wedges. */
+    /**
+     * Writes the changes of the columns of a layer that are no direction, given the shares of known
+     * wedges.
+     */
     changes(
         { layer, directions }: LayerColumns,
         slopes: Slopes,
@@ -219,7 +226,8 @@ export class Known {
     }
 
     /**
-     * Writes the predicted place of the direction of a wedge, near to that of another, given the shares
+     * Writes the predicted place of the direction of a wedge, near to that of another, given the
+     * shares
      * of known wedges on the way there.
      */
     directionNear(

@@ -65,7 +65,10 @@ export class Layer {
         return this.kind === "uv" ? 1 : this.kind === "color" ? 7 : 0;
     }
 
-    /** Decodes the values of a wedge, whose integers start at a place of `rows`; false if one is not finite. */
+    /**
+     * Decodes the values of a wedge, whose integers start at a place of `rows`; false if one is not
+     * finite.
+     */
     decode(rows: Int32Array, at: number, to: Float32Array, place: number): boolean {
         if (this.directionBits !== null) {
             const last = 2 ** this.directionBits - 1;

@@ -36,7 +36,10 @@ function withSign(x: number, sign: number): number {
     return (sign < 0 || Object.is(sign, -0)) === (x < 0 || Object.is(x, -0)) ? x : -x;
 }
 
-/** The square of codes, and all places around it; crossing an edge turns it by half about the middle. */
+/**
+ * The square of codes, and all places around it; crossing an edge turns it by half about the
+ * middle.
+ */
 export class OctahedralPlane {
     constructor(readonly last: number) {}
 

@@ -108,7 +108,9 @@ export class Slopes {
         this.share(this.all, false, x, y, z, shares);
     }
 
-    /** Writes the share of each known wedge in the change along a way, by the steps around alone. */
+    /**
+     * Writes the share of each known wedge in the change along a way, by the steps around alone.
+     */
     sharesAround(x: number, y: number, z: number, shares: Float64Array): void {
         this.share(this.around, true, x, y, z, shares);
     }

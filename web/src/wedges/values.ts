@@ -122,7 +122,10 @@ export class ValueDecoder {
         ];
     }
 
-    /** Computes the values of a pair: those of the first child's wedge `a`, the parent's `p`, the second's `b`. */
+    /**
+     * Computes the values of a pair: those of the first child's wedge `a`, the parent's `p`, the
+     * second's `b`.
+     */
     private solvePair(a: number, p: number, b: number): void {
         const { known, slopes, toFirst, toSecond, apart, aside } = this;
         const [wx, wy, wz] = this.way(b, a);

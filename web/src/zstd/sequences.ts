@@ -1,4 +1,6 @@
-/** Sequences of literals and matches, of which a compressed block consists (RFC 8878, 3.1.1.3.2). */
+/**
+ * Sequences of literals and matches, of which a compressed block consists (RFC 8878, 3.1.1.3.2).
+ */
 
 import { must } from "../error.ts";
 import { constantTable, fseTable, readFseTable } from "./fse.ts";
