@@ -1,0 +1,21 @@
+# Files for the tests of `web`, which .ci/run and .ci/nightly share.
+
+# web_files FOLDER MESHLOD WEB_CONFORMANCE: fills a folder with small files of every kind, and what Rust
+# says of them.
+web_files() {
+    local folder="$1" meshlod="$2" conformance="$3" pair name file
+    mkdir -p "$folder"
+    $meshlod sample torus "$folder/torus.ply" --faces 8000
+    $meshlod build "$folder/torus.ply" "$folder/bare.mlod" --lossless
+    $meshlod sample fish "$folder/fish.obj" --faces 4000
+    $meshlod build "$folder/fish.obj" "$folder/fish.mlod"
+    $meshlod sample terrain "$folder/terrain.ply" --faces 4000
+    $meshlod build "$folder/terrain.ply" "$folder/field.mlod" --model right-triangles
+    for pair in textured:duck.glb skinned:fox.glb scene:cesium-milk-truck.glb; do
+        while read -r file; do $meshlod build "$file" "$folder/${pair%%:*}.mlod"; done < <(mesh "${pair#*:}")
+    done
+    for file in "$folder"/*.mlod; do
+        name="$(basename "$file" .mlod)"
+        $conformance "$file" "$folder/$name.json" 300
+    done
+}

@@ -1,0 +1,281 @@
+/** An open file: fetches what the query needs, refines the cut, and tells what has changed. */
+
+import { MlodError } from "../error.ts";
+import type { CutChange, Limits } from "../cut/meter.ts";
+import type { Query } from "../cut/query.ts";
+import { FieldCut } from "../field/field_cut.ts";
+import { FieldModel } from "../field/field_model.ts";
+import { FIELD_MAGIC, decodeField } from "../field/height_field.ts";
+import { check, headerLength, magicOf, readHeader } from "../file/header.ts";
+import type { Header, Section } from "../file/header.ts";
+import { readHead, unpackResource } from "../scene/head.ts";
+import type { SceneHead } from "../scene/head.ts";
+import { Geometry } from "./geometry.ts";
+import type { Slots } from "./geometry.ts";
+import { Levels } from "./levels.ts";
+import type { Event, Origin, Request, StreamLimits } from "./messages.ts";
+import { HttpSource, MemorySource } from "./source.ts";
+import type { Source } from "./source.ts";
+import { fieldVerticesOf, layersOf, verticesOf } from "./vertices.ts";
+
+const FIRST_BYTES = 64 << 10;
+const WHOLE = 2 ** 31;
+
+/** A cut of either kind. */
+interface AnyCut {
+    readonly triangles: Slots & { readonly count: number };
+    readonly vertices: number;
+    update(query: Query, limits: Limits): CutChange;
+}
+
+/** Answers the requests of one stream; `post` takes its events. */
+export class Session {
+    private readonly abort = new AbortController();
+    private source!: Source;
+    private limits: Required<StreamLimits> = { memory: 512 << 20, request: 256 << 10, slice: 8 };
+    private query: Query = { focus: null, tolerance: Infinity };
+    private header: Header | null = null;
+    private levels: Levels | null = null;
+    private cut: AnyCut | null = null;
+    private geometry: Geometry | null = null;
+    private head: SceneHead | null = null;
+    private nextResource = 0;
+    /** Number of bytes fetched in all, and of those fetched to open the file. */
+    private bytes = 0;
+    private opened = 0;
+    private isStepping = false;
+    private isFetching = false;
+    private isAsked = false;
+    private hasFailed = false;
+
+    constructor(private readonly post: (event: Event) => void) {}
+
+    /** True if nothing more is fetched. */
+    private get isOver(): boolean {
+        return this.hasFailed || this.abort.signal.aborted;
+    }
+
+    /** Takes a request. */
+    receive(request: Request): void {
+        if (request.kind === "close") this.abort.abort();
+        else if (request.kind === "query") this.ask(request.query);
+        else void this.guard(this.open(request.origin, request.limits));
+    }
+
+    /** Tells of an error once. Nothing more is fetched, but the levels that are there are shown. */
+    private async guard(work: Promise<void>): Promise<void> {
+        try {
+            await work;
+        } catch (error) {
+            if (this.isOver) return;
+            this.hasFailed = true;
+            const [section, why] =
+                error instanceof MlodError
+                    ? [error.section, error.why]
+                    : ["the stream", String(error)];
+            this.post({ kind: "failed", section, why });
+        }
+    }
+
+    private async open(origin: Origin, limits: StreamLimits): Promise<void> {
+        this.limits = { ...this.limits, ...limits };
+        this.source =
+            "url" in origin
+                ? new HttpSource(origin.url, this.abort.signal)
+                : new MemorySource(origin.bytes);
+        const start = await this.source.start(FIRST_BYTES);
+        this.bytes = this.opened = start.length;
+        if (magicOf(start) === FIELD_MAGIC) await this.openField(start);
+        else await this.openContractions(start);
+    }
+
+    private async openContractions(start: Uint8Array): Promise<void> {
+        for (
+            let needed = headerLength(start);
+            needed > start.length;
+            needed = headerLength(start)
+        ) {
+            const longer = await this.source.start(needed);
+            if (longer.length < needed)
+                throw new MlodError("the header", `the file ends at byte ${longer.length}`);
+            start = longer;
+        }
+        const header = readHeader(start);
+        this.bytes = this.opened = start.length;
+        const base = await this.read(header.base);
+        const levels = new Levels(header, base, this.limits.memory);
+        const { model } = levels.cut;
+        this.post({
+            kind: "opened",
+            info: {
+                kind: "contractions",
+                center: [...header.frame.origin],
+                diagonal: header.diagonal,
+                length: header.length,
+                chunks: header.chunks.length,
+                layers: layersOf(model),
+                materials: model.wedges?.materials ?? null,
+            },
+        });
+        this.header = header;
+        this.levels = levels;
+        this.show(levels.cut, new Geometry(verticesOf(model)));
+        void this.guard(this.fetch());
+    }
+
+    /** Height fields are read from their start on; a prefix is a coarser field. */
+    private async openField(start: Uint8Array): Promise<void> {
+        const first = decodeField(start);
+        const model = new FieldModel(first);
+        this.post({
+            kind: "opened",
+            info: {
+                kind: "height field",
+                center: [...model.frame.origin],
+                diagonal: model.frame.unit,
+                length: start.length,
+                chunks: first.allParts,
+                layers: [],
+                materials: null,
+            },
+        });
+        this.show(new FieldCut(model), new Geometry(fieldVerticesOf(model)));
+        if (first.parts === first.allParts) return;
+        const all = await this.source.start(WHOLE);
+        this.bytes = all.length;
+        const whole = new FieldModel(decodeField(all));
+        this.show(new FieldCut(whole), new Geometry(fieldVerticesOf(whole)));
+    }
+
+    private show(cut: AnyCut, geometry: Geometry): void {
+        this.cut = cut;
+        this.geometry = geometry;
+        this.startStepping();
+    }
+
+    private ask(query: Query): void {
+        this.query = query;
+        this.startStepping();
+        if (this.levels) void this.guard(this.fetch());
+    }
+
+    private startStepping(): void {
+        if (this.isStepping || this.abort.signal.aborted) return;
+        this.isStepping = true;
+        setTimeout(() => void this.guard(this.step()), 0);
+    }
+
+    /** Changes the cut for a slice of time, and comes back if that was too little. */
+    private async step(): Promise<void> {
+        await Promise.resolve();
+        this.isStepping = false;
+        const { cut, geometry } = this;
+        if (!cut || !geometry || this.abort.signal.aborted) return;
+        const { done } = cut.update(this.query, { time: this.limits.slice });
+        const patch = geometry.follow(cut.triangles);
+        if (patch) this.post({ kind: "patch", patch });
+        this.tell(done);
+        if (!done) this.startStepping();
+    }
+
+    private tell(done: boolean): void {
+        const { cut, levels } = this;
+        if (!cut) return;
+        const missing = levels?.wanted(this.query).length ?? 0;
+        const chunks = levels?.count ?? 0;
+        const { vertices, triangles } = cut;
+        this.post({
+            kind: "progress",
+            progress: {
+                bytes: this.bytes,
+                chunks,
+                missing,
+                faces: triangles.count,
+                vertices,
+                done,
+            },
+        });
+    }
+
+    /** Fetches what the query needs, piece after piece, until nothing is missing. */
+    private async fetch(): Promise<void> {
+        this.isAsked = true;
+        if (this.isFetching) return;
+        this.isFetching = true;
+        try {
+            // Another query may come just when nothing is missing any more.
+            while (this.isAsked && !this.isOver) {
+                this.isAsked = false;
+                while ((await this.fetchResource()) || (await this.fetchChunks()));
+            }
+        } finally {
+            this.isFetching = false;
+        }
+    }
+
+    /** Fetches the chunks of one request; returns false if none is missing. */
+    private async fetchChunks(): Promise<boolean> {
+        const { levels, header } = this;
+        if (!levels || !header || this.isOver) return false;
+        const run = this.runOf(levels.wanted(this.query), header);
+        if (run.length === 0) return false;
+        const sections = run.map((number) => header.chunks[number]);
+        const [first, last] = [sections[0], sections[sections.length - 1]];
+        const bytes = await this.readBytes(first.at, last.at + last.length - first.at);
+        const part = (section: Section) =>
+            bytes.slice(section.at - first.at, section.at - first.at + section.length);
+        const isNew = levels.add(
+            run.map((number, i) => [number, part(sections[i])] as const),
+            this.query,
+        );
+        if (isNew) this.show(levels.cut, new Geometry(verticesOf(levels.cut.model)));
+        else this.startStepping();
+        return true;
+    }
+
+    /** Returns the first chunks that lie close together, as far as one request goes. */
+    private runOf(wanted: number[], { chunks }: Header): number[] {
+        const run: number[] = [];
+        for (const number of wanted) {
+            if (run.length > 0) {
+                const [first, last] = [chunks[run[0]], chunks[run[run.length - 1]]];
+                const end = chunks[number].at + chunks[number].length;
+                const gap = chunks[number].at - last.at - last.length;
+                if (end - first.at > this.limits.request || gap > this.limits.request / 8) break;
+            }
+            run.push(number);
+        }
+        return run;
+    }
+
+    /** Fetches the next resource whose place in the file has come; returns false if none has. */
+    private async fetchResource(): Promise<boolean> {
+        const { header, levels } = this;
+        const entry = header?.resources[this.nextResource];
+        if (!header || !levels || !entry || this.isOver) return false;
+        if (entry.after > levels.reached && levels.wanted(this.query).length > 0) return false;
+        const bytes = unpackResource(entry.name, await this.read(entry));
+        const number = this.nextResource++;
+        if (number === 0) {
+            this.head = readHead(bytes);
+            const { isGltf, document, slots, images } = this.head;
+            this.post({ kind: "scene", scene: { isGltf, document, slots, images } });
+        } else {
+            const part = this.head?.parts[number - 1];
+            if (part) this.post({ kind: "part", part, bytes });
+        }
+        return true;
+    }
+
+    private async read(section: Section): Promise<Uint8Array> {
+        const bytes = await this.readBytes(section.at, section.length);
+        check(section, bytes);
+        return bytes;
+    }
+
+    private async readBytes(at: number, length: number): Promise<Uint8Array> {
+        const bytes = await this.source.read(at, length);
+        if (at + length > this.opened) this.bytes += length;
+        return bytes;
+    }
+}

@@ -1,0 +1,165 @@
+/** Where the bytes of a file come from: a server with ranges, one without, or memory. */
+
+import { MlodError } from "../error.ts";
+
+/** Bytes of one file, any part of which can be read. */
+export interface Source {
+    /** Returns some of the first bytes: at least as many as asked for, or the whole file. */
+    start(count: number): Promise<Uint8Array>;
+    /** Returns a part of the file. */
+    read(at: number, length: number): Promise<Uint8Array>;
+}
+
+/** A file in memory. */
+export class MemorySource implements Source {
+    constructor(private readonly bytes: Uint8Array) {}
+
+    start(): Promise<Uint8Array> {
+        return Promise.resolve(this.bytes);
+    }
+
+    read(at: number, length: number): Promise<Uint8Array> {
+        if (at + length > this.bytes.length)
+            return Promise.reject(endsBefore(at + length, this.bytes.length));
+        return Promise.resolve(this.bytes.subarray(at, at + length));
+    }
+}
+
+function endsBefore(needed: number, length: number): MlodError {
+    return new MlodError("the file", `it ends at byte ${length}, before byte ${needed}`);
+}
+
+/** A file on a server, of which only the parts that are needed are fetched. */
+export class HttpSource implements Source {
+    private first = new Uint8Array(0);
+    private length = Infinity;
+    /** What tells whether the file is still the same: its entity tag, or when it was changed. */
+    private validator: string | null = null;
+    /** The whole file as it comes, from a server without ranges. */
+    private whole: WholeBody | null = null;
+
+    constructor(
+        private readonly url: string,
+        private readonly signal: AbortSignal,
+        private readonly get: typeof fetch = (url, options) => fetch(url, options),
+    ) {}
+
+    async start(count: number): Promise<Uint8Array> {
+        if (this.whole) return this.whole.upTo(count);
+        if (this.first.length >= Math.min(count, this.length)) return this.first;
+        if (this.first.length > 0) {
+            const rest = await this.read(
+                this.first.length,
+                Math.min(count, this.length) - this.first.length,
+            );
+            this.first = joined([this.first, rest]);
+            return this.first;
+        }
+        const response = await this.request(0, count);
+        this.validator = validatorOf(response);
+        if (response.status === 200) {
+            this.whole = new WholeBody(response);
+            return this.whole.upTo(count);
+        }
+        const { at, total } = rangeOf(response);
+        const bytes = new Uint8Array(await response.arrayBuffer());
+        this.length = total;
+        if (at !== 0 || bytes.length !== Math.min(count, total)) throw lied(this.url);
+        this.first = bytes;
+        return bytes;
+    }
+
+    async read(at: number, length: number): Promise<Uint8Array> {
+        if (this.whole) return this.whole.part(at, length);
+        if (at + length > this.length) throw endsBefore(at + length, this.length);
+        if (at + length <= this.first.length) return this.first.subarray(at, at + length);
+        const response = await this.request(at, length);
+        const isSame = validatorOf(response) === this.validator;
+        // A server answers with the whole file if it has changed.
+        if (response.status === 200 || !isSame) {
+            await response.body?.cancel();
+            throw new MlodError("the file", `it has changed on the server: ${this.url}`);
+        }
+        const range = rangeOf(response);
+        const bytes = new Uint8Array(await response.arrayBuffer());
+        if (range.at !== at || range.total !== this.length || bytes.length !== length)
+            throw lied(this.url);
+        return bytes;
+    }
+
+    private async request(at: number, length: number): Promise<Response> {
+        const headers: Record<string, string> = { Range: `bytes=${at}-${at + length - 1}` };
+        if (this.validator !== null) headers["If-Range"] = this.validator;
+        const response = await this.get(this.url, { headers, signal: this.signal });
+        if (response.status !== 206 && response.status !== 200) {
+            throw new MlodError("the file", `the server answers ${response.status}: ${this.url}`);
+        }
+        return response;
+    }
+}
+
+function lied(url: string): MlodError {
+    return new MlodError("the file", `the server sends other bytes than it was asked for: ${url}`);
+}
+
+/** A weak tag says nothing of bytes. */
+function validatorOf({ headers }: Response): string | null {
+    const tag = headers.get("ETag");
+    return tag !== null && !tag.startsWith("W/") ? tag : headers.get("Last-Modified");
+}
+
+function rangeOf({ headers, url }: Response): { at: number; total: number } {
+    const match = /^bytes (\d+)-\d+\/(\d+)$/.exec(headers.get("Content-Range") ?? "");
+    if (!match) throw lied(url);
+    return { at: Number(match[1]), total: Number(match[2]) };
+}
+
+/** A response body, of which parts can be read as they come. */
+class WholeBody {
+    private readonly parts: Uint8Array[] = [];
+    private length = 0;
+    private isDone = false;
+    private waiting: Promise<unknown> = Promise.resolve();
+    private readonly reader: ReadableStreamDefaultReader<Uint8Array> | undefined;
+
+    constructor(response: Response) {
+        this.reader = response.body?.getReader();
+        this.isDone = this.reader === undefined;
+    }
+
+    /** Returns the first bytes, once so many are there or all. */
+    async upTo(count: number): Promise<Uint8Array> {
+        const turn = this.waiting.then(() => this.fill(count));
+        this.waiting = turn.catch(() => undefined);
+        await turn;
+        if (this.parts.length > 1) this.parts.splice(0, this.parts.length, joined(this.parts));
+        return this.parts[0] ?? new Uint8Array(0);
+    }
+
+    private async fill(count: number): Promise<void> {
+        while (!this.isDone && this.length < count) {
+            const read = await this.reader?.read();
+            if (!read || read.done) this.isDone = true;
+            else {
+                this.parts.push(read.value);
+                this.length += read.value.length;
+            }
+        }
+    }
+
+    async part(at: number, length: number): Promise<Uint8Array> {
+        const bytes = await this.upTo(at + length);
+        if (bytes.length < at + length) throw endsBefore(at + length, bytes.length);
+        return bytes.subarray(at, at + length);
+    }
+}
+
+function joined(parts: readonly Uint8Array[]): Uint8Array<ArrayBuffer> {
+    const all = new Uint8Array(parts.reduce((sum, part) => sum + part.length, 0));
+    let at = 0;
+    for (const part of parts) {
+        all.set(part, at);
+        at += part.length;
+    }
+    return all;
+}

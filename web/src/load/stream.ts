@@ -1,0 +1,128 @@
+/** A file that streams, as its user sees it. */
+
+import type { Query } from "../cut/query.ts";
+import { MlodError } from "../error.ts";
+import type { ScenePart } from "../scene/head.ts";
+import type { GeometryPatch } from "./geometry.ts";
+import type {
+    Event,
+    FileInfo,
+    Origin,
+    Progress,
+    Request,
+    SceneInfo,
+    StreamLimits,
+} from "./messages.ts";
+import type { Session } from "./session.ts";
+
+/** Who hears of what happens to a stream. */
+export interface StreamListener {
+    /** The scene of the file is known; files of bare meshes have none. */
+    onScene?(scene: SceneInfo): void;
+    /** Another part of the scene is there, such as a larger version of an image. */
+    onPart?(part: ScenePart, bytes: Uint8Array): void;
+    /** The buffers change. */
+    onPatch?(patch: GeometryPatch): void;
+    onProgress?(progress: Progress): void;
+    /** The stream has ended by an error; what has been shown stays. */
+    onError?(error: MlodError): void;
+}
+
+/** Options of `open`. */
+export interface StreamOptions extends StreamListener, StreamLimits {
+    /** Ends the stream, and rejects its opening. */
+    signal?: AbortSignal;
+    /** Makes the worker in which the file is decoded; without one that is done on this thread. */
+    worker?: () => Worker;
+}
+
+/** An open file. */
+export interface MlodStream {
+    readonly info: FileInfo;
+    /** Asks for a level; its geometry comes by patches. */
+    query(query: Query): void;
+    /** Ends all work, and frees the memory. */
+    dispose(): void;
+}
+
+/**
+ * Opens a file at an address or in memory; resolves once its coarsest level can be shown.
+ *
+ * @throws MlodError if it cannot be read, or is damaged
+ */
+export function open(
+    file: string | URL | ArrayBuffer | Uint8Array,
+    options: StreamOptions = {},
+): Promise<MlodStream> {
+    const { signal, worker, memory, request, slice } = options;
+    const limits = withoutMissing({ memory, request, slice });
+    return new Promise((resolve, reject) => {
+        const port = worker ? workerPort(worker()) : localPort();
+        const dispose = () => port.close();
+        const query = (query: Query) => port.send({ kind: "query", query });
+        let isOpen = false;
+        port.listen((event) => {
+            if (event.kind === "opened") {
+                isOpen = true;
+                resolve({ info: event.info, query, dispose });
+            } else if (event.kind === "failed" && !isOpen) {
+                dispose();
+                reject(new MlodError(event.section, event.why));
+            } else tell(options, event);
+        });
+        signal?.addEventListener("abort", () => {
+            dispose();
+            reject(signal.reason as Error);
+        });
+        if (signal?.aborted) return void reject(signal.reason as Error);
+        port.send({ kind: "open", origin: originOf(file), limits });
+    });
+}
+
+function tell(listener: StreamListener, event: Event): void {
+    if (event.kind === "scene") listener.onScene?.(event.scene);
+    else if (event.kind === "part") listener.onPart?.(event.part, event.bytes);
+    else if (event.kind === "patch") listener.onPatch?.(event.patch);
+    else if (event.kind === "progress") listener.onProgress?.(event.progress);
+    else if (event.kind === "failed") listener.onError?.(new MlodError(event.section, event.why));
+}
+
+function originOf(file: string | URL | ArrayBuffer | Uint8Array): Origin {
+    if (file instanceof ArrayBuffer) return { bytes: new Uint8Array(file) };
+    if (file instanceof Uint8Array) return { bytes: file };
+    const base = typeof document === "undefined" ? undefined : document.baseURI;
+    return { url: new URL(file, base).href };
+}
+
+function withoutMissing(limits: { [key in keyof StreamLimits]: number | undefined }): StreamLimits {
+    return Object.fromEntries(Object.entries(limits).filter(([, limit]) => limit !== undefined));
+}
+
+/** Where a session is. */
+interface Port {
+    send(request: Request): void;
+    listen(hear: (event: Event) => void): void;
+    close(): void;
+}
+
+function workerPort(worker: Worker): Port {
+    return {
+        send: (request) => worker.postMessage(request),
+        listen: (hear) => {
+            worker.onmessage = ({ data }: MessageEvent<Event>) => hear(data);
+            worker.onerror = ({ message }) =>
+                hear({ kind: "failed", section: "the worker", why: message });
+        },
+        close: () => worker.terminate(),
+    };
+}
+
+/** A session on this thread, whose code is only loaded where there is one. */
+function localPort(): Port {
+    let hear: (event: Event) => void = () => undefined;
+    const session: Promise<Session> = import("./session.ts").then(
+        ({ Session }) => new Session((event) => hear(event)),
+    );
+    const send = (request: Request) => void session.then((session) => session.receive(request));
+    return { send, listen: (listener) => (hear = listener), close: () => send({ kind: "close" }) };
+}

@@ -1,0 +1,5 @@
+/** Levels that stream, in three.js. */
+
+export { MlodLoader } from "./mlod_loader.ts";
+export { MlodMesh } from "./mlod_mesh.ts";
+export type { PictureSize } from "./mlod_mesh.ts";

@@ -1,0 +1,116 @@
+/** What all copies of one file share: its stream, its geometry and its materials. */
+
+import { Material, Mesh, MeshStandardMaterial } from "three";
+import type { LoadingManager } from "three";
+import type { MlodError, MlodStream, Progress, Query, SceneInfo } from "../index.ts";
+import { StreamGeometry } from "./buffers.ts";
+import { disposeMaterials, makeMaterials, plainMaterial } from "./materials.ts";
+
+/** Milliseconds for which images are gathered before materials are made with them. */
+const GATHER = 50;
+
+/** A copy that is shown: what it asks for, and how near it is to its camera. */
+interface Asked {
+    query: Query;
+    nearness: number;
+}
+
+/** An open file on the GPU. */
+export class SharedLevels {
+    readonly geometry: StreamGeometry;
+    materials: Material[];
+    progress: Progress | null = null;
+    private readonly copies = new Map<Mesh, Asked | null>();
+    private scene: SceneInfo | null = null;
+    private readonly images = new Map<number, Uint8Array>();
+    private timer: ReturnType<typeof setTimeout> | undefined;
+    private last = "";
+    private isDisposed = false;
+
+    constructor(
+        private readonly stream: MlodStream,
+        private readonly manager: LoadingManager,
+        private readonly onError: (error: Error) => void,
+    ) {
+        this.geometry = new StreamGeometry(stream.info);
+        const plain = plainMaterial() as MeshStandardMaterial;
+        plain.flatShading = !this.geometry.hasAttribute("normal");
+        plain.vertexColors = this.geometry.hasAttribute("color");
+        this.materials = [plain];
+        this.repeatMaterial();
+    }
+
+    /** Without a scene all labels have one material. */
+    private repeatMaterial(): void {
+        const labels = this.stream.info.materials?.length ?? 0;
+        while (this.materials.length <= labels) this.materials.push(this.materials[0]);
+    }
+
+    /** Adds a copy, which shares everything. */
+    add(copy: Mesh): void {
+        this.copies.set(copy, null);
+    }
+
+    /** Asks for what one copy needs; of several the one nearest to its camera decides. */
+    ask(copy: Mesh, query: Query, nearness: number): void {
+        if (this.isDisposed) return;
+        this.copies.set(copy, { query, nearness });
+        let best: Asked | null = null;
+        for (const asked of this.copies.values())
+            if (asked && (!best || asked.nearness > best.nearness)) best = asked;
+        const key = JSON.stringify(best?.query);
+        if (!best || key === this.last) return;
+        this.last = key;
+        this.stream.query(best.query);
+    }
+
+    /** Takes the scene of the file. */
+    setScene(scene: SceneInfo): void {
+        this.scene = scene;
+        this.remakeSoon();
+    }
+
+    /** Takes an image, or a larger version of one. */
+    setImage(image: number, bytes: Uint8Array): void {
+        this.images.set(image, bytes);
+        this.remakeSoon();
+    }
+
+    private remakeSoon(): void {
+        this.timer ??= setTimeout(() => {
+            this.timer = undefined;
+            this.remake().catch(this.onError);
+        }, GATHER);
+    }
+
+    private async remake(): Promise<void> {
+        if (!this.scene || this.isDisposed) return;
+        const materials = await makeMaterials(this.scene, this.images, this.geometry, this.manager);
+        if (this.isDisposed) return disposeMaterials(materials);
+        const old = this.materials;
+        this.materials = materials;
+        for (const copy of this.copies.keys()) if (copy.material === old) copy.material = materials;
+        disposeMaterials(old);
+    }
+
+    /** Forgets a copy; with the last one goes the stream. */
+    remove(copy: Mesh): void {
+        this.copies.delete(copy);
+        if (this.copies.size > 0 || this.isDisposed) return;
+        this.isDisposed = true;
+        clearTimeout(this.timer);
+        this.stream.dispose();
+        this.geometry.dispose();
+        disposeMaterials(this.materials);
+    }
+
+    /** What is known of the file. */
+    get info(): MlodStream["info"] {
+        return this.stream.info;
+    }
+
+    /** Tells what went wrong; what is shown stays. */
+    fail(error: MlodError): void {
+        this.onError(error);
+    }
+}

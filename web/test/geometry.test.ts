@@ -1,0 +1,126 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { Cut } from "../src/cut/cut.ts";
+import type { Query } from "../src/cut/query.ts";
+import { decode } from "../src/decode.ts";
+import { readHeader } from "../src/file/header.ts";
+import { Geometry } from "../src/load/geometry.ts";
+import type { GeometryPatch } from "../src/load/geometry.ts";
+import { Levels } from "../src/load/levels.ts";
+import { verticesOf } from "../src/load/vertices.ts";
+import { NONE, grown } from "../src/model.ts";
+import { conformanceFile, conformanceNames, vectorFile } from "./files.ts";
+
+/** Buffers as a renderer keeps them. */
+class Buffers {
+    private values = new Float32Array(0);
+    private index = new Uint32Array(0);
+    private parts: GeometryPatch["parts"] = [];
+
+    constructor(private readonly width: number) {}
+
+    apply(patch: GeometryPatch): void {
+        this.values = grown(this.values, patch.capacity * this.width);
+        this.index = grown(this.index, 3 * patch.triangles);
+        patch.vertices.forEach((vertex, i) => {
+            const values = patch.values.subarray(i * this.width, (i + 1) * this.width);
+            this.values.set(values, vertex * this.width);
+        });
+        patch.places.forEach((place, i) =>
+            this.index.set(patch.index.subarray(3 * i, 3 * i + 3), 3 * place),
+        );
+        this.parts = patch.parts;
+    }
+
+    /** Returns the triangles as sorted texts: the part, and all values of each corner. */
+    triangles(): string[] {
+        const corner = (vertex: number) =>
+            this.values.subarray(vertex * this.width, (vertex + 1) * this.width).join(",");
+        const all = this.parts.flatMap(({ start, count }, part) =>
+            Array.from({ length: count }, (_, i) => {
+                const at = 3 * (start + i);
+                return `${part}: ${[0, 1, 2].map((k) => corner(this.index[at + k])).join(" ")}`;
+            }),
+        );
+        return all.sort();
+    }
+}
+
+/** Returns the triangles of a cut in the same form. */
+function trianglesOf(cut: Cut): string[] {
+    const vertices = verticesOf(cut.model);
+    const { nodes, wedges, slots } = cut.triangles;
+    const row = new Float32Array(vertices.width);
+    const all: string[] = [];
+    for (let at = 0; at < 3 * slots; at += 3) {
+        if (nodes[at] === NONE) continue;
+        const corners = [at, at + 1, at + 2].map((corner) => {
+            vertices.write(nodes[corner], (wedges ?? nodes)[corner], row, 0);
+            return row.join(",");
+        });
+        all.push(`${vertices.partOf((wedges ?? nodes)[at])}: ${corners.join(" ")}`);
+    }
+    return all.sort();
+}
+
+/** A list of differences would take minutes. */
+function assertSame(is: string[], wanted: string[], what: string): void {
+    const at = wanted.findIndex((triangle, i) => triangle !== is[i]);
+    assert.ok(
+        is.length === wanted.length && at < 0,
+        `${what}: ${is.length} of ${wanted.length}, ${at}`,
+    );
+}
+
+const everywhere = (tolerance: number): Query => ({ focus: null, tolerance });
+
+for (const name of [null, ...conformanceNames().filter((name) => name !== "field")]) {
+    test(`patches add up to the cut: ${name ?? "the file of the specification"}`, () => {
+        const model = decode(name === null ? vectorFile() : conformanceFile(name));
+        const cut = new Cut(model);
+        const geometry = new Geometry(verticesOf(model));
+        const buffers = new Buffers(verticesOf(model).width);
+        const { diagonal } = model.header;
+        for (const part of [1, 1e-2, 1e-3, 2e-2, 1e-4, 1e-3, 0, 1, 3e-3]) {
+            cut.update(everywhere(part * diagonal));
+            const patch = geometry.follow(cut.triangles);
+            if (patch) buffers.apply(patch);
+            assertSame(buffers.triangles(), trianglesOf(cut), `${part}`);
+        }
+    });
+}
+
+test("a small change costs little", { skip: conformanceNames().length === 0 }, () => {
+    const model = decode(conformanceFile("bare"));
+    const cut = new Cut(model);
+    const geometry = new Geometry(verticesOf(model));
+    cut.update(everywhere(1e-3 * model.header.diagonal));
+    geometry.follow(cut.triangles);
+    cut.update(everywhere(0.99e-3 * model.header.diagonal));
+    const patch = geometry.follow(cut.triangles);
+    assert.ok(patch === null || patch.places.length < cut.triangles.count / 10);
+});
+
+for (const name of conformanceNames().filter((name) => name !== "field")) {
+    test(`chunks in any order, and some that are evicted, give the same cuts: ${name}`, () => {
+        const file = conformanceFile(name);
+        const header = readHeader(file);
+        const part = (at: number, length: number) => file.subarray(at, at + length);
+        const base = part(header.base.at, header.base.length);
+        const numbers = header.chunks.map((_, number) => number);
+        const bytesOf = (number: number) => {
+            const { at, length } = header.chunks[number];
+            return [number, part(at, length)] as const;
+        };
+        const query = everywhere(1e-3 * header.diagonal);
+        const whole = new Cut(decode(file));
+        whole.update(query);
+        const levels = new Levels(header, base, Infinity);
+        for (const number of numbers.reverse()) levels.add([bytesOf(number)], query);
+        levels.cut.update(query);
+        assertSame(trianglesOf(levels.cut), trianglesOf(whole), name);
+        // Room for no more than the first chunk.
+        const small = new Levels(header, base, 120 * header.chunks[0].updates);
+        assert.deepEqual(small.wanted(everywhere(0)), [0]);
+    });
+}

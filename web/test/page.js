@@ -1,0 +1,92 @@
+// The page of `browser.mjs`: shows a model from far away and from near, and looks at the pixels.
+import * as THREE from "three";
+import { MlodLoader } from "/dist/three/index.js";
+
+const SIZE = 256;
+const BACKGROUND = 0xff00ff;
+
+async function run() {
+    const renderer = new THREE.WebGLRenderer({ preserveDrawingBuffer: true });
+    renderer.setSize(SIZE, SIZE, false);
+    document.body.append(renderer.domElement);
+    const scene = new THREE.Scene();
+    scene.background = new THREE.Color(BACKGROUND);
+    scene.add(new THREE.HemisphereLight(0xffffff, 0x888888, 3));
+    const camera = new THREE.PerspectiveCamera(45, 1, 0.001, 1e6);
+    const mesh = await new MlodLoader().loadAsync("/model.mlod");
+    scene.add(mesh);
+    const { center, diagonal } = mesh.info;
+    const faces = [];
+    const looks = [];
+    // From far away, from near, and from near at the finest level.
+    for (const [distance, pixels] of [
+        [20, 1],
+        [1.5, 1],
+        [1.5, 0],
+    ]) {
+        camera.position.set(center[0], center[1], center[2] + distance * diagonal);
+        camera.lookAt(...center);
+        mesh.pixels = pixels;
+        const isDone = () => mesh.progress?.done && mesh.progress.missing === 0;
+        for (let frame = 0, still = 0; frame < 600 && still < 10; frame++) {
+            mesh.update(camera, renderer);
+            // A face that is seen from behind is no crack.
+            for (const material of mesh.material) material.side = THREE.DoubleSide;
+            renderer.render(scene, camera);
+            await new Promise((resolve) => setTimeout(resolve, 16));
+            still = isDone() ? still + 1 : 0;
+        }
+        faces.push(mesh.progress.faces);
+        looks.push(look(renderer));
+    }
+    const ray = new THREE.Raycaster();
+    let hits = 0;
+    for (let x = -0.5; x <= 0.5; x += 0.1) {
+        for (let y = -0.5; y <= 0.5; y += 0.1) {
+            ray.setFromCamera(new THREE.Vector2(x, y), camera);
+            hits += ray.intersectObject(mesh).length;
+        }
+    }
+    const holes = looks.map((look) => look.holes);
+    const { covered } = looks[1];
+    const materials = mesh.material.map(
+        (material) => `${material.type}${material.map ? " map" : ""}`,
+    );
+    const copy = mesh.clone();
+    mesh.dispose();
+    copy.dispose();
+    return {
+        error: null,
+        faces,
+        bytes: mesh.progress.bytes,
+        covered,
+        holes,
+        hit: hits > 0,
+        materials,
+    };
+}
+
+/**
+ * Returns the part of the picture that is covered, and background pixels all of whose neighbours
+ * are covered.
+ */
+function look(renderer) {
+    const gl = renderer.getContext();
+    const pixels = new Uint8Array(4 * SIZE * SIZE);
+    gl.readPixels(0, 0, SIZE, SIZE, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    const isEmpty = (i) => pixels[4 * i] > 250 && pixels[4 * i + 1] < 5 && pixels[4 * i + 2] > 250;
+    let [covered, holes] = [0, 0];
+    for (let y = 1; y + 1 < SIZE; y++) {
+        for (let x = 1; x + 1 < SIZE; x++) {
+            const i = y * SIZE + x;
+            if (!isEmpty(i)) covered++;
+            else if (![i - 1, i + 1, i - SIZE, i + SIZE].some(isEmpty)) holes++;
+        }
+    }
+    return { covered: covered / SIZE ** 2, holes };
+}
+
+run().then(
+    (result) => (window.result = result),
+    (error) => (window.result = { error: String(error.stack ?? error) }),
+);

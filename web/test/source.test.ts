@@ -1,0 +1,187 @@
+import assert from "node:assert/strict";
+import { createServer } from "node:http";
+import type { IncomingMessage, ServerResponse } from "node:http";
+import type { AddressInfo } from "node:net";
+import { test } from "node:test";
+import { open } from "../src/load/stream.ts";
+import type { MlodStream, StreamListener } from "../src/load/stream.ts";
+import { HttpSource } from "../src/load/source.ts";
+import { vectorFile } from "./files.ts";
+
+const file = Buffer.from(Array.from({ length: 1000 }, (_, i) => (i * 7) & 255));
+
+/** Runs a test against a server. */
+async function serving(
+    answer: (request: IncomingMessage, response: ServerResponse) => void,
+    run: (url: string) => Promise<void>,
+): Promise<void> {
+    const server = createServer(answer);
+    await new Promise<void>((resolve) => server.listen(0, "127.0.0.1", resolve));
+    try {
+        await run(`http://127.0.0.1:${(server.address() as AddressInfo).port}/`);
+    } finally {
+        server.closeAllConnections();
+        server.close();
+    }
+}
+
+/** Answers a request for a range as servers do. */
+function sendRange(
+    body: Buffer,
+    request: IncomingMessage,
+    response: ServerResponse,
+    tag = '"1"',
+): void {
+    const match = /bytes=(\d+)-(\d+)/.exec(request.headers.range ?? "");
+    const isSame = (request.headers["if-range"] ?? tag) === tag;
+    if (!match || !isSame) {
+        response.writeHead(200, { ETag: tag }).end(body);
+        return;
+    }
+    const [at, end] = [Number(match[1]), Math.min(Number(match[2]) + 1, body.length)];
+    const range = `bytes ${at}-${end - 1}/${body.length}`;
+    response.writeHead(206, { "Content-Range": range, ETag: tag }).end(body.subarray(at, end));
+}
+
+const never = new AbortController().signal;
+
+test("parts are fetched by ranges, and only these", async () => {
+    let sent = 0;
+    const answer = (request: IncomingMessage, response: ServerResponse) => {
+        sendRange(file, request, response);
+        const [from, to] =
+            /bytes=(\d+)-(\d+)/
+                .exec(request.headers.range ?? "")
+                ?.slice(1)
+                .map(Number) ?? [];
+        sent += Math.min(to + 1, file.length) - from;
+    };
+    await serving(answer, async (url) => {
+        const source = new HttpSource(url, never);
+        assert.deepEqual(Buffer.from(await source.start(100)), file.subarray(0, 100));
+        assert.deepEqual(Buffer.from(await source.read(20, 30)), file.subarray(20, 50));
+        assert.deepEqual(Buffer.from(await source.read(700, 50)), file.subarray(700, 750));
+        assert.equal(sent, 150);
+        assert.deepEqual(Buffer.from(await source.start(5000)), file);
+        await assert.rejects(source.read(990, 20), /ends at byte 1000, before byte 1010/);
+    });
+});
+
+test("of a server without ranges, parts of the whole file are there as they come", async () => {
+    const answer = (_: IncomingMessage, response: ServerResponse) => {
+        response.writeHead(200).write(file.subarray(0, 300));
+        setTimeout(() => response.end(file.subarray(300)), 100);
+    };
+    await serving(answer, async (url) => {
+        const source = new HttpSource(url, never);
+        const start = await source.start(100);
+        assert.ok(start.length >= 100 && start.length < 1000);
+        const parts = await Promise.all([source.read(600, 50), source.read(200, 50)]);
+        assert.deepEqual(Buffer.from(parts[0]), file.subarray(600, 650));
+        assert.deepEqual(Buffer.from(parts[1]), file.subarray(200, 250));
+        await assert.rejects(source.read(990, 20), /ends at byte 1000/);
+    });
+});
+
+test("a file that changes in the middle is noticed", async () => {
+    let tag = '"1"';
+    await serving(
+        (request, response) => sendRange(file, request, response, tag),
+        async (url) => {
+            const source = new HttpSource(url, never);
+            await source.start(100);
+            tag = '"2"';
+            await assert.rejects(source.read(700, 50), /has changed on the server/);
+        },
+    );
+});
+
+test("a server that lies about ranges, or fails, is not believed", async () => {
+    const lies: ((response: ServerResponse) => void)[] = [
+        (response) =>
+            response
+                .writeHead(206, { "Content-Range": "bytes 0-49/1000" })
+                .end(file.subarray(0, 50)),
+        (response) =>
+            response
+                .writeHead(206, { "Content-Range": "bytes 5-104/1000" })
+                .end(file.subarray(5, 105)),
+        (response) => response.writeHead(206).end(file.subarray(0, 100)),
+    ];
+    for (const lie of lies) {
+        await serving(
+            (_, response) => lie(response),
+            (url) => assert.rejects(new HttpSource(url, never).start(100), /sends other bytes/),
+        );
+    }
+    await serving(
+        (_, response) => response.writeHead(404).end(),
+        (url) => assert.rejects(new HttpSource(url, never).start(100), /the server answers 404/),
+    );
+    await serving(
+        (_, response) => {
+            response.writeHead(206, {
+                "Content-Range": "bytes 0-99/1000",
+                "Content-Length": "100",
+            });
+            response.write(file.subarray(0, 40), () => response.destroy());
+        },
+        (url) => assert.rejects(new HttpSource(url, never).start(100)),
+    );
+});
+
+/** Opens a file, asks for its finest level, and waits until that is there. */
+function finest(from: string | Uint8Array, listener: StreamListener = {}): Promise<MlodStream> {
+    return new Promise((resolve, reject) => {
+        let stream: MlodStream | null = null;
+        const onProgress: StreamListener["onProgress"] = (progress) => {
+            listener.onProgress?.(progress);
+            if (stream && progress.done && progress.missing === 0 && progress.faces > 1)
+                resolve(stream);
+        };
+        open(from, { ...listener, onProgress, onError: reject }).then((opened) => {
+            stream = opened;
+            opened.query({ focus: null, tolerance: 0 });
+        }, reject);
+    });
+}
+
+test("a stream shows all faces of a file on a server, and how far it has come", async () => {
+    const body = Buffer.from(vectorFile());
+    await serving(
+        (request, response) => sendRange(body, request, response),
+        async (url) => {
+            const seen: number[] = [];
+            const stream = await finest(url, { onProgress: ({ faces }) => seen.push(faces) });
+            assert.deepEqual([seen.at(-1), stream.info.chunks], [32, 1]);
+            stream.dispose();
+        },
+    );
+});
+
+test("a stream tells of damage once, and keeps what it has shown", async () => {
+    const body = Buffer.from(vectorFile());
+    body[500] ^= 1;
+    let [errors, faces] = [0, 0];
+    await new Promise<void>((resolve, reject) => {
+        const onError = (error: Error) => {
+            errors++;
+            assert.match(error.message, /chunk 0: its checksum does not match/);
+            setTimeout(resolve, 100);
+        };
+        const onPatch: StreamListener["onPatch"] = (patch) => (faces += patch.places.length);
+        open(body, { onError, onPatch }).then(
+            (stream) => stream.query({ focus: null, tolerance: 0 }),
+            reject,
+        );
+    });
+    assert.deepEqual([errors, faces], [1, 1]);
+});
+
+test("opening can be aborted, and fails for what is no such file", async () => {
+    const abort = new AbortController();
+    const opening = open(vectorFile(), { signal: abort.signal });
+    abort.abort(new Error("enough"));
+    await assert.rejects(opening, /enough/);
+    await assert.rejects(open(file), /does not start with "meshlodm"/);
+});
