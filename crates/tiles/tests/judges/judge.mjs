@@ -36,7 +36,7 @@ async function judge(client, folder, shots) {
     if (seen.near.bytes <= seen.far.bytes) faults.push('nothing is refined from near');
     const all = leaves(folder);
     if (seen.all.tiles !== all) faults.push(`${seen.all.tiles} of ${all} leaves are shown`);
-    return [...client.faults(), ...faults];
+    return faults;
 }
 
 const [option, into, ...others] = process.argv.slice(2);
@@ -52,9 +52,10 @@ for (const [of, folder] of folders.entries()) {
         console.log(`${folder} in ${name}`);
         const client = await browser.open(name, of);
         const shots = option === '--shots' ? join(into, `${basename(folder)}-${name}`) : undefined;
-        const faults = await judge(client, folder, shots);
-        for (const fault of new Set(faults)) console.log(`  WRONG: ${fault}`);
-        if (faults.length > 0) process.exitCode = 1;
+        const seen = await judge(client, folder, shots).catch(({ message }) => [message]);
+        const faults = new Set([...client.faults(), ...seen]);
+        for (const fault of faults) console.log(`  WRONG: ${fault}`);
+        if (faults.size > 0) process.exitCode = 1;
         await client.close();
     }
 }

@@ -9,9 +9,11 @@ export function shown(canvas) {
     return count / (128 * 128);
 }
 
-// Calls `draw` frame by frame until it was true for some frames on end.
+// Calls `draw` frame by frame until it was true for some frames on end; throws after two minutes.
 export async function settle(draw) {
+    const last = performance.now() + 120_000;
     for (let still = 0; still < 8; ) {
+        if (performance.now() > last) throw new Error('tiles are missing after two minutes');
         await new Promise(requestAnimationFrame);
         still = draw() ? still + 1 : 0;
     }

@@ -42,7 +42,7 @@ async function open(url) {
     tiles.group.updateMatrixWorld(true);
 }
 
-async function look({ from, pixels }) {
+async function look({ from, pixels, draws }) {
     const away = new Vector3(0.3, 0.5, 0.1).cross(up).normalize().addScaledVector(up, 0.8);
     camera.position.copy(away.normalize()).multiplyScalar(from * sphere.radius);
     [camera.near, camera.far] = [1e-3 * sphere.radius, (from + 2) * sphere.radius];
@@ -54,7 +54,7 @@ async function look({ from, pixels }) {
     tiles.errorTarget = pixels;
     await settle(() => {
         tiles.update();
-        renderer.render(scene, camera);
+        if (draws) renderer.render(scene, camera);
         return !tiles.isLoading && tiles.loadProgress === 1 && tiles.visibleTiles.size > 0;
     });
     let faces = 0;
