@@ -91,11 +91,24 @@ impl<'a> ReferenceImages<'a> {
     /// # Errors
     /// Errors of [`render`].
     pub fn with_style(original: &Mesh, style: Style<'a>) -> Result<Self, PictureError> {
+        Self::seen_by(original, Camera::icosahedron_views(original), style)
+    }
+
+    /// Draws pictures of an original mesh as twelve cameras see it, in a style of their own; it must
+    /// suit the levels too.
+    ///
+    /// # Errors
+    /// Errors of [`render`].
+    pub fn seen_by(
+        original: &Mesh,
+        cameras: [Camera; 12],
+        style: Style<'a>,
+    ) -> Result<Self, PictureError> {
         let view = |camera| {
             let (picture, shown) = draw(original, &camera, &style)?;
             Ok(ReferenceImage { camera, picture, shown })
         };
-        let views = Camera::icosahedron_views(original).map(view);
+        let views = cameras.map(view);
         Ok(Self { views: views.into_iter().collect::<Result<_, PictureError>>()?, style })
     }
 

@@ -43,9 +43,13 @@ pub fn content(
     let halvings = plan.tree.deepest_in(cell) - cell.depth;
     let shown = repack(look, &mut mesh, halvings.into());
     let skirts = plan.options.skirts.then(|| skirt(plan, cell, tile, &mesh)).flatten();
+    // A tile of slivers may lose all its faces, but not its place.
+    let place = mesh.positions.first().copied();
     drop_degenerate(&mut mesh);
     let faces = mesh.faces.len();
-    let all = || mesh.positions.iter().chain(skirts.iter().flat_map(|mesh| &mesh.positions));
+    let alone = place.filter(|_| mesh.positions.is_empty());
+    let hanging = skirts.iter().flat_map(|mesh| &mesh.positions);
+    let all = || mesh.positions.iter().chain(hanging.clone()).chain(&alone);
     let bounds = all().fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |[low, high], at| {
         [0, 1].map(|side| {
             [0, 1, 2].map(|axis| match side {

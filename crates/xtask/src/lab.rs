@@ -5,7 +5,7 @@ use anyhow::{Result, bail};
 use crate::project::{Project, cargo};
 
 /// Verbs that run in the laboratory.
-pub const VERBS: [&str; 5] = ["results", "policies", "textured", "parts", "compare"];
+pub const VERBS: [&str; 6] = ["results", "policies", "textured", "parts", "tiles", "compare"];
 
 /// Builds the laboratory and runs it with a verb and its arguments.
 pub fn run(project: &Project, arguments: &[String]) -> Result<()> {

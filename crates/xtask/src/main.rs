@@ -25,6 +25,7 @@ These run in the laboratory, the program `lab` of the crate bench, which is buil
   textured [MODEL...]  compare image errors of levels with meshoptimizer's
   parts [--program PATH] [TABLE...]  measure models of many parts, or only these tables:
                        bare, textured, extent, maximum, scenes, hubs
+  tiles [--program PATH] [--large] [MODEL...]  measure tilesets, with --large one of 10⁸ faces too
   compare [--meshes NAME,...] [--ratios 10%,...] [--rounds N] [--json]
                        compare speed, distance and volume with meshoptimizer's simplify with update";
 

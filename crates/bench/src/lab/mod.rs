@@ -11,7 +11,7 @@
 //! | `bounds` | what levels within a proved error are like, and cost |
 //! | `speed`, `memory`, `reading` | what levels cost |
 //! | `check`, `contacts` | defects and contacts |
-//! | `levels`, `strips`, `compression`, `flock` | one section for each of the other crates |
+//! | `levels`, `strips`, `compression`, `flock`, `tiles` | one section for each of the other crates |
 //! | `compare` | meshoptimizer in alternating rounds, by the verb of this name alone |
 
 mod accuracy;
@@ -35,6 +35,7 @@ mod speed;
 mod strips;
 mod table;
 mod textured;
+mod tiles;
 mod volume;
 
 use std::process::ExitCode;
@@ -47,6 +48,7 @@ const USAGE: &str = "usage: lab VERB
   textured [MODEL...]  compare image errors of levels with meshoptimizer's
   parts [--program PATH] [TABLE...]  measure models of many parts, or only these tables:
                        bare, textured, extent, maximum, scenes, hubs
+  tiles [--program PATH] [--large] [MODEL...]  measure tilesets, with --large one of 10⁸ faces too
   compare [--meshes NAME,...] [--ratios 10%,...] [--rounds N] [--json]
                        compare speed, distance and volume with meshoptimizer's simplify with update";
 
@@ -72,6 +74,7 @@ fn run(verb: &str, arguments: &[String]) -> Option<Result<()>> {
         "policies" => contacts::policies::run(),
         "textured" => textured::print(arguments),
         "parts" => parts::run(arguments),
+        "tiles" => tiles::run(arguments),
         "compare" => compare::run(arguments),
         _ => return None,
     })

@@ -5,13 +5,13 @@ use anyhow::{Context, Result, bail};
 use crate::lab::folders::root;
 use crate::lab::{
     accuracy, bounds, check, compression, constriction, contacts, flock, levels, machine, memory,
-    parts, reading, speed, strips, textured, volume,
+    parts, reading, speed, strips, textured, tiles, volume,
 };
 
 type Section = fn() -> Result<String>;
 
 /// Sections and their titles, in the order of the page.
-const SECTIONS: [(&str, Section); 16] = [
+const SECTIONS: [(&str, Section); 17] = [
     // First, while this process is still small: see the module.
     ("Memory and determinism", memory::section),
     ("Accuracy", accuracy::section),
@@ -27,6 +27,7 @@ const SECTIONS: [(&str, Section); 16] = [
     ("All levels", levels::section),
     ("Strips", strips::section),
     ("Compression", compression::section),
+    ("Tiles", tiles::section),
     ("Flocks", flock::section),
     ("Reading and measuring", reading::section),
 ];
