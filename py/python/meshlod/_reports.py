@@ -162,7 +162,9 @@ class TilesReport:
     unchanged_tiles: int
 
     def __str__(self) -> str:
-        return f"{self.tiles:,} tiles in {len(self.levels)} levels, {self.bytes:,} bytes"
+        tiles = "tile" if self.tiles == 1 else "tiles"
+        levels = "level" if len(self.levels) == 1 else "levels"
+        return f"{self.tiles:,} {tiles} in {len(self.levels)} {levels}, {self.bytes:,} bytes"
 
     @classmethod
     def _of(cls, fields: Mapping[str, Any]) -> TilesReport:

@@ -94,7 +94,8 @@ def _one(task: tuple[list[str], str, str]) -> str:
 
 def _row(status: str, result: Any, distributed: Any) -> dict[str, Any]:
     """Returns the report of a task, or that of a file whose workers died."""
-    if status == "finished":
+    # A worker that died since may have changed the status.
+    if isinstance(result, str):
         row: dict[str, Any] = json.loads(result)
         return row
     if status != "error":

@@ -122,7 +122,7 @@ class _Run:
         try:
             for future, result in results:
                 unit = running.pop(future)
-                if self._is_done(future.status, result, tries.get(unit, 0)):
+                if self._is_done(result, tries.get(unit, 0)):
                     next_ones = units.finish(unit)
                     show(min(0.999, 1 - len(units.left) / whole))
                 else:
@@ -133,12 +133,15 @@ class _Run:
         finally:
             self.client.cancel(list(running))
 
-    def _is_done(self, status: str, result: Any, tries: int) -> bool:
-        """Returns false for a task to be handed out again, since its workers have died."""
-        if status == "finished":
+    def _is_done(self, result: Any, tries: int) -> bool:
+        """Returns false for a task to be handed out again, since its workers have died.
+
+        The status of its future may tell of a worker that has died since.
+        """
+        if result is None:
             return True
-        if status != "error":
-            raise MeshlodError(f"a task was {status}: {result}")
+        if not isinstance(result, tuple):
+            raise MeshlodError(f"a task was not done: {result!r}")
         _, error, trace = result
         if isinstance(error, self.distributed.scheduler.KilledWorker):
             if tries < TRIES:
