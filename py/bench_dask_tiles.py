@@ -39,11 +39,14 @@ class Killer:
     def run(self):
         chance, wait = random.Random(1), 1
         while not self.over.wait(wait):
-            busy = {at for at, tasks in self.client.processing().items() if tasks}
-            alive = [one for one in self.cluster.workers.values() if one.pid is not None]
-            # The first one must be the planner, which nobody else is busy beside.
-            if not self.killed:
-                alive = [one for one in alive if one.worker_address in busy]
+            tasks = self.client.processing()
+            plans = {at for at, own in tasks.items() if any("_plan" in str(key) for key in own)}
+            # The planner is the first one, and is left alone from then on.
+            alive = [
+                one
+                for one in self.cluster.workers.values()
+                if one.pid is not None and (one.worker_address in plans) != bool(self.killed)
+            ]
             if alive:
                 os.kill(chance.choice(alive).pid, signal.SIGKILL)
                 self.killed += 1

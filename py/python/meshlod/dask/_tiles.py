@@ -151,14 +151,16 @@ class _Run:
 
     def _result(self, function: Callable[..., Any], *arguments: Any) -> Any:
         """Returns what one task returns."""
-        future = self.client.submit(function, *arguments, pure=False)
-        try:
-            return future.result()
-        except self.distributed.scheduler.KilledWorker as error:
-            raise _killed() from error
-        finally:
-            if not future.done():
-                future.cancel()
+        for left in reversed(range(TRIES + 1)):
+            future = self.client.submit(function, *arguments, pure=False)
+            try:
+                return future.result()
+            except self.distributed.scheduler.KilledWorker as error:
+                if left == 0:
+                    raise _killed() from error
+            finally:
+                if not future.done():
+                    future.cancel()
 
 
 def _killed() -> MeshlodError:

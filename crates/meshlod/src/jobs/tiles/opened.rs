@@ -1,6 +1,7 @@
 //! A plan that is open, for those who do many of its tasks.
 
 use std::path::Path;
+use std::sync::OnceLock;
 use std::time::SystemTime;
 
 use meshlod_tiles::TilesError;
@@ -12,14 +13,14 @@ use crate::jobs::JobError;
 use crate::jobs::tiles::method::Proven;
 use crate::jobs::tiles::{TILES, failure};
 
-/// Plan of tiles with the images of its model, read once for many tasks.
+/// Plan of tiles, read once for many tasks, as are the images of its model by the first of them.
 ///
 /// Tasks are numbered from 0 on, each after those that it needs; the last one is the root. Any number
 /// of processes may do them, also the same at a time: the bytes are the same.
 #[derive(Debug)]
 pub struct TilePlan {
     pub(super) plan: Plan,
-    look: Look,
+    look: OnceLock<Look>,
     folder: Folder,
     /// Time and length of the file of the plan when it was read.
     stamp: Option<(SystemTime, u64)>,
@@ -36,10 +37,17 @@ impl TilePlan {
             || JobError::request("", format!("{}: no plan of tiles", folder.path().display()));
         let stamp = folder.plan_stamp();
         let plan = folder.plan().map_err(failure)?.ok_or_else(none)?;
-        let images = folder.images(&plan).map_err(failure)?;
-        let (labels, materials) = (plan.labels.clone(), plan.materials.clone());
-        let look = Look { labels, materials, images, ..Look::default() };
-        Ok(Self { plan, look, folder, stamp })
+        Ok(Self { plan, look: OnceLock::new(), folder, stamp })
+    }
+
+    /// Returns the materials of the model, whose images are decoded by the tiles that need them.
+    fn look(&self) -> Result<&Look, TilesError> {
+        if let Some(look) = self.look.get() {
+            return Ok(look);
+        }
+        let images = self.folder.images(&self.plan)?;
+        let (labels, materials) = (self.plan.labels.clone(), self.plan.materials.clone());
+        Ok(self.look.get_or_init(|| Look { labels, materials, images, ..Look::default() }))
     }
 
     /// Takes back the contents that a call which was ended had moved to a tileset already.
@@ -83,10 +91,10 @@ impl TilePlan {
     }
 
     fn make(&self, task: usize) -> Result<(), TilesError> {
+        let (look, method) = (self.look()?, Proven::new(&self.plan));
         let mut made = None;
         loop {
-            let method = Proven::new(&self.plan);
-            let done = run_task((&self.plan, &self.look), &self.folder, task, &method);
+            let done = run_task((&self.plan, look), &self.folder, task, &method);
             let Err(TilesError::NotDone { needs, .. }) = done else { return done.map(drop) };
             if self.is_done(task) {
                 // Somebody else did it meanwhile, and removed what it is made of.
