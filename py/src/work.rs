@@ -126,12 +126,12 @@ pub fn run_to_end<T: Send + 'static>(
     run_until(py, progress, Until::Ended, work)
 }
 
-/// What is waited for when an exception is raised.
+/// Moment at which an exception is passed on.
 #[derive(PartialEq)]
 enum Until {
-    /// Nothing, unless a file is being put into its place.
+    /// At once, unless a file is being put into its place.
     Raised,
-    /// The end of the work.
+    /// At the end of the work.
     Ended,
 }
 
