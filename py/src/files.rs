@@ -54,7 +54,7 @@ pub fn save(
 }
 
 /// Makes an exception of an error of reading, which names the formats of this package too.
-fn unreadable(error: IoError) -> PyErr {
+pub fn unreadable(error: IoError) -> PyErr {
     match &error {
         IoError::UnknownFormat { .. } => {
             raised(format_args!("{error} .mlz .mlq, and .mlod by meshlod.Model"))
@@ -68,7 +68,7 @@ fn scene_of(path: &Path) -> Result<Scene, AnyFileError> {
 }
 
 /// Makes an exception of a file that cannot be opened, or whose scene cannot be read.
-fn not_opened(error: AnyFileError) -> PyErr {
+pub fn not_opened(error: AnyFileError) -> PyErr {
     match error {
         AnyFileError::Io(error) => unreadable(error),
         other => raised(other),

@@ -10,7 +10,7 @@
 //! |---|---|
 //! | `arrays`, `numpy_views`, `mesh`, `scene` | what Python has |
 //! | `work`, `lent_out`, `errors` | how work is done |
-//! | `files`, `simplify`, `verbs`, `model`, `query`, `cut` | what is done |
+//! | `files`, `simplify`, `verbs`, `model`, `query`, `cut`, `tiles` | what is done |
 //! | `report`, `command` | answers, and the command |
 
 mod arrays;
@@ -27,6 +27,7 @@ mod query;
 mod report;
 mod scene;
 mod simplify;
+mod tiles;
 mod verbs;
 mod work;
 
@@ -55,6 +56,10 @@ mod _native {
     use super::scene::NativeScene;
     #[pymodule_export]
     use super::simplify::{levels, simplify, simplify_scene};
+    #[pymodule_export]
+    use super::tiles::{
+        NativeTilePlan, NativeTilesLock, assemble_tiles, plan_tiles, remove_tile_plan, tiles,
+    };
     #[pymodule_export]
     use super::verbs::{check, compress, measure, render, repair, sizes, strip};
 }

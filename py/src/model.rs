@@ -17,6 +17,7 @@ use crate::errors::{raised, raised_by_file};
 use crate::files::texts;
 use crate::mesh::NativeMesh;
 use crate::query::{CameraArguments, SentQuery};
+use crate::report;
 use crate::scene::NativeScene;
 use crate::work::{Watch, run};
 
@@ -140,8 +141,7 @@ fn raised_at(path: &Path, error: &JobError) -> PyErr {
 /// Returns the report of an extraction as a dictionary, under the keys of the command's JSON and
 /// those of this package.
 fn extracted<'py>(py: Python<'py>, report: &ExtractReport) -> PyResult<Bound<'py, PyDict>> {
-    let text = serde_json::to_string(report).map_err(raised)?;
-    let dict = py.import("json")?.call_method1("loads", (text,))?.cast_into::<PyDict>()?;
+    let dict = report::of_json(py, report)?;
     let proof = match report.error.known {
         KnownError::Verified(proof) => Some(proof),
         KnownError::Stored | KnownError::Measured(_) => None,

@@ -7,6 +7,9 @@ use meshlod::simplify::Refusal;
 use meshlod::{Report, Topology};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use serde::Serialize;
+
+use crate::errors::raised;
 
 /// Returns the report of a job as a dictionary, with what is proved of the result as it is written.
 pub fn of_job<'py>(py: Python<'py>, report: &SimplifyReport) -> PyResult<Bound<'py, PyDict>> {
@@ -25,6 +28,12 @@ pub fn of_job<'py>(py: Python<'py>, report: &SimplifyReport) -> PyResult<Bound<'
     dict.set_item("simplify_seconds", report.time.as_secs_f64())?;
     dict.set_item("precision", report.written_as.map(|as_| as_.precision.name()))?;
     Ok(dict)
+}
+
+/// Returns a report as a dictionary, under the keys of the command's JSON.
+pub fn of_json<'py>(py: Python<'py>, report: &impl Serialize) -> PyResult<Bound<'py, PyDict>> {
+    let text = serde_json::to_string(report).map_err(raised)?;
+    Ok(py.import("json")?.call_method1("loads", (text,))?.cast_into::<PyDict>()?)
 }
 
 /// Returns the report of a run as a dictionary.

@@ -80,6 +80,11 @@ impl Watch {
         self.check();
     }
 
+    /// Sets how much is done, unless more is done already: for steps that several threads count.
+    pub fn rise_to(&self, done: usize) {
+        self.0.gone.fetch_max(done, Ordering::Relaxed);
+    }
+
     /// Ends the work if it has been cancelled; from here on its end is waited for. To be called
     /// right before a file is put into its place.
     pub fn commit(&self) {
@@ -105,6 +110,37 @@ pub fn run<T: Send + 'static>(
     progress: Option<Progress>,
     work: impl FnOnce(&mut Watch) -> T + Send + 'static,
 ) -> PyResult<T> {
+    run_until(py, progress, Until::Raised, work)
+}
+
+/// Runs `work` as [`run`] does, but an exception waits until the work, which is cancelled, has
+/// ended: for work that writes files from its start to its end.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_to_end<T: Send + 'static>(
+    py: Python<'_>,
+    progress: Option<Progress>,
+    work: impl FnOnce(&mut Watch) -> T + Send + 'static,
+) -> PyResult<T> {
+    run_until(py, progress, Until::Ended, work)
+}
+
+/// Moment at which an exception is passed on.
+#[derive(PartialEq)]
+enum Until {
+    /// At once, unless a file is being put into its place.
+    Raised,
+    /// At the end of the work.
+    Ended,
+}
+
+fn run_until<T: Send + 'static>(
+    py: Python<'_>,
+    progress: Option<Progress>,
+    until: Until,
+    work: impl FnOnce(&mut Watch) -> T + Send + 'static,
+) -> PyResult<T> {
     let shared = Arc::new(Shared::default());
     let mut watch = Watch(Arc::clone(&shared));
     let (sender, mut receiver) = channel();
@@ -128,8 +164,8 @@ pub fn run<T: Send + 'static>(
             Err(RecvTimeoutError::Timeout) => look(py, progress.as_ref(), &shared),
         };
         if let Err(raised) = seen {
-            if !shared.move_to(CANCELLED) {
-                // The file is nearly there.
+            if !shared.move_to(CANCELLED) || until == Until::Ended {
+                // The file is nearly there, or the work about to end.
                 let _ = py.detach(move || receiver.recv());
             }
             return Err(raised);

@@ -45,3 +45,10 @@ def arrays(points: Points, faces: Faces, uvs: NDArray[np.float32], mesh: Mesh) -
 def mistakes(mesh: Mesh, scene: Scene) -> None:
     mesh.simplify(max_eror=0.1)  # type: ignore[call-overload]
     scene.simplify(0.5, locks=[0])  # type: ignore[call-overload]
+
+
+def tiles() -> None:
+    report = meshlod.tiles(["a.ply", "b.ply"], "out", tile_faces=20_000, lat=46.5, lon=8.0)
+    assert_type(report, meshlod.TilesReport)
+    assert_type(report.levels[0].error_proved, float)
+    meshlod.tiles("a.ply", "out", tile_face=1)  # type: ignore[call-arg]

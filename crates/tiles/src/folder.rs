@@ -2,6 +2,7 @@
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use meshlod_io::{Image, write_file};
 use serde::{Deserialize, Serialize};
@@ -157,6 +158,12 @@ impl Folder {
         }
     }
 
+    /// Returns when the file of the plan was written and how long it is; `None` if there is none.
+    pub fn plan_stamp(&self) -> Option<(SystemTime, u64)> {
+        let facts = fs::metadata(self.plan_file()).ok()?;
+        Some((facts.modified().ok()?, facts.len()))
+    }
+
     /// Reads the images of a plan's materials.
     ///
     /// # Errors
@@ -224,7 +231,7 @@ impl Folder {
     pub fn remove(&self) {
         self.forget_tiles();
         let images = fs::read_dir(&self.path).into_iter().flatten().flatten();
-        let is_image = |name: &str| name.starts_with("image-") || name.starts_with("pieces-");
+        let is_image = |name: &str| name.starts_with("image-") || name.starts_with(".pieces.");
         let images = images
             .map(|entry| entry.path())
             .filter(|path| path.file_name().and_then(|name| name.to_str()).is_some_and(is_image));
@@ -248,6 +255,23 @@ impl Folder {
             ["plan.json", "lock", "pieces"].iter().any(|name| self.path.join(name).exists());
         let is_used = fs::read_dir(&self.path).is_ok_and(|mut entries| entries.next().is_some());
         is_used && !is_plan
+    }
+
+    /// Takes contents back from a folder that they were moved to, where that is so: tiles were done
+    /// up to the root, whose content is there and not here.
+    pub fn take_back(&self, root: Cell, from: &Path) {
+        let content = self.content(root);
+        let is_there = content.file_name().is_some_and(|name| from.join(name).exists());
+        if is_there && self.record_file(root).exists() && !content.exists() {
+            // Where that fails, the tiles are made anew.
+            let _ = fs::remove_dir(self.content_folder());
+            let _ = fs::rename(from, self.content_folder());
+        }
+    }
+
+    /// Removes the record of a tile, so that it is made anew.
+    pub fn forget_record(&self, cell: Cell) {
+        let _ = fs::remove_file(self.record_file(cell));
     }
 
     /// Removes the mesh of a tile that nothing is made from any more.

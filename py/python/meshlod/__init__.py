@@ -17,9 +17,17 @@ from ._files import load, save
 from ._mesh import Mesh
 from ._model import Model
 from ._query import Camera
-from ._reports import CheckReport, Distance, OneSidedDistance, Report
+from ._reports import (
+    CheckReport,
+    Distance,
+    OneSidedDistance,
+    Report,
+    TileLevel,
+    TilesReport,
+)
 from ._scene import Scene
 from ._simplify import simplify
+from ._tiles import tiles
 
 __all__ = [
     "Camera",
@@ -35,11 +43,14 @@ __all__ = [
     "OneSidedDistance",
     "Report",
     "Scene",
+    "TileLevel",
+    "TilesReport",
     "batch",
     "load",
     "save",
     "convert",
     "flock",
     "simplify",
+    "tiles",
 ]
 __version__ = "0.1.0"

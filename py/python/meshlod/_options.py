@@ -47,3 +47,16 @@ class RepairOptions(TypedDict, total=False):
     weld: float | None
     stitch: float | None
     fill_holes: int | None
+
+
+class TilesOptions(TypedDict, total=False):
+    """Keywords of :func:`meshlod.dask.tiles`, for type checkers: see :func:`meshlod.tiles`."""
+
+    tile_faces: int
+    plain: bool
+    skirts: bool
+    up: str
+    lat: float | None
+    lon: float | None
+    alt: float
+    weld: float | None

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -125,3 +126,49 @@ class CheckReport:
     def __str__(self) -> str:
         found = {**self.errors, **self.warnings}
         return "\n".join(f"{kind}: {count}" for kind, count in found.items()) or "clean"
+
+
+@dataclass(frozen=True)
+class TileLevel:
+    """Level of a tileset: a whole model, if everything were drawn at its depth."""
+
+    #: Depth of its tiles in the tree; 0 for the root.
+    depth: int
+    #: Number of tiles, with those of leaves that are less deep.
+    tiles: int
+    #: Number of their faces, without skirts.
+    faces: int
+    #: Proved bound of the distance from the input, both ways, in model units.
+    error_proved: float
+
+
+@dataclass(frozen=True)
+class TilesReport:
+    """Report of tiles. Lengths are in model units."""
+
+    #: Number of faces of the model.
+    input_faces: int
+    #: Number of faces left out because two corners were at one point of the lattice.
+    degenerate_faces: int
+    #: Number of tiles.
+    tiles: int
+    #: Bytes of all contents.
+    bytes: int
+    #: Length of a step of the lattice; vertices are on every second one.
+    lattice_step: float
+    #: Levels, the coarsest first.
+    levels: Sequence[TileLevel]
+    #: Number of tiles that could not be made coarser than what they were made from.
+    unchanged_tiles: int
+
+    def __str__(self) -> str:
+        tiles = "tile" if self.tiles == 1 else "tiles"
+        levels = "level" if len(self.levels) == 1 else "levels"
+        return f"{self.tiles:,} {tiles} in {len(self.levels)} {levels}, {self.bytes:,} bytes"
+
+    @classmethod
+    def _of(cls, fields: Mapping[str, Any]) -> TilesReport:
+        names = TileLevel.__dataclass_fields__
+        levels = [TileLevel(**{name: row[name] for name in names}) for row in fields["levels"]]
+        own = {name: fields[name] for name in cls.__dataclass_fields__}
+        return cls(**own | {"levels": levels})

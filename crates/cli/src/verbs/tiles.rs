@@ -1,12 +1,14 @@
 //! `tiles`: writes a model of any size as 3D Tiles, or one of the steps of that.
 
-mod model;
+mod files;
 mod report;
 
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand, ValueEnum};
-use meshlod::jobs::{Globe, TilesRequest, Up, finish_tiles, plan_tiles, run_tile_task, tiles};
+use meshlod::jobs::{
+    Globe, TilesRequest, Up, check_tiles_folder, finish_tiles, plan_tiles, run_tile_task, tiles,
+};
 use serde_json::json;
 
 use crate::options::args::ReadArgs;
@@ -14,10 +16,9 @@ use crate::options::parse;
 use crate::session::Session;
 use crate::session::answer::Answer;
 use crate::session::failure::Failure;
-use crate::session::files;
+use crate::session::files as session_files;
 use crate::session::hearing::Hearing;
 use crate::text::numbers::{count, plural};
-use model::Model;
 use report::TilesFigures;
 
 /// Write a model of any size as 3D Tiles: a tree of tiles, each level within a proved error
@@ -170,10 +171,10 @@ impl Tiles {
         let ([input, ..], Some(output)) = (&self.inputs[..], &self.output) else {
             return Err(Failure::usage("name a mesh to read and a folder to write"));
         };
-        check_folder(output)?;
-        let request = self.form.request(self.memory);
-        let model = Model::open(&self.inputs, &self.reading, session)?;
         let hearing = Hearing::new(session, input, output);
+        check_folder(output, &hearing)?;
+        let request = self.form.request(self.memory);
+        let model = files::open(&self.inputs, &self.reading, session)?;
         let done = tiles(model.input(), output, &request, &hearing);
         let report = done.map_err(|error| hearing.failure(error))?;
         let text = report::text(output, &report);
@@ -184,11 +185,11 @@ impl Tiles {
 impl PlanStep {
     fn run(self, session: &Session) -> Result<Answer, Failure> {
         let request = self.form.request(None);
-        let model = Model::open(&self.inputs, &self.reading, session)?;
+        let model = files::open(&self.inputs, &self.reading, session)?;
         let hearing = Hearing::new(session, &self.inputs[0], &self.plan);
         let done = plan_tiles(model.input(), &self.plan, &request, &hearing);
         let tasks = done.map_err(|error| hearing.failure(error))?;
-        let plan = files::name(&self.plan);
+        let plan = session_files::name(&self.plan);
         let last = tasks - 1;
         let text = format!("{plan}: {} task{}, 0 to {last}\n", count(tasks), plural(tasks));
         Ok(Answer::new(json!({ "plan": plan, "tasks": tasks }), text))
@@ -199,7 +200,7 @@ impl TaskStep {
     fn run(self, session: &Session) -> Result<Answer, Failure> {
         let hearing = Hearing::new(session, &self.plan, &self.plan);
         run_tile_task(&self.plan, self.task).map_err(|error| hearing.failure(error))?;
-        let plan = files::name(&self.plan);
+        let plan = session_files::name(&self.plan);
         let text = format!("{plan}: task {} done\n", self.task);
         Ok(Answer::new(json!({ "plan": plan, "task": self.task }), text))
     }
@@ -207,8 +208,8 @@ impl TaskStep {
 
 impl FinishStep {
     fn run(self, session: &Session) -> Result<Answer, Failure> {
-        check_folder(&self.output)?;
         let hearing = Hearing::new(session, &self.plan, &self.output);
+        check_folder(&self.output, &hearing)?;
         let done = finish_tiles(&self.plan, &self.output, &hearing);
         let report = done.map_err(|error| hearing.failure(error))?;
         let text = report::text(&self.output, &report);
@@ -216,23 +217,10 @@ impl FinishStep {
     }
 }
 
-/// Fails if a folder holds anything that is not a tileset, before any work is done.
-fn check_folder(path: &Path) -> Result<(), Failure> {
-    if files::is_pipe(path) {
+/// Fails if tiles cannot go to a folder, before any work is done.
+fn check_folder(path: &Path, hearing: &Hearing<'_>) -> Result<(), Failure> {
+    if session_files::is_pipe(path) {
         return Err(Failure::usage("-: tiles cannot go to standard output; name a folder"));
     }
-    if path.exists() && !path.is_dir() {
-        return Err(Failure::at(path, "is a file; name a folder for the tiles"));
-    }
-    let Ok(mut entries) = std::fs::read_dir(path) else { return Ok(()) };
-    let is_ours = path.join(".plan").exists() || is_written_by_us(&path.join("tileset.json"));
-    match entries.next().is_none() || is_ours {
-        true => Ok(()),
-        false => Err(Failure::at(path, "holds other files; name a new folder for the tiles")),
-    }
-}
-
-/// Returns true for a tileset that this program has written, whose tiles may be replaced.
-fn is_written_by_us(tileset: &Path) -> bool {
-    std::fs::read_to_string(tileset).is_ok_and(|text| text.contains("\"generator\":\"meshlod "))
+    check_tiles_folder(path).map_err(|error| hearing.failure(error))
 }

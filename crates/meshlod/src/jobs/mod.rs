@@ -6,7 +6,7 @@
 //! `--json`. The command, the Python package and the viewer only translate: arguments into
 //! requests, reports into text.
 //!
-//! A job reads no file and writes none, but for `tiles`, whose plan is a folder.
+//! A job reads no file and writes none, but for `tiles`, whose model and plan are files.
 //! [`AnyFile`](crate::AnyFile) opens what it works on, [`Output`](crate::Output) says where the
 //! result goes and in which format.
 
@@ -94,8 +94,10 @@ pub use strip::{
 pub use switching::{Switch, SwitchCamera};
 #[cfg(feature = "tiles")]
 pub use tiles::{
-    Globe, TileInput, TileLevel, TilesReport, TilesRequest, TilesetReport, Up, check_tileset,
-    finish_tiles, plan_tiles, run_tile_task, tiles,
+    Globe, TileFileError, TileFiles, TileInput, TileLevel, TileModel, TilePlan, TilesLock,
+    TilesReport, TilesRequest, TilesetReport, Up, assemble_tiles, check_tiles_folder,
+    check_tileset, finish_tiles, plan_tiles, remove_tile_plan, run_tile_task, tile_plan_folder,
+    tiles,
 };
 pub use watch::{About, Remark, Watch};
 #[cfg(feature = "check")]

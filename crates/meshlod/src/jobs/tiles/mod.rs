@@ -1,22 +1,27 @@
 //! Tiles of a model of any size: 3D Tiles, from a plan whose tasks any number of processes may do.
 
 mod method;
+mod model;
+mod opened;
+mod output;
 mod placement;
 mod report;
 mod request;
 
-use std::fs::{self, File};
+use std::fs;
+use std::io;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use meshlod_io::{IoError, write_file};
+use meshlod_io::{IoError, remove_abandoned, write_file};
+use meshlod_mesh::Bounds;
 use meshlod_tiles::TilesError;
 use meshlod_tiles::errors::find_errors;
 use meshlod_tiles::folder::Folder;
+use meshlod_tiles::layout::Layout;
 use meshlod_tiles::plan::{Look, Plan};
 use meshlod_tiles::review::review;
-use meshlod_tiles::source::Source;
-use meshlod_tiles::task::run_task;
+use meshlod_tiles::source::{Source, Triangles};
 use meshlod_tiles::tileset::finish;
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
@@ -24,12 +29,12 @@ use rayon::prelude::*;
 use crate::jobs::{JobError, Watch};
 use method::Proven;
 
+pub use model::{TileFileError, TileFiles, TileModel};
+pub use opened::TilePlan;
+pub use output::{TilesLock, check_tiles_folder, tile_plan_folder};
 pub use placement::{Globe, Up};
 pub use report::{TileLevel, TilesReport, TilesetReport};
 pub use request::TilesRequest;
-
-/// Folder of the plan in that of the tileset, while this is made.
-const PLAN: &str = ".plan";
 
 /// Folder of the contents in that of the tileset.
 const TILES: &str = "tiles";
@@ -53,7 +58,7 @@ pub struct TileInput<'a> {
 ///
 /// # Errors
 /// A request that has no meaning, a model without faces or extent, errors of the system, and a
-/// folder that another process is working on.
+/// folder that holds other files or that another process is working on.
 pub fn tiles(
     input: TileInput<'_>,
     out: &Path,
@@ -61,20 +66,22 @@ pub fn tiles(
     watch: &dyn Watch,
 ) -> Result<TilesReport, JobError> {
     request.options()?;
-    let folder = Folder::new(out.join(PLAN));
-    let _lock = locked(&folder)?;
+    check_tiles_folder(out)?;
+    let _lock = TilesLock::take(out)?;
+    let folder = Folder::new(tile_plan_folder(out));
     if let Err(error) = plan_tiles(input, folder.path(), request, watch) {
         // Nothing is left that a next run could go on from.
         folder.remove();
         let _ = fs::remove_dir(out);
         return Err(error);
     }
-    let (plan, look) = planned(&folder)?;
+    let plan = TilePlan::open(folder.path())?;
+    plan.take_back(out);
     watch.stage("making tiles");
-    let work = Work { plan: &plan, look: &look, folder: &folder, watch, done: AtomicUsize::new(0) };
+    let work = Work { plan: &plan, watch, done: AtomicUsize::new(0) };
     let threads = request.threads(rayon::current_num_threads());
     let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(JobError::output)?;
-    pool.install(|| work.make(plan.tasks.len() - 1))?;
+    pool.install(|| work.make(plan.tasks() - 1))?;
     finish_tiles(folder.path(), out, watch)
 }
 
@@ -105,9 +112,14 @@ pub fn plan_tiles(
     folder.forget_tiles();
     folder.make().map_err(failure)?;
     watch.stage("cutting into tiles");
-    let part = folder.path().join(format!("pieces-{}.part", std::process::id()));
-    let plan = Plan::new(input.source, input.look, &options, &part).map_err(failure)?;
     let scratch = folder.scratch();
+    remove_abandoned([&*scratch]);
+    let part = folder.path().join(format!(".pieces.{}-0", std::process::id()));
+    let source = Watched { source: input.source, watch };
+    let plan = Plan::new(&source, input.look, &options, &part).map_err(|error| {
+        let _ = fs::remove_file(&part);
+        if watch.is_cancelled() { JobError::Cancelled } else { failure(error) }
+    })?;
     fs::rename(&part, &scratch).map_err(|error| failure(TilesError::system(&scratch, error)))?;
     watch.stage("finding the errors of levels");
     let errors = find_errors(&plan, &folder, &Proven::new(&plan)).map_err(failure)?;
@@ -121,21 +133,38 @@ pub fn plan_tiles(
 /// # Errors
 /// A task that there is not or that needs another one first, and errors of the system.
 pub fn run_tile_task(folder: &Path, task: usize) -> Result<(), JobError> {
-    let folder = Folder::new(folder);
-    let (plan, look) = planned(&folder)?;
-    run_task((&plan, &look), &folder, task, &Proven::new(&plan)).map(drop).map_err(failure)
+    TilePlan::open(folder)?.run(task)
 }
 
 /// Checks that all tasks of a plan are done and that their tiles meet at every level, and makes the
 /// tileset of them. The plan is removed.
 ///
 /// # Errors
-/// A task that is not done, tiles that do not meet, and errors of the system.
+/// As [`assemble_tiles`].
 pub fn finish_tiles(folder: &Path, out: &Path, watch: &dyn Watch) -> Result<TilesReport, JobError> {
+    let report = assemble_tiles(folder, out, watch)?;
+    remove_tile_plan(folder);
+    Ok(report)
+}
+
+/// Does what [`finish_tiles`] does, but keeps the plan: a call that was ended, by whatever, may be
+/// repeated until [`remove_tile_plan`].
+///
+/// # Errors
+/// A task that is not done, tiles that do not meet, a folder that holds other files, and errors of
+/// the system.
+pub fn assemble_tiles(
+    folder: &Path,
+    out: &Path,
+    watch: &dyn Watch,
+) -> Result<TilesReport, JobError> {
     watch.stage("checking");
-    let folder = Folder::new(folder);
-    let plan = plan_in(&folder)?;
-    let finished = finish(&plan, &folder).map_err(failure)?;
+    check_tiles_folder(out)?;
+    let opened = TilePlan::open(folder)?;
+    opened.take_back(out);
+    let (plan, folder) = (&opened.plan, Folder::new(folder));
+    let finished = finish(plan, &folder).map_err(failure)?;
+    output::tidy(&folder, &finished.records);
     let tiles = out.join(TILES);
     let system = |path: &Path| {
         let path = path.to_owned();
@@ -149,9 +178,12 @@ pub fn finish_tiles(folder: &Path, out: &Path, watch: &dyn Watch) -> Result<Tile
     for file in finished.files.iter().rev() {
         write_file(&out.join(&file.name), &file.text).map_err(JobError::output)?;
     }
-    let report = TilesReport::of(&plan, &finished);
-    folder.remove();
-    Ok(report)
+    Ok(TilesReport::of(plan, &finished))
+}
+
+/// Removes the files of a plan, and its folder if nothing else is in it.
+pub fn remove_tile_plan(folder: &Path) {
+    Folder::new(folder).remove();
 }
 
 /// Reads a tileset and all its tiles again, and checks them.
@@ -163,39 +195,32 @@ pub fn check_tileset(folder: &Path, watch: &dyn Watch) -> Result<TilesetReport, 
     Ok(TilesetReport::of(review(folder).map_err(JobError::input)?))
 }
 
-/// Reads a plan and the materials of its model.
-fn planned(folder: &Folder) -> Result<(Plan, Look), JobError> {
-    let plan = plan_in(folder)?;
-    let images = folder.images(&plan).map_err(failure)?;
-    let (labels, materials) = (plan.labels.clone(), plan.materials.clone());
-    let look = Look { labels, materials, images, ..Look::default() };
-    Ok((plan, look))
+/// Source whose passes end when the job is cancelled.
+struct Watched<'a> {
+    source: &'a dyn Source,
+    watch: &'a dyn Watch,
 }
 
-fn plan_in(folder: &Folder) -> Result<Plan, JobError> {
-    let none = || JobError::request("", format!("{}: no plan of tiles", folder.path().display()));
-    folder.plan().map_err(failure)?.ok_or_else(none)
-}
+impl Source for Watched<'_> {
+    fn layout(&self) -> &Layout {
+        self.source.layout()
+    }
 
-/// Locks a folder against other processes for as long as the file is open.
-fn locked(folder: &Folder) -> Result<File, JobError> {
-    folder.make().map_err(failure)?;
-    let path = folder.lock_file();
-    let file = File::create(&path).map_err(|error| failure(TilesError::system(&path, error)))?;
-    match file.try_lock() {
-        Ok(()) => Ok(file),
-        Err(_) => Err(JobError::output(format!(
-            "{}: another process is making tiles here",
-            path.display()
-        ))),
+    fn bounds(&self) -> io::Result<Bounds> {
+        self.source.bounds()
+    }
+
+    fn triangles(&self, take: &mut dyn FnMut(&Triangles) -> io::Result<()>) -> io::Result<()> {
+        self.source.triangles(&mut |some| match self.watch.is_cancelled() {
+            true => Err(io::Error::other("cancelled")),
+            false => take(some),
+        })
     }
 }
 
 /// Work on all tasks of a plan.
 struct Work<'a> {
-    plan: &'a Plan,
-    look: &'a Look,
-    folder: &'a Folder,
+    plan: &'a TilePlan,
     watch: &'a dyn Watch,
     done: AtomicUsize,
 }
@@ -206,18 +231,14 @@ impl Work<'_> {
         if self.watch.is_cancelled() {
             return Err(JobError::Cancelled);
         }
-        let cell = |task| self.plan.cell(task).map_err(failure);
-        let parts = self.plan.parts(task);
-        if self.folder.record(cell(task)?).is_none() {
+        if !self.plan.is_done(task) {
+            let parts = self.plan.parts(task);
             parts.par_iter().with_max_len(1).try_for_each(|&part| self.make(part))?;
-            let method = Proven::new(self.plan);
-            run_task((self.plan, self.look), self.folder, task, &method).map_err(failure)?;
+            self.plan.run(task)?;
         }
-        for part in parts {
-            self.folder.forget_mesh(cell(part)?);
-        }
+        self.plan.forget_parts(task);
         let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
-        self.watch.step(done, Some(self.plan.tasks.len()));
+        self.watch.step(done, Some(self.plan.tasks()));
         Ok(())
     }
 }

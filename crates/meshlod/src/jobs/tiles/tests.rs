@@ -60,6 +60,58 @@ fn tasks_one_by_one_make_the_same_files() {
 }
 
 #[test]
+fn steps_that_were_ended_or_spoilt_go_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let (source, look) = (knot(), Look::default());
+    let input = TileInput { source: &source, look: &look, key: "knot" };
+    let request = TilesRequest { tile_faces: 2_000, ..TilesRequest::default() };
+    let [plan, whole, out] = ["plan", "whole", "out"].map(|name| folder.path().join(name));
+    let expected = tiles(input, &whole, &request, &()).unwrap();
+
+    plan_tiles(input, &plan, &request, &()).unwrap();
+    let opened = TilePlan::open(&plan).unwrap();
+    let root = opened.tasks() - 1;
+    (0..root).for_each(|task| opened.run(task).unwrap());
+    assert!(opened.is_done(root - 1) && !opened.is_done(root));
+    // Meshes that the root needs: one is cut off, another and its parts are gone.
+    let meshes = opened.parts(root);
+    let mesh =
+        |task: usize| plan.join("tiles").join(format!("{}.mesh", opened.plan.cell(task).unwrap()));
+    let whole_mesh = fs::read(mesh(meshes[0])).unwrap();
+    fs::write(mesh(meshes[0]), &whole_mesh[..whole_mesh.len() / 2]).unwrap();
+    fs::remove_file(mesh(meshes[1])).unwrap();
+    opened.forget_parts(meshes[1]);
+    opened.run(root).unwrap();
+    assert_eq!(fs::read(mesh(meshes[0])).unwrap(), whole_mesh);
+
+    // What a process that was killed leaves does not get into the tileset.
+    fs::write(plan.join("content/.0-0-0-0.glb.1-0"), "half").unwrap();
+    for _ in 0..2 {
+        assert_eq!(assemble_tiles(&plan, &out, &()).unwrap(), expected);
+        assert_eq!(files(&out), files(&whole));
+    }
+    remove_tile_plan(&plan);
+    assert!(!plan.exists());
+}
+
+#[test]
+fn planning_ends_where_it_is_cancelled() {
+    struct Impatient;
+    impl Watch for Impatient {
+        fn is_cancelled(&self) -> bool {
+            true
+        }
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let (source, look) = (knot(), Look::default());
+    let input = TileInput { source: &source, look: &look, key: "knot" };
+    let plan = folder.path().join("plan");
+    let ended = plan_tiles(input, &plan, &TilesRequest::default(), &Impatient).unwrap_err();
+    assert!(matches!(ended, JobError::Cancelled), "{ended}");
+    assert_eq!(files(&plan).into_keys().collect::<Vec<_>>(), ["lock"]);
+}
+
+#[test]
 fn a_tile_that_was_changed_is_found() {
     let folder = tempfile::tempdir().unwrap();
     let (source, look) = (knot(), Look::default());

@@ -1,9 +1,4 @@
-"""Many files on the workers of a Dask cluster.
-
-A task is two paths and a recipe, and writes its file whole or not at all, so a worker may be killed
-at any time: its files are made again elsewhere, with the same bytes as by ``meshlod batch``.
-Needs ``dask[distributed]``: ``pip install meshlod[dask]``.
-"""
+"""Many files on the workers of a Dask cluster."""
 
 from __future__ import annotations
 
@@ -12,11 +7,12 @@ import os
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
-from . import _batch, _native
-from ._batch import FileReport, RecipeLike
-from ._errors import MeshlodError
-from ._mesh import Path
-from ._progress import ProgressLike, callback
+from .. import _batch, _native
+from .._batch import FileReport, RecipeLike
+from .._errors import MeshlodError
+from .._mesh import Path
+from .._progress import ProgressLike, callback
+from ._cluster import client_or_local, distributed_package
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -44,18 +40,14 @@ def map(
     Each file gets one thread, unless its recipe has ``threads``. A file whose worker dies again
     and again, as for lack of memory, is reported as failed.
     """
-    distributed = _distributed()
+    distributed = distributed_package()
     arguments = [*_batch.command(paths, out, recipe, format, force), "--dry-run"]
     plan = json.loads(_native.answer(arguments))
     show = callback(progress, "files") or (lambda done: None)
     if all(row["status"] != "planned" for row in plan["reports"]):
         show(1.0)
-    elif client is not None:
-        _run(plan, client, distributed, show)
     else:
-        local = {"threads_per_worker": 1, "dashboard_address": None, "silence_logs": "ERROR"}
-        local["n_workers"] = os.cpu_count() or 1
-        with distributed.LocalCluster(**local) as cluster, distributed.Client(cluster) as own:
+        with client_or_local(client) as own:
             _run(plan, own, distributed, show)
     return _batch.reported(plan["reports"])
 
@@ -102,7 +94,8 @@ def _one(task: tuple[list[str], str, str]) -> str:
 
 def _row(status: str, result: Any, distributed: Any) -> dict[str, Any]:
     """Returns the report of a task, or that of a file whose workers died."""
-    if status == "finished":
+    # A worker that died since may have changed the status.
+    if isinstance(result, str):
         row: dict[str, Any] = json.loads(result)
         return row
     if status != "error":
@@ -117,12 +110,3 @@ def _row(status: str, result: Any, distributed: Any) -> dict[str, Any]:
 def _tidy(rows: list[dict[str, Any]], todo: list[int]) -> None:
     """Removes what workers that were killed have left beside their outputs."""
     _native.remove_abandoned([rows[at]["output"] for at in todo])
-
-
-def _distributed() -> Any:
-    try:
-        import distributed
-    except ImportError:
-        message = "meshlod.dask needs dask[distributed]: pip install 'dask[distributed]'"
-        raise MeshlodError(message) from None
-    return distributed

@@ -1,0 +1,117 @@
+//! A plan that is open, for those who do many of its tasks.
+
+use std::path::Path;
+use std::sync::OnceLock;
+use std::time::SystemTime;
+
+use meshlod_tiles::TilesError;
+use meshlod_tiles::folder::Folder;
+use meshlod_tiles::plan::{Look, Plan};
+use meshlod_tiles::task::run_task;
+
+use crate::jobs::JobError;
+use crate::jobs::tiles::method::Proven;
+use crate::jobs::tiles::{TILES, failure};
+
+/// Plan of tiles, read once for many tasks, as are the images of its model by the first of them.
+///
+/// Tasks are numbered from 0 on, each after those that it needs; the last one is the root. Any number
+/// of processes may do them, also the same at a time: the bytes are the same.
+#[derive(Debug)]
+pub struct TilePlan {
+    pub(super) plan: Plan,
+    look: OnceLock<Look>,
+    folder: Folder,
+    /// Time and length of the file of the plan when it was read.
+    stamp: Option<(SystemTime, u64)>,
+}
+
+impl TilePlan {
+    /// Opens the plan in a folder.
+    ///
+    /// # Errors
+    /// A folder without a plan, a damaged one, and errors of the system.
+    pub fn open(folder: &Path) -> Result<Self, JobError> {
+        let folder = Folder::new(folder);
+        let none =
+            || JobError::request("", format!("{}: no plan of tiles", folder.path().display()));
+        let stamp = folder.plan_stamp();
+        let plan = folder.plan().map_err(failure)?.ok_or_else(none)?;
+        Ok(Self { plan, look: OnceLock::new(), folder, stamp })
+    }
+
+    /// Returns the materials of the model, whose images are decoded by the tiles that need them.
+    fn look(&self) -> Result<&Look, TilesError> {
+        if let Some(look) = self.look.get() {
+            return Ok(look);
+        }
+        let images = self.folder.images(&self.plan)?;
+        let (labels, materials) = (self.plan.labels.clone(), self.plan.materials.clone());
+        Ok(self.look.get_or_init(|| Look { labels, materials, images, ..Look::default() }))
+    }
+
+    /// Takes back the contents that a call which was ended had moved to a tileset already.
+    pub(super) fn take_back(&self, out: &Path) {
+        if let Ok(root) = self.plan.cell(self.tasks() - 1) {
+            self.folder.take_back(root, &out.join(TILES));
+        }
+    }
+
+    /// Returns false if another plan has been made in the folder since this one was opened.
+    pub fn is_current(&self) -> bool {
+        self.stamp.is_some() && self.stamp == self.folder.plan_stamp()
+    }
+
+    /// Returns the number of faces from which a part of the model is divided.
+    pub fn tile_faces(&self) -> usize {
+        self.plan.options.most_faces
+    }
+
+    /// Returns the number of tasks.
+    pub fn tasks(&self) -> usize {
+        self.plan.tasks.len()
+    }
+
+    /// Returns the tasks that one needs done before; none for a leaf, and beyond the last one.
+    pub fn parts(&self, task: usize) -> Vec<usize> {
+        if task < self.tasks() { self.plan.parts(task) } else { Vec::new() }
+    }
+
+    /// Returns true for a task that is done, by files as long as they were written.
+    pub fn is_done(&self, task: usize) -> bool {
+        self.plan.cell(task).is_ok_and(|cell| self.folder.record(cell).is_some())
+    }
+
+    /// Does a task, unless it is done. Parts whose meshes were lost or damaged are made anew.
+    ///
+    /// # Errors
+    /// A task that there is not or that needs another one first, and errors of the system.
+    pub fn run(&self, task: usize) -> Result<(), JobError> {
+        self.make(task).map_err(failure)
+    }
+
+    fn make(&self, task: usize) -> Result<(), TilesError> {
+        let (look, method) = (self.look()?, Proven::new(&self.plan));
+        let mut made = None;
+        loop {
+            let done = run_task((&self.plan, look), &self.folder, task, &method);
+            let Err(TilesError::NotDone { needs, .. }) = done else { return done.map(drop) };
+            if self.is_done(task) {
+                // Somebody else did it meanwhile, and removed what it is made of.
+                return Ok(());
+            }
+            if !self.is_done(needs) || made == Some(needs) {
+                return done.map(drop);
+            }
+            self.folder.forget_record(self.plan.cell(needs)?);
+            self.make(needs)?;
+            made = Some(needs);
+        }
+    }
+
+    /// Removes what is left of the parts of a task that is done: only that task needed it.
+    pub fn forget_parts(&self, task: usize) {
+        let cells = self.parts(task).into_iter().filter_map(|part| self.plan.cell(part).ok());
+        cells.for_each(|cell| self.folder.forget_mesh(cell));
+    }
+}
