@@ -9,7 +9,7 @@ use meshlod_tiles::TilesError;
 use meshlod_tiles::folder::Folder;
 
 use crate::jobs::JobError;
-use crate::jobs::tiles::{failure, no_plan};
+use crate::jobs::tiles::fault::{failure, no_plan};
 
 /// Right to work in the folder of a plan, for as long as it lives.
 #[derive(Debug)]

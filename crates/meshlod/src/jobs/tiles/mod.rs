@@ -1,5 +1,6 @@
 //! Tiles of a model of any size: 3D Tiles, from a plan whose tasks any number of processes may do.
 
+mod fault;
 mod hold;
 mod method;
 mod placement;
@@ -9,11 +10,9 @@ mod result;
 mod room;
 
 use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use meshlod_io::IoError;
 use meshlod_tiles::TilesError;
 use meshlod_tiles::archive::is_archive;
 use meshlod_tiles::errors::find_errors;
@@ -28,6 +27,7 @@ use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
 use crate::jobs::{About, JobError, Remark, Watch};
+use fault::{failure, failure_of_input, no_plan};
 use hold::Hold;
 use method::Proven;
 use result::{write_archive, write_folder};
@@ -242,10 +242,6 @@ fn plan_in(folder: &Folder) -> Result<Plan, JobError> {
     folder.plan().map_err(failure)?.ok_or_else(|| no_plan(folder))
 }
 
-fn no_plan(folder: &Folder) -> JobError {
-    JobError::request("", format!("{}: no plan of tiles", folder.path().display()))
-}
-
 /// Work on all tasks of a plan.
 struct Work<'a> {
     plan: &'a Plan,
@@ -279,33 +275,6 @@ impl Work<'_> {
         let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
         self.watch.step(done, Some(self.plan.tasks.len()));
         Ok(())
-    }
-}
-
-/// Says which part of the job an error is about.
-fn failure(error: TilesError) -> JobError {
-    match error {
-        TilesError::NoFaces | TilesError::NoExtent => JobError::input(error),
-        TilesError::NoTask { .. } | TilesError::NotDone { .. } | TilesError::Missing { .. } => {
-            JobError::request("", error)
-        }
-        TilesError::Io(error @ IoError::Parse { .. }) => JobError::input(error),
-        error => JobError::output(at_file(error)),
-    }
-}
-
-fn failure_of_input(error: TilesError) -> JobError {
-    JobError::input(at_file(error))
-}
-
-/// Makes an error that names a file one of that file, so that no program puts another one before it.
-fn at_file(error: TilesError) -> Box<dyn std::error::Error + Send + Sync> {
-    match error {
-        TilesError::Io(error) => error.into(),
-        error => match error.place() {
-            Some((path, reason)) => IoError::system(path, io::Error::other(reason)).into(),
-            None => error.into(),
-        },
     }
 }
 

@@ -83,7 +83,7 @@ struct Unfinished(PathBuf);
 
 impl Drop for Unfinished {
     fn drop(&mut self) {
-        // There is none any more if all went well.
+        // Nothing is there if all went well.
         let _ = fs::remove_dir_all(&self.0);
     }
 }

@@ -8,7 +8,7 @@ use meshlod_tiles::source::Source;
 use meshlod_tiles::space::{Space, free_space};
 use meshlod_tiles::survey::Survey;
 
-use crate::jobs::tiles::failure;
+use crate::jobs::tiles::fault::failure;
 use crate::jobs::{About, JobError, Remark, Watch};
 
 /// Work that needs room on the disk.

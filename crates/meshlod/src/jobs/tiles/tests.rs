@@ -4,6 +4,7 @@ use meshlod_fixtures::folder_files as files;
 use meshlod_samples as samples;
 use meshlod_tiles::source::SceneSource;
 
+use super::result::TILES;
 use super::*;
 use crate::Scene;
 
@@ -117,7 +118,8 @@ fn files_that_were_changed_are_named() {
         (plan.join(format!("content/{part}.glb")), &finish, ".glb: is cut off or changed; do task"),
     ];
     let changes: [fn(&mut Vec<u8>); 3] = [
-        |bytes| bytes.truncate(bytes.len() / 2),
+        // So little that none of what a task reads is left.
+        |bytes| bytes.truncate(20),
         |bytes| bytes.clear(),
         |bytes| bytes.iter_mut().for_each(|byte| *byte ^= 4),
     ];
