@@ -26,7 +26,7 @@ pub(super) fn write_archive(
         }
         for record in &finished.records {
             let path = folder.content(record.cell);
-            let named = |error| io::Error::new(ErrorKind::Other, IoError::system(&path, error));
+            let named = |error| io::Error::other(IoError::system(&path, error));
             let bytes = fs::read(&path).map_err(named)?;
             archive.add(&format!("{TILES}/{}.glb", record.cell), &bytes)?;
         }

@@ -109,7 +109,8 @@ fn files_that_were_changed_are_named() {
     let root_again = || task(root, known.cell(root).unwrap());
     let finish = || finish_tiles(&plan, &out, &()).map(drop);
     let again = || run_tile_task(&plan, 0);
-    let cases: [(PathBuf, &dyn Fn() -> Result<(), JobError>, &str); 6] = [
+    type Work<'a> = &'a dyn Fn() -> Result<(), JobError>;
+    let cases: [(PathBuf, Work<'_>, &str); 6] = [
         (plan.join("plan.json"), &again, "plan.json: is cut off or changed; remove"),
         (plan.join("blocks"), &leaf_again, "blocks: is cut off or changed; remove"),
         (plan.join("pieces"), &leaf_again, "pieces: is c"),
