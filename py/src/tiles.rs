@@ -5,8 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use meshlod::io::{Note, Weld};
 use meshlod::jobs::{
-    self, JobError, Remark, TileFileError, TileFiles, TileModel, TilePlan, TilesLock, TilesRequest,
-    Watch as _, tile_plan_folder,
+    self, JobError, Remark, TileFileError, TileFiles, TileModel, TilePlan, TilesRequest, Watch as _,
 };
 use meshlod::{AnyFile, AnyFileError, IoError, ReadOptions, Scene};
 use pyo3::prelude::*;
@@ -102,6 +101,17 @@ pub fn assemble_tiles(
     report::of_json(py, &done.map_err(|error| TilesFault::of_job(error, &at, &at).raised())?)
 }
 
+/// Returns the folder of the plan of a tileset, if tiles can go there.
+///
+/// # Errors
+/// A folder that holds anything but tiles of ours.
+#[pyfunction]
+pub fn tile_plan_folder(out: PathBuf) -> PyResult<PathBuf> {
+    let failed = |error| TilesFault::of_job(error, &out, &out).raised();
+    jobs::check_tiles_folder(&out).map_err(failed)?;
+    Ok(jobs::tile_plan_folder(&out))
+}
+
 /// Removes the files of a plan.
 #[pyfunction]
 pub fn remove_tile_plan(py: Python<'_>, folder: PathBuf) {
@@ -159,35 +169,6 @@ impl NativeTilePlan {
             })
         })?;
         done.map_err(TilesFault::raised)
-    }
-}
-
-/// Right to make tiles in a folder, which no other process has.
-#[pyclass(frozen, module = "meshlod._native")]
-pub struct NativeTilesLock {
-    lock: Mutex<Option<TilesLock>>,
-    plan: PathBuf,
-}
-
-#[pymethods]
-impl NativeTilesLock {
-    /// Takes the right, if nobody has it and the folder holds nothing but tiles of ours.
-    #[new]
-    fn new(out: PathBuf) -> PyResult<Self> {
-        let failed = |error| TilesFault::of_job(error, &out, &out).raised();
-        jobs::check_tiles_folder(&out).map_err(failed)?;
-        let lock = Mutex::new(Some(TilesLock::take(&out).map_err(failed)?));
-        Ok(Self { lock, plan: tile_plan_folder(&out) })
-    }
-
-    /// Folder for the plan of the tiles.
-    fn plan_folder(&self) -> PathBuf {
-        self.plan.clone()
-    }
-
-    /// Gives the right back.
-    fn release(&self) {
-        *self.lock.lock().unwrap_or_else(PoisonError::into_inner) = None;
     }
 }
 

@@ -93,7 +93,7 @@ pub use render::render;
 pub use see_through::{
     LabelledMesh, ReferenceVisibility, SeeThrough, SeeThroughCounts, SeeThroughOptions,
 };
-pub use shrink::Averaging;
+pub use shrink::{Averaging, MAX_TEXELS};
 pub use ssim::ssim;
 pub use style::{
     Antialiasing, BackFaces, Background, Lighting, Materials, Normals, Paint, PaintMaterial, Style,

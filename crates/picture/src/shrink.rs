@@ -4,7 +4,7 @@ use crate::srgb::{DECODE, encode};
 use crate::{PictureError, Texture};
 
 /// Maximum number of texels of a decoded texture: 4096 by 4096 take 64 MiB, 85 with mipmaps.
-const MAX_TEXELS: u64 = 1 << 24;
+pub const MAX_TEXELS: u64 = 1 << 24;
 
 /// Mean of the texels that become one in a smaller version of an image, such as a mipmap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,6 +8,7 @@ use crate::chords::{divide_chords, divide_edges};
 use crate::curves::{SimplerBorder, simplify_border};
 use crate::lattice::Point;
 use crate::octree::TileTree;
+use crate::samples::Samples;
 use crate::tile::TileMesh;
 
 /// Part of the error of a level within which its border curves are simplified.
@@ -36,6 +37,9 @@ pub trait Coarsen {
     /// # Errors
     /// The method decides.
     fn loss(&self, mesh: &Mesh, faces: usize) -> Result<f64, Self::Error>;
+
+    /// Returns the distances of points from a mesh; none if it has no area.
+    fn distances(&self, points: &Mesh, mesh: &Mesh) -> Vec<f64>;
 }
 
 /// Tile that is coarser than what it was made from.
@@ -69,11 +73,13 @@ pub fn coarser<C: Coarsen>(
     let (mesh, distance) = method.coarsen(&tile.mesh, locks, error)?;
     let found = with_border(mesh, &edges);
     let is_unchanged = found.is_none();
+    let samples = std::mem::take(&mut tile.samples);
     let (mut tile, distance) = match found {
         // Vertices move to whole steps.
         Some(tile) => (tile, distance + 0.75f64.sqrt()),
         None => (tile, 0.0),
     };
+    tile.samples = samples;
     divide_chords(&mut tile, cell);
     Ok(Coarser { tile, distance: distance + moved, is_unchanged })
 }
@@ -133,5 +139,6 @@ fn with_border(mut mesh: Mesh, edges: &[[Point; 2]]) -> Option<TileMesh> {
     for position in &mut mesh.positions {
         *position = position.map(f64::round);
     }
-    (border.len() == edges.len()).then_some(TileMesh { mesh, border })
+    let samples = Samples::default();
+    (border.len() == edges.len()).then_some(TileMesh { mesh, border, samples })
 }

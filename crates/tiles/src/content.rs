@@ -27,6 +27,8 @@ pub struct Content {
     pub moved: f64,
     /// Least and greatest coordinates, in steps of the lattice.
     pub bounds: [[f64; 3]; 2],
+    /// Images of the model that the tile should show and that cannot be decoded.
+    pub lost_images: Vec<usize>,
 }
 
 /// Makes the content of a tile. Vertices that it shares with others are on the coarsest grid of all
@@ -60,8 +62,9 @@ pub fn content(
     });
     let mut meshes = vec![mesh];
     meshes.extend(skirts);
+    let lost_images = shown.lost.iter().copied().collect();
     let glb = encode((plan, shown), cell, meshes)?;
-    Ok(Content { glb, faces, moved, bounds })
+    Ok(Content { glb, faces, moved, bounds, lost_images })
 }
 
 /// Returns the mesh of a tile with its vertices on the grid of its level, in steps of the lattice,

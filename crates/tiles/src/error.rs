@@ -20,12 +20,33 @@ pub enum TilesError {
     #[error(transparent)]
     Io(#[from] IoError),
     /// A file of the plan is damaged.
-    #[error("{}: {reason}; make the plan again", path.display())]
+    #[error("{}: {reason}; remove its folder and make the plan again", path.display())]
     Damaged {
         /// The file.
         path: PathBuf,
         /// Its fault.
         reason: String,
+    },
+    /// A file of a tile is damaged.
+    #[error("{}: is cut off or changed; do task {task} again", path.display())]
+    DamagedTile {
+        /// The file.
+        path: PathBuf,
+        /// Number of the task that makes it.
+        task: usize,
+    },
+    /// A disk has less room than the tiles need.
+    #[error(
+        "{}: the tiles and the files that they are made from need about {}, but {} are free there",
+        path.display(), megabytes(*needs), megabytes(*free)
+    )]
+    NoSpace {
+        /// Folder on the disk.
+        path: PathBuf,
+        /// Bytes that are needed, about.
+        needs: u64,
+        /// Bytes that are free.
+        free: u64,
     },
     /// A file of a tileset is not JSON.
     #[error("{}: {reason}", path.display())]
@@ -45,6 +66,12 @@ pub enum TilesError {
         task: usize,
         /// Number of the task that must be done before.
         needs: usize,
+    },
+    /// A tileset needs a tile that has not been made.
+    #[error("task {task} is not done")]
+    Missing {
+        /// Number of the task.
+        task: usize,
     },
     /// The plan has fewer tasks.
     #[error("there is no task {task}; the plan has {tasks}, from 0 on")]
@@ -87,8 +114,28 @@ impl TilesError {
         Self::Io(error.downcast().unwrap_or_else(|error| IoError::system(path, error)))
     }
 
+    /// Returns the file that an error is about and the rest of its text, if it names one.
+    pub fn place(&self) -> Option<(&Path, String)> {
+        let (Self::Damaged { path, .. }
+        | Self::DamagedTile { path, .. }
+        | Self::NoSpace { path, .. }
+        | Self::Unreadable { path, .. }
+        | Self::Foreign(path)) = self
+        else {
+            return None;
+        };
+        let text = self.to_string();
+        let rest = text.strip_prefix(&format!("{}: ", path.display()))?;
+        Some((path, rest.to_owned()))
+    }
+
     /// Returns the error of a damaged file.
     pub(crate) fn damaged(path: &Path, reason: impl ToString) -> Self {
         Self::Damaged { path: path.to_owned(), reason: reason.to_string() }
     }
+}
+
+/// Returns a number of bytes as megabytes, rounded up.
+pub(crate) fn megabytes(bytes: u64) -> String {
+    format!("{} MB", bytes.div_ceil(1_000_000))
 }

@@ -1,17 +1,20 @@
 //! Folder of a plan: files whose names say what is in them, so that what is done is there.
 
 use std::fs::{self, File};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use meshlod_io::{Image, write_file};
-use serde::{Deserialize, Serialize};
+use meshlod_io::{Image, remove_abandoned, write_file};
 
+use crate::block_file;
 use crate::cell::Cell;
-use crate::chain::ChainSum;
 use crate::error::TilesError;
-use crate::plan::Plan;
+use crate::plan::{Look, Plan, PlanImage};
+use crate::record::TileRecord;
 use crate::scratch::read_blocks;
+use crate::sealed::{seal, unseal};
+use crate::texture::DecodedImages;
 use crate::tile::{TileBuilder, TileMesh};
 use crate::tile_file;
 
@@ -19,60 +22,6 @@ use crate::tile_file;
 #[derive(Clone, Debug)]
 pub struct Folder {
     path: PathBuf,
-}
-
-/// Record of a tile that is done.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct TileRecord {
-    /// The tile.
-    pub cell: Cell,
-    /// Number of faces, without those of skirts.
-    pub faces: usize,
-    /// Bound of the distance between the tile as it is written and the part of the model that it
-    /// shows, both ways, in model units.
-    pub error: f64,
-    /// Bound of the distance of the mesh that the next coarser tile is made from, in model units.
-    pub bound: f64,
-    /// Least and greatest coordinates of its content, in steps of the lattice.
-    pub bounds: [[f64; 3]; 2],
-    /// Bytes of the content.
-    pub bytes: u64,
-    /// Sum of its border edges, as two halves: see [`chain`](Self::chain).
-    pub chain: [u64; 2],
-    /// Number of edges between its parts that had no counterpart.
-    pub open: usize,
-    /// Whether it could not be simplified without harm to its border, and is as its parts are.
-    pub is_unchanged: bool,
-    /// Checksum of the mesh that the next coarser tile is made from.
-    pub checksum: u32,
-}
-
-impl TileRecord {
-    /// Returns the sum of the border edges.
-    pub fn chain(&self) -> ChainSum {
-        u128::from(self.chain[0]) << 64 | u128::from(self.chain[1])
-    }
-
-    /// Sets the sum of the border edges.
-    pub fn with_chain(self, sum: ChainSum) -> Self {
-        Self { chain: [(sum >> 64) as u64, sum as u64], ..self }
-    }
-
-    /// Creates the record of a tile of which nothing is known yet.
-    pub fn new(cell: Cell) -> Self {
-        Self {
-            cell,
-            faces: 0,
-            error: 0.0,
-            bound: 0.0,
-            bounds: [[0.0; 3]; 2],
-            bytes: 0,
-            chain: [0; 2],
-            open: 0,
-            is_unchanged: false,
-            checksum: 0,
-        }
-    }
 }
 
 impl Folder {
@@ -96,7 +45,8 @@ impl Folder {
         }
         // Tells the folder of a plan that was ended early from any other.
         let lock = self.lock_file();
-        File::create(&lock).map(drop).map_err(|error| TilesError::system(&lock, error))
+        let file = File::options().create(true).append(true).open(&lock);
+        file.map(drop).map_err(|error| TilesError::system(&lock, error))
     }
 
     /// Returns the path of the file that a process locks while it works on the plan.
@@ -131,15 +81,24 @@ impl Folder {
         self.path.join("tiles").join(format!("{cell}.json"))
     }
 
-    /// Writes the plan, and the images of its materials.
+    fn blocks_file(&self) -> PathBuf {
+        self.path.join("blocks")
+    }
+
+    fn image_file(&self, image: usize) -> PathBuf {
+        self.path.join(format!("image-{image}"))
+    }
+
+    /// Writes the plan, the blocks of its leaves and the images of its materials.
     ///
     /// # Errors
     /// Errors of the system.
     pub fn write_plan(&self, plan: &Plan, images: &[Image]) -> Result<(), TilesError> {
         for (i, image) in images.iter().enumerate() {
-            write_file(&self.path.join(format!("image-{i}")), &image.bytes)?;
+            write_file(&self.image_file(i), &image.bytes)?;
         }
-        write_file(&self.plan_file(), &json(plan))?;
+        write_file(&self.blocks_file(), &block_file::encode(plan))?;
+        write_file(&self.plan_file(), &seal(plan))?;
         Ok(())
     }
 
@@ -149,12 +108,15 @@ impl Folder {
     /// Errors of the system, and a damaged plan.
     pub fn plan(&self) -> Result<Option<Plan>, TilesError> {
         let path = self.plan_file();
-        match fs::read(&path) {
-            Ok(bytes) => {
-                serde_json::from_slice(&bytes).map_err(|e| TilesError::damaged(&path, e)).map(Some)
-            }
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
-            Err(error) => Err(TilesError::system(&path, error)),
+        let bytes = match fs::read(&path) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(TilesError::system(&path, error)),
+        };
+        let plan: Plan = unseal(&bytes).map_err(|reason| TilesError::damaged(&path, reason))?;
+        match plan.is_sound() {
+            true => Ok(Some(plan)),
+            false => Err(TilesError::damaged(&path, "is not a plan of tiles")),
         }
     }
 
@@ -164,17 +126,17 @@ impl Folder {
         Some((facts.modified().ok()?, facts.len()))
     }
 
-    /// Reads the images of a plan's materials.
-    ///
-    /// # Errors
-    /// Errors of the system.
-    pub fn images(&self, plan: &Plan) -> Result<Vec<Image>, TilesError> {
-        let read = |(i, name): (usize, &String)| {
-            let path = self.path.join(format!("image-{i}"));
-            let bytes = fs::read(&path).map_err(|error| TilesError::system(&path, error))?;
-            Ok(Image { name: name.clone(), bytes })
-        };
-        plan.images.iter().enumerate().map(read).collect()
+    /// Returns the materials of a plan's model. Their images are read when a tile needs them.
+    pub fn look(&self, plan: &Plan) -> Look {
+        let image = |own: &PlanImage| Image { name: own.name.clone(), bytes: Vec::new() };
+        let files = plan.images.iter().enumerate();
+        let files = files.map(|(i, image)| (self.image_file(i), image.checksum)).collect();
+        Look {
+            labels: plan.labels.clone(),
+            materials: plan.materials.clone(),
+            images: plan.images.iter().map(image).collect(),
+            decoded: DecodedImages::of_files(files),
+        }
     }
 
     /// Reads the pieces of a leaf and joins them.
@@ -182,30 +144,85 @@ impl Folder {
     /// # Errors
     /// Errors of the system, and a damaged file.
     pub fn leaf(&self, plan: &Plan, task: usize) -> Result<TileMesh, TilesError> {
+        let blocks = match plan.blocks.get(plan.tasks[task] as usize) {
+            Some(blocks) => blocks.clone(),
+            None => block_file::read(&self.blocks_file(), task, plan.tasks.len())?,
+        };
         let path = self.scratch();
-        let system = |error| TilesError::system(&path, error);
         let mut builder = TileBuilder::new(plan.layout.attributes(), &plan.labels);
-        let mut file = File::open(&path).map_err(system)?;
-        let blocks = &plan.blocks[plan.tasks[task] as usize];
+        let mut file = File::open(&path).map_err(|error| TilesError::system(&path, error))?;
         let has_materials = !plan.labels.is_empty();
-        read_blocks(&mut file, blocks, &plan.layout, has_materials, &mut builder)
-            .map_err(system)?;
+        let read = read_blocks(&mut file, &blocks, &plan.layout, has_materials, &mut builder);
+        read.map_err(|error| match error.kind() {
+            ErrorKind::InvalidData | ErrorKind::UnexpectedEof => TilesError::damaged(&path, error),
+            _ => TilesError::system(&path, error),
+        })?;
         Ok(builder.leaf(plan.cell(task)?))
     }
 
-    /// Returns the record of a tile; `None` if it is not done.
-    pub fn record(&self, cell: Cell) -> Option<TileRecord> {
-        let record: TileRecord =
-            serde_json::from_slice(&fs::read(self.record_file(cell)).ok()?).ok()?;
-        let length = fs::metadata(self.content(cell)).ok()?.len();
-        (record.cell == cell && length == record.bytes).then_some(record)
+    /// Returns the record of a tile whose content is there; `None` if it has none.
+    ///
+    /// # Errors
+    /// A task that there is not, and a record or content that is not as it was written.
+    pub fn record(&self, plan: &Plan, task: usize) -> Result<Option<TileRecord>, TilesError> {
+        let cell = plan.cell(task)?;
+        let path = self.record_file(cell);
+        let damaged = |path| Err(TilesError::DamagedTile { path, task });
+        let Ok(bytes) = fs::read(&path) else { return Ok(None) };
+        let Ok(record) = unseal::<TileRecord>(&bytes) else { return damaged(path) };
+        if record.cell != cell {
+            return damaged(path);
+        }
+        let content = self.content(cell);
+        match fs::metadata(&content).is_ok_and(|facts| facts.len() == record.bytes) {
+            true => Ok(Some(record)),
+            false => damaged(content),
+        }
     }
 
-    /// Reads the mesh of a tile; `None` if it is not there, or not as its record says.
-    pub fn mesh(&self, plan: &Plan, record: &TileRecord) -> Option<TileMesh> {
+    /// Checks the bytes of the content of a tile.
+    ///
+    /// # Errors
+    /// A content that is not as it was written.
+    pub fn check_content(&self, task: usize, record: &TileRecord) -> Result<(), TilesError> {
+        let path = self.content(record.cell);
+        let is_same = |bytes: Vec<u8>| crc32fast::hash(&bytes) == record.content_checksum;
+        match fs::read(&path).is_ok_and(is_same) {
+            true => Ok(()),
+            false => Err(TilesError::DamagedTile { path, task }),
+        }
+    }
+
+    /// Reads the mesh of a tile.
+    ///
+    /// # Errors
+    /// A file that is not there, or not as it was written.
+    pub fn mesh(
+        &self,
+        plan: &Plan,
+        task: usize,
+        record: &TileRecord,
+    ) -> Result<TileMesh, TilesError> {
+        let bytes = self.mesh_bytes(record);
+        let mesh = bytes.and_then(|bytes| tile_file::decode(&bytes, &plan.layout, &plan.labels));
+        mesh.ok_or_else(|| TilesError::DamagedTile { path: self.mesh_file(record.cell), task })
+    }
+
+    fn mesh_bytes(&self, record: &TileRecord) -> Option<Vec<u8>> {
         let bytes = fs::read(self.mesh_file(record.cell)).ok()?;
-        let is_same = crc32fast::hash(&bytes) == record.checksum;
-        is_same.then(|| tile_file::decode(&bytes, &plan.layout, &plan.labels)).flatten()
+        (crc32fast::hash(&bytes) == record.mesh_checksum).then_some(bytes)
+    }
+
+    /// Returns the record of a tile if all that was made of it is there, as it was written.
+    pub fn done(&self, plan: &Plan, task: usize) -> Option<TileRecord> {
+        let record = self.shown(plan, task)?;
+        self.mesh_bytes(&record).map(|_| record)
+    }
+
+    /// Returns the record of a tile if its content is there, as it was written; its mesh need not be.
+    pub fn shown(&self, plan: &Plan, task: usize) -> Option<TileRecord> {
+        let record = self.record(plan, task).ok().flatten()?;
+        self.check_content(task, &record).ok().map(|()| record)
     }
 
     /// Writes what was made of a tile, its record last.
@@ -219,26 +236,37 @@ impl Folder {
         record: TileRecord,
     ) -> Result<TileRecord, TilesError> {
         let mesh = tile_file::encode(tile, &plan.layout);
-        let record =
-            TileRecord { bytes: content.len() as u64, checksum: crc32fast::hash(&mesh), ..record };
+        let record = TileRecord {
+            bytes: content.len() as u64,
+            content_checksum: crc32fast::hash(content),
+            mesh_checksum: crc32fast::hash(&mesh),
+            ..record
+        };
         write_file(&self.content(record.cell), content)?;
         write_file(&self.mesh_file(record.cell), &mesh)?;
-        write_file(&self.record_file(record.cell), &json(&record))?;
+        write_file(&self.record_file(record.cell), &seal(&record))?;
         Ok(record)
     }
 
     /// Removes all files of the plan, and the folder if nothing else is in it.
     pub fn remove(&self) {
         self.forget_tiles();
-        let images = fs::read_dir(&self.path).into_iter().flatten().flatten();
-        let is_image = |name: &str| name.starts_with("image-") || name.starts_with(".pieces.");
-        let images = images
-            .map(|entry| entry.path())
-            .filter(|path| path.file_name().and_then(|name| name.to_str()).is_some_and(is_image));
-        for file in images.chain([self.scratch(), self.plan_file(), self.lock_file()]) {
-            let _ = fs::remove_file(file);
-        }
+        self.forget_plan();
+        let _ = fs::remove_file(self.lock_file());
         let _ = fs::remove_dir(&self.path);
+    }
+
+    /// Removes the plan and what belongs to it, also what a process left that was ended early.
+    pub fn forget_plan(&self) {
+        // The plan goes first: without it, nothing is taken for done.
+        let named = [self.plan_file(), self.blocks_file(), self.scratch()];
+        named.iter().for_each(|path| drop(fs::remove_file(path)));
+        let parts = fs::read_dir(&self.path).into_iter().flatten().flatten();
+        let is_part = |name: &str| name.starts_with("image-") || name.starts_with(".pieces.");
+        for part in parts.filter(|entry| entry.file_name().to_str().is_some_and(is_part)) {
+            let _ = fs::remove_file(part.path());
+        }
+        remove_abandoned(named.iter().map(|path| &**path));
     }
 
     /// Removes all tiles that were made, as of another plan.
@@ -279,8 +307,4 @@ impl Folder {
         // It would only take space.
         let _ = fs::remove_file(self.mesh_file(cell));
     }
-}
-
-fn json(value: &impl Serialize) -> Vec<u8> {
-    serde_json::to_vec(value).expect("plans and records are plain data")
 }

@@ -8,16 +8,21 @@
 //! |---|---|
 //! | `lattice`, `cell`, `octree` | the points that vertices are on, and the cells of tiles |
 //! | `layout`, `source` | triangles of a scene or of a file that is read in passing |
+//! | `survey`, `space` | faces counted in cells, and the room on disk that tiles need |
 //! | `cut`, `scratch`, `plan` | triangles divided among the leaves, and the plan of all tiles |
-//! | `tile`, `merge` | the mesh of a tile, and those of the parts of a cell put together |
+//! | `tile`, `samples`, `merge` | the mesh of a tile, and those of the parts of a cell together |
 //! | `curves`, `chords`, `coarser` | a tile from its parts, by a rule that its neighbours share |
 //! | `errors` | how much each level may lose |
 //! | `texture`, `skirt`, `content` | the GLB of a tile |
-//! | `tile_file`, `folder`, `task` | files of a plan, and its tasks |
-//! | `chain`, `tileset`, `review` | proof that tiles meet, `tileset.json`, and a check of it |
+//! | `sealed`, `block_file`, `tile_file` | files of a plan |
+//! | `record`, `folder`, `task` | the folder of a plan, and its tasks |
+//! | `chain`, `tileset` | proof that tiles meet, and `tileset.json` |
+//! | `archive`, `tileset_files`, `review` | tilesets in one file, and a check of tilesets |
 //! | `error` | why tiles cannot be made |
 #![forbid(unsafe_code)]
 
+pub mod archive;
+mod block_file;
 pub mod cell;
 pub mod chain;
 mod chords;
@@ -33,15 +38,21 @@ pub mod layout;
 pub mod merge;
 pub mod octree;
 pub mod plan;
+pub mod record;
 pub mod review;
+pub mod samples;
 pub mod scratch;
+mod sealed;
 mod skirt;
 pub mod source;
+pub mod space;
+pub mod survey;
 pub mod task;
 pub mod texture;
 pub mod tile;
 mod tile_file;
 pub mod tileset;
+mod tileset_files;
 
 pub use cell::Cell;
 pub use error::TilesError;

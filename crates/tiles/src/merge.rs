@@ -5,6 +5,7 @@ use rustc_hash::FxHashMap;
 
 use crate::cell::Cell;
 use crate::lattice::Point;
+use crate::samples::Samples;
 use crate::tile::{TileMesh, point_of};
 
 /// Greatest difference between values of two wedges that are one where tiles meet. Half a step of
@@ -23,14 +24,17 @@ pub struct Merged {
 /// Joins the tiles of parts of a cell at the curves along which they meet.
 pub fn merge(parts: Vec<TileMesh>, cell: Cell) -> Merged {
     let mut joined = Joined::default();
-    for part in parts {
+    let mut samples = Vec::new();
+    for mut part in parts {
+        samples.push(std::mem::take(&mut part.samples));
         joined.add(part);
     }
     let Joined { mesh, border, .. } = joined;
     let sides = |v: VertexId| cell.sides_of(point_of(&mesh, v));
     let (border, inner): (Vec<_>, Vec<_>) =
         border.into_iter().partition(|&[a, b]| sides(a) & sides(b) != 0);
-    Merged { tile: TileMesh { mesh, border }, open: unmatched(&inner) }
+    let samples = Samples::of_parts(&samples);
+    Merged { tile: TileMesh { mesh, border, samples }, open: unmatched(&inner) }
 }
 
 /// Returns the number of directed edges that are not there in the other direction.
@@ -58,7 +62,7 @@ struct Joined {
 impl Joined {
     fn add(&mut self, part: TileMesh) {
         let is_border = part.border_vertices();
-        let TileMesh { mesh, border } = part;
+        let TileMesh { mesh, border, .. } = part;
         let vertices: Vec<VertexId> = (0..mesh.positions.len())
             .map(|i| {
                 let next = VertexId::new(self.mesh.positions.len());

@@ -6,14 +6,17 @@ use crate::cell::{Cell, MOST_DEPTH};
 use crate::lattice::Point;
 
 /// Octree whose leaves hold about as many faces as a tile may have.
+///
+/// Its text has a hexadecimal digit for four nodes, of a bit each that says whether it is divided.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
 pub struct TileTree {
     /// All cells; the root is the first, and cells come before those that they are divided into.
     nodes: Vec<TreeNode>,
 }
 
 /// Cell of the octree, and those that it is divided into.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TreeNode {
     /// The cell.
     pub cell: Cell,
@@ -118,6 +121,35 @@ impl TileTree {
     }
 }
 
+impl From<TileTree> for String {
+    fn from(tree: TileTree) -> Self {
+        let digit = |nodes: &[TreeNode]| {
+            let bits = nodes.iter().enumerate();
+            let bits = bits.map(|(i, node)| u32::from(node.children.is_some()) << i);
+            char::from_digit(bits.sum(), 16).expect("four bits")
+        };
+        tree.nodes.chunks(4).map(digit).collect()
+    }
+}
+
+impl TryFrom<String> for TileTree {
+    type Error = &'static str;
+
+    fn try_from(text: String) -> Result<Self, Self::Error> {
+        let wrong = "not the text of an octree";
+        let digits: Option<Vec<u32>> = text.chars().map(|digit| digit.to_digit(16)).collect();
+        let digits = digits.ok_or(wrong)?;
+        let mut at = 0;
+        // Cells of the greatest depth are not asked about; they are at the end.
+        let tree = Self::divide(|_| {
+            let digit = digits.get(at / 4).copied().unwrap_or(0);
+            at += 1;
+            digit >> ((at - 1) % 4) & 1 == 1
+        });
+        if String::from(tree.clone()) == text { Ok(tree) } else { Err(wrong) }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -158,5 +190,17 @@ mod tests {
         let [x, y, z] = half.high();
         assert_eq!(tree.least_depth_around([x, y, z - 1], half), 1);
         assert_eq!(tree.least_depth_around([0, y - 1, z - 1], half), 1);
+    }
+
+    #[test]
+    fn a_tree_is_known_by_its_text() {
+        for tree in [corner(0), corner(1), corner(5), corner(MOST_DEPTH)] {
+            let text = String::from(tree.clone());
+            assert_eq!(text.len(), tree.nodes().len().div_ceil(4));
+            assert_eq!(TileTree::try_from(text), Ok(tree));
+        }
+        for text in ["", "1", "10", "0000", "2", "x", "10g", "1000"] {
+            assert!(TileTree::try_from(text.to_owned()).is_err(), "{text}");
+        }
     }
 }

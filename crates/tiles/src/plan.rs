@@ -5,25 +5,20 @@ use std::io::{self, BufWriter};
 use std::path::Path;
 
 use meshlod_io::{Image, Material};
+use meshlod_picture::MAX_TEXELS;
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
 use serde::{Deserialize, Serialize};
 
-use crate::cell::{Cell, MOST_DEPTH};
+use crate::cell::Cell;
 use crate::cut::{Cutter, Piece};
 use crate::error::TilesError;
-use crate::lattice::{BITS, Point, TileLattice};
+use crate::lattice::{Point, TileLattice};
 use crate::layout::Layout;
 use crate::octree::TileTree;
 use crate::scratch::{Blocks, ScratchWriter};
-use crate::source::{Source, Triangles};
+use crate::source::Source;
+use crate::survey::Survey;
 use crate::texture::DecodedImages;
-
-/// Depth of the grid in whose cells faces are counted first.
-const FIRST_DEPTH: u8 = 7;
-
-/// Depths that a crowded cell of the grid is counted anew by.
-const MORE_DEPTHS: u8 = 4;
 
 /// Size and form of tiles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -60,8 +55,10 @@ pub struct Plan {
     /// Materials by label.
     pub materials: Vec<Material>,
     /// Images of the materials, without their bytes.
-    pub images: Vec<String>,
-    /// Blocks of each leaf in the scratch file, by index of the node.
+    pub images: Vec<PlanImage>,
+    /// Blocks of each leaf in the scratch file, by index of the node, for as long as the plan is
+    /// being made; then they are in a file of their own.
+    #[serde(skip)]
     pub blocks: Blocks,
     /// Number of faces of the model, without those whose corners the lattice joins.
     pub faces: usize,
@@ -71,6 +68,21 @@ pub struct Plan {
     pub errors: Vec<f64>,
     /// Tasks by number: the node of each tile. Those that a tile is made from come before it.
     pub tasks: Vec<u32>,
+}
+
+/// Image of a plan's materials, which has a file of its own.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PlanImage {
+    /// Its name.
+    pub name: String,
+    /// Checksum of its bytes.
+    pub checksum: u32,
+}
+
+impl PlanImage {
+    fn of(image: &Image) -> Self {
+        Self { name: image.name.clone(), checksum: crc32fast::hash(&image.bytes) }
+    }
 }
 
 /// Materials of a model, and their images.
@@ -86,6 +98,15 @@ pub struct Look {
     pub decoded: DecodedImages,
 }
 
+impl Look {
+    /// Returns the number of images that are too large to be decoded at the resolution they have.
+    pub fn large_images(&self) -> usize {
+        let texels = |[width, height]: [u32; 2]| u64::from(width) * u64::from(height);
+        let pixels = self.images.iter().filter_map(|image| image.header()?.pixels);
+        pixels.filter(|&size| texels(size) > MAX_TEXELS).count()
+    }
+}
+
 impl Plan {
     /// Makes the plan of a model: counts its faces in cells, divides these, and writes the pieces of
     /// all faces to a scratch file. The errors of levels are left at 0.
@@ -98,41 +119,59 @@ impl Plan {
         options: &TileOptions,
         scratch: &Path,
     ) -> Result<Self, TilesError> {
+        Self::of_survey(Survey::of(source, options.most_faces)?, (source, look), options, scratch)
+    }
+
+    /// Makes the plan of a model that has been surveyed: as [`new`](Self::new), which counts first.
+    ///
+    /// # Errors
+    /// Errors of the source and the file.
+    pub fn of_survey(
+        survey: Survey,
+        (source, look): (&dyn Source, &Look),
+        options: &TileOptions,
+        scratch: &Path,
+    ) -> Result<Self, TilesError> {
         let system = |error| TilesError::system(scratch, error);
-        let bounds = source.bounds().map_err(system)?;
-        if bounds.is_empty() {
-            return Err(TilesError::NoFaces);
-        }
-        let lattice = TileLattice::over(&bounds).ok_or(TilesError::NoExtent)?;
-        let counted = Counted::of(source, &lattice, options.most_faces).map_err(system)?;
-        if counted.faces == 0 {
-            return Err(TilesError::NoFaces);
-        }
-        let tree = TileTree::divide(|cell| counted.faces_in(cell) > options.most_faces);
-        let layout = source.layout().clone();
-        let leaves = tree.nodes().iter().filter(|node| node.children.is_none()).count();
-        let sizes = [leaves, tree.nodes().len()];
-        let blocks = {
-            let file = BufWriter::with_capacity(1 << 20, File::create(scratch).map_err(system)?);
-            let writer = ScratchWriter::new(&layout, !look.labels.is_empty(), sizes, file);
-            scatter(source, (&lattice, &tree), writer).map_err(system)?
-        };
+        let file = File::create(scratch).map_err(system)?;
+        let out = BufWriter::with_capacity(1 << 20, &file);
+        let has_materials = !look.labels.is_empty();
+        let (blocks, _) = scatter(source, &survey, has_materials, out).map_err(system)?;
+        // A disk that is full may only say so now.
+        file.sync_all().map_err(system)?;
+        let Survey { lattice, tree, faces, degenerate } = survey;
         let tasks = tasks(&tree, &blocks);
         Ok(Self {
             key: String::new(),
             options: options.clone(),
             lattice,
-            layout,
+            layout: source.layout().clone(),
             labels: look.labels.clone(),
             materials: look.materials.clone(),
-            images: look.images.iter().map(|image| image.name.clone()).collect(),
+            images: look.images.iter().map(PlanImage::of).collect(),
             errors: vec![0.0; usize::from(tree.depth()) + 1],
             tree,
             blocks,
-            faces: counted.faces,
-            degenerate: counted.degenerate,
+            faces,
+            degenerate,
             tasks,
         })
+    }
+
+    /// Returns true if the parts of a plan that was read fit together.
+    pub(crate) fn is_sound(&self) -> bool {
+        let depth = usize::from(self.tree.depth());
+        let nodes = self.tree.nodes().len() as u32;
+        let is_number = |x: &f64| x.is_finite();
+        self.errors.len() == depth + 1
+            && self.errors.iter().all(|error| is_number(error) && *error >= 0.0)
+            && self.labels.len() == self.materials.len()
+            && self.lattice.step.is_normal()
+            && self.lattice.origin.iter().all(is_number)
+            && self.options.placement.as_flattened().iter().all(is_number)
+            && self.tasks.first().is_some_and(|&node| node < nodes)
+            && self.tasks.last() == Some(&0)
+            && self.tasks.is_sorted_by(|a, b| a > b)
     }
 
     /// Returns the cell of a task.
@@ -170,94 +209,21 @@ fn tasks(tree: &TileTree, blocks: &Blocks) -> Vec<u32> {
     tasks
 }
 
-/// Numbers of faces in cells, by the middle of each face.
-struct Counted {
-    faces: usize,
-    degenerate: usize,
-    /// By cell of any depth: number of faces in it.
-    of_cell: FxHashMap<Cell, usize>,
-}
-
-impl Counted {
-    fn of(source: &dyn Source, lattice: &TileLattice, most: usize) -> io::Result<Self> {
-        let mut this = Self { faces: 0, degenerate: 0, of_cell: FxHashMap::default() };
-        let mut fine: FxHashMap<Cell, usize> = FxHashMap::default();
-        source.triangles(&mut |some| {
-            let cells = cells_of(some, lattice, FIRST_DEPTH);
-            this.degenerate += cells.iter().filter(|cell| cell.is_none()).count();
-            this.faces += cells.iter().flatten().count();
-            cells.into_iter().flatten().for_each(|cell| *fine.entry(cell).or_default() += 1);
-            Ok(())
-        })?;
-        let mut depth = FIRST_DEPTH;
-        this.add(fine, 0);
-        // Few models have cells that are still crowded; each pass goes through all faces again.
-        while depth < MOST_DEPTH {
-            let is_crowded =
-                |(cell, faces): &(&Cell, &usize)| cell.depth == depth && **faces > most;
-            let crowded: FxHashMap<Cell, ()> =
-                this.of_cell.iter().filter(is_crowded).map(|(cell, _)| (*cell, ())).collect();
-            if crowded.is_empty() {
-                break;
-            }
-            let next = (depth + MORE_DEPTHS).min(MOST_DEPTH);
-            let mut fine: FxHashMap<Cell, usize> = FxHashMap::default();
-            source.triangles(&mut |some| {
-                let cells = cells_of(some, lattice, next);
-                let is_inside = |cell: &Cell| crowded.contains_key(&above(*cell, depth));
-                let inside = cells.into_iter().flatten().filter(is_inside);
-                inside.for_each(|cell| *fine.entry(cell).or_default() += 1);
-                Ok(())
-            })?;
-            this.add(fine, depth + 1);
-            depth = next;
-        }
-        Ok(this)
-    }
-
-    /// Adds counts of cells of one depth, and their sums up to another.
-    fn add(&mut self, fine: FxHashMap<Cell, usize>, up_to: u8) {
-        for (cell, faces) in fine {
-            for depth in up_to..=cell.depth {
-                *self.of_cell.entry(above(cell, depth)).or_default() += faces;
-            }
-        }
-    }
-
-    fn faces_in(&self, cell: Cell) -> usize {
-        self.of_cell.get(&cell).copied().unwrap_or(0)
-    }
-}
-
-/// Returns the cell of a lesser depth that another one is in.
-fn above(cell: Cell, depth: u8) -> Cell {
-    let by = cell.depth - depth;
-    Cell { depth, at: cell.at.map(|at| at >> by) }
-}
-
-/// Returns the cell of a depth that each triangle has its middle in; `None` where two corners are
-/// at one point.
-fn cells_of(some: &Triangles, lattice: &TileLattice, depth: u8) -> Vec<Option<Cell>> {
-    let cell = |places: &[[f64; 3]; 3]| {
-        let [a, b, c] = places.map(|place| lattice.point(place));
-        if a == b || b == c || c == a {
-            return None;
-        }
-        let at = [0, 1, 2].map(|axis| (a[axis] + b[axis] + c[axis]) as u32 / 3);
-        Some(Cell { depth, at: at.map(|x| x >> (BITS - u32::from(depth))) })
-    };
-    some.places.par_iter().with_min_len(1024).map(cell).collect()
-}
-
 /// Number of triangles that are cut by one thread at a time.
 const CUT_AT_ONCE: usize = 2048;
 
-/// Cuts all triangles of a source, and writes their pieces.
-fn scatter<W: io::Write>(
+/// Cuts all triangles of a source, and writes their pieces. Returns the blocks of each node, and the
+/// number of bytes.
+pub(crate) fn scatter<W: io::Write>(
     source: &dyn Source,
-    (lattice, tree): (&TileLattice, &TileTree),
-    mut writer: ScratchWriter<'_, W>,
-) -> io::Result<Blocks> {
+    survey: &Survey,
+    has_materials: bool,
+    out: W,
+) -> io::Result<(Blocks, u64)> {
+    let Survey { lattice, tree, .. } = survey;
+    let leaves = tree.nodes().iter().filter(|node| node.children.is_none()).count();
+    let sizes = [leaves, tree.nodes().len()];
+    let mut writer = ScratchWriter::new(source.layout(), has_materials, sizes, out);
     let cutter = Cutter::new(tree);
     let layout = source.layout();
     let width = layout.width();
@@ -289,5 +255,5 @@ fn scatter<W: io::Write>(
         }
         Ok(())
     })?;
-    Ok(writer.finish()?.0)
+    writer.finish()
 }

@@ -1,19 +1,22 @@
 //! Review of a tileset that was written: every file is read again.
 
 use std::collections::BTreeMap;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use meshlod_io::{MeshInstance, ReadOptions, Scene, Weld, read};
+use meshlod_io::{Format, MeshInstance, ReadOptions, Scene, Weld, read_bytes};
 use rustc_hash::FxHashMap;
 use serde_json::Value;
 
 use crate::cell::Cell;
 use crate::error::TilesError;
 use crate::lattice::{END, Point, TileLattice};
+use crate::tileset_files::TilesetFiles;
 
 /// Part of the size of the model by which boxes may be too small: rounding.
 const ROUNDING: f64 = 1e-9;
+
+/// Name of the file that a tileset begins with.
+const TILESET: &str = "tileset.json";
 
 /// Largest depth of external tilesets in each other.
 const MOST_FILES: usize = 64;
@@ -36,16 +39,16 @@ pub struct TilesetReview {
 /// meet without a crack.
 ///
 /// # Errors
-/// A `tileset.json` that cannot be read, or that is not one of ours.
-pub fn review(folder: &Path) -> Result<TilesetReview, TilesError> {
-    let path = folder.join("tileset.json");
-    let whole = json(&path)?;
+/// A `tileset.json` or archive that cannot be read, or that is not one of ours.
+pub fn review(path: &Path) -> Result<TilesetReview, TilesError> {
+    let files = TilesetFiles::open(path)?;
+    let whole = json(&files, TILESET)?;
     let extras = &whole["asset"]["extras"];
-    let foreign = || TilesError::Foreign(path.clone());
+    let foreign = || TilesError::Foreign(files.path(TILESET));
     let lattice = serde_json::from_value(extras["lattice"].clone()).map_err(|_| foreign())?;
     let is_z_up = extras["zUp"].as_bool().ok_or_else(foreign)?;
     let mut reviewer = Reviewer {
-        folder: folder.to_owned(),
+        files,
         lattice,
         is_z_up,
         review: TilesetReview::default(),
@@ -59,12 +62,10 @@ pub fn review(folder: &Path) -> Result<TilesetReview, TilesError> {
     Ok(reviewer.review)
 }
 
-fn json(path: &Path) -> Result<Value, TilesError> {
-    let bytes = fs::read(path).map_err(|error| TilesError::system(path, error))?;
-    serde_json::from_slice(&bytes).map_err(|error| TilesError::Unreadable {
-        path: path.to_owned(),
-        reason: error.to_string(),
-    })
+fn json(files: &TilesetFiles, name: &str) -> Result<Value, TilesError> {
+    let reason = |error: serde_json::Error| error.to_string();
+    serde_json::from_slice(&files.read(name)?)
+        .map_err(|error| TilesError::Unreadable { path: files.path(name), reason: reason(error) })
 }
 
 /// Border edges of a tile by their points, each with the number of times that it is there, less
@@ -72,7 +73,7 @@ fn json(path: &Path) -> Result<Value, TilesError> {
 type Edges = FxHashMap<[Point; 2], i64>;
 
 struct Reviewer {
-    folder: PathBuf,
+    files: TilesetFiles,
     lattice: TileLattice,
     is_z_up: bool,
     review: TilesetReview,
@@ -86,8 +87,7 @@ impl Reviewer {
     fn tile(&mut self, tile: &Value, most: f64, around: Option<[[f64; 3]; 2]>, files: usize) {
         let uri = tile["content"]["uri"].as_str().unwrap_or_default().to_owned();
         if uri.ends_with(".json") {
-            let path = self.folder.join(&uri);
-            match json(&path) {
+            match json(&self.files, &uri) {
                 Ok(inner) if files < MOST_FILES => {
                     self.tile(&inner["root"], most, around, files + 1);
                 }
@@ -152,9 +152,10 @@ impl Reviewer {
 
     /// Reads the content of a tile. Returns its border edges, and its bounds in model units.
     fn content(&mut self, uri: &str, cell: Cell) -> Result<(Edges, [[f64; 3]; 2]), String> {
-        let path = self.folder.join(uri);
+        let bytes = self.files.read(uri).map_err(|error| error.to_string())?;
         let options = ReadOptions { weld: Weld::Off };
-        let scene = read(&path, &options).map_err(|error| error.to_string())?;
+        let scene = read_bytes(&bytes, Format::Glb, &mut |_| None, &options);
+        let scene = scene.map_err(|error| error.to_string())?;
         let (mut edges, mut bounds) =
             (Edges::default(), [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]]);
         for shown in scene.instances() {

@@ -37,7 +37,8 @@ pub struct MeasuredError {
 impl Samples {
     /// Takes points of a leaf.
     pub fn of_leaf(mesh: &Mesh) -> Self {
-        let corners = |face: usize| mesh.faces[face].map(|v| DVec3::from(mesh.positions[v.index()]));
+        let corners =
+            |face: usize| mesh.faces[face].map(|v| DVec3::from(mesh.positions[v.index()]));
         let areas = (0..mesh.faces.len()).map(|face| {
             let [a, b, c] = corners(face);
             0.5 * (b - a).cross(c - a).length()

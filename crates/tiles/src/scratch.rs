@@ -3,7 +3,6 @@
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
 use rustc_hash::FxHashMap;
-use serde::{Deserialize, Serialize};
 
 use crate::lattice::Point;
 use crate::layout::Layout;
@@ -19,7 +18,7 @@ const LEAST_PIECES: usize = 64;
 const GATHERED: usize = 256 << 20;
 
 /// Block of pieces in a scratch file.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Block {
     /// First byte in the file.
     pub offset: u64,
@@ -27,6 +26,8 @@ pub struct Block {
     pub corners: u32,
     /// Number of pieces.
     pub pieces: u32,
+    /// Checksum of its bytes.
+    pub checksum: u32,
 }
 
 /// Blocks of the leaves of an octree, by index of the node.
@@ -104,14 +105,16 @@ impl<'l, W: Write> ScratchWriter<'l, W> {
             });
             indices.extend(index.to_le_bytes());
         }
-        let block = Block {
+        let mut block = Block {
             offset: self.length,
             corners: known.len() as u32,
             pieces: materials.len() as u32,
+            checksum: 0,
         };
         if self.has_materials {
             materials.iter().for_each(|material| indices.extend(material.to_le_bytes()));
         }
+        block.checksum = checksum(&records, &indices);
         self.out.write_all(&records)?;
         self.out.write_all(&indices)?;
         self.length += (records.len() + indices.len()) as u64;
@@ -135,10 +138,17 @@ impl<'l, W: Write> ScratchWriter<'l, W> {
     }
 }
 
+fn checksum(records: &[u8], rest: &[u8]) -> u32 {
+    let mut sum = crc32fast::Hasher::new();
+    sum.update(records);
+    sum.update(rest);
+    sum.finalize()
+}
+
 /// Reads the blocks of a leaf into the builder of its mesh.
 ///
 /// # Errors
-/// Errors of the file, and a block that names a corner it lacks.
+/// Errors of the file, and [`io::ErrorKind::InvalidData`] for a block that is not as it was written.
 pub fn read_blocks(
     file: &mut (impl Read + Seek),
     blocks: &[Block],
@@ -147,13 +157,20 @@ pub fn read_blocks(
     builder: &mut TileBuilder,
 ) -> io::Result<()> {
     let width = layout.width();
+    let end = file.seek(SeekFrom::End(0))?;
     for block in blocks {
         let (corners, pieces) = (block.corners as usize, block.pieces as usize);
         let records = corners * record(layout);
         let length = records + pieces * if has_materials { 8 } else { 6 };
+        if block.offset.saturating_add(length as u64) > end {
+            return Err(invalid("is cut off"));
+        }
         let mut bytes = vec![0; length];
         file.seek(SeekFrom::Start(block.offset))?;
         file.read_exact(&mut bytes)?;
+        if crc32fast::hash(&bytes) != block.checksum {
+            return Err(invalid("is changed"));
+        }
         let (records, rest) = bytes.split_at(records);
         let (indices, materials) = rest.split_at(6 * pieces);
         let (mut points, mut values) = (Vec::new(), Vec::new());
@@ -168,10 +185,7 @@ pub fn read_blocks(
             let indices = indices.as_chunks().0;
             let index = [0, 1, 2].map(|corner| usize::from(u16::from_le_bytes(indices[corner])));
             if index.iter().any(|&i| i >= corners) {
-                return Err(io::Error::new(
-                    io::ErrorKind::InvalidData,
-                    "the scratch file is damaged",
-                ));
+                return Err(invalid("is changed"));
             }
             let corner = index.map(|i| (points[i], &values[i * width..][..width]));
             let material = materials.get(i).map_or(0, |&bytes| u16::from_le_bytes(bytes));
@@ -179,6 +193,10 @@ pub fn read_blocks(
         }
     }
     Ok(())
+}
+
+fn invalid(reason: &str) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, reason)
 }
 
 /// Returns the number of bytes of a corner.

@@ -5,9 +5,11 @@ use crate::coarser::{Coarsen, Coarser, coarser};
 use crate::content::content;
 use crate::error::TilesError;
 use crate::errors::simplify_error;
-use crate::folder::{Folder, TileRecord};
+use crate::folder::Folder;
 use crate::merge::merge;
 use crate::plan::{Look, Plan};
+use crate::record::TileRecord;
+use crate::samples::MeasuredError;
 use crate::tile::TileMesh;
 
 /// Makes a tile, unless it is done. The result depends on the plan alone.
@@ -21,7 +23,7 @@ pub fn run_task<C: Coarsen>(
     method: &C,
 ) -> Result<TileRecord, TilesError> {
     let cell = plan.cell(task)?;
-    if let Some(record) = folder.record(cell) {
+    if let Some(record) = folder.done(plan, task) {
         return Ok(record);
     }
     let (tile, record) = match plan.parts(task)[..] {
@@ -35,10 +37,12 @@ pub fn run_task<C: Coarsen>(
     let record = record.with_chain(chain_sum(&tile));
     let made = content((plan, look), cell, &tile)
         .map_err(|source| TilesError::Content { tile: cell.to_string(), source })?;
+    look.decoded.check()?;
     let record = TileRecord {
         faces: made.faces,
         error: record.bound + made.moved * plan.lattice.step,
         bounds: made.bounds,
+        lost_images: made.lost_images,
         ..record
     };
     folder.write_tile(plan, (&tile, &made.glb), record)
@@ -55,11 +59,10 @@ fn of_parts<C: Coarsen>(
     let mut meshes = Vec::new();
     let mut bound = 0f64;
     for &part in parts {
-        let not_done = TilesError::NotDone { task, needs: part };
-        let Some(record) = folder.record(plan.cell(part)?) else { return Err(not_done) };
-        let Some(mesh) = folder.mesh(plan, &record) else { return Err(not_done) };
+        let record = folder.record(plan, part)?;
+        let record = record.ok_or(TilesError::NotDone { task, needs: part })?;
+        meshes.push(folder.mesh(plan, part, &record)?);
         bound = bound.max(record.bound);
-        meshes.push(mesh);
     }
     let merged = merge(meshes, cell);
     let error = plan.errors[usize::from(cell.depth)];
@@ -67,6 +70,9 @@ fn of_parts<C: Coarsen>(
         coarser(merged.tile, (cell, &plan.tree), error, method)
             .map_err(|reason| simplify_error(cell, &reason))?;
     let bound = bound + distance * plan.lattice.step;
-    let record = TileRecord { bound, open: merged.open, is_unchanged, ..TileRecord::new(cell) };
+    let distances = method.distances(&tile.samples.mesh(), &tile.mesh);
+    let measured = MeasuredError::of(&distances, plan.lattice.step);
+    let new = TileRecord::new(cell);
+    let record = TileRecord { bound, measured, open: merged.open, is_unchanged, ..new };
     Ok((tile, record))
 }

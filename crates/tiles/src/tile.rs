@@ -5,6 +5,7 @@ use rustc_hash::FxHashMap;
 
 use crate::cell::Cell;
 use crate::lattice::Point;
+use crate::samples::Samples;
 
 /// Mesh of a tile.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -14,6 +15,8 @@ pub struct TileMesh {
     /// Edges in the sides of the cell, in the direction that their faces have. Their ends have whole
     /// coordinates.
     pub border: Vec<[VertexId; 2]>,
+    /// Points of the model that it shows.
+    pub samples: Samples,
 }
 
 impl TileMesh {
@@ -115,7 +118,8 @@ impl TileBuilder {
         let edges = mesh.faces.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
         let is_border = |[a, b]: &[VertexId; 2]| sides[a.index()] & sides[b.index()] != 0;
         let border = edges.filter(is_border).collect();
-        TileMesh { mesh, border }
+        let samples = Samples::of_leaf(&mesh);
+        TileMesh { mesh, border, samples }
     }
 }
 

@@ -3,20 +3,26 @@
 use meshlod_mesh::VertexId;
 
 use crate::layout::Layout;
+use crate::samples::Samples;
 use crate::tile::{TileBuilder, TileMesh};
 
-/// Encodes a tile: counts, positions, faces, border, wedges, materials and a checksum; little-endian.
+/// Encodes a tile: counts, positions, faces, border, samples, wedges, materials and a checksum;
+/// little-endian.
 pub fn encode(tile: &TileMesh, layout: &Layout) -> Vec<u8> {
     let mesh = &tile.mesh;
     let wedges = mesh.attributes.as_ref().map_or(0, |attributes| attributes.wedge_count);
     let mut bytes = Vec::new();
-    let counts = [mesh.positions.len(), mesh.faces.len(), tile.border.len(), wedges];
+    let samples = &tile.samples;
+    let [vertices, faces] = [mesh.positions.len(), mesh.faces.len()];
+    let counts = [vertices, faces, tile.border.len(), samples.points.len(), wedges];
     let mut put = |word: u32| bytes.extend(word.to_le_bytes());
     counts.into_iter().for_each(|count| put(count as u32));
     put(u32::from(mesh.materials.is_some()));
     mesh.positions.iter().flatten().for_each(|&x| put(x as i32 as u32));
     mesh.faces.iter().flatten().for_each(|v| put(v.0));
     tile.border.iter().flatten().for_each(|v| put(v.0));
+    put(samples.area.to_bits());
+    samples.points.iter().flatten().for_each(|x| put(x.to_bits()));
     if let Some(attributes) = &mesh.attributes {
         attributes.corners.iter().flatten().for_each(|wedge| put(wedge.0));
     }
@@ -45,8 +51,8 @@ pub fn decode(bytes: &[u8], layout: &Layout, labels: &[String]) -> Option<TileMe
         return None;
     }
     let mut words = Words { bytes };
-    let counts = words.take(5)?;
-    let [vertices, faces, border, wedges] = [0, 1, 2, 3].map(|i| counts[i] as usize);
+    let counts = words.take(6)?;
+    let [vertices, faces, border, samples, wedges] = [0, 1, 2, 3, 4].map(|i| counts[i] as usize);
     let mut tile = TileMesh::default();
     let mut mesh = TileBuilder::new(layout.attributes(), labels).into_mesh();
     let triples = |words: Vec<u32>| words.as_chunks().0.to_vec();
@@ -55,12 +61,16 @@ pub fn decode(bytes: &[u8], layout: &Layout, labels: &[String]) -> Option<TileMe
     mesh.faces = triples(words.take(3 * faces)?).iter().map(|face| face.map(VertexId)).collect();
     let edges = words.take(2 * border)?;
     tile.border = edges.as_chunks().0.iter().map(|edge| edge.map(VertexId)).collect();
+    let area = f32::from_bits(words.take(1)?[0]);
+    let points = triples(words.take(samples.checked_mul(3)?)?);
+    let points = points.iter().map(|point| point.map(f32::from_bits)).collect();
+    tile.samples = Samples { points, area };
     if let Some(attributes) = &mut mesh.attributes {
         let corners = triples(words.take(3 * faces)?);
         attributes.corners = corners.iter().map(|face| face.map(meshlod_mesh::WedgeId)).collect();
         attributes.wedge_count = wedges;
     }
-    if counts[4] == 1 {
+    if counts[5] == 1 {
         mesh.materials.as_mut()?.of_face = words.take(faces)?;
     }
     if let Some(attributes) = &mut mesh.attributes {

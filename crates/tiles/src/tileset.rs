@@ -1,13 +1,14 @@
 //! Files `tileset.json` [OGC23], which say how tiles refine each other.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Value, json};
 
 use crate::cell::Cell;
 use crate::error::TilesError;
-use crate::folder::{Folder, TileRecord};
+use crate::folder::Folder;
 use crate::plan::Plan;
+use crate::record::TileRecord;
 
 /// Number of levels in one file.
 const LEVELS: u8 = 5;
@@ -30,6 +31,15 @@ pub struct Finished {
     pub records: Vec<TileRecord>,
 }
 
+impl Finished {
+    /// Returns the names of images that tiles should show and that cannot be decoded.
+    pub fn lost_images<'p>(&self, plan: &'p Plan) -> Vec<&'p str> {
+        let all = self.records.iter().flat_map(|record| &record.lost_images);
+        let lost: BTreeSet<usize> = all.copied().collect();
+        lost.iter().filter_map(|&i| plan.images.get(i)).map(|image| &*image.name).collect()
+    }
+}
+
 /// Checks that all tiles are done and meet, and writes down how they refine each other.
 ///
 /// # Errors
@@ -37,8 +47,9 @@ pub struct Finished {
 pub fn finish(plan: &Plan, folder: &Folder) -> Result<Finished, TilesError> {
     let all = 0..plan.tasks.len();
     let record = |task: usize| {
-        let found = folder.record(plan.cell(task)?);
-        found.ok_or(TilesError::NotDone { task: plan.tasks.len(), needs: task })
+        let found = folder.record(plan, task)?;
+        let record = found.ok_or(TilesError::Missing { task })?;
+        folder.check_content(task, &record).map(|()| record)
     };
     let records: Vec<TileRecord> = all.map(record).collect::<Result<_, _>>()?;
     check_chains(plan, &records)?;
@@ -152,6 +163,9 @@ impl Writer<'_> {
         }
         tile["content"] = json!({ "uri": format!("tiles/{cell}.glb") });
         tile["extras"] = json!({ "faces": record.faces, "cell": cell });
+        if let Some(measured) = record.measured {
+            tile["extras"]["measured"] = json!(measured);
+        }
         if !parts.is_empty() {
             let parts = parts.into_iter().map(|part| self.tile(part, Some(cell), last));
             tile["children"] = Value::Array(parts.collect());

@@ -59,4 +59,5 @@ class TilesOptions(TypedDict, total=False):
     lat: float | None
     lon: float | None
     alt: float
+    ecef: bool
     weld: float | None

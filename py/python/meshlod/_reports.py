@@ -160,6 +160,8 @@ class TilesReport:
     levels: Sequence[TileLevel]
     #: Number of tiles that could not be made coarser than what they were made from.
     unchanged_tiles: int
+    #: Number of images that cannot be decoded and are left out.
+    lost_images: int
 
     def __str__(self) -> str:
         tiles = "tile" if self.tiles == 1 else "tiles"

@@ -34,6 +34,7 @@ def tiles(
     lat: float | None = None,
     lon: float | None = None,
     alt: float = 0.0,
+    ecef: bool = False,
     weld: float | None = None,
     memory: int | None = None,
     threads: int | None = None,
@@ -42,14 +43,15 @@ def tiles(
     """Writes a model of any size as 3D Tiles: a tree of tiles, each within a proved error.
 
     ``inputs`` are files, and folders of them, that are read as one model; ``out`` is a folder, in
-    which ``tileset.json`` names the tiles. Binary PLY and STL files from 64 MB on are read in
+    which ``tileset.json`` names the tiles, or an archive of these files if it ends in ``.3tz``. Binary PLY and STL files from 64 MB on are read in
     passing, with little memory. The bytes are those of ``meshlod tiles`` with the same options,
     and a call that was ended goes on where it stopped.
 
     A part of the model with more than ``tile_faces`` faces is divided. Contents are compressed by
     meshopt unless ``plain``, and ``skirts`` hide gaps between tiles of different levels. ``up`` is
     the axis of the model that points up, ``"y"`` or ``"z"``; ``lat`` and ``lon``, in degrees, and
-    ``alt``, in metres above the ellipsoid, are the place of its origin on the globe. ``weld`` joins
+    ``alt``, in metres above the ellipsoid, are the place of its origin on the globe; with
+    ``ecef``, its coordinates are about the middle of the earth (EPSG:4978). ``weld`` joins
     vertices within a distance in model units when files are read, which is then done as a whole.
 
     ``threads`` work at a time, by default one for each core; with ``memory``, in bytes, as many as
@@ -60,7 +62,7 @@ def tiles(
         other files, or that another process is making tiles in.
     """
     options: TilesOptions = {"tile_faces": tile_faces, "plain": plain, "skirts": skirts, "up": up}
-    options |= {"lat": lat, "lon": lon, "alt": alt, "weld": weld}
+    options |= {"lat": lat, "lon": lon, "alt": alt, "ecef": ecef, "weld": weld}
     bar = callback(progress, "tiles")
     asked = tiles_asked(memory=memory, threads=threads, progress=bar, **options)
     names = input_names(inputs)
@@ -90,6 +92,7 @@ def tiles_asked(
         "skirts": bool(options.get("skirts", True)),
         "up": up_axis(options.get("up", "y")),
         "globe": globe(options.get("lat"), options.get("lon"), options.get("alt", 0.0)),
+        "ecef": bool(options.get("ecef", False)),
         "memory": None if memory is None else _asked.whole("memory", memory, 1, 2**63 - 1),
     }
     text = json.dumps(request, allow_nan=False)

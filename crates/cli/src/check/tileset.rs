@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use meshlod::jobs::{TilesetReport, check_tileset};
+use meshlod::tiles::archive::is_archive;
 use serde::Serialize;
 
 use crate::session::Session;
@@ -23,16 +24,19 @@ struct TilesetFigures {
     report: TilesetReport,
 }
 
-/// Returns true for `tileset.json` and for a folder that has one.
+/// Returns true for `tileset.json`, for a folder that has one, and for an archive of tiles.
 pub fn is_tileset(path: &Path) -> bool {
-    path.file_name().is_some_and(|name| name == TILESET) || path.join(TILESET).is_file()
+    is_archive(path)
+        || path.file_name().is_some_and(|name| name == TILESET)
+        || path.join(TILESET).is_file()
 }
 
 /// Reads all tiles of a tileset again and checks them.
 pub fn check(path: &Path, session: &Session) -> Result<Answer, Failure> {
-    let folder = if path.is_dir() { path } else { path.parent().unwrap_or(Path::new("")) };
+    let is_whole = path.is_dir() || is_archive(path);
+    let whole = if is_whole { path } else { path.parent().unwrap_or(Path::new("")) };
     let hearing = Hearing::new(session, path, path);
-    let report = check_tileset(folder, &hearing).map_err(|error| hearing.failure(error))?;
+    let report = check_tileset(whole, &hearing).map_err(|error| hearing.failure(error))?;
     let outcome = Outcome::Found.when(!report.findings.is_empty());
     let text = text(path, &report);
     let figures = TilesetFigures { file: files::name(path), report };

@@ -30,7 +30,7 @@ use meshlod::jobs::Grade;
 /// Find defects of a mesh and contacts between its objects; exit with 3 on errors
 #[derive(Args)]
 pub struct Check {
-    /// Meshes to read, or -; or .mlod files and folders of tiles, to prove that none has a crack
+    /// Meshes to read, or -; or .mlod files, and folders or archives of tiles, to prove them free of cracks
     #[arg(id = "input", value_name = "IN", required = true)]
     inputs: Vec<PathBuf>,
     /// Definition of an object

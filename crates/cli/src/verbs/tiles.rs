@@ -6,9 +6,11 @@ mod report;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand, ValueEnum};
+use meshlod::io::check_place;
 use meshlod::jobs::{
     Globe, TilesRequest, Up, check_tiles_folder, finish_tiles, plan_tiles, run_tile_task, tiles,
 };
+use meshlod::tiles::archive::is_archive;
 use serde_json::json;
 
 use crate::options::args::ReadArgs;
@@ -23,11 +25,11 @@ use report::TilesFigures;
 
 /// Write a model of any size as 3D Tiles: a tree of tiles, each level within a proved error
 ///
-/// OUT is a folder: tileset.json names the tiles in it. A run that was ended goes on where it
-/// stopped.
+/// OUT is a folder: tileset.json names the tiles in it. If it ends in .3tz it is an archive of these
+/// files. A run that was ended goes on where it stopped.
 ///
-/// Binary PLY and STL files from 64 MB on are read in passing, with little memory. Of several files,
-/// the layers are kept that all of them have.
+/// Binary PLY and STL files from 64 MB on are read in passing, with little memory; of an .mlod file,
+/// the finest level is read. Of several files, the layers are kept that all of them have.
 ///
 /// The steps plan, task and finish do the same with any number of processes or machines.
 #[derive(Args)]
@@ -38,9 +40,11 @@ pub struct Tiles {
     /// Meshes to read as one model, folders of them, or -
     #[arg(value_name = "IN", required = true)]
     inputs: Vec<PathBuf>,
-    /// Folder to write
+    /// Folder to write, or archive
     #[arg(value_name = "OUT", required = true)]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    archive: ArchiveArgs,
     #[command(flatten)]
     form: FormArgs,
     /// Memory for all threads together, such as 1G; how many work at a time follows from it
@@ -90,9 +94,33 @@ struct FinishStep {
     /// Folder of the plan
     #[arg(value_name = "PLAN")]
     plan: PathBuf,
-    /// Folder to write
+    /// Folder to write, or archive
     #[arg(value_name = "OUT")]
     output: PathBuf,
+    #[command(flatten)]
+    archive: ArchiveArgs,
+}
+
+/// Choice of an archive.
+#[derive(Args)]
+struct ArchiveArgs {
+    /// Write one file, an archive of the tileset: OUT, whose name gets .3tz unless it has it
+    #[arg(long)]
+    zip: bool,
+}
+
+impl ArchiveArgs {
+    /// Returns the path of the output.
+    fn output(&self, path: &Path) -> Result<PathBuf, Failure> {
+        if session_files::is_pipe(path) {
+            return Err(Failure::usage("-: tiles cannot go to standard output; name a folder"));
+        }
+        let mut path = path.to_owned();
+        if self.zip && !is_archive(&path) {
+            path.as_mut_os_string().push(".3tz");
+        }
+        Ok(path)
+    }
 }
 
 /// Form of the tiles.
@@ -126,6 +154,9 @@ struct FormArgs {
         allow_negative_numbers = true
     )]
     alt: f64,
+    /// Coordinates of the model are about the middle of the earth, in metres (EPSG:4978)
+    #[arg(long, conflicts_with_all = ["lat", "lon", "alt", "up"])]
+    ecef: bool,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -152,6 +183,7 @@ impl FormArgs {
                 UpArg::Z => Up::Z,
             },
             globe,
+            ecef: self.ecef,
             memory,
         }
     }
@@ -171,8 +203,9 @@ impl Tiles {
         let ([input, ..], Some(output)) = (&self.inputs[..], &self.output) else {
             return Err(Failure::usage("name a mesh to read and a folder to write"));
         };
+        let output = &self.archive.output(output)?;
         let hearing = Hearing::new(session, input, output);
-        check_folder(output, &hearing)?;
+        check_output(output, &hearing)?;
         let request = self.form.request(self.memory);
         let model = files::open(&self.inputs, &self.reading, session)?;
         let done = tiles(model.input(), output, &request, &hearing);
@@ -208,19 +241,21 @@ impl TaskStep {
 
 impl FinishStep {
     fn run(self, session: &Session) -> Result<Answer, Failure> {
-        let hearing = Hearing::new(session, &self.plan, &self.output);
-        check_folder(&self.output, &hearing)?;
-        let done = finish_tiles(&self.plan, &self.output, &hearing);
+        let output = self.archive.output(&self.output)?;
+        let hearing = Hearing::new(session, &self.plan, &output);
+        check_output(&output, &hearing)?;
+        let done = finish_tiles(&self.plan, &output, &hearing);
         let report = done.map_err(|error| hearing.failure(error))?;
-        let text = report::text(&self.output, &report);
-        Ok(Answer::new(TilesFigures::new(&self.output, report), text))
+        let text = report::text(&output, &report);
+        Ok(Answer::new(TilesFigures::new(&output, report), text))
     }
 }
 
-/// Fails if tiles cannot go to a folder, before any work is done.
-fn check_folder(path: &Path, hearing: &Hearing<'_>) -> Result<(), Failure> {
-    if session_files::is_pipe(path) {
-        return Err(Failure::usage("-: tiles cannot go to standard output; name a folder"));
+/// Fails if tiles cannot go to a folder or file, before any work is done.
+fn check_output(path: &Path, hearing: &Hearing<'_>) -> Result<(), Failure> {
+    check_tiles_folder(path).map_err(|error| hearing.failure(error))?;
+    match is_archive(path) {
+        true => Ok(check_place(path)?),
+        false => Ok(()),
     }
-    check_tiles_folder(path).map_err(|error| hearing.failure(error))
 }

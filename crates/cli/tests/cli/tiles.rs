@@ -1,10 +1,10 @@
 //! Tiles: whole runs, steps, and runs that are ended and go on.
 
-use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
 use std::process::Stdio;
 use std::time::Duration;
+
+use meshlod_fixtures::folder_files as files;
 
 use crate::run::Run;
 
@@ -19,24 +19,6 @@ fn told(run: &Run, arguments: &[&str], code: i32) -> String {
     let done = run.run(arguments);
     assert_eq!(done.code, code, "{arguments:?}: {done:?}");
     done.only_line().to_owned()
-}
-
-/// Bytes of all files in a folder, by their path in it.
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut all = BTreeMap::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(at) = folders.pop() {
-        for entry in fs::read_dir(&at).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else {
-                let name = path.strip_prefix(folder).unwrap().display().to_string();
-                all.insert(name, fs::read(&path).unwrap());
-            }
-        }
-    }
-    all
 }
 
 #[test]
@@ -97,6 +79,62 @@ fn a_run_that_is_killed_goes_on() {
 }
 
 #[test]
+fn an_archive_has_the_files_of_a_folder() {
+    let run = Run::new();
+    run.sample("knot", 20_000, "in.ply");
+    let size = ["--tile-faces", "2000"];
+    let folder = run.json(&[&["tiles", "in.ply", "out"], &size[..]].concat());
+    let archive = run.json(&[&["tiles", "in.ply", "out", "--zip"], &size[..]].concat());
+    assert_eq!((&archive["file"], &archive["bytes"]), (&"out.3tz".into(), &folder["bytes"]));
+    let named = run.json(&[&["tiles", "in.ply", "named.3tz"], &size[..]].concat());
+    assert_eq!(named["tiles"], folder["tiles"]);
+    make(&run, &[&["tiles", "plan", "in.ply", "plan"], &size[..]].concat());
+    for task in 0..folder["tiles"].as_u64().unwrap() {
+        make(&run, &["tiles", "task", "plan", &task.to_string()]);
+    }
+    make(&run, &["tiles", "finish", "plan", "steps", "--zip"]);
+    let bytes = ["out.3tz", "named.3tz", "steps.3tz"].map(|name| fs::read(run.path(name)).unwrap());
+    assert!(bytes[0] == bytes[1] && bytes[0] == bytes[2]);
+    // Nothing is left beside them.
+    let mut names: Vec<_> = fs::read_dir(run.path("."))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    assert_eq!(names, ["in.ply", "named.3tz", "out", "out.3tz", "steps.3tz"]);
+    let found = run.json(&["check", "out.3tz"]);
+    assert_eq!((&found["tiles"], &found["file"]), (&folder["tiles"], &"out.3tz".into()));
+    for (end, reason) in [(0, "not a 3tz archive"), (bytes[0].len() / 2, "not a 3tz archive")] {
+        fs::write(run.path("half.3tz"), &bytes[0][..end]).unwrap();
+        let told = told(&run, &["check", "half.3tz"], 1);
+        assert!(told.contains("half.3tz") && told.contains(reason), "{told}");
+    }
+}
+
+#[test]
+fn an_image_that_cannot_be_decoded_is_counted() {
+    let run = Run::new();
+    fs::write(run.path("skin.mtl"), "newmtl skin\nmap_Kd skin.png\n").unwrap();
+    fs::write(run.path("skin.png"), b"\x89PNG\r\n\x1a\nno picture").unwrap();
+    let text = "mtllib skin.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n\
+                usemtl skin\nf 1/1 2/2 3/3\n";
+    fs::write(run.path("in.obj"), text).unwrap();
+    let done = run.run(&["tiles", "in.obj", "out", "--json"]);
+    assert_eq!((done.code, &done.json()["lost_images"]), (0, &1.into()), "{done:?}");
+    assert!(done.err.contains("cannot be decoded, left out: 1 image (skin.png)"), "{done:?}");
+}
+
+#[test]
+fn the_finest_level_of_a_file_of_levels_is_tiled() {
+    let run = Run::new();
+    run.sample("knot", 2_000, "in.ply");
+    make(&run, &["build", "in.ply", "in.mlod"]);
+    let report = run.json(&["tiles", "in.mlod", "out", "--tile-faces", "500"]);
+    assert_eq!(report["input_faces"], run.json(&["info", "in.ply"])["faces"]);
+    assert_eq!(run.json(&["check", "out"])["findings"].as_array().unwrap().len(), 0);
+}
+
+#[test]
 fn what_cannot_be_tiled_is_told() {
     let run = Run::new();
     run.sample("torus", 1_000, "in.ply");
@@ -107,10 +145,13 @@ fn what_cannot_be_tiled_is_told() {
         (&["tiles", "in.ply", "out", "--tile-faces", "5"], 2, "--tile-faces: must be at least 100"),
         (&["tiles", "in.ply", "out", "--lat", "100", "--lon", "0"], 2, "latitude within 90"),
         (&["tiles", "task", "nowhere", "0"], 2, "no plan of tiles"),
+        (&["tiles", "finish", "nowhere", "out"], 2, "no plan of tiles"),
     ] {
         let line_told = told(&run, line, code);
         assert!(line_told.contains(reason), "{line:?}: {line_told}");
     }
+    let both = run.run(&["tiles", "in.ply", "out", "--ecef", "--up", "z"]);
+    assert!(both.code == 2 && both.err.contains("cannot be used with"), "{both:?}");
     assert!(!run.path("out").exists());
     // Folders with other files are not touched, whatever these are called.
     for folder in ["used/tiles", "used/content"] {

@@ -18,6 +18,19 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), IoError> {
     replace(path, |out| out.write_all(bytes)).map_err(|error| IoError::system(path, error))
 }
 
+/// Writes a file atomically, as [`write_file`] does, with `fill`.
+///
+/// # Errors
+/// Errors of the system and of `fill`, with the path; those that name a file already stay as they
+/// are.
+pub fn write_file_with(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), IoError> {
+    replace(path, fill)
+        .map_err(|error| error.downcast().unwrap_or_else(|error| IoError::system(path, error)))
+}
+
 /// Fails if no file can be at a path: if it is a folder, or one of its folders is a file.
 ///
 /// Folders may be missing: they are made when the file is written.

@@ -76,6 +76,7 @@ impl Copies {
 
     /// Returns the mesh of another scene in the place of each mesh; `None` unless that shows as many,
     /// in the same places.
+    #[cfg(feature = "multires")]
     pub fn counterparts(&self, other: &Scene) -> Option<Vec<usize>> {
         let theirs = other.instances();
         let mut found: Vec<Option<usize>> = vec![None; self.of_meshes.len()];
@@ -109,6 +110,7 @@ impl Copies {
     }
 
     /// Returns true if something holds of all meshes that are shown.
+    #[cfg(feature = "multires")]
     pub fn all(&self, holds: impl Fn(usize) -> bool) -> bool {
         (0..self.of_meshes.len()).filter(|&i| self.of_meshes[i].is_some()).all(holds)
     }
@@ -238,6 +240,7 @@ mod tests {
         assert!(apart.mean().is_finite() && apart.rms().is_finite() && apart.max().is_finite());
     }
 
+    #[cfg(feature = "multires")]
     #[test]
     fn a_mesh_where_there_was_none_is_no_counterpart() {
         let mut ours = flock(&[scaled(1.0, 1.0, 1.0); 6]);

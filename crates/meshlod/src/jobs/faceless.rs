@@ -17,7 +17,7 @@ pub fn refuse_points(scene: &Scene) -> Result<(), JobError> {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "multires"))]
 mod tests {
     use meshlod_io::{Weld, gltf};
 

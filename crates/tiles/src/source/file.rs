@@ -8,7 +8,7 @@ use meshlod_io::{IoError, ParseError};
 
 /// File that is open for reading; its errors name it.
 #[derive(Debug)]
-pub(super) struct PlacedFile {
+pub(crate) struct PlacedFile {
     file: File,
     path: PathBuf,
     /// Length in bytes.

@@ -14,6 +14,7 @@ use meshlod_mesh::Bounds;
 
 use crate::layout::Layout;
 
+pub(crate) use file::PlacedFile;
 pub use joined::JoinedSource;
 pub use open::{LEAST_STREAMED, Streamed, open_stream};
 pub use ply::PlySource;
@@ -61,7 +62,7 @@ pub struct Triangles {
 
 impl Triangles {
     /// Makes room for a number of triangles, whose values are those of others or 0.
-    fn resize(&mut self, count: usize, width: usize) {
+    pub(crate) fn resize(&mut self, count: usize, width: usize) {
         self.places.resize(count, [[0.0; 3]; 3]);
         self.values.resize(3 * width * count, 0.0);
         self.materials.resize(count, 0);

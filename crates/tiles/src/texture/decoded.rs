@@ -1,11 +1,15 @@
 //! Decoded images of a model, kept for the tiles that come next.
 
+use std::fs;
 use std::hash::Hash;
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use meshlod_io::Image;
 use meshlod_picture::{Averaging, Texture};
 use rustc_hash::FxHashMap;
+
+use crate::error::TilesError;
 
 /// Bytes of decoded images that are kept, unless tiles that are being made need more at once: nine of
 /// the largest.
@@ -20,6 +24,16 @@ const MOST_ENCODED_BYTES: usize = 1 << 28;
 pub struct DecodedImages {
     decoded: Kept<DecodedKey, Option<Arc<Texture>>>,
     encoded: Kept<EncodedKey, Arc<Image>>,
+    files: Option<Arc<ImageFiles>>,
+}
+
+/// Files of images, which are read when they are needed.
+#[derive(Debug)]
+struct ImageFiles {
+    /// Path and checksum of each.
+    all: Vec<(PathBuf, u32)>,
+    /// File that could not be read, or is not as it was written, and the reason.
+    failed: Mutex<Option<(PathBuf, String)>>,
 }
 
 /// Image, and whether its texels are colours.
@@ -39,7 +53,39 @@ pub(super) enum Role {
     Values,
 }
 
+impl ImageFiles {
+    /// Reads an image; `None` if that fails, which is remembered.
+    fn read(&self, image: usize) -> Option<Vec<u8>> {
+        let (path, checksum) = self.all.get(image)?;
+        let reason = match fs::read(path) {
+            Ok(bytes) if crc32fast::hash(&bytes) == *checksum => return Some(bytes),
+            Ok(_) => "is cut off or changed".to_owned(),
+            Err(error) => error.to_string(),
+        };
+        *self.failed.lock().unwrap_or_else(PoisonError::into_inner) = Some((path.clone(), reason));
+        None
+    }
+}
+
 impl DecodedImages {
+    /// Creates images that are read from files with these checksums when they are needed.
+    pub(crate) fn of_files(all: Vec<(PathBuf, u32)>) -> Self {
+        let files = Some(Arc::new(ImageFiles { all, failed: Mutex::default() }));
+        Self { files, ..Self::default() }
+    }
+
+    /// Fails if a file could not be read, or is not as it was written: no tile may be made then.
+    ///
+    /// # Errors
+    /// The file and the reason.
+    pub(crate) fn check(&self) -> Result<(), TilesError> {
+        let Some(files) = &self.files else { return Ok(()) };
+        match &*files.failed.lock().unwrap_or_else(PoisonError::into_inner) {
+            Some((path, reason)) => Err(TilesError::damaged(path, reason)),
+            None => Ok(()),
+        }
+    }
+
     /// Returns an image as a texture; `None` if it is missing or damaged.
     pub(super) fn texture(
         &self,
@@ -50,8 +96,11 @@ impl DecodedImages {
         let is_color = role != Role::Values;
         let averaging = if is_color { Averaging::Light } else { Averaging::Values };
         let decode = || {
-            let bytes = &images.get(image)?.bytes;
-            let texture = Texture::decode_averaged(bytes, averaging).ok()?;
+            let texture = match &self.files {
+                Some(files) => Texture::decode_averaged(&files.read(image)?, averaging),
+                None => Texture::decode_averaged(&images.get(image)?.bytes, averaging),
+            };
+            let texture = texture.ok()?;
             Some(Arc::new(texture))
         };
         let bytes = |texture: &Option<Arc<Texture>>| {
@@ -167,5 +216,22 @@ mod tests {
         for index in 0..3 {
             assert!(DecodedImages::default().texture(&images, index, Role::Color).is_none());
         }
+    }
+
+    #[test]
+    fn images_in_files_are_read_when_they_are_needed() {
+        let folder = tempfile::tempdir().unwrap();
+        let png = meshlod_picture::Picture::new(1, 1, vec![9; 4]).unwrap().png();
+        let path = folder.path().join("image-0");
+        let decoded = || DecodedImages::of_files(vec![(path.clone(), crc32fast::hash(&png)); 2]);
+        let early = decoded();
+        fs::write(&path, &png).unwrap();
+        assert!(early.texture(&[], 1, Role::Color).is_some() && early.check().is_ok());
+        fs::write(&path, &png[1..]).unwrap();
+        // It is kept.
+        assert!(early.texture(&[], 1, Role::Color).is_some());
+        let late = decoded();
+        assert!(late.texture(&[], 1, Role::Color).is_none());
+        assert!(late.check().unwrap_err().to_string().contains("image-0: is cut off or changed"));
     }
 }

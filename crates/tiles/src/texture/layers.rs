@@ -1,5 +1,6 @@
 //! Images of a material, each with what it is for.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use meshlod_io::Material;
@@ -17,16 +18,21 @@ pub(super) struct Layer {
     pub texture: Arc<Texture>,
 }
 
-/// Returns the images that a material uses and that can be decoded.
-pub(super) fn take_layers(look: &Look, material: &mut Material) -> Vec<Layer> {
+/// Returns the images that a material uses; those that cannot be decoded are lost.
+pub(super) fn take_layers(
+    look: &Look,
+    material: &mut Material,
+    lost: &mut BTreeSet<usize>,
+) -> Vec<Layer> {
     let mut layers: Vec<Layer> = Vec::new();
     for (role, image) in slots(material) {
         let Some(image) = *image else { continue };
         if layers.iter().any(|layer| (layer.image, layer.role) == (image, role)) {
             continue;
         }
-        if let Some(texture) = look.decoded.texture(&look.images, image, role) {
-            layers.push(Layer { image, role, texture });
+        match look.decoded.texture(&look.images, image, role) {
+            Some(texture) => layers.push(Layer { image, role, texture }),
+            None => drop(lost.insert(image)),
         }
     }
     layers
@@ -84,7 +90,9 @@ mod tests {
             ..Shading::default()
         };
         let mut material = Material { base_color_image: Some(1), shading, ..Material::default() };
-        let layers = take_layers(&look, &mut material);
+        let mut lost = BTreeSet::new();
+        let layers = take_layers(&look, &mut material, &mut lost);
+        assert_eq!(lost, BTreeSet::from([0, 2]));
         let found: Vec<_> = layers.iter().map(|layer| (layer.image, layer.role)).collect();
         assert_eq!(found, [(1, Role::ColorAndOpacity), (1, Role::Values)]);
         set_images(&mut material, &layers, &[7, 8]);

@@ -14,7 +14,7 @@ mod encode;
 mod layers;
 mod pack;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use meshlod_io::{Image, Material};
 use meshlod_mesh::{LayerKind, Mesh};
@@ -36,13 +36,15 @@ pub struct TileLook {
     pub materials: Vec<Material>,
     /// Images of the materials.
     pub images: Vec<Image>,
+    /// Images of the model that the tile should show and that are missing or damaged.
+    pub lost: BTreeSet<usize>,
 }
 
 /// Cuts the textures that a mesh shows out of the images of its materials, halved as often as its
 /// level asks for, and changes its first texture coordinates to match.
 ///
 /// A material whose textures repeat in the tile, or are needed in nearly all their parts, keeps
-/// whole images at that resolution. Images that are missing or damaged are left out.
+/// whole images at that resolution. Images that are missing or damaged are left out, and told.
 pub fn repack(look: &Look, mesh: &mut Mesh, halvings: u32) -> TileLook {
     let charts = match look.images.is_empty() {
         true => Charts::default(),
@@ -67,7 +69,7 @@ pub fn repack(look: &Look, mesh: &mut Mesh, halvings: u32) -> TileLook {
         }
     }
     map_uvs(mesh, &charts, |chart| atlas_of[chart].map(|(atlas, own)| (&atlases[atlas], own)));
-    TileLook { materials, images: images.all }
+    TileLook { materials, images: images.all, lost: images.lost }
 }
 
 /// Images of a tile in the making.
@@ -75,13 +77,15 @@ struct TileImages<'a> {
     look: &'a Look,
     halvings: u32,
     all: Vec<Image>,
+    lost: BTreeSet<usize>,
     /// Index of each whole image.
     whole: FxHashMap<EncodedKey, usize>,
 }
 
 impl<'a> TileImages<'a> {
     fn of(look: &'a Look, halvings: u32) -> Self {
-        Self { look, halvings, all: Vec::new(), whole: FxHashMap::default() }
+        let (all, lost) = (Vec::new(), BTreeSet::new());
+        Self { look, halvings, all, lost, whole: FxHashMap::default() }
     }
 
     /// Gives a material the images that its charts show. Returns the atlas that they were cut by,
@@ -89,7 +93,7 @@ impl<'a> TileImages<'a> {
     fn add(&mut self, material: &mut Material, charts: &[&Chart]) -> Option<Atlas> {
         let layers = match charts {
             [] => Vec::new(),
-            _ => take_layers(self.look, material),
+            _ => take_layers(self.look, material, &mut self.lost),
         };
         let atlas = arrange(charts, &layers, self.halvings);
         let images: Vec<usize> = match &atlas {

@@ -52,6 +52,7 @@ def _parser() -> argparse.ArgumentParser:
     for name, unit in ("lat", "DEGREES"), ("lon", "DEGREES"), ("weld", "EPS"):
         own.add_argument(f"--{name}", type=float, metavar=unit)
     own.add_argument("--alt", type=float, default=0.0, metavar="METRES")
+    own.add_argument("--ecef", action="store_true")
     return parser
 
 

@@ -50,7 +50,7 @@ def tiles(
 
     One task plans, on all cores of its machine; then each tile needs those that it is made of, and
     takes one thread. What is done is not done again: not after a worker has died, and not by
-    another call after this one was ended. A call works on a folder alone.
+    another call after this one was ended.
     """
     distributed = distributed_package()
     if unknown := sorted(options.keys() - TilesOptions.__annotations__.keys()):
@@ -64,12 +64,9 @@ def tiles(
         workers = _asked.whole("workers", workers, 1, MOST_WORKERS)
         if client is not None:
             raise MeshlodError("a client has its workers: give client or workers, not both")
-    lock = _native.NativeTilesLock(out)
-    try:
-        with client_or_local(client, workers) as own:
-            return _Run(own, distributed, lock.plan_folder(), out).tiles(names, asked, show)
-    finally:
-        lock.release()
+    folder = _native.tile_plan_folder(out)
+    with client_or_local(client, workers) as own:
+        return _Run(own, distributed, folder, out).tiles(names, asked, show)
 
 
 class _Run:

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use meshlod::jobs::TilesReport;
+use meshlod::tiles::archive::is_archive;
 use serde::Serialize;
 
 use crate::session::files;
@@ -18,7 +19,15 @@ pub struct TilesFigures {
 
 impl TilesFigures {
     pub fn new(output: &Path, report: TilesReport) -> Self {
-        Self { file: files::name(&output.join("tileset.json")), report }
+        Self { file: name(output), report }
+    }
+}
+
+/// Names the file that a viewer opens.
+fn name(output: &Path) -> String {
+    match is_archive(output) {
+        true => files::name(output),
+        false => files::name(&output.join("tileset.json")),
     }
 }
 
@@ -26,7 +35,7 @@ pub fn text(output: &Path, report: &TilesReport) -> String {
     let TilesReport { tiles, input_faces, levels, .. } = report;
     let mut text = format!(
         "{}: {} tile{} in {} level{}, {} bytes\n",
-        files::name(&output.join("tileset.json")),
+        name(output),
         count(*tiles),
         plural(*tiles),
         levels.len(),

@@ -3,7 +3,8 @@
 use std::fmt;
 
 use meshlod_measure::{
-    CertifiedOptions, DistanceOptions, MeasureError, certified_distance, distance,
+    CertifiedOptions, DistanceOptions, MeasureError, PreparedSurface, certified_distance, distance,
+    vertex_errors,
 };
 use meshlod_mesh::{Lock, Locks, Mesh};
 use meshlod_simplify::{Options, SimplifyError, Target};
@@ -84,5 +85,9 @@ impl Coarsen for Proven {
             simplify(mesh, Target::Faces(faces), &options).map_err(TileFailure::Simplify)?;
         let options = DistanceOptions { samples: SAMPLES, ..DistanceOptions::default() };
         Ok(distance(mesh, &level, &options).map_err(TileFailure::Measure)?.max())
+    }
+
+    fn distances(&self, points: &Mesh, mesh: &Mesh) -> Vec<f64> {
+        PreparedSurface::new(mesh).map_or(Vec::new(), |surface| vertex_errors(points, &surface))
     }
 }

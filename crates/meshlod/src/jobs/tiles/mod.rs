@@ -1,5 +1,7 @@
 //! Tiles of a model of any size: 3D Tiles, from a plan whose tasks any number of processes may do.
 
+mod fault;
+mod hold;
 mod method;
 mod model;
 mod opened;
@@ -7,37 +9,42 @@ mod output;
 mod placement;
 mod report;
 mod request;
+mod result;
+mod room;
 
 use std::fs;
 use std::io;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use meshlod_io::{IoError, remove_abandoned, write_file};
+use meshlod_io::remove_abandoned;
 use meshlod_mesh::Bounds;
 use meshlod_tiles::TilesError;
+use meshlod_tiles::archive::is_archive;
 use meshlod_tiles::errors::find_errors;
 use meshlod_tiles::folder::Folder;
 use meshlod_tiles::layout::Layout;
-use meshlod_tiles::plan::{Look, Plan};
+use meshlod_tiles::plan::{Look, Plan, TileOptions};
 use meshlod_tiles::review::review;
 use meshlod_tiles::source::{Source, Triangles};
+use meshlod_tiles::survey::Survey;
 use meshlod_tiles::tileset::finish;
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
-use crate::jobs::{JobError, Watch};
+use crate::jobs::{About, JobError, Remark, Watch};
+use fault::{failure, failure_of_input};
+use hold::Hold;
 use method::Proven;
+use result::{write_archive, write_folder};
+use room::{Room, check_room};
 
 pub use model::{TileFileError, TileFiles, TileModel};
 pub use opened::TilePlan;
-pub use output::{TilesLock, check_tiles_folder, tile_plan_folder};
+pub use output::{check_tiles_folder, tile_plan_folder};
 pub use placement::{Globe, Up};
 pub use report::{TileLevel, TilesReport, TilesetReport};
 pub use request::TilesRequest;
-
-/// Folder of the contents in that of the tileset.
-const TILES: &str = "tiles";
 
 /// Model that tiles are made of.
 #[derive(Clone, Copy)]
@@ -50,39 +57,46 @@ pub struct TileInput<'a> {
     pub key: &'a str,
 }
 
-/// Makes the tiles of a model in a folder: `tileset.json` and what it names.
+/// Makes the tiles of a model: a folder of `tileset.json` and what it names, or an archive of these
+/// where the name of `out` ends in `.3tz`.
 ///
-/// The work is planned and done in a folder `.plan` inside, which is removed at the end. A call that
-/// was ended goes on from there. The bytes of the tileset depend on the model and the request alone,
-/// whatever the number of threads.
+/// The work is planned and done in a folder `.plan` inside, or one beside the archive, which is
+/// removed at the end. A call that was ended goes on from there. The bytes of the tileset depend on
+/// the model and the request alone, whatever the number of threads.
 ///
 /// # Errors
-/// A request that has no meaning, a model without faces or extent, errors of the system, and a
-/// folder that holds other files or that another process is working on.
+/// A request that has no meaning, a model without faces or extent, a disk with less room than is
+/// needed, errors of the system, and a folder that holds other files or that another process is
+/// working on.
 pub fn tiles(
     input: TileInput<'_>,
     out: &Path,
     request: &TilesRequest,
     watch: &dyn Watch,
 ) -> Result<TilesReport, JobError> {
-    request.options()?;
+    let options = request.options()?;
     check_tiles_folder(out)?;
-    let _lock = TilesLock::take(out)?;
     let folder = Folder::new(tile_plan_folder(out));
-    if let Err(error) = plan_tiles(input, folder.path(), request, watch) {
+    let _hold = Hold::new_plan(&folder)?;
+    let threads = request.threads(rayon::current_num_threads());
+    let room = Room::OfRun { threads };
+    if let Err(error) = plan_in_hold(input, &folder, (&options, room), watch) {
         // Nothing is left that a next run could go on from.
         folder.remove();
-        let _ = fs::remove_dir(out);
+        if !is_archive(out) {
+            let _ = fs::remove_dir(out);
+        }
         return Err(error);
     }
     let plan = TilePlan::open(folder.path())?;
     plan.take_back(out);
     watch.stage("making tiles");
     let work = Work { plan: &plan, watch, done: AtomicUsize::new(0) };
-    let threads = request.threads(rayon::current_num_threads());
     let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(JobError::output)?;
-    pool.install(|| work.make(plan.tasks() - 1))?;
-    finish_tiles(folder.path(), out, watch)
+    pool.install(|| work.make(plan.tasks() - 1, false))?;
+    let report = assemble_in_hold(&plan, out, watch)?;
+    folder.remove();
+    Ok(report)
 }
 
 /// Plans the tiles of a model in a folder, unless that is done: counts and cuts its faces, and finds
@@ -98,46 +112,80 @@ pub fn plan_tiles(
 ) -> Result<usize, JobError> {
     let folder = Folder::new(folder);
     let options = request.options()?;
-    if let Some(plan) = folder.plan().map_err(failure)?
-        && plan.key == input.key
-        && plan.options == options
-    {
-        return Ok(plan.tasks.len());
-    }
     if folder.is_foreign() {
         let path = folder.path().display();
         let reason = format!("{path}: holds other files; name a new folder for the plan");
         return Err(JobError::request("", reason));
     }
+    let _hold = Hold::new_plan(&folder)?;
+    let planned = plan_in_hold(input, &folder, (&options, Room::OfSteps), watch);
+    if planned.is_err() {
+        folder.remove();
+    }
+    planned
+}
+
+/// Plans the tiles of a model in a folder that no other process works in.
+fn plan_in_hold(
+    input: TileInput<'_>,
+    folder: &Folder,
+    (options, room): (&TileOptions, Room),
+    watch: &dyn Watch,
+) -> Result<usize, JobError> {
+    // A damaged plan is made again.
+    if let Some(plan) = folder.plan().ok().flatten()
+        && plan.key == input.key
+        && plan.options == *options
+    {
+        return Ok(plan.tasks.len());
+    }
+    folder.forget_plan();
     folder.forget_tiles();
     folder.make().map_err(failure)?;
+    watch.stage("counting faces");
+    let source = Watched { source: input.source, watch };
+    let ended = |error| if watch.is_cancelled() { JobError::Cancelled } else { failure(error) };
+    let survey = Survey::of(&source, options.most_faces).map_err(ended)?;
+    let model: (&dyn Source, _) = (&source, input.look);
+    check_room(folder.path(), (&survey, model, options), room, watch)?;
+    note_large_images(input.look, watch);
     watch.stage("cutting into tiles");
     let scratch = folder.scratch();
     remove_abandoned([&*scratch]);
     let part = folder.path().join(format!(".pieces.{}-0", std::process::id()));
-    let source = Watched { source: input.source, watch };
-    let plan = Plan::new(&source, input.look, &options, &part).map_err(|error| {
+    let plan = Plan::of_survey(survey, model, options, &part).map_err(|error| {
         let _ = fs::remove_file(&part);
-        if watch.is_cancelled() { JobError::Cancelled } else { failure(error) }
+        ended(error)
     })?;
     fs::rename(&part, &scratch).map_err(|error| failure(TilesError::system(&scratch, error)))?;
     watch.stage("finding the errors of levels");
-    let errors = find_errors(&plan, &folder, &Proven::new(&plan)).map_err(failure)?;
+    let errors = find_errors(&plan, folder, &Proven::new(&plan)).map_err(failure)?;
     let plan = Plan { errors, key: input.key.to_owned(), ..plan };
     folder.write_plan(&plan, &input.look.images).map_err(failure)?;
     Ok(plan.tasks.len())
 }
 
+/// Remarks on images that are used at a lower resolution than they have.
+fn note_large_images(look: &Look, watch: &dyn Watch) {
+    let count = look.large_images();
+    if count > 0 {
+        let text = format!("used at less resolution, larger than 4096 by 4096: {}", images(count));
+        watch.remark(&Remark::new(About::Input, text));
+    }
+}
+
 /// Does a task of a plan, unless it is done.
 ///
+/// Any number of processes may do tasks at a time, also the same one: they write the same bytes.
 /// # Errors
-/// A task that there is not or that needs another one first, and errors of the system.
+/// A task that there is not or that needs another one first, files that are not as they were
+/// written, errors of the system, and a plan that is being made or finished.
 pub fn run_tile_task(folder: &Path, task: usize) -> Result<(), JobError> {
     TilePlan::open(folder)?.run(task)
 }
 
 /// Checks that all tasks of a plan are done and that their tiles meet at every level, and makes the
-/// tileset of them. The plan is removed.
+/// tileset of them, in a folder or as an archive. The plan is removed.
 ///
 /// # Errors
 /// As [`assemble_tiles`].
@@ -151,48 +199,68 @@ pub fn finish_tiles(folder: &Path, out: &Path, watch: &dyn Watch) -> Result<Tile
 /// repeated until [`remove_tile_plan`].
 ///
 /// # Errors
-/// A task that is not done, tiles that do not meet, a folder that holds other files, and errors of
-/// the system.
+/// A task that is not done, tiles that do not meet, files that are not as they were written, a folder
+/// that holds other files, errors of the system, and a plan that another process is working on.
 pub fn assemble_tiles(
     folder: &Path,
     out: &Path,
     watch: &dyn Watch,
 ) -> Result<TilesReport, JobError> {
-    watch.stage("checking");
     check_tiles_folder(out)?;
-    let opened = TilePlan::open(folder)?;
-    opened.take_back(out);
-    let (plan, folder) = (&opened.plan, Folder::new(folder));
-    let finished = finish(plan, &folder).map_err(failure)?;
-    output::tidy(&folder, &finished.records);
-    let tiles = out.join(TILES);
-    let system = |path: &Path| {
-        let path = path.to_owned();
-        move |error| failure(TilesError::system(&path, error))
+    let _hold = Hold::alone(&Folder::new(folder))?;
+    let plan = TilePlan::open(folder)?;
+    plan.take_back(out);
+    assemble_in_hold(&plan, out, watch)
+}
+
+/// Makes the tileset of a plan that no other process works on.
+fn assemble_in_hold(
+    opened: &TilePlan,
+    out: &Path,
+    watch: &dyn Watch,
+) -> Result<TilesReport, JobError> {
+    watch.stage("checking");
+    let (plan, folder) = (&opened.plan, &opened.folder);
+    let finished = finish(plan, folder).map_err(failure)?;
+    let written = match is_archive(out) {
+        true => write_archive(&finished, folder, out),
+        false => write_folder(&finished, folder, out),
     };
-    fs::create_dir_all(out).map_err(system(out))?;
-    if tiles.exists() {
-        fs::remove_dir_all(&tiles).map_err(system(&tiles))?;
-    }
-    fs::rename(folder.content_folder(), &tiles).map_err(system(&tiles))?;
-    for file in finished.files.iter().rev() {
-        write_file(&out.join(&file.name), &file.text).map_err(JobError::output)?;
+    written.map_err(failure)?;
+    let lost = finished.lost_images(plan);
+    if !lost.is_empty() {
+        let text = format!("cannot be decoded, left out: {} ({})", images(lost.len()), few(&lost));
+        watch.remark(&Remark::new(About::Output, text));
     }
     Ok(TilesReport::of(plan, &finished))
 }
 
-/// Removes the files of a plan, and its folder if nothing else is in it.
+/// Removes the files of a plan, and its folder if nothing else is in it, unless another process is
+/// working on it.
 pub fn remove_tile_plan(folder: &Path) {
-    Folder::new(folder).remove();
+    let folder = Folder::new(folder);
+    if let Ok(_hold) = Hold::alone(&folder) {
+        folder.remove();
+    }
+}
+
+fn images(count: usize) -> String {
+    format!("{count} image{}", if count == 1 { "" } else { "s" })
+}
+
+/// Lists the first of some names.
+fn few(names: &[&str]) -> String {
+    let shown = names[..names.len().min(3)].join(", ");
+    if names.len() > 3 { shown + ", …" } else { shown }
 }
 
 /// Reads a tileset and all its tiles again, and checks them.
 ///
 /// # Errors
-/// A folder without a tileset of ours.
-pub fn check_tileset(folder: &Path, watch: &dyn Watch) -> Result<TilesetReport, JobError> {
+/// A folder or archive without a tileset of ours.
+pub fn check_tileset(path: &Path, watch: &dyn Watch) -> Result<TilesetReport, JobError> {
     watch.stage("reading tiles");
-    Ok(TilesetReport::of(review(folder).map_err(JobError::input)?))
+    Ok(TilesetReport::of(review(path).map_err(failure_of_input)?))
 }
 
 /// Source whose passes end when the job is cancelled.
@@ -226,31 +294,21 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// Makes a tile after those that it is made from, whose meshes are then removed.
-    fn make(&self, task: usize) -> Result<(), JobError> {
+    /// Makes a tile after those that it is made from, whose meshes are then removed. Its own is
+    /// wanted unless nothing is made from it.
+    fn make(&self, task: usize, is_part: bool) -> Result<(), JobError> {
         if self.watch.is_cancelled() {
             return Err(JobError::Cancelled);
         }
-        if !self.plan.is_done(task) {
-            let parts = self.plan.parts(task);
-            parts.par_iter().with_max_len(1).try_for_each(|&part| self.make(part))?;
-            self.plan.run(task)?;
+        if !self.plan.stands(task, is_part) {
+            let make = |&part: &usize| self.make(part, true);
+            self.plan.parts(task).par_iter().with_max_len(1).try_for_each(make)?;
+            self.plan.run_in_hold(task)?;
         }
         self.plan.forget_parts(task);
         let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
         self.watch.step(done, Some(self.plan.tasks()));
         Ok(())
-    }
-}
-
-/// Says which part of the job an error is about.
-fn failure(error: TilesError) -> JobError {
-    match error {
-        TilesError::NoFaces | TilesError::NoExtent => JobError::input(error),
-        TilesError::NoTask { .. } | TilesError::NotDone { .. } => JobError::request("", error),
-        TilesError::Io(error @ IoError::Parse { .. }) => JobError::input(error),
-        TilesError::Io(error) => JobError::output(error),
-        error => JobError::output(error),
     }
 }
 

@@ -1,7 +1,6 @@
 //! A plan that is open, for those who do many of its tasks.
 
 use std::path::Path;
-use std::sync::OnceLock;
 use std::time::SystemTime;
 
 use meshlod_tiles::TilesError;
@@ -10,18 +9,21 @@ use meshlod_tiles::plan::{Look, Plan};
 use meshlod_tiles::task::run_task;
 
 use crate::jobs::JobError;
+use crate::jobs::tiles::fault::{failure, no_plan};
+use crate::jobs::tiles::hold::Hold;
 use crate::jobs::tiles::method::Proven;
-use crate::jobs::tiles::{TILES, failure};
+use crate::jobs::tiles::result::TILES;
 
-/// Plan of tiles, read once for many tasks, as are the images of its model by the first of them.
+/// Plan of tiles, read once for many tasks, as is each image of its model by the first that needs it.
 ///
 /// Tasks are numbered from 0 on, each after those that it needs; the last one is the root. Any number
 /// of processes may do them, also the same at a time: the bytes are the same.
 #[derive(Debug)]
 pub struct TilePlan {
     pub(super) plan: Plan,
-    look: OnceLock<Look>,
-    folder: Folder,
+    pub(super) folder: Folder,
+    /// Materials of the model.
+    look: Look,
     /// Time and length of the file of the plan when it was read.
     stamp: Option<(SystemTime, u64)>,
 }
@@ -33,21 +35,10 @@ impl TilePlan {
     /// A folder without a plan, a damaged one, and errors of the system.
     pub fn open(folder: &Path) -> Result<Self, JobError> {
         let folder = Folder::new(folder);
-        let none =
-            || JobError::request("", format!("{}: no plan of tiles", folder.path().display()));
         let stamp = folder.plan_stamp();
-        let plan = folder.plan().map_err(failure)?.ok_or_else(none)?;
-        Ok(Self { plan, look: OnceLock::new(), folder, stamp })
-    }
-
-    /// Returns the materials of the model, whose images are decoded by the tiles that need them.
-    fn look(&self) -> Result<&Look, TilesError> {
-        if let Some(look) = self.look.get() {
-            return Ok(look);
-        }
-        let images = self.folder.images(&self.plan)?;
-        let (labels, materials) = (self.plan.labels.clone(), self.plan.materials.clone());
-        Ok(self.look.get_or_init(|| Look { labels, materials, images, ..Look::default() }))
+        let plan = folder.plan().map_err(failure)?.ok_or_else(|| no_plan(&folder))?;
+        let look = folder.look(&plan);
+        Ok(Self { plan, folder, look, stamp })
     }
 
     /// Takes back the contents that a call which was ended had moved to a tileset already.
@@ -79,28 +70,47 @@ impl TilePlan {
 
     /// Returns true for a task that is done, by files as long as they were written.
     pub fn is_done(&self, task: usize) -> bool {
-        self.plan.cell(task).is_ok_and(|cell| self.folder.record(cell).is_some())
+        self.folder.record(&self.plan, task).is_ok_and(|record| record.is_some())
     }
 
-    /// Does a task, unless it is done. Parts whose meshes were lost or damaged are made anew.
+    /// Returns true if the files of a tile are as they were written; its mesh need be there only for
+    /// a part, which another one is still to be made from.
+    pub(super) fn stands(&self, task: usize, is_part: bool) -> bool {
+        let found = match is_part {
+            true => self.folder.done(&self.plan, task),
+            false => self.folder.shown(&self.plan, task),
+        };
+        found.is_some()
+    }
+
+    /// Does a task, unless it is done. Parts whose files were lost or damaged are made anew.
     ///
     /// # Errors
-    /// A task that there is not or that needs another one first, and errors of the system.
+    /// A task that there is not or that needs another one first, files of the plan that are not as
+    /// they were written, errors of the system, and a plan that is being made or finished.
     pub fn run(&self, task: usize) -> Result<(), JobError> {
+        let _hold = Hold::shared(&self.folder)?;
+        self.run_in_hold(task)
+    }
+
+    /// Does a task for one who has the right to.
+    pub(super) fn run_in_hold(&self, task: usize) -> Result<(), JobError> {
         self.make(task).map_err(failure)
     }
 
     fn make(&self, task: usize) -> Result<(), TilesError> {
-        let (look, method) = (self.look()?, Proven::new(&self.plan));
+        let method = Proven::new(&self.plan);
         let mut made = None;
         loop {
-            let done = run_task((&self.plan, look), &self.folder, task, &method);
-            let Err(TilesError::NotDone { needs, .. }) = done else { return done.map(drop) };
+            let done = run_task((&self.plan, &self.look), &self.folder, task, &method);
+            let Err(TilesError::DamagedTile { task: needs, .. }) = done else {
+                return done.map(drop);
+            };
             if self.is_done(task) {
                 // Somebody else did it meanwhile, and removed what it is made of.
                 return Ok(());
             }
-            if !self.is_done(needs) || made == Some(needs) {
+            if made == Some(needs) {
                 return done.map(drop);
             }
             self.folder.forget_record(self.plan.cell(needs)?);

@@ -23,6 +23,8 @@ pub struct TilesReport {
     /// Number of tiles that could not be simplified without harm to their borders, and are as fine
     /// as what they were made from.
     pub unchanged_tiles: usize,
+    /// Number of images that tiles should show and that cannot be decoded; they are left out.
+    pub lost_images: usize,
 }
 
 /// Level of a tileset.
@@ -86,6 +88,7 @@ impl TilesReport {
             lattice_step: plan.lattice.step,
             levels: (0..=usize::from(plan.tree.depth())).map(level).collect(),
             unchanged_tiles: records.iter().filter(|record| record.is_unchanged).count(),
+            lost_images: finished.lost_images(plan).len(),
         }
     }
 }

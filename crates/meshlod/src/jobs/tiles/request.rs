@@ -26,6 +26,10 @@ pub struct TilesRequest {
     pub up: Up,
     /// Place of the model's origin on the globe, if any.
     pub globe: Option<Globe>,
+    /// True for a model whose coordinates are about the middle of the earth, in metres, with x
+    /// towards 0° N 0° E and z towards the north pole; not together with `globe`. `up` then has no
+    /// effect.
+    pub ecef: bool,
     /// Limit on the memory of all threads together, in bytes; `None` for none. It decides how many
     /// work at a time.
     pub memory: Option<usize>,
@@ -39,6 +43,7 @@ impl Default for TilesRequest {
             skirts: true,
             up: Up::Y,
             globe: None,
+            ecef: false,
             memory: None,
         }
     }
@@ -60,13 +65,18 @@ impl TilesRequest {
                 return Err(JobError::request("globe", reason));
             }
         }
+        if self.ecef && self.globe.is_some() {
+            let reason = "coordinates about the middle of the earth have a place on the globe";
+            return Err(JobError::request("ecef", reason));
+        }
         let identity = glam::DMat4::IDENTITY.to_cols_array_2d();
         Ok(TileOptions {
             most_faces: self.tile_faces,
             meshopt: !self.plain,
             skirts: self.skirts,
             placement: self.globe.map_or(identity, Globe::frame),
-            is_z_up: self.up == Up::Z,
+            // Their axes are those of the tileset as they are.
+            is_z_up: self.ecef || self.up == Up::Z,
         })
     }
 

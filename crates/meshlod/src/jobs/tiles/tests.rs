@@ -1,29 +1,12 @@
 //! Tests of tilesets that are made whole, and of plans whose tasks are done one by one.
 
-use std::collections::BTreeMap;
-
+use meshlod_fixtures::folder_files as files;
 use meshlod_samples as samples;
 use meshlod_tiles::source::SceneSource;
 
+use super::result::TILES;
 use super::*;
 use crate::Scene;
-
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut all = BTreeMap::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(at) = folders.pop() {
-        for entry in fs::read_dir(&at).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else {
-                let name = path.strip_prefix(folder).unwrap().display().to_string();
-                all.insert(name, fs::read(&path).unwrap());
-            }
-        }
-    }
-    all
-}
 
 fn knot() -> SceneSource {
     SceneSource::new(Scene::from_mesh("knot", samples::knot(20_000)))
@@ -54,6 +37,8 @@ fn tasks_one_by_one_make_the_same_files() {
     let early = run_tile_task(&plan, tasks - 1).unwrap_err();
     assert!(early.to_string().contains("is not done"), "{early}");
     (0..tasks).for_each(|task| run_tile_task(&plan, task).unwrap());
+    // As of a process that was killed.
+    fs::write(plan.join("content/.0-0-0-0.glb.4194305-0"), "glTF").unwrap();
     let out = other.path().join("out");
     assert_eq!(finish_tiles(&plan, &out, &()).unwrap(), report);
     assert_eq!(files(&out), files(folder.path()));
@@ -139,4 +124,154 @@ fn what_has_no_extent_leaves_nothing_behind() {
     let out = folder.path().join("out");
     let error = tiles(input, &out, &TilesRequest::default(), &()).unwrap_err();
     assert!(error.to_string().contains("no extent") && !out.exists(), "{error}");
+}
+
+/// Changes a file by `change` for as long as `work` runs.
+fn with_changed<T>(path: &Path, change: fn(&mut Vec<u8>), work: impl FnOnce() -> T) -> T {
+    let old = fs::read(path).unwrap();
+    let mut new = old.clone();
+    change(&mut new);
+    fs::write(path, new).unwrap();
+    let done = work();
+    fs::write(path, old).unwrap();
+    done
+}
+
+#[test]
+fn files_that_were_changed_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let (source, look) = (knot(), Look::default());
+    let input = TileInput { source: &source, look: &look, key: "knot" };
+    let request = TilesRequest { tile_faces: 2_000, ..TilesRequest::default() };
+    let plan = folder.path().join("plan");
+    let tasks = plan_tiles(input, &plan, &request, &()).unwrap();
+    (0..tasks).for_each(|task| run_tile_task(&plan, task).unwrap());
+    let out = folder.path().join("out");
+    let root = tasks - 1;
+    let known = planned(&Folder::new(&plan)).unwrap().0;
+    let leaf = known.cell(0).unwrap();
+    let part = known.cell(root - 1).unwrap();
+    let record = |cell: meshlod_tiles::Cell| plan.join(format!("tiles/{cell}.json"));
+    let task = |task: usize, cell| {
+        // A task that is done reads nothing.
+        fs::remove_file(record(cell)).unwrap();
+        run_tile_task(&plan, task)
+    };
+    let leaf_again = || task(0, leaf);
+    let root_again = || task(root, known.cell(root).unwrap());
+    let finish = || finish_tiles(&plan, &out, &()).map(drop);
+    let again = || run_tile_task(&plan, 0);
+    type Work<'a> = &'a dyn Fn() -> Result<(), JobError>;
+    let cases: [(PathBuf, Work<'_>, &str); 6] = [
+        (plan.join("plan.json"), &again, "plan.json: is cut off or changed; remove"),
+        (plan.join("blocks"), &leaf_again, "blocks: is cut off or changed; remove"),
+        (plan.join("pieces"), &leaf_again, "pieces: is c"),
+        (plan.join(format!("tiles/{part}.mesh")), &root_again, "mesh: is cut off or changed; do"),
+        (record(part), &root_again, ".json: is cut off or changed; do task"),
+        (plan.join(format!("content/{part}.glb")), &finish, ".glb: is cut off or changed; do task"),
+    ];
+    let changes: [fn(&mut Vec<u8>); 3] = [
+        // So little that none of what a task reads is left.
+        |bytes| bytes.truncate(20),
+        |bytes| bytes.clear(),
+        |bytes| bytes.iter_mut().for_each(|byte| *byte ^= 4),
+    ];
+    for (path, work, expected) in cases {
+        for change in changes {
+            let error = with_changed(&path, change, work).unwrap_err().to_string();
+            assert!(error.contains(expected) && !error.contains('\n'), "{expected}: {error}");
+            [0, root].into_iter().for_each(|task| run_tile_task(&plan, task).unwrap());
+        }
+    }
+    assert!(!out.exists());
+    finish().unwrap();
+    assert_eq!(check_tileset(&out, &()).unwrap().findings, [""; 0]);
+}
+
+#[test]
+fn a_plan_is_changed_by_one_process_at_a_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let (source, look) = (knot(), Look::default());
+    let input = TileInput { source: &source, look: &look, key: "knot" };
+    let request = TilesRequest { tile_faces: 2_000, ..TilesRequest::default() };
+    let [plan, out, whole] = ["plan", "out", "whole"].map(|name| folder.path().join(name));
+    let tasks = plan_tiles(input, &plan, &request, &()).unwrap();
+    let busy = |done: Result<(), JobError>| {
+        done.unwrap_err().to_string().contains("another process is making tiles here")
+    };
+    let replan = || plan_tiles(input, &plan, &request, &()).map(drop);
+    let finish = || finish_tiles(&plan, &out, &()).map(drop);
+    let held = Folder::new(&plan);
+    let hold = Hold::alone(&held).unwrap();
+    assert!(busy(replan()) && busy(finish()) && busy(run_tile_task(&plan, 0)));
+    drop(hold);
+    let hold = Hold::shared(&held).unwrap();
+    assert!(busy(replan()) && busy(finish()));
+    // Each of these does all tasks, at the same time as the others.
+    std::thread::scope(|scope| {
+        for _ in 0..3 {
+            scope.spawn(|| (0..tasks).for_each(|task| run_tile_task(&plan, task).unwrap()));
+        }
+    });
+    drop(hold);
+    finish().unwrap();
+    assert!(!plan.exists());
+    tiles(input, &whole, &request, &()).unwrap();
+    assert_eq!(files(&out), files(&whole));
+}
+
+#[test]
+fn a_plan_on_another_disk_is_finished() {
+    let memory = Path::new("/dev/shm");
+    let folder = tempfile::tempdir().unwrap();
+    if !memory.is_dir() || fs::rename(folder.path(), memory.join("meshlod-rename")).is_ok() {
+        let _ = fs::remove_dir_all(memory.join("meshlod-rename"));
+        println!("skipped: no second disk");
+        return;
+    }
+    let other = tempfile::tempdir_in(memory).unwrap();
+    let (source, look) = (knot(), Look::default());
+    let input = TileInput { source: &source, look: &look, key: "knot" };
+    let request = TilesRequest { tile_faces: 4_000, ..TilesRequest::default() };
+    let (plan, out) = (other.path().join("plan"), folder.path().join("out"));
+    let tasks = plan_tiles(input, &plan, &request, &()).unwrap();
+    (0..tasks).for_each(|task| run_tile_task(&plan, task).unwrap());
+    finish_tiles(&plan, &out, &()).unwrap();
+    assert!(!plan.exists());
+    assert_eq!(check_tileset(&out, &()).unwrap().tiles, tasks);
+    assert_eq!(fs::read_dir(&out).unwrap().count(), 2);
+}
+
+#[test]
+fn coordinates_about_the_middle_of_the_earth_stay_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let middle = [4_010_000.5, 610_000.25, 4_905_000.125];
+    let mut mesh = samples::knot(4_000);
+    for at in &mut mesh.positions {
+        *at = [0, 1, 2].map(|axis| middle[axis] + 50.0 * at[axis]);
+    }
+    let bounds = mesh.bounds();
+    let source = SceneSource::new(Scene::from_mesh("knot", mesh));
+    let look = Look::default();
+    let input = TileInput { source: &source, look: &look, key: "knot" };
+    let request = TilesRequest { tile_faces: 1_000, ecef: true, ..TilesRequest::default() };
+    tiles(input, folder.path(), &request, &()).unwrap();
+    assert_eq!(check_tileset(folder.path(), &()).unwrap().findings, [""; 0]);
+    let text = fs::read(folder.path().join("tileset.json")).unwrap();
+    let root = &serde_json::from_slice::<serde_json::Value>(&text).unwrap()["root"];
+    let numbers = |value: &serde_json::Value| -> Vec<f64> {
+        value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+    };
+    let (to, around) = (numbers(&root["transform"]), numbers(&root["boundingVolume"]["box"]));
+    assert_eq!(to[..12], [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    for axis in 0..3 {
+        let center = to[12 + axis] + around[axis];
+        let half = around[3 + 4 * axis];
+        // Skirts and simplification move the sides of the box by little.
+        assert!((center - half - bounds.min[axis]).abs() < 2.0, "{around:?}");
+        assert!((center + half - bounds.max[axis]).abs() < 2.0, "{around:?}");
+    }
+    let globe = Some(Globe { latitude: 1.0, longitude: 2.0, altitude: 0.0 });
+    let both = TilesRequest { globe, ..request };
+    assert!(tiles(input, folder.path(), &both, &()).is_err());
 }
