@@ -1,0 +1,87 @@
+/** Meshes of `.mlz` and `.mlq`, compared with what Rust decodes from the same files. */
+
+import assert from "node:assert/strict";
+import { existsSync, readFileSync, readdirSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { decodeMlz } from "../src/mlz/index.ts";
+import type { MeshLayer, PackedMesh } from "../src/packed/mesh.ts";
+import { conformanceFolder } from "./files.ts";
+
+const DECODERS = { mlz: decodeMlz };
+type Format = keyof typeof DECODERS;
+
+/** Folder of compressed files, each with an OBJ of what Rust decodes from it. */
+const folder = join(conformanceFolder() ?? "", "packed");
+
+function files(format: Format): string[] {
+    const names = conformanceFolder() !== null && existsSync(folder) ? readdirSync(folder) : [];
+    return names.filter((name) => name.endsWith(`.${format}`));
+}
+
+function bytesOf(name: string): Uint8Array<ArrayBuffer> {
+    return new Uint8Array(readFileSync(join(folder, name)));
+}
+
+/** What an OBJ holds: numbers of each kind of line, and the corners of faces. */
+interface Obj {
+    v: number[][];
+    vt: number[][];
+    vn: number[][];
+    corners: number[][];
+}
+
+function readObj(path: string): Obj {
+    const obj: Obj = { v: [], vt: [], vn: [], corners: [] };
+    for (const line of readFileSync(path, "utf8").split("\n")) {
+        const [word, ...rest] = line.trim().split(/\s+/);
+        if (word === "v" || word === "vt" || word === "vn") obj[word].push(rest.map(Number));
+        if (word === "f")
+            for (const corner of rest) obj.corners.push(corner.split("/").map(Number));
+    }
+    return obj;
+}
+
+/** Compares the values of all corners with lines of an OBJ. */
+function compareLayer(
+    { layers, corners }: NonNullable<PackedMesh["wedges"]>,
+    kind: MeshLayer["kind"],
+    wanted: (corner: number) => number[],
+    lines: number,
+): void {
+    const layer = layers.find((layer) => layer.kind === kind && layer.set === 0);
+    assert.equal(layer !== undefined, lines > 0, kind);
+    if (!layer) return;
+    corners.forEach((wedge, corner) => {
+        const own = layer.values.subarray(layer.width * wedge, layer.width * (wedge + 1));
+        const line = wanted(corner).slice(0, layer.width).map(Math.fround);
+        line.forEach((x, k) => {
+            if (x !== own[k]) assert.fail(`${kind} of corner ${corner}: ${own[k]}, not ${x}`);
+        });
+    });
+}
+
+function compare(mesh: PackedMesh, obj: Obj): void {
+    assert.equal(mesh.positions.length, 3 * obj.v.length, "vertices");
+    assert.equal(mesh.faces.length, obj.corners.length, "corners");
+    mesh.faces.forEach((vertex, corner) => {
+        if (vertex !== obj.corners[corner][0] - 1) assert.fail(`corner ${corner}`);
+    });
+    obj.v.forEach((line, vertex) => {
+        for (let k = 0; k < 3; k++) {
+            const own = mesh.positions[3 * vertex + k];
+            if (own !== line[k]) assert.fail(`vertex ${vertex}: ${own}, not ${line[k]}`);
+        }
+    });
+    if (!mesh.wedges) return assert.equal(obj.vt.length + obj.vn.length, 0);
+    compareLayer(mesh.wedges, "uv", (at) => obj.vt[obj.corners[at][1] - 1], obj.vt.length);
+    compareLayer(mesh.wedges, "normal", (at) => obj.vn[obj.corners[at][2] - 1], obj.vn.length);
+}
+
+for (const format of Object.keys(DECODERS) as Format[]) {
+    for (const name of files(format)) {
+        test(`${name} is the mesh that Rust decodes`, () => {
+            compare(DECODERS[format](bytesOf(name)), readObj(join(folder, `${name}.obj`)));
+        });
+    }
+}
