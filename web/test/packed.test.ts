@@ -75,6 +75,9 @@ function compare(mesh: PackedMesh, obj: Obj): void {
     });
     if (!mesh.wedges) return assert.equal(obj.vt.length + obj.vn.length, 0);
     compareLayer(mesh.wedges, "uv", (at) => obj.vt[obj.corners[at][1] - 1], obj.vt.length);
+    // An OBJ has the colours of vertices behind their coordinates.
+    const colors = obj.v[0].length > 3 ? obj.v.length : 0;
+    compareLayer(mesh.wedges, "color", (at) => obj.v[obj.corners[at][0] - 1].slice(3), colors);
     compareLayer(mesh.wedges, "normal", (at) => obj.vn[obj.corners[at][2] - 1], obj.vn.length);
 }
 
