@@ -12,6 +12,7 @@ const { metafile } = await build({
     entryPoints: {
         index: "src/index.ts",
         "three/index": "src/three/index.ts",
+        "mlq/index": "src/mlq/index.ts",
         "mlz/index": "src/mlz/index.ts",
     },
     external: ["three", "three/*"],
@@ -31,7 +32,7 @@ function addImports(file, files) {
     return files;
 }
 
-for (const format of ["mlz"]) {
+for (const format of ["mlq", "mlz"]) {
     let bytes = 0;
     for (const file of addImports(`dist/${format}/index.js`, new Set()))
         bytes += gzipSync(readFileSync(file), { level: 9 }).length;

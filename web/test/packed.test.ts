@@ -4,11 +4,12 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
+import { decodeMlq } from "../src/mlq/index.ts";
 import { decodeMlz } from "../src/mlz/index.ts";
 import type { MeshLayer, PackedMesh } from "../src/packed/mesh.ts";
 import { conformanceFolder } from "./files.ts";
 
-const DECODERS = { mlz: decodeMlz };
+const DECODERS = { mlq: decodeMlq, mlz: decodeMlz };
 type Format = keyof typeof DECODERS;
 
 /** Folder of compressed files, each with an OBJ of what Rust decodes from it. */

@@ -1,9 +1,10 @@
 /** Models that all blocks of a file share, from the codes of the header. */
 
+import { eighthPower } from "../packed/eighths.ts";
 import { BitReader } from "../packed/reader.ts";
 import type { ByteReader } from "../packed/reader.ts";
 import { CONTEXTS, KINDS } from "./gates.ts";
-import { STEPS, eighthPower, residualTable, stepTable } from "./tables.ts";
+import { STEPS, residualTable, stepTable } from "./tables.ts";
 import type { ResidualTable } from "./tables.ts";
 
 const FEATURES = 5;

@@ -1,5 +1,7 @@
 /** Probabilities of residuals and of steps, from the codes of the header. */
 
+import { eighthPower } from "../packed/eighths.ts";
+
 /** Bits of the tables of residuals, and the greatest residual with a symbol of its own. */
 export const RESIDUAL_BITS = 11;
 export const MAX_RESIDUAL = 24;
@@ -11,22 +13,6 @@ const FREEDOM = [1, 3, 5, 7, 9, 13, 19, 31];
 /** For each slot the symbol in 6 bits, its size in 12, and how far the slot is behind its start. */
 export interface ResidualTable {
     readonly places: Uint32Array;
-}
-
-/** Returns 2^(`eighths` / 8) as all machines have it. */
-export function eighthPower(eighths: number): number {
-    const parts = [
-        1,
-        1.0905077326652577,
-        1.189207115002721,
-        1.2968395546510096,
-        Math.SQRT2,
-        1.5422108254079407,
-        1.681792830507429,
-        1.8340080864093424,
-    ];
-    const whole = Math.floor(eighths / 8);
-    return 2 ** whole * parts[eighths - 8 * whole];
 }
 
 /** Returns the table of a class of widths with the code of its shape. */

@@ -154,9 +154,34 @@ export class Bits {
         return have === width ? number : number % 2 ** width;
     }
 
+    /** Returns the number in any number of bits from a place on. */
+    getBig(at: number, width: number): bigint {
+        let number = 0n;
+        for (let have = 0; have < width; have += 32) {
+            const part = this.get(at + have, Math.min(width - have, 32));
+            number |= BigInt(part) << BigInt(have);
+        }
+        return number;
+    }
+
     /** Throws damage unless there are bits up to a place. */
     reach(end: number): void {
         must(end <= this.length, "its bits end too early");
+    }
+}
+
+/** Reads consecutive numbers of bits in memory. */
+export class BitCursor {
+    constructor(
+        private readonly bits: Bits,
+        public at: number,
+    ) {}
+
+    /** Returns the next number, of at most 32 bits. */
+    next(width: number): number {
+        this.bits.reach(this.at + width);
+        this.at += width;
+        return this.bits.get(this.at - width, width);
     }
 }
 

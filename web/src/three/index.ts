@@ -3,4 +3,4 @@
 export { MlodLoader } from "./mlod_loader.ts";
 export { MlodMesh } from "./mlod_mesh.ts";
 export type { PictureSize } from "./mlod_mesh.ts";
-export { MlzLoader } from "./packed_loaders.ts";
+export { MlqLoader, MlzLoader } from "./packed_loaders.ts";

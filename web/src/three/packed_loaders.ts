@@ -48,3 +48,10 @@ export class MlzLoader extends PackedLoader {
         return (await import("../mlz/index.ts")).decodeMlz;
     }
 }
+
+/** Loads `.mlq` files, which are made to be drawn from; here they are decoded as a whole. */
+export class MlqLoader extends PackedLoader {
+    protected override async decoder() {
+        return (await import("../mlq/index.ts")).decodeMlq;
+    }
+}
