@@ -1,4 +1,4 @@
-/** A quad of two faces with texture coordinates, as `compress --bits 6` writes it. */
+/** Quads of two faces with texture coordinates, as `compress --bits 6` writes them. */
 
 import { crc32 } from "../src/file/crc32.ts";
 import { readMlzHeader } from "../src/mlz/header.ts";
@@ -29,4 +29,45 @@ export function sealMlz(file: Uint8Array, header: number): void {
     const view = new DataView(file.buffer, file.byteOffset);
     view.setUint32(16, crc32(file.subarray(header)), true);
     view.setUint32(12, crc32(file.subarray(20, header)), true);
+}
+
+/** The quad as `.mlq` in each scheme. */
+const MLQ = {
+    parts:
+        "bWVzaGxvZHEBAAAAAAABACsAAAAAAAAARCHYCRIAAAAAAAAA83Q6ZjUAAAAAAAAAwD1I+W5lONEBBAAA" +
+        "AAEAAAAAhIA7AISAOwCEADsEAAAAAAAAAAAAAAAA/v4AAP7+/gAAAgAAAAAAAAACAAAAAAAAAAAAAQAC" +
+        "AAAAAAAAAAACAHV29P8AAAAAAAAAAA0NAKABAA0AAAAAAAAAAAAAAABAAAgAACAABAA=",
+    strips:
+        "bWVzaGxvZHEBAAAAAAQBACsAAAAAAAAARCHYCQwAAAAAAAAAGFMKtjUAAAAAAAAAwD1I+cBwowMBBAAA" +
+        "AAEAAAAAhIA7AISAOwCEADsEAAAAAAAAAAAAAAAA/v4AAP7+/gAABAAAAAIAAQMAAAAAAQACAAAAAAAA" +
+        "AAACAHV29P8AAAAAAAAAAA0NAKABAA0AAAAAAAAAAAAAAABAAAgAACAABAA=",
+    blocks:
+        "bWVzaGxvZHEBAAAAAgABAFQAAAAAAAAAl69NBA8AAAAAAAAAhpdPMTUAAAAAAAAAMxwTfoI8D9oEAAAA" +
+        "BAAAAAAAAAAAAOA/AAAAAAAA4D8AAAAAAADQP3XXMYRWaEk/CAQCgUAgcD8gEAsACwAoABcAAAAAAAAA" +
+        "AAcHCICqsCKJmbwWIM+C8kceAAADAAAAAAAAAAIAAAAAdwABAAIAAAAAAAAAAAIAdXb0/wAAAAAAAAAA" +
+        "DQ0AoAEADQAAAAAAAAAAAAAAAEAAAAABIAAAgA==",
+    lattice:
+        "bWVzaGxvZHEBAAAAAQABAEgAAAAAAAAAVCi2Qw8AAAAAAAAAhpdPMTUAAAAAAAAAMxwTfh08JcH6////" +
+        "AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAABAAAAAUAAABAAAAAQAAAACAAAAAAAAAAQCAEAAADECCEMKhK" +
+        "YQt21Uo/hAADAAAAAAAAAAIAAAAAdwABAAIAAAAAAAAAAAIAdXb0/wAAAAAAAAAADQ0AoAEADQAAAAAA" +
+        "AAAAAAAAAEAAAAABIAAAgA==",
+};
+export type Scheme = keyof typeof MLQ;
+export const SCHEMES = Object.keys(MLQ) as Scheme[];
+
+/** Returns the quad as `.mlq`. */
+export function quadMlq(scheme: Scheme): Uint8Array<ArrayBuffer> {
+    return new Uint8Array(Buffer.from(MLQ[scheme], "base64"));
+}
+
+/** Makes the checksums of a `.mlq` file with three sections right again. */
+export function sealMlq(file: Uint8Array): void {
+    const view = new DataView(file.buffer, file.byteOffset);
+    let at = 56;
+    for (let sum = 16; sum < 52; sum += 12) {
+        const end = at + Number(view.getBigUint64(sum, true));
+        view.setUint32(sum + 8, crc32(file.subarray(at, end)), true);
+        at = end;
+    }
+    view.setUint32(52, crc32(file.subarray(0, 52)), true);
 }
