@@ -95,7 +95,8 @@ export class Border {
 
     /** Adds a face to a new vertex; returns its third corner, as the others do. */
     addNew(at: number, vertex: number): number {
-        const [a, second] = [this.vertex[at], this.next[at]];
+        const a = this.vertex[at];
+        const second = this.next[at];
         const b = this.vertex[second];
         this.faces[vertex & MASK] = 0;
         const added = this.push(vertex, second, at, a, a);
@@ -107,7 +108,9 @@ export class Border {
 
     /** Adds a face to the vertex before the edge. */
     addPrevious(at: number): number {
-        const [a, second, previous] = [this.vertex[at], this.next[at], this.previous[at]];
+        const a = this.vertex[at];
+        const second = this.next[at];
+        const previous = this.previous[at];
         this.state[at] = REMOVED;
         const c = this.vertex[previous];
         const b = this.vertex[second];
@@ -119,8 +122,10 @@ export class Border {
 
     /** Adds a face to the vertex behind the edge. */
     addNext(at: number): number {
-        const [a, second] = [this.vertex[at], this.next[at]];
-        const [b, third] = [this.vertex[second], this.next[second]];
+        const a = this.vertex[at];
+        const second = this.next[at];
+        const b = this.vertex[second];
+        const third = this.next[second];
         this.state[second] = REMOVED;
         this.link(at, third, b);
         const c = this.vertex[third];
@@ -140,9 +145,11 @@ export class Border {
 
     /** Adds a face to the vertex of any other node, which splits a loop or joins two. */
     addOther(at: number, other: number): number {
-        const [a, second] = [this.vertex[at], this.next[at]];
+        const a = this.vertex[at];
+        const second = this.next[at];
         const b = this.vertex[second];
-        const [c, after] = [this.vertex[other], this.next[other]];
+        const c = this.vertex[other];
+        const after = this.next[other];
         const { apex, previousApex, state } = this;
         const twin = this.push(c, after, at, apex[other], previousApex[other], state[other]);
         this.previous[after] = twin;

@@ -78,6 +78,7 @@ export function readMlzHeader(file: Uint8Array, reader: ByteReader): MlzHeader {
     const blocks = readIndex(count, reader);
     const all = blocks.reduce((sum, block) => sum + block.faces, 0);
     reader.must(all === faces, "the faces of its blocks are not those of the mesh");
+    reader.must(vertices <= 3 * faces, "it has more vertices than corners of faces");
     const isWhole = crc32(file.subarray(SUMS_END, reader.at)) === headerSum;
     reader.must(isWhole, "its checksum does not match: the file is damaged");
     const last = blocks.at(-1);

@@ -41,7 +41,8 @@ export function decodeMlz(file: Uint8Array): PackedMesh {
 class MeshBuilder {
     private readonly faces: Uint32Array;
     private face = 0;
-    private readonly positions: number[] = [];
+    private readonly positions: Float64Array;
+    private vertices = 0;
     /** Vertices on borders by their tags and cells. */
     private readonly shared = new Map<number, Map<number, number>>();
     private readonly corners: Uint32Array;
@@ -53,6 +54,7 @@ class MeshBuilder {
     constructor(private readonly header: MlzHeader) {
         const { faces, layers } = header;
         this.faces = new Uint32Array(3 * faces);
+        this.positions = new Float64Array(3 * header.vertices);
         this.values = layers?.layers.map(() => []) ?? [];
         this.corners = new Uint32Array(this.values.length > 0 ? 3 * faces : 0);
         const labels = layers?.labels ?? [];
@@ -71,8 +73,10 @@ class MeshBuilder {
     /** Returns the number of a vertex of a block, which is new unless it is on a border. */
     private vertex({ cells, tags }: Block, v: number): number {
         const { positions } = this;
-        const number = positions.length / 3;
-        const [x, y, z] = [cells[3 * v], cells[3 * v + 1], cells[3 * v + 2]];
+        const x = cells[3 * v];
+        const y = cells[3 * v + 1];
+        const z = cells[3 * v + 2];
+        const number = this.vertices;
         if (tags[v] !== INSIDE) {
             // Two coordinates make a number of 42 bits; the third one is below the tag.
             const outer = tags[v] * 0x200000 + z;
@@ -83,8 +87,11 @@ class MeshBuilder {
             cellsAt.set(x * 0x200000 + y, number);
         }
         const { origin, cell } = this.header;
-        positions.push(origin[0] + cell * x, origin[1] + cell * y, origin[2] + cell * z);
-        return number;
+        // Beyond its end nothing is stored, and the number is an error at the end.
+        positions[3 * number] = origin[0] + cell * x;
+        positions[3 * number + 1] = origin[1] + cell * y;
+        positions[3 * number + 2] = origin[2] + cell * z;
+        return this.vertices++;
     }
 
     private addLayers({ wedges, layers, labels }: NonNullable<Block["layers"]>): void {
@@ -107,9 +114,7 @@ class MeshBuilder {
 
     /** Returns the mesh. */
     finish(resources: Uint8Array): PackedMesh {
-        const { header, faces } = this;
-        const positions = new Float64Array(this.positions);
-        const vertices = positions.length / 3;
+        const { header, faces, positions, vertices } = this;
         must(
             vertices === header.vertices,
             `it has ${vertices} vertices, where its header says ${header.vertices}`,

@@ -29,14 +29,18 @@ export class Places {
     /** Three coordinates of each vertex, in cells. */
     readonly cells: Float32Array;
     /** Latest trends along the surface and across it, and those before. */
-    private now = [1, 1];
-    private latest = [1, 1];
+    private readonly now = new Float32Array(2);
+    private readonly latest = new Float32Array(2);
     private outside = 0;
     /** The gate's vertices, and what is predicted from them. */
     private readonly ends = new Float32Array(3 * ENDS);
     private readonly mean = new Float32Array(3);
     private readonly normal = new Float32Array(3);
     private readonly expected = new Float32Array(2);
+    /** The gate's edge, and the ways from its start to both apexes. */
+    private readonly edge = new Float32Array(3);
+    private readonly spoke = new Float32Array(3);
+    private readonly older = new Float32Array(3);
     private inverse = 0;
     /** First coded axis; mean and variance of each coded axis, and how those depend on others. */
     private axis = 0;
@@ -53,8 +57,8 @@ export class Places {
 
     /** Decodes all vertices but the first. */
     decode(gates: Gates, symbols: Symbols, first: readonly number[]): Float32Array {
-        this.now = [1, 1];
-        this.latest = [1, 1];
+        this.now.fill(1);
+        this.latest.fill(1);
         this.outside = 0;
         this.cells.set(first);
         for (let v = 1; v < gates.length; v++) {
@@ -97,11 +101,12 @@ export class Places {
         let sides = 0;
         let spokes = 0;
         let rims = 0;
-        const e = [0, 0, 0];
-        const s = [0, 0, 0];
-        const older = [0, 0, 0];
+        const { edge: e, spoke: s, older } = this;
         for (let k = 0; k < 3; k++) {
-            const [a, b, o, q] = [ends[k], ends[3 + k], ends[6 + k], ends[9 + k]];
+            const a = ends[k];
+            const b = ends[3 + k];
+            const o = ends[6 + k];
+            const q = ends[9 + k];
             const edge = f(b - a);
             const spoke = f(o - a);
             const rim = f(o - b);
@@ -122,7 +127,8 @@ export class Places {
         const squared = f(f(f(sides + spokes) + rims) + 1);
         const { normal } = this;
         for (let k = 0; k < 3; k++) {
-            const [i, j] = [(k + 1) % 3, (k + 2) % 3];
+            const i = (k + 1) % 3;
+            const j = (k + 2) % 3;
             const near = f(f(e[i] * s[j]) - f(e[j] * s[i]));
             normal[k] = f(near + f(f(s[i] * older[j]) - f(s[j] * older[i])));
         }
@@ -134,14 +140,22 @@ export class Places {
     /** Conditions each axis on those before. */
     private condition(along: number, across: number): void {
         const { normal, means, mean, variances, depends } = this;
-        const [x, y, z] = normal;
+        const x = normal[0];
+        const y = normal[1];
+        const z = normal[2];
         const squared = f(f(f(x * x) + f(y * y)) + f(z * z));
         const inverse = squared > 0 ? f(1 / squared) : 0;
-        const [ax, ay, az] = [Math.abs(x), Math.abs(y), Math.abs(z)];
+        const ax = Math.abs(x);
+        const ay = Math.abs(y);
+        const az = Math.abs(z);
         // The axis of the greatest component is last.
         this.axis = ay > Math.max(ax, az) ? 2 : ax > az ? 1 : 0;
-        const [i, j, l] = [this.axis, (this.axis + 1) % 3, (this.axis + 2) % 3];
-        const [u, v, w] = [normal[i], normal[j], normal[l]];
+        const i = this.axis;
+        const j = (i + 1) % 3;
+        const l = (i + 2) % 3;
+        const u = normal[i];
+        const v = normal[j];
+        const w = normal[l];
         const uu = f(f(u * u) * inverse);
         const vv = f(f(v * v) * inverse);
         const ww = f(f(w * w) * inverse);
@@ -191,21 +205,24 @@ export class Places {
 
     /** Changes the trends by how far a vertex is from where it was predicted. */
     private learn(vertex: number): void {
-        const { cells, mean, normal, latest, expected } = this;
-        const [x, y, z] = [0, 1, 2].map((k) => f(cells[3 * vertex + k] - mean[k]));
-        const height = f(f(f(x * normal[0]) + f(y * normal[1])) + f(z * normal[2]));
+        const { cells, mean, normal, now, latest, expected } = this;
+        let height = 0;
+        let all = 0;
+        for (let k = 0; k < 3; k++) {
+            const way = f(cells[3 * vertex + k] - mean[k]);
+            height = f(height + f(way * normal[k]));
+            all = f(all + f(way * way));
+        }
         const across = f(f(height * height) * this.inverse);
-        const all = f(f(f(x * x) + f(y * y)) + f(z * z));
-        const squares = [f(0.5 * f(all - across)), across];
-        const changed = [0, 1].map((k) => {
-            const ratio = f(f(f(squares[k] + FLOOR) / expected[k]) - 1);
+        for (let k = 0; k < 2; k++) {
+            const squared = k === 0 ? f(0.5 * f(all - across)) : across;
+            const ratio = f(f(f(squared + FLOOR) / expected[k]) - 1);
             const beyond = ratio < 3 ? ratio : 3;
             const trend = f(latest[k] + f(f(latest[k] * beyond) * GAIN));
             const atLeast = trend > LEAST_TREND ? trend : LEAST_TREND;
-            return atLeast < 20 ? atLeast : 20;
-        });
-        this.now = latest;
-        this.latest = changed;
+            now[k] = latest[k];
+            latest[k] = atLeast < 20 ? atLeast : 20;
+        }
     }
 }
 
