@@ -1,5 +1,5 @@
 /**
- * Positions of a block: each is predicted from its gate, with how far off it may be along each axis.
+ * Positions of a block: each is predicted from its gate, and how far off it may be on each axis.
  *
  * All is in single precision, each operation rounded by itself, in the order of the page of the
  * format.

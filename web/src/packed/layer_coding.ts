@@ -31,7 +31,7 @@ export class LayerCoding {
         this.components = directionBits === null ? width : width - 1;
     }
 
-    /** Writes the values that integers stand for; those that are out of range become the nearest. */
+    /** Writes the values that integers stand for, or the nearest ones that are in range. */
     decode(
         numbers: { readonly [at: number]: number },
         at: number,

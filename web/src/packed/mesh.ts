@@ -49,7 +49,7 @@ export interface MeshBuffers {
 
 const NONE = 0xffffffff;
 
-/** Returns a mesh as buffers of single precision, in which a vertex is drawn once for each wedge. */
+/** Returns a mesh as buffers in single precision, with a vertex for each wedge. */
 export function buffersOf({ positions, faces, wedges }: PackedMesh): MeshBuffers {
     if (!wedges) return { positions: new Float32Array(positions), indices: faces, layers: [] };
     const spread = new Float32Array(3 * wedges.count);

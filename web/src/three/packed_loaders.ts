@@ -1,4 +1,4 @@
-/** Loaders of `.mlz` and `.mlq` files for three.js, whose decoders are fetched when they are used. */
+/** Loaders of `.mlz` and `.mlq` files for three.js, which fetch their decoders with the first file. */
 
 import { FileLoader, Loader } from "three";
 import type { BufferGeometry } from "three";
