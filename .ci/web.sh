@@ -18,4 +18,22 @@ web_files() {
         name="$(basename "$file" .mlod)"
         $conformance "$file" "$folder/$name.json" 300
     done
+    web_packed "$folder" "$meshlod"
+}
+
+# web_packed FOLDER MESHLOD: compressed files of every scheme, each with an OBJ of what Rust decodes from it.
+web_packed() {
+    local folder="$1" meshlod="$2" from name scheme file
+    mkdir -p "$folder/packed"
+    for from in "$folder/torus.ply" "$folder/fish.obj" "$folder/terrain.ply" $(mesh fox.glb); do
+        name="$(basename "${from%.*}")"
+        $meshlod compress "$from" "$folder/packed/$name.mlz" --quiet
+        for scheme in parts "parts --strips" lattice blocks; do
+            # shellcheck disable=SC2086
+            $meshlod compress "$from" "$folder/packed/$name-${scheme// --/-}.mlq" --scheme $scheme --quiet
+        done
+    done
+    for file in "$folder"/packed/*.ml[qz]; do
+        $meshlod decompress "$file" "$file.obj" --precision f64 --quiet
+    done
 }

@@ -9,7 +9,12 @@ const common = { bundle: true, minify: true, format: "esm", target: "es2022", lo
 
 const { metafile } = await build({
     ...common,
-    entryPoints: { index: "src/index.ts", "three/index": "src/three/index.ts" },
+    entryPoints: {
+        index: "src/index.ts",
+        "three/index": "src/three/index.ts",
+        "mlq/index": "src/mlq/index.ts",
+        "mlz/index": "src/mlz/index.ts",
+    },
     external: ["three", "three/*"],
     splitting: true,
     metafile: true,
@@ -25,6 +30,13 @@ function addImports(file, files) {
         if (kind === "import-statement" && path.startsWith("dist/")) addImports(path, files);
     }
     return files;
+}
+
+for (const format of ["mlq", "mlz"]) {
+    let bytes = 0;
+    for (const file of addImports(`dist/${format}/index.js`, new Set()))
+        bytes += gzipSync(readFileSync(file), { level: 9 }).length;
+    console.log(`the decoder of .${format}: ${bytes} bytes compressed by gzip`);
 }
 
 let all = 0;

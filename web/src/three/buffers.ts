@@ -2,6 +2,7 @@
 
 import { BufferAttribute, BufferGeometry, Sphere, Vector3 } from "three";
 import type { FileInfo, GeometryPatch, LayerInfo } from "../index.ts";
+import { attributeName } from "./attribute_name.ts";
 
 /** Number of ranges that are uploaded by themselves; more become one. */
 const MOST_RANGES = 32;
@@ -104,23 +105,9 @@ function columnsOf(layers: readonly LayerInfo[]): Column[] {
     const columns: Column[] = [{ name: "position", width: 3, start: 0, isUv: false }];
     let start = 3;
     for (const { kind, set, width } of layers) {
-        const name = nameOf(kind, set);
+        const name = attributeName(kind, set);
         if (name !== null) columns.push({ name, width, start, isUv: kind === "uv" });
         start += width;
     }
     return columns;
-}
-
-/** Returns the name by which three.js knows a layer, or null. */
-function nameOf(kind: LayerInfo["kind"], set: number): string | null {
-    if (kind === "uv") return set === 0 ? "uv" : `uv${set}`;
-    if (kind === "normal" || kind === "tangent") return kind;
-    if (set > 0) return null;
-    return {
-        color: "color",
-        joints: "skinIndex",
-        weights: "skinWeight",
-        other: null,
-        labels: null,
-    }[kind];
 }

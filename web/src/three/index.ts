@@ -1,5 +1,6 @@
-/** Levels that stream, in three.js. */
+/** Levels that stream, and compressed meshes, in three.js. */
 
 export { MlodLoader } from "./mlod_loader.ts";
 export { MlodMesh } from "./mlod_mesh.ts";
 export type { PictureSize } from "./mlod_mesh.ts";
+export { MlqLoader, MlzLoader } from "./packed_loaders.ts";

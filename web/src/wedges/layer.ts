@@ -17,7 +17,8 @@ export const KINDS = [
 ] as const;
 export type LayerKind = (typeof KINDS)[number];
 
-const WIDTHS: Partial<Record<LayerKind, number>> = {
+/** Number of values of a wedge, for kinds that have only one. */
+export const WIDTHS: Partial<Record<LayerKind, number>> = {
     normal: 3,
     uv: 2,
     tangent: 4,
