@@ -220,6 +220,10 @@ impl TileFiles for ReadFiles<'_> {
         matches!(self.options.weld, Weld::Within(_))
     }
 
+    fn reading(&self) -> String {
+        format!("{:?}", self.options)
+    }
+
     fn read(&self, path: &Path) -> Result<Scene, TilesFault> {
         let scene = AnyFile::open(path, self.options).and_then(AnyFile::into_scene);
         let scene = scene.map_err(TilesFault::File)?;

@@ -31,6 +31,11 @@ impl Cell {
     /// Whole lattice.
     pub const ROOT: Self = Self { depth: 0, at: [0; 3] };
 
+    /// Returns false for what is not a cell of the lattice, as read from a file.
+    pub fn is_sound(self) -> bool {
+        self.depth <= MOST_DEPTH && self.at.iter().all(|at| at >> self.depth == 0)
+    }
+
     /// Returns one of the eight cells that this one is divided into: bit `axis` of `octant` is 1 on
     /// the far side.
     pub fn child(self, octant: usize) -> Self {

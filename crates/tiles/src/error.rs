@@ -48,7 +48,7 @@ pub enum TilesError {
         /// Bytes that are free.
         free: u64,
     },
-    /// A file of a tileset is not JSON.
+    /// A file of a tileset is not what it should be.
     #[error("{}: {reason}", path.display())]
     Unreadable {
         /// The file.
@@ -103,9 +103,6 @@ pub enum TilesError {
         /// Depth of the level.
         depth: u8,
     },
-    /// Another process works on the plan, or the job was cancelled.
-    #[error("{0}")]
-    Stopped(String),
 }
 
 impl TilesError {

@@ -13,7 +13,7 @@ use crate::error::TilesError;
 use crate::plan::{Look, Plan, PlanImage};
 use crate::record::TileRecord;
 use crate::scratch::read_blocks;
-use crate::sealed::{seal, unseal};
+use crate::sealed::{SEAL, seal, unseal};
 use crate::texture::DecodedImages;
 use crate::tile::{TileBuilder, TileMesh};
 use crate::tile_file;
@@ -250,8 +250,8 @@ impl Folder {
 
     /// Removes all files of the plan, and the folder if nothing else is in it.
     pub fn remove(&self) {
-        self.forget_tiles();
         self.forget_plan();
+        self.forget_tiles();
         let _ = fs::remove_file(self.lock_file());
         let _ = fs::remove_dir(&self.path);
     }
@@ -262,7 +262,7 @@ impl Folder {
         let named = [self.plan_file(), self.blocks_file(), self.scratch()];
         named.iter().for_each(|path| drop(fs::remove_file(path)));
         let parts = fs::read_dir(&self.path).into_iter().flatten().flatten();
-        let is_part = |name: &str| name.starts_with("image-") || name.starts_with(".pieces.");
+        let is_part = |name: &str| is_image(name) || name.starts_with(".pieces.");
         for part in parts.filter(|entry| entry.file_name().to_str().is_some_and(is_part)) {
             let _ = fs::remove_file(part.path());
         }
@@ -272,25 +272,41 @@ impl Folder {
     /// Removes all tiles that were made, as of another plan.
     pub fn forget_tiles(&self) {
         for part in [self.path.join("tiles"), self.content_folder()] {
-            let _ = fs::remove_dir_all(part);
+            remove_tiles(&part);
         }
+    }
+
+    /// Removes contents that processes which were ended have begun.
+    pub fn forget_unfinished(&self) {
+        remove_where(&self.content_folder(), |name| name.starts_with('.') && is_of_tile(name));
     }
 
     /// Returns true if the folder is there and holds anything but files of a plan: a plan is made in
     /// a folder of its own, as its files are replaced and removed.
     pub fn is_foreign(&self) -> bool {
-        let is_plan =
-            ["plan.json", "lock", "pieces"].iter().any(|name| self.path.join(name).exists());
-        let is_used = fs::read_dir(&self.path).is_ok_and(|mut entries| entries.next().is_some());
-        is_used && !is_plan
+        let mut entries = fs::read_dir(&self.path).into_iter().flatten().flatten();
+        let is_foreign = |name: &str| {
+            let name = name.strip_prefix('.').unwrap_or(name);
+            let stem = if name.starts_with("plan.json") { "plan.json" } else { first(name) };
+            let named = ["plan.json", "blocks", "pieces", "lock", "tiles", "content"];
+            !named.contains(&stem) && !is_image(name)
+        };
+        let is_plan = |bytes: Vec<u8>| bytes.is_empty() || bytes.starts_with(SEAL);
+        entries.any(|entry| entry.file_name().to_str().is_none_or(is_foreign))
+            || fs::read(self.plan_file()).is_ok_and(|bytes| !is_plan(bytes))
     }
 
     /// Takes contents back from a folder that they were moved to, where that is so: tiles were done
     /// up to the root, whose content is there and not here.
     pub fn take_back(&self, root: Cell, from: &Path) {
         let content = self.content(root);
-        let is_there = content.file_name().is_some_and(|name| from.join(name).exists());
-        if is_there && self.record_file(root).exists() && !content.exists() {
+        let record = fs::read(self.record_file(root)).ok();
+        let record = record.and_then(|bytes| unseal::<TileRecord>(&bytes).ok());
+        let there = content.file_name().and_then(|name| fs::read(from.join(name)).ok());
+        let is_own = record
+            .zip(there)
+            .is_some_and(|(record, bytes)| crc32fast::hash(&bytes) == record.content_checksum);
+        if is_own && !content.exists() {
             // Where that fails, the tiles are made anew.
             let _ = fs::remove_dir(self.content_folder());
             let _ = fs::rename(from, self.content_folder());
@@ -306,5 +322,80 @@ impl Folder {
     pub fn forget_mesh(&self, cell: Cell) {
         // It would only take space.
         let _ = fs::remove_file(self.mesh_file(cell));
+    }
+}
+
+/// Removes the files of tiles in a folder, and the folder if nothing else is in it.
+pub fn remove_tiles(folder: &Path) {
+    remove_where(folder, is_of_tile);
+    let _ = fs::remove_dir(folder);
+}
+
+/// Removes the files of a folder that have some names. What cannot be removed does no harm.
+pub fn remove_where(folder: &Path, is_meant: impl Fn(&str) -> bool) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        if entry.file_name().to_str().is_some_and(&is_meant) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// Returns true for the name of a file of a tile, such as `2-0-3-1.glb`, and of one in the making.
+pub fn is_of_tile(name: &str) -> bool {
+    let (name, is_part) = match name.strip_prefix('.') {
+        Some(name) => (name, true),
+        None => (name, false),
+    };
+    let Some((cell, kind)) = name.split_once('.') else { return false };
+    let kind = if is_part { first(kind) } else { kind };
+    let numbers: Vec<&str> = cell.split('-').collect();
+    ["json", "mesh", "glb"].contains(&kind) && numbers.len() == 4 && numbers.iter().all(is_number)
+}
+
+/// Returns true for the name of the file of an image, and of one in the making.
+fn is_image(name: &str) -> bool {
+    let (name, is_part) = match name.strip_prefix('.') {
+        Some(name) => (name, true),
+        None => (name, false),
+    };
+    let number = name.strip_prefix("image-");
+    number.is_some_and(|number| is_number(&if is_part { first(number) } else { number }))
+}
+
+fn is_number(text: &&str) -> bool {
+    !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
+}
+
+/// Returns the part of a name before its first dot.
+fn first(name: &str) -> &str {
+    name.split('.').next().unwrap_or(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_files_of_a_plan_are_ours() {
+        let ours = ["2-0-3-1.glb", ".2-0-3-1.glb.77-0", "0-0-0-0.json", "10-1-2-3.mesh"];
+        let foreign =
+            ["wall.png", "2-0-3.glb", "2-0-3-1.glb.bak", "2-0-3-x.glb", "1-1-1-1.txt", ""];
+        assert!(ours.into_iter().all(is_of_tile) && !foreign.into_iter().any(is_of_tile));
+        assert!(is_image("image-0") && is_image(".image-12.77-0"));
+        assert!(!is_image("image-1.png") && !is_image("image-") && !is_image("image-a"));
+
+        let temporary = tempfile::tempdir().unwrap();
+        let folder = Folder::new(temporary.path());
+        folder.make().unwrap();
+        assert!(!folder.is_foreign());
+        fs::write(folder.path().join("content/article.md"), "text").unwrap();
+        folder.remove();
+        assert!(folder.path().join("content/article.md").exists());
+        fs::write(folder.path().join("plan.json"), "{}").unwrap();
+        assert!(folder.is_foreign());
+        fs::remove_file(folder.path().join("plan.json")).unwrap();
+        assert!(!folder.is_foreign());
+        fs::write(folder.path().join("image-1.png"), "png").unwrap();
+        assert!(folder.is_foreign());
     }
 }

@@ -1,6 +1,6 @@
 //! Review of a tileset that was written: every file is read again.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use meshlod_io::{Format, MeshInstance, ReadOptions, Scene, Weld, read_bytes};
@@ -55,6 +55,7 @@ pub fn review(path: &Path) -> Result<TilesetReview, TilesError> {
         leaves: Vec::new(),
         inner: Vec::new(),
         deepest: 0,
+        seen: BTreeSet::new(),
     };
     let error = whole["geometricError"].as_f64().unwrap_or(f64::NAN);
     reviewer.tile(&whole["root"], error, None, 0);
@@ -80,6 +81,8 @@ struct Reviewer {
     leaves: Vec<(Cell, Edges)>,
     inner: Vec<(Cell, Edges)>,
     deepest: u8,
+    /// Other tilesets that were read.
+    seen: BTreeSet<String>,
 }
 
 impl Reviewer {
@@ -87,6 +90,9 @@ impl Reviewer {
     fn tile(&mut self, tile: &Value, most: f64, around: Option<[[f64; 3]; 2]>, files: usize) {
         let uri = tile["content"]["uri"].as_str().unwrap_or_default().to_owned();
         if uri.ends_with(".json") {
+            if !self.seen.insert(uri.clone()) {
+                return self.find(&uri, "more than one tile refers to it");
+            }
             match json(&self.files, &uri) {
                 Ok(inner) if files < MOST_FILES => {
                     self.tile(&inner["root"], most, around, files + 1);
@@ -99,6 +105,9 @@ impl Reviewer {
         let Ok(cell) = serde_json::from_value::<Cell>(tile["extras"]["cell"].clone()) else {
             return self.find(&uri, "its cell is missing");
         };
+        if !cell.is_sound() {
+            return self.find(&uri, "its cell is not one of an octree");
+        }
         self.review.tiles += 1;
         self.deepest = self.deepest.max(cell.depth);
         let error = tile["geometricError"].as_f64().unwrap_or(f64::NAN);

@@ -3,14 +3,15 @@
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-const HEAD: &[u8] = b"{\"crc32\":\"";
+/// Bytes that sealed files begin with.
+pub const SEAL: &[u8] = b"{\"crc32\":\"";
 const BODY: &[u8] = b"\",\"value\":";
 
 /// Returns a value as JSON in an object that has its checksum, too.
 pub fn seal(value: &impl Serialize) -> Vec<u8> {
     let value = serde_json::to_vec(value).expect("plans and records are plain data");
     let sum = format!("{:08x}", crc32fast::hash(&value));
-    [HEAD, sum.as_bytes(), BODY, &value, b"}"].concat()
+    [SEAL, sum.as_bytes(), BODY, &value, b"}"].concat()
 }
 
 /// Returns the value of a sealed file.
@@ -23,7 +24,7 @@ pub fn unseal<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, String> {
 }
 
 fn body(bytes: &[u8]) -> Option<&[u8]> {
-    let (sum, rest) = bytes.strip_prefix(HEAD)?.split_at_checked(8)?;
+    let (sum, rest) = bytes.strip_prefix(SEAL)?.split_at_checked(8)?;
     let value = rest.strip_prefix(BODY)?.strip_suffix(b"}")?;
     let sum = u32::from_str_radix(std::str::from_utf8(sum).ok()?, 16).ok()?;
     (crc32fast::hash(value) == sum).then_some(value)

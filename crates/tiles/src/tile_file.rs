@@ -6,8 +6,8 @@ use crate::layout::Layout;
 use crate::samples::Samples;
 use crate::tile::{TileBuilder, TileMesh};
 
-/// Encodes a tile: counts, positions, faces, border, samples, wedges, materials and a checksum;
-/// little-endian.
+/// Encodes a tile: counts, positions, faces, border, samples, wedges and materials;
+/// little-endian. Its checksum is in the record of the tile.
 pub fn encode(tile: &TileMesh, layout: &Layout) -> Vec<u8> {
     let mesh = &tile.mesh;
     let wedges = mesh.attributes.as_ref().map_or(0, |attributes| attributes.wedge_count);
@@ -39,17 +39,11 @@ pub fn encode(tile: &TileMesh, layout: &Layout) -> Vec<u8> {
             layout.pack(&values, &mut bytes);
         }
     }
-    let sum = crc32fast::hash(&bytes);
-    bytes.extend(sum.to_le_bytes());
     bytes
 }
 
 /// Decodes a tile; `None` if it is damaged.
 pub fn decode(bytes: &[u8], layout: &Layout, labels: &[String]) -> Option<TileMesh> {
-    let (bytes, sum) = bytes.split_last_chunk::<4>()?;
-    if crc32fast::hash(bytes) != u32::from_le_bytes(*sum) {
-        return None;
-    }
     let mut words = Words { bytes };
     let counts = words.take(6)?;
     let [vertices, faces, border, samples, wedges] = [0, 1, 2, 3, 4].map(|i| counts[i] as usize);

@@ -36,7 +36,9 @@ impl Finished {
     pub fn lost_images<'p>(&self, plan: &'p Plan) -> Vec<&'p str> {
         let all = self.records.iter().flat_map(|record| &record.lost_images);
         let lost: BTreeSet<usize> = all.copied().collect();
-        lost.iter().filter_map(|&i| plan.images.get(i)).map(|image| &*image.name).collect()
+        let images = lost.iter().filter_map(|&i| plan.images.get(i));
+        // Of those whose files are missing, the reader has told.
+        images.filter(|image| image.checksum != 0).map(|image| &*image.name).collect()
     }
 }
 

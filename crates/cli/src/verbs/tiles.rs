@@ -54,7 +54,7 @@ pub struct Tiles {
     reading: ReadArgs,
 }
 
-/// TileStep of making tiles.
+/// A step of making tiles.
 #[derive(Subcommand)]
 enum TileStep {
     /// Cut a model into the pieces of its tiles, and plan how to make them
@@ -115,7 +115,7 @@ impl ArchiveArgs {
         if session_files::is_pipe(path) {
             return Err(Failure::usage("-: tiles cannot go to standard output; name a folder"));
         }
-        let mut path = path.to_owned();
+        let mut path: PathBuf = path.components().collect();
         if self.zip && !is_archive(&path) {
             path.as_mut_os_string().push(".3tz");
         }

@@ -82,8 +82,6 @@ class _Run:
         try:
             planned = self._result(_plan, names, self.folder, asked)
         except (MeshlodError, OSError):
-            # Nothing is left that a next run could go on from.
-            _native.remove_tile_plan(self.folder)
             with suppress(OSError):
                 os.rmdir(self.out)
             raise

@@ -33,6 +33,10 @@ impl TileFiles for ReadFiles<'_> {
         files::is_pipe(path) || self.reading.weld().is_some()
     }
 
+    fn reading(&self) -> String {
+        format!("{:?}", self.reading.options())
+    }
+
     fn read(&self, path: &Path) -> Result<Scene, Failure> {
         files::read(path, self.reading, self.session)
     }

@@ -17,7 +17,6 @@ use std::io;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use meshlod_io::remove_abandoned;
 use meshlod_mesh::Bounds;
 use meshlod_tiles::TilesError;
 use meshlod_tiles::archive::is_archive;
@@ -77,6 +76,7 @@ pub fn tiles(
     let options = request.options()?;
     check_tiles_folder(out)?;
     let folder = Folder::new(tile_plan_folder(out));
+    refuse_foreign(&folder)?;
     let _hold = Hold::new_plan(&folder)?;
     let threads = request.threads(rayon::current_num_threads());
     let room = Room::OfRun { threads };
@@ -112,17 +112,23 @@ pub fn plan_tiles(
 ) -> Result<usize, JobError> {
     let folder = Folder::new(folder);
     let options = request.options()?;
-    if folder.is_foreign() {
-        let path = folder.path().display();
-        let reason = format!("{path}: holds other files; name a new folder for the plan");
-        return Err(JobError::request("", reason));
-    }
+    refuse_foreign(&folder)?;
     let _hold = Hold::new_plan(&folder)?;
     let planned = plan_in_hold(input, &folder, (&options, Room::OfSteps), watch);
     if planned.is_err() {
         folder.remove();
     }
     planned
+}
+
+/// Fails if a folder holds anything but files of a plan.
+fn refuse_foreign(folder: &Folder) -> Result<(), JobError> {
+    if !folder.is_foreign() {
+        return Ok(());
+    }
+    let path = folder.path().display();
+    let reason = format!("{path}: holds other files; name a new folder for the plan");
+    Err(JobError::request("", reason))
 }
 
 /// Plans the tiles of a model in a folder that no other process works in.
@@ -151,7 +157,6 @@ fn plan_in_hold(
     note_large_images(input.look, watch);
     watch.stage("cutting into tiles");
     let scratch = folder.scratch();
-    remove_abandoned([&*scratch]);
     let part = folder.path().join(format!(".pieces.{}-0", std::process::id()));
     let plan = Plan::of_survey(survey, model, options, &part).map_err(|error| {
         let _ = fs::remove_file(&part);
@@ -190,8 +195,11 @@ pub fn run_tile_task(folder: &Path, task: usize) -> Result<(), JobError> {
 /// # Errors
 /// As [`assemble_tiles`].
 pub fn finish_tiles(folder: &Path, out: &Path, watch: &dyn Watch) -> Result<TilesReport, JobError> {
-    let report = assemble_tiles(folder, out, watch)?;
-    remove_tile_plan(folder);
+    check_tiles_folder(out)?;
+    let folder = Folder::new(folder);
+    let _hold = Hold::alone(&folder)?;
+    let report = assemble_in_hold(&TilePlan::open(folder.path())?, out, watch)?;
+    folder.remove();
     Ok(report)
 }
 
@@ -208,9 +216,7 @@ pub fn assemble_tiles(
 ) -> Result<TilesReport, JobError> {
     check_tiles_folder(out)?;
     let _hold = Hold::alone(&Folder::new(folder))?;
-    let plan = TilePlan::open(folder)?;
-    plan.take_back(out);
-    assemble_in_hold(&plan, out, watch)
+    assemble_in_hold(&TilePlan::open(folder)?, out, watch)
 }
 
 /// Makes the tileset of a plan that no other process works on.
@@ -220,6 +226,7 @@ fn assemble_in_hold(
     watch: &dyn Watch,
 ) -> Result<TilesReport, JobError> {
     watch.stage("checking");
+    opened.take_back(out);
     let (plan, folder) = (&opened.plan, &opened.folder);
     let finished = finish(plan, folder).map_err(failure)?;
     let written = match is_archive(out) {
@@ -300,12 +307,14 @@ impl Work<'_> {
         if self.watch.is_cancelled() {
             return Err(JobError::Cancelled);
         }
-        if !self.plan.stands(task, is_part) {
-            let make = |&part: &usize| self.make(part, true);
-            self.plan.parts(task).par_iter().with_max_len(1).try_for_each(make)?;
+        // Parts of what stands may be damaged, too.
+        let stands = self.plan.stands(task, is_part);
+        let make = |&part: &usize| self.make(part, !stands);
+        self.plan.parts(task).par_iter().with_max_len(1).try_for_each(make)?;
+        if !stands {
             self.plan.run_in_hold(task)?;
         }
-        self.plan.forget_parts(task);
+        self.plan.forget_parts_in_hold(task);
         let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
         self.watch.step(done, Some(self.plan.tasks()));
         Ok(())

@@ -1,10 +1,12 @@
 //! The model that tiles are made of: one file, or several and those in folders as one.
 
+use std::hash::Hasher;
 use std::path::{Path, PathBuf};
 
 use meshlod_io::{IoError, Material, Note, Scene};
 use meshlod_tiles::plan::Look;
 use meshlod_tiles::source::{JoinedSource, LEAST_STREAMED, SceneSource, Source, open_stream};
+use rustc_hash::FxHasher;
 use thiserror::Error;
 
 use crate::files::FileKind;
@@ -53,6 +55,9 @@ pub trait TileFiles {
     /// Returns true for a file that must not be read in passing, such as a pipe.
     fn is_read_whole(&self, path: &Path) -> bool;
 
+    /// Returns a text that is different where files are read in another way.
+    fn reading(&self) -> String;
+
     /// Reads a file as a whole.
     ///
     /// # Errors
@@ -96,7 +101,10 @@ impl TileModel {
         let least = LEAST_STREAMED / paths.len().max(1) as u64;
         let open = |path: &PathBuf| ModelPart::open(path, least, files);
         let parts = paths.iter().map(open).collect::<Result<Vec<_>, _>>()?;
-        let key = paths.iter().map(|path| key(path)).collect::<Vec<_>>().join("\n");
+        let version = concat!("meshlod ", env!("CARGO_PKG_VERSION"));
+        let keys = paths.iter().map(|path| key(path)).chain(parts.iter().map(ModelPart::key));
+        let keys = [version.to_owned(), files.reading()].into_iter().chain(keys);
+        let key = keys.collect::<Vec<_>>().join("\n");
         Self::join(parts, key, files)
     }
 
@@ -134,6 +142,14 @@ impl TileModel {
 }
 
 impl ModelPart {
+    /// Returns a text that is different for other materials and images.
+    fn key(&self) -> String {
+        let mut sum = FxHasher::default();
+        self.look.images.iter().for_each(|image| sum.write(&image.bytes));
+        sum.write(&serde_json::to_vec(&self.look.materials).unwrap_or_default());
+        format!("{:016x}", sum.finish())
+    }
+
     /// Opens a file, in passing from a number of bytes on where that is possible.
     fn open<F: TileFiles>(path: &Path, least: u64, files: &F) -> Result<Self, F::Error> {
         let at = path.to_owned();
@@ -220,8 +236,12 @@ fn look(scene: &Scene) -> Look {
     Look { labels, materials, images: scene.images.clone(), ..Look::default() }
 }
 
-/// Returns a text that is different for another file, and mostly for another content.
+/// Returns a text that is different for another file, and mostly for another content. What comes
+/// through a pipe has a new one each time.
 fn key(path: &Path) -> String {
+    if path == Path::new("-") {
+        return format!("{:?}", std::time::SystemTime::now());
+    }
     let facts = std::fs::metadata(path).ok();
     let changed = facts.as_ref().and_then(|facts| facts.modified().ok());
     let seconds = changed.and_then(|at| at.duration_since(std::time::UNIX_EPOCH).ok());

@@ -68,9 +68,9 @@ impl TilePlan {
         if task < self.tasks() { self.plan.parts(task) } else { Vec::new() }
     }
 
-    /// Returns true for a task that is done, by files as long as they were written.
+    /// Returns true for a task that is done, whose content is as it was written.
     pub fn is_done(&self, task: usize) -> bool {
-        self.folder.record(&self.plan, task).is_ok_and(|record| record.is_some())
+        self.stands(task, false)
     }
 
     /// Returns true if the files of a tile are as they were written; its mesh need be there only for
@@ -87,9 +87,14 @@ impl TilePlan {
     ///
     /// # Errors
     /// A task that there is not or that needs another one first, files of the plan that are not as
-    /// they were written, errors of the system, and a plan that is being made or finished.
+    /// they were written, errors of the system, and a plan that is being made or finished, or was
+    /// made anew.
     pub fn run(&self, task: usize) -> Result<(), JobError> {
         let _hold = Hold::shared(&self.folder)?;
+        if !self.is_current() {
+            let path = self.folder.path().display();
+            return Err(JobError::request("", format!("{path}: the plan was made anew meanwhile")));
+        }
         self.run_in_hold(task)
     }
 
@@ -121,6 +126,15 @@ impl TilePlan {
 
     /// Removes what is left of the parts of a task that is done: only that task needed it.
     pub fn forget_parts(&self, task: usize) {
+        if let Ok(_hold) = Hold::shared(&self.folder)
+            && self.is_current()
+        {
+            self.forget_parts_in_hold(task);
+        }
+    }
+
+    /// Removes what is left of the parts of a task, for one who has the right to.
+    pub(super) fn forget_parts_in_hold(&self, task: usize) {
         let cells = self.parts(task).into_iter().filter_map(|part| self.plan.cell(part).ok());
         cells.for_each(|cell| self.folder.forget_mesh(cell));
     }

@@ -4,8 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use meshlod_tiles::archive::is_archive;
+use meshlod_tiles::folder::is_of_tile;
 
 use crate::jobs::JobError;
+use crate::jobs::tiles::result::TILES;
 
 /// Folder of the plan in that of the tileset, while this is made; after the name of an archive.
 const PLAN: &str = ".plan";
@@ -36,8 +38,18 @@ pub fn check_tiles_folder(out: &Path) -> Result<(), JobError> {
         return Err(JobError::output("is a file; name a folder for the tiles"));
     }
     let Ok(mut entries) = fs::read_dir(out) else { return Ok(()) };
-    let is_ours = out.join(PLAN).exists() || is_written_by_us(&out.join("tileset.json"));
-    match entries.next().is_none() || is_ours {
+    let tileset = out.join("tileset.json");
+    let is_ours = || out.join(PLAN).exists() || is_written_by_us(&tileset);
+    // As a process leaves them that was ended while it put the tiles there.
+    let is_rest = |name: &str| {
+        let is_part = name.starts_with(".tiles-") || name.starts_with(".tileset.json.");
+        name == TILES || is_part || is_of_tile(name)
+    };
+    let mut are_rests = || {
+        entries
+            .all(|entry| entry.is_ok_and(|entry| entry.file_name().to_str().is_some_and(is_rest)))
+    };
+    match is_ours() || are_rests() {
         true => Ok(()),
         false => Err(JobError::output("holds other files; name a new folder for the tiles")),
     }

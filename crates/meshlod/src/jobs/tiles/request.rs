@@ -8,6 +8,9 @@ use crate::jobs::tiles::placement::{Globe, Up};
 /// Least number of faces of a tile that can be asked for.
 const LEAST_FACES: usize = 100;
 
+/// Greatest number.
+const MOST_FACES: usize = 1 << 32;
+
 /// Bytes of memory a face that a tile in the making takes, with those that it is made of.
 const BYTES_OF_FACE: usize = 4 * 1200;
 
@@ -54,6 +57,10 @@ impl TilesRequest {
     pub(super) fn options(&self) -> Result<TileOptions, JobError> {
         if self.tile_faces < LEAST_FACES {
             let reason = format!("must be at least {LEAST_FACES}, not {}", self.tile_faces);
+            return Err(JobError::request("tile_faces", reason));
+        }
+        if self.tile_faces > MOST_FACES {
+            let reason = format!("must be at most {MOST_FACES}, not {}", self.tile_faces);
             return Err(JobError::request("tile_faces", reason));
         }
         if let Some(globe) = self.globe {

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use meshlod_io::{IoError, remove_abandoned, write_file, write_file_with};
 use meshlod_tiles::TilesError;
 use meshlod_tiles::archive::ArchiveWriter;
-use meshlod_tiles::folder::Folder;
+use meshlod_tiles::folder::{Folder, is_of_tile, remove_tiles, remove_where};
 use meshlod_tiles::tileset::Finished;
 
 /// Folder of the contents in that of the tileset.
@@ -19,6 +19,7 @@ pub(super) fn write_archive(
     folder: &Folder,
     out: &Path,
 ) -> Result<(), TilesError> {
+    remove_abandoned([out]);
     let written = write_file_with(out, |file| {
         let mut archive = ArchiveWriter::new(file);
         for file in &finished.files {
@@ -42,10 +43,10 @@ pub(super) fn write_folder(
     out: &Path,
 ) -> Result<(), TilesError> {
     let tiles = out.join(TILES);
-    let contents: Vec<PathBuf> =
-        finished.records.iter().map(|record| folder.content(record.cell)).collect();
-    remove_abandoned(contents.iter().map(PathBuf::as_path));
+    folder.forget_unfinished();
     fs::create_dir_all(out).map_err(|error| TilesError::system(out, error))?;
+    // Nothing refers to tiles that are of two tilesets, if the process ends here.
+    remove_where(out, |name| name == "tileset.json" || is_of_tile(name));
     place(&folder.content_folder(), &tiles)?;
     for file in finished.files.iter().rev() {
         write_file(&out.join(&file.name), &file.text)?;
@@ -60,16 +61,14 @@ fn place(from: &Path, to: &Path) -> Result<(), TilesError> {
     match fs::rename(from, to) {
         Err(error) if error.kind() == ErrorKind::CrossesDevices => {}
         Err(error) if error.kind() == ErrorKind::DirectoryNotEmpty => {
-            fs::remove_dir_all(to).map_err(system)?;
+            remove_tiles(to);
             return fs::rename(from, to).map_err(system);
         }
         done => return done.map_err(|error| TilesError::system(from, error)),
     }
     let new = Unfinished(to.with_file_name(format!(".{TILES}-{}", std::process::id())));
     copy(from, &new.0)?;
-    if to.exists() {
-        fs::remove_dir_all(to).map_err(system)?;
-    }
+    remove_tiles(to);
     fs::rename(&new.0, to).map_err(system)
 }
 
