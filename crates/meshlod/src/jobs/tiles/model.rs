@@ -146,7 +146,7 @@ impl ModelPart {
     fn key(&self) -> String {
         let mut sum = FxHasher::default();
         self.look.images.iter().for_each(|image| sum.write(&image.bytes));
-        sum.write(&serde_json::to_vec(&self.look.materials).unwrap_or_default());
+        sum.write(format!("{:?}", self.look.materials).as_bytes());
         format!("{:016x}", sum.finish())
     }
 
