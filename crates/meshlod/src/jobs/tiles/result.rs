@@ -103,15 +103,21 @@ mod tests {
         let [from, to] = ["from", "to"].map(|name| folder.path().join(name));
         for (at, text) in [(&from, "new"), (&to, "old")] {
             fs::create_dir(at).unwrap();
-            fs::write(at.join("a.glb"), text).unwrap();
+            fs::write(at.join("0-0-0-0.glb"), text).unwrap();
         }
         let part = folder.path().join("part");
         copy(&from, &part).unwrap();
-        assert_eq!(fs::read(part.join("a.glb")).unwrap(), b"new");
-        assert!(from.join("a.glb").exists());
+        assert_eq!(fs::read(part.join("0-0-0-0.glb")).unwrap(), b"new");
+        assert!(from.join("0-0-0-0.glb").exists());
         place(&from, &to).unwrap();
-        assert_eq!(fs::read(to.join("a.glb")).unwrap(), b"new");
+        assert_eq!(fs::read(to.join("0-0-0-0.glb")).unwrap(), b"new");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2, "part and to");
-        assert!(place(&from, &to).is_err() && to.join("a.glb").exists());
+        fs::write(to.join("wall.png"), "png").unwrap();
+        fs::create_dir(&from).unwrap();
+        fs::write(from.join("0-0-0-0.glb"), "newer").unwrap();
+        assert!(place(&from, &to).is_err() && to.join("wall.png").exists());
+        fs::remove_dir_all(&from).unwrap();
+        fs::write(to.join("0-0-0-0.glb"), "new").unwrap();
+        assert!(place(&from, &to).is_err() && to.join("0-0-0-0.glb").exists());
     }
 }
