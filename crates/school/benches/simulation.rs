@@ -15,7 +15,7 @@ use meshlod_school::simulation::{
 
 /// Numbers of members.
 const SIZES: [usize; 4] = [1_000, 10_000, 100_000, 1_000_000];
-/// How many of them are run as a test.
+/// Number of these sizes that are run as a test.
 const TESTED: usize = 2;
 /// Steps before measuring, in which members spread out evenly.
 const WARM_UP: usize = 60;

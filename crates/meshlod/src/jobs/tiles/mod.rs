@@ -1,4 +1,9 @@
 //! Tiles of a model of any size: 3D Tiles, from a plan whose tasks any number of processes may do.
+//!
+//! Reading order: `request` and `placement`, which say how tiles are to be; `model`, which opens
+//! inputs; `room`, on the disk; `method`, by which tiles are made coarser; `hold`, the right to work
+//! in a folder; `opened`, the tasks of a plan; `output` and `result`, where tiles go; `report` and
+//! `fault`.
 
 mod fault;
 mod hold;
