@@ -34,9 +34,9 @@ pub struct TilesetReview {
     pub findings: Vec<String>,
 }
 
-/// Reads a tileset of ours, all its tiles, and checks that contents are in their boxes and boxes in
-/// those around them, that errors do not rise towards the leaves, and that the tiles of each level
-/// meet without a crack.
+/// Reads a tileset of ours, all its tiles, and checks that transforms move tiles to where their cells
+/// are, that contents are in their boxes and boxes in those around them, that errors do not rise
+/// towards the leaves, and that the tiles of each level meet without a crack.
 ///
 /// # Errors
 /// A `tileset.json` or archive that cannot be read, or that is not one of ours.
@@ -56,9 +56,15 @@ pub fn review(path: &Path) -> Result<TilesetReview, TilesError> {
         inner: Vec::new(),
         deepest: 0,
         seen: BTreeSet::new(),
+        root: None,
     };
+    let mut root = whole["root"].clone();
+    let placed = root.as_object_mut().and_then(|root| root.remove("transform"));
+    if !placed.is_none_or(|transform| is_placement(&transform)) {
+        reviewer.find(TILESET, "the transform of its root is not a place and a turn");
+    }
     let error = whole["geometricError"].as_f64().unwrap_or(f64::NAN);
-    reviewer.tile(&whole["root"], error, None, 0);
+    reviewer.tile(&root, &Above { error, bounds: None, place: [0.0; 3], files: 0 });
     reviewer.check_levels();
     Ok(reviewer.review)
 }
@@ -73,6 +79,16 @@ fn json(files: &TilesetFiles, name: &str) -> Result<Value, TilesError> {
 /// that of the edge in the other direction.
 type Edges = FxHashMap<[Point; 2], i64>;
 
+/// What is known of a tile by those that it refines.
+struct Above {
+    error: f64,
+    bounds: Option<[[f64; 3]; 2]>,
+    /// How far transforms below that of the root have moved the tile, in the axes of the tileset.
+    place: [f64; 3],
+    /// Number of tilesets around it.
+    files: usize,
+}
+
 struct Reviewer {
     files: TilesetFiles,
     lattice: TileLattice,
@@ -83,19 +99,23 @@ struct Reviewer {
     deepest: u8,
     /// Other tilesets that were read.
     seen: BTreeSet<String>,
+    /// Cell of the first tile.
+    root: Option<Cell>,
 }
 
 impl Reviewer {
     /// Reviews a tile and those that refine it.
-    fn tile(&mut self, tile: &Value, most: f64, around: Option<[[f64; 3]; 2]>, files: usize) {
+    fn tile(&mut self, tile: &Value, above: &Above) {
         let uri = tile["content"]["uri"].as_str().unwrap_or_default().to_owned();
         if uri.ends_with(".json") {
             if !self.seen.insert(uri.clone()) {
                 return self.find(&uri, "more than one tile refers to it");
             }
+            let moved = movement(tile);
+            let place = moved.map_or(above.place, |by| add(above.place, by));
             match json(&self.files, &uri) {
-                Ok(inner) if files < MOST_FILES => {
-                    self.tile(&inner["root"], most, around, files + 1);
+                Ok(inner) if above.files < MOST_FILES => {
+                    self.tile(&inner["root"], &Above { place, files: above.files + 1, ..*above });
                 }
                 Ok(_) => self.find(&uri, "tilesets are nested too deeply"),
                 Err(error) => self.review.findings.push(error.to_string()),
@@ -111,17 +131,24 @@ impl Reviewer {
         self.review.tiles += 1;
         self.deepest = self.deepest.max(cell.depth);
         let error = tile["geometricError"].as_f64().unwrap_or(f64::NAN);
-        if !(0.0..=most).contains(&error) {
+        if !(0.0..=above.error).contains(&error) {
             self.find(&uri, "its error is above that of the tile that it refines");
         }
         let bounds = self.bounds(tile, cell);
         let slack = ROUNDING * f64::from(END) * self.lattice.step;
+        let root = *self.root.get_or_insert(cell);
+        let place = movement(tile).map(|by| add(above.place, by));
+        let expected = self.place(root, cell);
+        let is_near = |place: [f64; 3]| (0..3).all(|i| (place[i] - expected[i]).abs() <= slack);
+        if !place.is_some_and(is_near) {
+            self.find(&uri, "its transform does not move it to its cell");
+        }
         let is_inside = |[low, high]: [[f64; 3]; 2], [a, b]: [[f64; 3]; 2]| {
             (0..3).all(|axis| low[axis] >= a[axis] - slack && high[axis] <= b[axis] + slack)
         };
         match bounds {
             None => self.find(&uri, "it has no box"),
-            Some(bounds) if around.is_some_and(|around| !is_inside(bounds, around)) => {
+            Some(bounds) if above.bounds.is_some_and(|around| !is_inside(bounds, around)) => {
                 self.find(&uri, "its box is not inside that of the tile that it refines");
             }
             Some(_) => {}
@@ -137,9 +164,15 @@ impl Reviewer {
             }
             Err(reason) => self.find(&uri, &reason),
         }
-        for child in &children {
-            self.tile(child, error, bounds, files);
-        }
+        let below = Above { error, bounds, place: expected, files: above.files };
+        children.iter().for_each(|child| self.tile(child, &below));
+    }
+
+    /// Returns the way from the middle of one cell to that of another, in the axes of the tileset.
+    fn place(&self, from: Cell, to: Cell) -> [f64; 3] {
+        let (a, b) = (from.middle(), to.middle());
+        let [x, y, z] = [0, 1, 2].map(|axis| f64::from(b[axis] - a[axis]) * self.lattice.step);
+        if self.is_z_up { [x, y, z] } else { [x, -z, y] }
     }
 
     fn find(&mut self, uri: &str, what: &str) {
@@ -224,4 +257,34 @@ impl Reviewer {
             }
         }
     }
+}
+
+fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|axis| a[axis] + b[axis])
+}
+
+/// Returns the columns of a matrix of 16 numbers.
+fn columns(matrix: &Value) -> Option<[[f64; 4]; 4]> {
+    let numbers = matrix.as_array()?.iter().map(Value::as_f64).collect::<Option<Vec<_>>>()?;
+    let (columns, rest) = numbers.as_chunks::<4>();
+    columns.try_into().ok().filter(|_| rest.is_empty())
+}
+
+/// Returns how far the transform of a tile moves it; `None` if it does anything else.
+fn movement(tile: &Value) -> Option<[f64; 3]> {
+    let Some(transform) = tile.get("transform") else { return Some([0.0; 3]) };
+    let [x, y, z, [a, b, c, one]] = columns(transform)?;
+    let is_straight =
+        x == [1.0, 0.0, 0.0, 0.0] && y == [0.0, 1.0, 0.0, 0.0] && z == [0.0, 0.0, 1.0, 0.0];
+    (is_straight && one == 1.0).then_some([a, b, c])
+}
+
+/// Returns true for a matrix that turns and moves a model as it is.
+fn is_placement(matrix: &Value) -> bool {
+    let Some([x, y, z, [a, b, c, one]]) = columns(matrix) else { return false };
+    let dot = |a: [f64; 4], b: [f64; 4]| (0..4).map(|i| a[i] * b[i]).sum::<f64>();
+    let are_units =
+        [x, y, z].iter().all(|&axis| axis[3] == 0.0 && (dot(axis, axis) - 1.0).abs() < 1e-6);
+    let is_square = [dot(x, y), dot(y, z), dot(z, x)].iter().all(|part| part.abs() < 1e-6);
+    are_units && is_square && one == 1.0 && [a, b, c].iter().all(|at| at.is_finite())
 }

@@ -114,6 +114,31 @@ fn a_tile_that_was_changed_is_found() {
 }
 
 #[test]
+fn a_transform_that_was_changed_is_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let (source, look) = (knot(), Look::default());
+    let input = TileInput { source: &source, look: &look, key: "knot" };
+    let request = TilesRequest { tile_faces: 2_000, ..TilesRequest::default() };
+    tiles(input, folder.path(), &request, &()).unwrap();
+    let path = folder.path().join("tileset.json");
+    let whole: serde_json::Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+    for (pointer, expected) in [("/root", "tileset.json"), ("/root/children/0", "1-")] {
+        let mut changed = whole.clone();
+        changed.pointer_mut(pointer).unwrap()["transform"][0] = 2.into();
+        fs::write(&path, changed.to_string()).unwrap();
+        let findings = check_tileset(folder.path(), &()).unwrap().findings;
+        let [finding] = &findings[..] else { panic!("{pointer}: {findings:?}") };
+        assert!(finding.contains(expected) && finding.contains("transform"), "{finding}");
+    }
+    let mut moved = whole.clone();
+    moved["root"]["children"][0]["transform"][13] = 3.5.into();
+    fs::write(&path, moved.to_string()).unwrap();
+    assert!(!check_tileset(folder.path(), &()).unwrap().findings.is_empty());
+    fs::write(&path, whole.to_string()).unwrap();
+    assert_eq!(check_tileset(folder.path(), &()).unwrap().findings, [""; 0]);
+}
+
+#[test]
 fn what_has_no_extent_leaves_nothing_behind() {
     let folder = tempfile::tempdir().unwrap();
     let mut mesh = samples::torus(100);
