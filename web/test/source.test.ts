@@ -6,7 +6,7 @@ import { test } from "node:test";
 import { open } from "../src/load/stream.ts";
 import type { MlodStream, StreamListener } from "../src/load/stream.ts";
 import { HttpSource } from "../src/load/source.ts";
-import { vectorFile } from "./files.ts";
+import { conformanceFile, conformanceNames, vectorFile } from "./files.ts";
 
 const file = Buffer.from(Array.from({ length: 1000 }, (_, i) => (i * 7) & 255));
 
@@ -83,6 +83,21 @@ test("of a server without ranges, parts of the whole file are there as they come
     });
 });
 
+test("other origins are asked for nothing but ranges", async () => {
+    const asked: string[][] = [];
+    const get: typeof fetch = (_, options) => {
+        asked.push(Object.keys(options?.headers ?? {}));
+        const [from, to] = asked.length === 1 ? [0, 99] : [700, 749];
+        const headers = { "Content-Range": `bytes ${from}-${to}/1000`, ETag: '"1"' };
+        return Promise.resolve(new Response(file.subarray(from, to + 1), { status: 206, headers }));
+    };
+    const source = new HttpSource("https://elsewhere.test/", never, get);
+    await source.start(100);
+    await source.read(700, 50);
+    // Any other header would need the leave of the server, by a request of its own.
+    assert.deepEqual(asked, [["Range"], ["Range"]]);
+});
+
 test("a file that changes in the middle is noticed", async () => {
     let tag = '"1"';
     await serving(
@@ -106,7 +121,12 @@ test("a server that lies about ranges, or fails, is not believed", async () => {
             response
                 .writeHead(206, { "Content-Range": "bytes 5-104/1000" })
                 .end(file.subarray(5, 105)),
-        (response) => response.writeHead(206).end(file.subarray(0, 100)),
+        // Without an end.
+        (response) => {
+            response.writeHead(206, { "Content-Range": "bytes 0-99/1000" });
+            const more = () => void (response.destroyed || response.write(file, more));
+            more();
+        },
     ];
     for (const lie of lies) {
         await serving(
@@ -114,6 +134,10 @@ test("a server that lies about ranges, or fails, is not believed", async () => {
             (url) => assert.rejects(new HttpSource(url, never).start(100), /sends other bytes/),
         );
     }
+    await serving(
+        (_, response) => response.writeHead(206).end(file.subarray(0, 100)),
+        (url) => assert.rejects(new HttpSource(url, never).start(100), /expose Content-Range/),
+    );
     await serving(
         (_, response) => response.writeHead(404).end(),
         (url) => assert.rejects(new HttpSource(url, never).start(100), /the server answers 404/),
@@ -184,4 +208,75 @@ test("opening can be aborted, and fails for what is no such file", async () => {
     abort.abort(new Error("enough"));
     await assert.rejects(opening, /enough/);
     await assert.rejects(open(file), /does not start with "meshlodm"/);
+});
+
+test(
+    "the length of a height field is that of its file",
+    { skip: conformanceNames().length === 0 },
+    async () => {
+        const field = conformanceFile("field");
+        const stream = await open(field.slice(0, field.length >> 1));
+        assert.equal(stream.info.length, field.length);
+        stream.dispose();
+    },
+);
+
+test("an invalid query is refused, and does not end the stream", async () => {
+    const stream = await finest(vectorFile());
+    assert.throws(() => stream.query({ focus: null, tolerance: NaN }), RangeError);
+    stream.dispose();
+});
+
+/** A worker that does nothing by itself. */
+class IdleWorker {
+    isTerminated = false;
+    onmessage: ((event: { data: unknown }) => void) | null = null;
+    onerror: ((event: object) => void) | null = null;
+    postMessage(): void {}
+    terminate(): void {
+        this.isTerminated = true;
+    }
+}
+
+test("no worker is left by an opening that has been aborted", async () => {
+    const made: IdleWorker[] = [];
+    const worker = () => {
+        made.push(new IdleWorker());
+        return made[made.length - 1] as unknown as Worker;
+    };
+    const before = AbortSignal.abort(new Error("enough"));
+    await assert.rejects(open(vectorFile(), { worker, signal: before }), /enough/);
+    const abort = new AbortController();
+    const opening = open(vectorFile(), { worker, signal: abort.signal });
+    abort.abort(new Error("enough"));
+    await assert.rejects(opening, /enough/);
+    assert.ok(made.length > 0 && made.every((worker) => worker.isTerminated));
+});
+
+test("a worker that does not start is an error", async () => {
+    const idle = new IdleWorker();
+    const opening = open(vectorFile(), { worker: () => idle as unknown as Worker });
+    idle.onerror?.({});
+    await assert.rejects(opening, /its script cannot be loaded/);
+    assert.ok(idle.isTerminated);
+});
+
+test("nothing is heard of a stream that has been disposed of", async () => {
+    let events = 0;
+    const count = () => void events++;
+    const stream = await open(vectorFile(), { onProgress: count, onPatch: count });
+    stream.query({ focus: null, tolerance: 0 });
+    stream.dispose();
+    events = 0;
+    await new Promise((resolve) => setTimeout(resolve, 50));
+    assert.equal(events, 0);
+});
+
+test("a section of absurd length is not fetched", async () => {
+    const body = Buffer.from(vectorFile());
+    body.writeUInt32LE(0x08000000, 36);
+    await serving(
+        (_, response) => response.writeHead(200).end(body),
+        (url) => assert.rejects(open(url), /the header: its \d+ bytes are more than/),
+    );
 });

@@ -62,9 +62,9 @@ export class HttpSource implements Source {
             return this.whole.upTo(count);
         }
         const { at, total } = rangeOf(response);
-        const bytes = new Uint8Array(await response.arrayBuffer());
         this.length = total;
-        if (at !== 0 || bytes.length !== Math.min(count, total)) throw lied(this.url);
+        const bytes = await bodyOf(response, Math.min(count, total));
+        if (at !== 0 || !bytes) throw lied(this.url);
         this.first = bytes;
         return bytes;
     }
@@ -75,23 +75,22 @@ export class HttpSource implements Source {
         if (at + length <= this.first.length) return this.first.subarray(at, at + length);
         const response = await this.request(at, length);
         const isSame = validatorOf(response) === this.validator;
-        // A server answers with the whole file if it has changed.
         if (response.status === 200 || !isSame) {
             await response.body?.cancel();
             throw new MlodError("the file", `it has changed on the server: ${this.url}`);
         }
         const range = rangeOf(response);
-        const bytes = new Uint8Array(await response.arrayBuffer());
-        if (range.at !== at || range.total !== this.length || bytes.length !== length)
-            throw lied(this.url);
+        const bytes = await bodyOf(response, length);
+        if (range.at !== at || range.total !== this.length || !bytes) throw lied(this.url);
         return bytes;
     }
 
     private async request(at: number, length: number): Promise<Response> {
-        const headers: Record<string, string> = { Range: `bytes=${at}-${at + length - 1}` };
-        if (this.validator !== null) headers["If-Range"] = this.validator;
+        // Nothing but a range, so that other origins are not asked for leave first: not `If-Range`.
+        const headers = { Range: `bytes=${at}-${at + length - 1}` };
         const response = await this.get(this.url, { headers, signal: this.signal });
         if (response.status !== 206 && response.status !== 200) {
+            await response.body?.cancel();
             throw new MlodError("the file", `the server answers ${response.status}: ${this.url}`);
         }
         return response;
@@ -109,9 +108,30 @@ function validatorOf({ headers }: Response): string | null {
 }
 
 function rangeOf({ headers, url }: Response): { at: number; total: number } {
-    const match = /^bytes (\d+)-\d+\/(\d+)$/.exec(headers.get("Content-Range") ?? "");
+    const range = headers.get("Content-Range");
+    if (range === null) {
+        const why =
+            "the server does not say which bytes it sends; to pages of other origins it must";
+        throw new MlodError("the file", `${why} expose Content-Range: ${url}`);
+    }
+    const match = /^bytes (\d+)-\d+\/(\d+)$/.exec(range);
     if (!match) throw lied(url);
     return { at: Number(match[1]), total: Number(match[2]) };
+}
+
+/** Returns a body of the given length, or null if it has another; no more than that is read. */
+async function bodyOf({ body }: Response, length: number): Promise<Uint8Array<ArrayBuffer> | null> {
+    const reader = body?.getReader();
+    const parts: Uint8Array[] = [];
+    let count = 0;
+    for (let read; reader && !(read = await reader.read()).done;) {
+        parts.push(read.value);
+        count += read.value.length;
+        if (count <= length) continue;
+        await reader.cancel();
+        return null;
+    }
+    return count === length ? joined(parts) : null;
 }
 
 /** A response body, of which parts can be read as they come. */
