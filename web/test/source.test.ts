@@ -91,7 +91,7 @@ test("other origins are asked for nothing but ranges", async () => {
         const headers = { "Content-Range": `bytes ${from}-${to}/1000`, ETag: '"1"' };
         return Promise.resolve(new Response(file.subarray(from, to + 1), { status: 206, headers }));
     };
-    const source = new HttpSource("https://elsewhere.test/", never, get);
+    const source = new HttpSource("https://elsewhere.test/", never, {}, get);
     await source.start(100);
     await source.read(700, 50);
     // Any other header would need the leave of the server, by a request of its own.
@@ -262,14 +262,40 @@ test("a worker that does not start is an error", async () => {
 });
 
 test("nothing is heard of a stream that has been disposed of", async () => {
-    let events = 0;
-    const count = () => void events++;
-    const stream = await open(vectorFile(), { onProgress: count, onPatch: count });
+    let [patches, later] = [0, 0];
+    const stream: MlodStream = await open(vectorFile(), {
+        onPatch: () => {
+            patches++;
+            stream.dispose();
+        },
+        onProgress: () => void later++,
+    });
     stream.query({ focus: null, tolerance: 0 });
-    stream.dispose();
-    events = 0;
     await new Promise((resolve) => setTimeout(resolve, 50));
-    assert.equal(events, 0);
+    assert.deepEqual([patches, later], [1, 0]);
+});
+
+test("headers and credentials are those of the options", async () => {
+    const body = Buffer.from(vectorFile());
+    const asked: (string | undefined)[] = [];
+    await serving(
+        (request, response) => {
+            asked.push(request.headers.authorization);
+            sendRange(body, request, response);
+        },
+        async (url) => {
+            const headers = { Authorization: "Bearer 1" };
+            (await open(url, { headers, credentials: "include" })).dispose();
+        },
+    );
+    assert.deepEqual(asked, ["Bearer 1"]);
+    let credentials: string | undefined;
+    const get: typeof fetch = (_, options) => {
+        credentials = options?.credentials;
+        return Promise.resolve(new Response(file));
+    };
+    await new HttpSource("https://a.test/", never, { credentials: "include" }, get).start(9);
+    assert.equal(credentials, "include");
 });
 
 test("a section of absurd length is not fetched", async () => {

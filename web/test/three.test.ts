@@ -1,4 +1,6 @@
 import assert from "node:assert/strict";
+import { createServer } from "node:http";
+import type { AddressInfo } from "node:net";
 import { test } from "node:test";
 import { Box3, Mesh, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3 } from "three";
 import { MlodLoader } from "../src/three/mlod_loader.ts";
@@ -111,4 +113,18 @@ test("a mesh without size, or a camera that is nowhere, changes nothing", async 
     await look(mesh, 2);
     assert.equal(mesh.progress?.faces, 32);
     mesh.dispose();
+});
+
+test("requests have the headers that the loader is given", async () => {
+    const asked: (string | undefined)[] = [];
+    const server = createServer((request, response) => {
+        asked.push(request.headers.authorization);
+        response.end(vectorFile());
+    });
+    await new Promise<void>((resolve) => server.listen(0, "127.0.0.1", resolve));
+    const { port } = server.address() as AddressInfo;
+    const authorized = loader().setRequestHeader({ Authorization: "Bearer 1" });
+    (await authorized.loadAsync(`http://127.0.0.1:${port}/`)).dispose();
+    server.close();
+    assert.deepEqual(asked, ["Bearer 1"]);
 });

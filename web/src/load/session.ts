@@ -90,7 +90,7 @@ export class Session {
         this.limits = { ...this.limits, ...limits };
         this.source =
             "url" in origin
-                ? new HttpSource(origin.url, this.abort.signal)
+                ? new HttpSource(origin.url, this.abort.signal, origin.access)
                 : new MemorySource(origin.bytes);
         const start = await this.source.start(FIRST_BYTES);
         this.bytes = this.opened = start.length;

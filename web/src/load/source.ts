@@ -10,6 +10,14 @@ export interface Source {
     read(at: number, length: number): Promise<Uint8Array>;
 }
 
+/** What a server may ask for before it sends a file. */
+export interface Access {
+    /** Headers of each request. */
+    headers?: Record<string, string>;
+    /** Whether cookies go along; only to the same origin by default. */
+    credentials?: RequestCredentials;
+}
+
 /** A file in memory. */
 export class MemorySource implements Source {
     constructor(private readonly bytes: Uint8Array) {}
@@ -41,6 +49,7 @@ export class HttpSource implements Source {
     constructor(
         private readonly url: string,
         private readonly signal: AbortSignal,
+        private readonly access: Access = {},
         private readonly get: typeof fetch = (url, options) => fetch(url, options),
     ) {}
 
@@ -87,8 +96,10 @@ export class HttpSource implements Source {
 
     private async request(at: number, length: number): Promise<Response> {
         // Nothing but a range, so that other origins are not asked for leave first: not `If-Range`.
-        const headers = { Range: `bytes=${at}-${at + length - 1}` };
-        const response = await this.get(this.url, { headers, signal: this.signal });
+        const headers = { ...this.access.headers, Range: `bytes=${at}-${at + length - 1}` };
+        const { signal, access } = this;
+        const credentials = access.credentials ?? "same-origin";
+        const response = await this.get(this.url, { headers, signal, credentials });
         if (response.status !== 206 && response.status !== 200) {
             await response.body?.cancel();
             throw new MlodError("the file", `the server answers ${response.status}: ${this.url}`);

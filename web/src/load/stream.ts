@@ -15,6 +15,7 @@ import type {
     StreamLimits,
 } from "./messages.ts";
 import type { Session } from "./session.ts";
+import type { Access } from "./source.ts";
 
 /** Who hears of what happens to a stream. */
 export interface StreamListener {
@@ -30,7 +31,7 @@ export interface StreamListener {
 }
 
 /** Options of `open`. */
-export interface StreamOptions extends StreamListener, StreamLimits {
+export interface StreamOptions extends StreamListener, StreamLimits, Access {
     /** Ends the stream, and rejects its opening. */
     signal?: AbortSignal;
     /** Makes the worker in which the file is decoded; without one that is done on this thread. */
@@ -87,7 +88,7 @@ export function open(
             } else tell(options, event);
         });
         signal?.addEventListener("abort", abort);
-        port.send({ kind: "open", origin: originOf(file), limits });
+        port.send({ kind: "open", origin: originOf(file, options), limits });
     });
 }
 
@@ -99,11 +100,17 @@ function tell(listener: StreamListener, event: Event): void {
     else if (event.kind === "failed") listener.onError?.(new MlodError(event.section, event.why));
 }
 
-function originOf(file: string | URL | ArrayBuffer | Uint8Array): Origin {
+function originOf(
+    file: string | URL | ArrayBuffer | Uint8Array,
+    { headers, credentials }: Access,
+): Origin {
     if (file instanceof ArrayBuffer) return { bytes: new Uint8Array(file) };
     if (file instanceof Uint8Array) return { bytes: file };
     const base = typeof document === "undefined" ? undefined : document.baseURI;
-    return { url: new URL(file, base).href };
+    const access: Access = {};
+    if (headers) access.headers = headers;
+    if (credentials) access.credentials = credentials;
+    return { url: new URL(file, base).href, access };
 }
 
 function withoutMissing(limits: { [key in keyof StreamLimits]: number | undefined }): StreamLimits {

@@ -68,6 +68,8 @@ export class MlodLoader extends Loader<MlodMesh> {
                 onProgress?.(new ProgressEvent("progress", { loaded: progress.bytes }));
             },
         };
+        options.headers = this.requestHeader;
+        if (this.withCredentials) options.credentials = "include";
         if (this.worker) options.worker = this.worker;
         const stream = await open(file, options);
         const opened = new SharedLevels(stream, this.manager, (error) => this.onStreamError(error));
