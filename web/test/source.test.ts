@@ -61,7 +61,8 @@ test("parts are fetched by ranges, and only these", async () => {
         assert.deepEqual(Buffer.from(await source.start(100)), file.subarray(0, 100));
         assert.deepEqual(Buffer.from(await source.read(20, 30)), file.subarray(20, 50));
         assert.deepEqual(Buffer.from(await source.read(700, 50)), file.subarray(700, 750));
-        assert.equal(sent, 150);
+        assert.deepEqual(Buffer.from(await source.read(90, 20)), file.subarray(90, 110));
+        assert.equal(sent, 160);
         assert.deepEqual(Buffer.from(await source.start(5000)), file);
         await assert.rejects(source.read(990, 20), /ends at byte 1000, before byte 1010/);
     });
@@ -85,8 +86,10 @@ test("of a server without ranges, parts of the whole file are there as they come
 
 test("other origins are asked for nothing but ranges", async () => {
     const asked: string[][] = [];
+    const caches: unknown[] = [];
     const get: typeof fetch = (_, options) => {
         asked.push(Object.keys(options?.headers ?? {}));
+        caches.push(options?.cache);
         const [from, to] = asked.length === 1 ? [0, 99] : [700, 749];
         const headers = { "Content-Range": `bytes ${from}-${to}/1000`, ETag: '"1"' };
         return Promise.resolve(new Response(file.subarray(from, to + 1), { status: 206, headers }));
@@ -96,6 +99,8 @@ test("other origins are asked for nothing but ranges", async () => {
     await source.read(700, 50);
     // Any other header would need the leave of the server, by a request of its own.
     assert.deepEqual(asked, [["Range"], ["Range"]]);
+    // What a cache has of an older file is not taken for the start of this one.
+    assert.deepEqual(caches, ["no-cache", "default"]);
 });
 
 test("a file that changes in the middle is noticed", async () => {

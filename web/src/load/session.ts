@@ -294,7 +294,7 @@ export class Session {
 
     private async readBytes(at: number, length: number): Promise<Uint8Array> {
         const bytes = await this.source.read(at, length);
-        if (at + length > this.opened) this.bytes += length;
+        this.bytes += Math.max(0, Math.min(length, at + length - this.opened));
         return bytes;
     }
 }

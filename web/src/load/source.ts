@@ -64,7 +64,8 @@ export class HttpSource implements Source {
             this.first = joined([this.first, rest]);
             return this.first;
         }
-        const response = await this.request(0, count);
+        // What a cache has may be old: parts of it would not go with what the server sends.
+        const response = await this.request(0, count, "no-cache");
         this.validator = validatorOf(response);
         if (response.status === 200) {
             this.whole = new WholeBody(response);
@@ -81,7 +82,13 @@ export class HttpSource implements Source {
     async read(at: number, length: number): Promise<Uint8Array> {
         if (this.whole) return this.whole.part(at, length);
         if (at + length > this.length) throw endsBefore(at + length, this.length);
-        if (at + length <= this.first.length) return this.first.subarray(at, at + length);
+        const known = this.first.subarray(at, at + length);
+        if (known.length === length) return known;
+        const rest = await this.fetch(at + known.length, length - known.length);
+        return known.length > 0 ? joined([known, rest]) : rest;
+    }
+
+    private async fetch(at: number, length: number): Promise<Uint8Array<ArrayBuffer>> {
         const response = await this.request(at, length);
         const isSame = validatorOf(response) === this.validator;
         if (response.status === 200 || !isSame) {
@@ -94,12 +101,16 @@ export class HttpSource implements Source {
         return bytes;
     }
 
-    private async request(at: number, length: number): Promise<Response> {
+    private async request(
+        at: number,
+        length: number,
+        cache: RequestCache = "default",
+    ): Promise<Response> {
         // Nothing but a range, so that other origins are not asked for leave first: not `If-Range`.
         const headers = { ...this.access.headers, Range: `bytes=${at}-${at + length - 1}` };
         const { signal, access } = this;
         const credentials = access.credentials ?? "same-origin";
-        const response = await this.get(this.url, { headers, signal, credentials });
+        const response = await this.get(this.url, { headers, signal, credentials, cache });
         if (response.status !== 206 && response.status !== 200) {
             await response.body?.cancel();
             throw new MlodError("the file", `the server answers ${response.status}: ${this.url}`);
