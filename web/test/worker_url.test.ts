@@ -8,10 +8,8 @@ function addressOn(origin: string): string {
     let address = "";
     const scope = globalThis as unknown as Record<string, unknown>;
     scope.location = { origin };
-    scope.Worker = class {
-        constructor(url: string | URL) {
-            address = String(url);
-        }
+    scope.Worker = function (url: string | URL) {
+        address = String(url);
     };
     workerOf();
     return address;
