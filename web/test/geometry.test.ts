@@ -145,7 +145,7 @@ test(
     },
 );
 
-/** Makes the index of a file belittle its second chunk, so that a query goes without; returns that. */
+/** Makes the index belittle the second chunk, so that the query returned goes without. */
 function belittleSecond(file: Uint8Array): Query {
     const { chunks, frame } = readHeader(file);
     const [, second, third] = chunks;
