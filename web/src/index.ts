@@ -27,4 +27,5 @@ export { verticesOf, fieldVerticesOf } from "./load/vertices.ts";
 export { open } from "./load/stream.ts";
 export type { MlodStream, StreamListener, StreamOptions } from "./load/stream.ts";
 export type { FileInfo, LayerInfo, Progress, SceneInfo, StreamLimits } from "./load/messages.ts";
+export type { Access } from "./load/source.ts";
 export { workerOf } from "./load/worker_url.ts";

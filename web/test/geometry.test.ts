@@ -7,9 +7,10 @@ import { readHeader } from "../src/file/header.ts";
 import { Geometry } from "../src/load/geometry.ts";
 import type { GeometryPatch } from "../src/load/geometry.ts";
 import { Levels } from "../src/load/levels.ts";
+import { Session } from "../src/load/session.ts";
 import { verticesOf } from "../src/load/vertices.ts";
 import { NONE, grown } from "../src/model.ts";
-import { conformanceFile, conformanceNames, vectorFile } from "./files.ts";
+import { conformanceFile, conformanceNames, rewriteChecksums, vectorFile } from "./files.ts";
 
 /** Buffers as a renderer keeps them. */
 class Buffers {
@@ -124,3 +125,61 @@ for (const name of conformanceNames().filter((name) => name !== "field")) {
         assert.deepEqual(small.wanted(everywhere(0)), [0]);
     });
 }
+
+test(
+    "chunks that are needed but have no room go",
+    { skip: conformanceNames().length === 0 },
+    () => {
+        const file = conformanceFile("bare");
+        const header = readHeader(file);
+        const { base, chunks } = header;
+        assert.ok(chunks.length > 2);
+        const part = (at: number, length: number) => file.subarray(at, at + length);
+        const room = 120 * (chunks[0].updates + chunks[1].updates);
+        const levels = new Levels(header, part(base.at, base.length), room);
+        for (const number of [2, 0, 1]) {
+            const { at, length } = chunks[number];
+            levels.add([[number, part(at, length)]], everywhere(0));
+        }
+        assert.equal(levels.count, 2);
+    },
+);
+
+/** Makes the index belittle the second chunk, so that the query returned goes without. */
+function belittleSecond(file: Uint8Array): Query {
+    const { chunks, frame } = readHeader(file);
+    const [, second, third] = chunks;
+    new DataView(file.buffer).setFloat32(88 + 2 * 44 - 4, 1e-3 * third.error, true);
+    rewriteChecksums(file);
+    assert.ok(second.error > 0.5 * third.error);
+    return everywhere(0.5 * third.error * frame.unit);
+}
+
+test(
+    "a cut that starts anew is shown once it is fine",
+    { skip: conformanceNames().length === 0 },
+    async () => {
+        const file = conformanceFile("bare");
+        const header = readHeader(file);
+        const gap = belittleSecond(file);
+        let [stage, shown, least, renewals] = [0, 0, Infinity, 0];
+        await new Promise<void>((resolve, reject) => {
+            const session = new Session((event) => {
+                if (event.kind === "failed") reject(new Error(event.why));
+                if (event.kind === "patch") {
+                    shown = event.patch.parts.reduce((sum, { count }) => sum + count, 0);
+                    if (stage === 2) least = Math.min(least, shown);
+                    if (stage === 2 && event.patch.isNew) renewals++;
+                }
+                if (event.kind !== "progress" || !event.progress.done || event.progress.missing)
+                    return;
+                if (stage === 2) return resolve();
+                const query = stage++ === 0 ? gap : everywhere(0);
+                if (stage === 2) least = shown;
+                session.receive({ kind: "query", query });
+            });
+            session.receive({ kind: "open", origin: { bytes: file }, limits: { slice: 0.1 } });
+        });
+        assert.ok(renewals > 0 && least > 2 * header.baseFaces, `${renewals}, ${least}`);
+    },
+);

@@ -6,7 +6,7 @@ import { test } from "node:test";
 import { open } from "../src/load/stream.ts";
 import type { MlodStream, StreamListener } from "../src/load/stream.ts";
 import { HttpSource } from "../src/load/source.ts";
-import { vectorFile } from "./files.ts";
+import { conformanceFile, conformanceNames, vectorFile } from "./files.ts";
 
 const file = Buffer.from(Array.from({ length: 1000 }, (_, i) => (i * 7) & 255));
 
@@ -61,7 +61,8 @@ test("parts are fetched by ranges, and only these", async () => {
         assert.deepEqual(Buffer.from(await source.start(100)), file.subarray(0, 100));
         assert.deepEqual(Buffer.from(await source.read(20, 30)), file.subarray(20, 50));
         assert.deepEqual(Buffer.from(await source.read(700, 50)), file.subarray(700, 750));
-        assert.equal(sent, 150);
+        assert.deepEqual(Buffer.from(await source.read(90, 20)), file.subarray(90, 110));
+        assert.equal(sent, 160);
         assert.deepEqual(Buffer.from(await source.start(5000)), file);
         await assert.rejects(source.read(990, 20), /ends at byte 1000, before byte 1010/);
     });
@@ -81,6 +82,25 @@ test("of a server without ranges, parts of the whole file are there as they come
         assert.deepEqual(Buffer.from(parts[1]), file.subarray(200, 250));
         await assert.rejects(source.read(990, 20), /ends at byte 1000/);
     });
+});
+
+test("other origins are asked for nothing but ranges", async () => {
+    const asked: string[][] = [];
+    const caches: unknown[] = [];
+    const get: typeof fetch = (_, options) => {
+        asked.push(Object.keys(options?.headers ?? {}));
+        caches.push(options?.cache);
+        const [from, to] = asked.length === 1 ? [0, 99] : [700, 749];
+        const headers = { "Content-Range": `bytes ${from}-${to}/1000`, ETag: '"1"' };
+        return Promise.resolve(new Response(file.subarray(from, to + 1), { status: 206, headers }));
+    };
+    const source = new HttpSource("https://elsewhere.test/", never, {}, get);
+    await source.start(100);
+    await source.read(700, 50);
+    // Any other header would need the leave of the server, by a request of its own.
+    assert.deepEqual(asked, [["Range"], ["Range"]]);
+    // What a cache has of an older file is not taken for the start of this one.
+    assert.deepEqual(caches, ["no-cache", "default"]);
 });
 
 test("a file that changes in the middle is noticed", async () => {
@@ -106,7 +126,12 @@ test("a server that lies about ranges, or fails, is not believed", async () => {
             response
                 .writeHead(206, { "Content-Range": "bytes 5-104/1000" })
                 .end(file.subarray(5, 105)),
-        (response) => response.writeHead(206).end(file.subarray(0, 100)),
+        // Without an end.
+        (response) => {
+            response.writeHead(206, { "Content-Range": "bytes 0-99/1000" });
+            const more = () => void (response.destroyed || response.write(file, more));
+            more();
+        },
     ];
     for (const lie of lies) {
         await serving(
@@ -114,6 +139,10 @@ test("a server that lies about ranges, or fails, is not believed", async () => {
             (url) => assert.rejects(new HttpSource(url, never).start(100), /sends other bytes/),
         );
     }
+    await serving(
+        (_, response) => response.writeHead(206).end(file.subarray(0, 100)),
+        (url) => assert.rejects(new HttpSource(url, never).start(100), /expose Content-Range/),
+    );
     await serving(
         (_, response) => response.writeHead(404).end(),
         (url) => assert.rejects(new HttpSource(url, never).start(100), /the server answers 404/),
@@ -184,4 +213,101 @@ test("opening can be aborted, and fails for what is no such file", async () => {
     abort.abort(new Error("enough"));
     await assert.rejects(opening, /enough/);
     await assert.rejects(open(file), /does not start with "meshlodm"/);
+});
+
+test(
+    "the length of a height field is that of its file",
+    { skip: conformanceNames().length === 0 },
+    async () => {
+        const field = conformanceFile("field");
+        const stream = await open(field.slice(0, field.length >> 1));
+        assert.equal(stream.info.length, field.length);
+        stream.dispose();
+    },
+);
+
+test("an invalid query is refused, and does not end the stream", async () => {
+    const stream = await finest(vectorFile());
+    assert.throws(() => stream.query({ focus: null, tolerance: NaN }), RangeError);
+    stream.dispose();
+});
+
+/** A worker that does nothing by itself. */
+class IdleWorker {
+    isTerminated = false;
+    onmessage: ((event: { data: unknown }) => void) | null = null;
+    onerror: ((event: object) => void) | null = null;
+    postMessage(): void {}
+    terminate(): void {
+        this.isTerminated = true;
+    }
+}
+
+test("no worker is left by an opening that has been aborted", async () => {
+    const made: IdleWorker[] = [];
+    const worker = () => {
+        made.push(new IdleWorker());
+        return made[made.length - 1] as unknown as Worker;
+    };
+    const before = AbortSignal.abort(new Error("enough"));
+    await assert.rejects(open(vectorFile(), { worker, signal: before }), /enough/);
+    const abort = new AbortController();
+    const opening = open(vectorFile(), { worker, signal: abort.signal });
+    abort.abort(new Error("enough"));
+    await assert.rejects(opening, /enough/);
+    assert.ok(made.length > 0 && made.every((worker) => worker.isTerminated));
+});
+
+test("a worker that does not start is an error", async () => {
+    const idle = new IdleWorker();
+    const opening = open(vectorFile(), { worker: () => idle as unknown as Worker });
+    idle.onerror?.({});
+    await assert.rejects(opening, /its script cannot be loaded/);
+    assert.ok(idle.isTerminated);
+});
+
+test("nothing is heard of a stream that has been disposed of", async () => {
+    let [patches, later] = [0, 0];
+    const stream: MlodStream = await open(vectorFile(), {
+        onPatch: () => {
+            patches++;
+            stream.dispose();
+        },
+        onProgress: () => void later++,
+    });
+    stream.query({ focus: null, tolerance: 0 });
+    await new Promise((resolve) => setTimeout(resolve, 50));
+    assert.deepEqual([patches, later], [1, 0]);
+});
+
+test("headers and credentials are those of the options", async () => {
+    const body = Buffer.from(vectorFile());
+    const asked: (string | undefined)[] = [];
+    await serving(
+        (request, response) => {
+            asked.push(request.headers.authorization);
+            sendRange(body, request, response);
+        },
+        async (url) => {
+            const headers = { Authorization: "Bearer 1" };
+            (await open(url, { headers, credentials: "include" })).dispose();
+        },
+    );
+    assert.deepEqual(asked, ["Bearer 1"]);
+    let credentials: string | undefined;
+    const get: typeof fetch = (_, options) => {
+        credentials = options?.credentials;
+        return Promise.resolve(new Response(file));
+    };
+    await new HttpSource("https://a.test/", never, { credentials: "include" }, get).start(9);
+    assert.equal(credentials, "include");
+});
+
+test("a section of absurd length is not fetched", async () => {
+    const body = Buffer.from(vectorFile());
+    body.writeUInt32LE(0x08000000, 36);
+    await serving(
+        (_, response) => response.writeHead(200).end(body),
+        (url) => assert.rejects(open(url), /the header: its \d+ bytes are more than/),
+    );
 });

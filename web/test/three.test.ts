@@ -1,6 +1,8 @@
 import assert from "node:assert/strict";
+import { createServer } from "node:http";
+import type { AddressInfo } from "node:net";
 import { test } from "node:test";
-import { Mesh, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3 } from "three";
+import { Box3, Mesh, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3 } from "three";
 import { MlodLoader } from "../src/three/mlod_loader.ts";
 import type { MlodMesh } from "../src/three/mlod_mesh.ts";
 import { vectorFile } from "./files.ts";
@@ -82,4 +84,47 @@ test("copies share a level, the one that the nearest needs", async () => {
 
 test("a file that is none is an error of the loader", async () => {
     await assert.rejects(loader().parse(new ArrayBuffer(100)), /does not start with "meshlodm"/);
+});
+
+test("a mesh has its coarsest level from the start, and bounds of what is shown", async () => {
+    const mesh = await loader().parse(vectorFile().buffer);
+    const size = () => new Box3().setFromObject(mesh).getSize(new Vector3()).length();
+    assert.equal(mesh.progress?.faces, 1);
+    // The origin, where unused vertices are, is outside.
+    mesh.position.set(1e3, 0, 0);
+    const coarse = size();
+    assert.ok(coarse > 0 && coarse < 2 * mesh.info.diagonal);
+    mesh.position.set(0, 0, 0);
+    await look(mesh, 2);
+    assert.ok(Math.abs(size() - mesh.info.diagonal) < 0.1 * mesh.info.diagonal);
+    assert.notEqual(size(), coarse);
+    mesh.dispose();
+});
+
+test("a mesh without size, or a camera that is nowhere, changes nothing", async () => {
+    const mesh = await loader().parse(vectorFile().buffer);
+    const camera = await look(mesh, 1e5);
+    mesh.scale.setScalar(0);
+    await look(mesh, 1e5);
+    assert.equal(mesh.progress?.faces, 1);
+    mesh.scale.setScalar(1);
+    camera.position.x = NaN;
+    mesh.update(camera, renderer);
+    await look(mesh, 2);
+    assert.equal(mesh.progress?.faces, 32);
+    mesh.dispose();
+});
+
+test("requests have the headers that the loader is given", async () => {
+    const asked: (string | undefined)[] = [];
+    const server = createServer((request, response) => {
+        asked.push(request.headers.authorization);
+        response.end(vectorFile());
+    });
+    await new Promise<void>((resolve) => server.listen(0, "127.0.0.1", resolve));
+    const { port } = server.address() as AddressInfo;
+    const authorized = loader().setRequestHeader({ Authorization: "Bearer 1" });
+    (await authorized.loadAsync(`http://127.0.0.1:${port}/`)).dispose();
+    server.close();
+    assert.deepEqual(asked, ["Bearer 1"]);
 });

@@ -48,6 +48,11 @@ export function pointAt(
     return point;
 }
 
+/** Returns the length of a file of a height field, as its first 24 bytes tell. */
+export function fieldLength(file: Uint8Array): number {
+    return BODY + Number(new DataView(file.buffer, file.byteOffset).getBigUint64(16, true));
+}
+
 /**
  * Decodes a file of a height field, or a prefix that holds its coarsest level.
  *

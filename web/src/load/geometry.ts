@@ -68,7 +68,8 @@ export class Geometry {
     private partOf = new Uint32Array(0);
     private placeIn = new Uint32Array(0);
     private readonly parts: Part[] = [];
-    private isNew = true;
+    /** True until the first patch. */
+    isNew = true;
     /** Vertices and slots that the next patch writes. */
     private readonly newVertices: [number, number, number][] = [];
     private readonly changed = new Set<number>();

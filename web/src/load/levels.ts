@@ -44,17 +44,19 @@ export class Levels {
      * Returns the numbers of the chunks that a query needs and that are not in memory, in order.
      */
     wanted(query: Query): number[] {
+        return this.fitting(query).filter((number) => !this.loaded.has(number));
+    }
+
+    /** Returns the numbers of the chunks that a query needs; of too many, the coarse ones. */
+    private fitting(query: Query): number[] {
         const criterion = new Criterion(query, this.header.frame);
         const { chunks } = this.header;
-        const needed = chunks
-            .map((chunk, number) => ({ chunk, number }))
-            .filter(({ chunk }) => criterion.mayRequire(chunk));
         let memory = 0;
-        // Of too many, the coarse ones.
-        const fitting = needed.filter(
-            ({ chunk }) => (memory += BYTES_PER_UPDATE * chunk.updates) <= this.memory,
+        return [...chunks.keys()].filter(
+            (number) =>
+                criterion.mayRequire(chunks[number]) &&
+                (memory += BYTES_PER_UPDATE * chunks[number].updates) <= this.memory,
         );
-        return fitting.map(({ number }) => number).filter((number) => !this.loaded.has(number));
     }
 
     /** Returns the bytes that chunks take once they are decoded. */
@@ -113,11 +115,10 @@ export class Levels {
         return decoder;
     }
 
-    /** Forgets the chunks that a query does not need. */
+    /** Forgets the chunks that a query does not need, or for which it has no room. */
     private evict(query: Query): void {
-        const criterion = new Criterion(query, this.header.frame);
-        for (const number of [...this.loaded.keys()]) {
-            if (!criterion.mayRequire(this.entry(number))) this.loaded.delete(number);
-        }
+        const kept = new Set(this.fitting(query));
+        for (const number of [...this.loaded.keys()])
+            if (!kept.has(number)) this.loaded.delete(number);
     }
 }

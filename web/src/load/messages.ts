@@ -4,9 +4,10 @@ import type { Query } from "../cut/query.ts";
 import type { LayerKind } from "../wedges/layer.ts";
 import type { GeometryPatch } from "./geometry.ts";
 import type { ScenePart, Slot } from "../scene/head.ts";
+import type { Access } from "./source.ts";
 
 /** A file to open: its address, or its bytes. */
-export type Origin = { url: string } | { bytes: Uint8Array };
+export type Origin = { url: string; access: Access } | { bytes: Uint8Array };
 
 /** Limits that hold while a file is open. */
 export interface StreamLimits {

@@ -5,7 +5,7 @@ import type { CutChange, Limits } from "../cut/meter.ts";
 import type { Query } from "../cut/query.ts";
 import { FieldCut } from "../field/field_cut.ts";
 import { FieldModel } from "../field/field_model.ts";
-import { FIELD_MAGIC, decodeField } from "../field/height_field.ts";
+import { FIELD_MAGIC, decodeField, fieldLength } from "../field/height_field.ts";
 import { check, headerLength, magicOf, readHeader } from "../file/header.ts";
 import type { Header, Section } from "../file/header.ts";
 import { readHead, unpackResource } from "../scene/head.ts";
@@ -20,6 +20,14 @@ import { fieldVerticesOf, layersOf, verticesOf } from "./vertices.ts";
 
 const FIRST_BYTES = 64 << 10;
 const WHOLE = 2 ** 31;
+/** Greatest length of a section: a page could hardly hold more, and no writer makes such. */
+const MOST_BYTES = 2 ** 29;
+
+/** @throws MlodError if a file claims that a section is too long to be read */
+function mustFit(section: string, length: number): void {
+    if (length > MOST_BYTES)
+        throw new MlodError(section, `its ${length} bytes are more than ${MOST_BYTES}`);
+}
 
 /** A cut of either kind. */
 interface AnyCut {
@@ -43,6 +51,7 @@ export class Session {
     /** Number of bytes fetched in all, and of those fetched to open the file. */
     private bytes = 0;
     private opened = 0;
+    private isShown = false;
     private isStepping = false;
     private isFetching = false;
     private isAsked = false;
@@ -81,7 +90,7 @@ export class Session {
         this.limits = { ...this.limits, ...limits };
         this.source =
             "url" in origin
-                ? new HttpSource(origin.url, this.abort.signal)
+                ? new HttpSource(origin.url, this.abort.signal, origin.access)
                 : new MemorySource(origin.bytes);
         const start = await this.source.start(FIRST_BYTES);
         this.bytes = this.opened = start.length;
@@ -95,6 +104,7 @@ export class Session {
             needed > start.length;
             needed = headerLength(start)
         ) {
+            mustFit("the header", needed);
             const longer = await this.source.start(needed);
             if (longer.length < needed)
                 throw new MlodError("the header", `the file ends at byte ${longer.length}`);
@@ -127,13 +137,14 @@ export class Session {
     private async openField(start: Uint8Array): Promise<void> {
         const first = decodeField(start);
         const model = new FieldModel(first);
+        const length = fieldLength(start);
         this.post({
             kind: "opened",
             info: {
                 kind: "height field",
                 center: [...model.frame.origin],
                 diagonal: model.frame.unit,
-                length: start.length,
+                length,
                 chunks: first.allParts,
                 layers: [],
                 materials: null,
@@ -141,7 +152,8 @@ export class Session {
         });
         this.show(new FieldCut(model), new Geometry(fieldVerticesOf(model)));
         if (first.parts === first.allParts) return;
-        const all = await this.source.start(WHOLE);
+        // One more, to see what is behind the end.
+        const all = await this.source.start(Math.min(WHOLE, length + 1));
         this.bytes = all.length;
         const whole = new FieldModel(decodeField(all));
         this.show(new FieldCut(whole), new Geometry(fieldVerticesOf(whole)));
@@ -172,8 +184,13 @@ export class Session {
         const { cut, geometry } = this;
         if (!cut || !geometry || this.abort.signal.aborted) return;
         const { done } = cut.update(this.query, { time: this.limits.slice });
-        const patch = geometry.follow(cut.triangles);
-        if (patch) this.post({ kind: "patch", patch });
+        // A cut that starts anew takes the place of the one before once it is as fine.
+        const isBehind = geometry.isNew && this.isShown && !done;
+        const patch = isBehind ? null : geometry.follow(cut.triangles);
+        if (patch) {
+            this.isShown = true;
+            this.post({ kind: "patch", patch });
+        }
         this.tell(done);
         if (!done) this.startStepping();
     }
@@ -221,6 +238,7 @@ export class Session {
         if (run.length === 0) return false;
         const sections = run.map((number) => header.chunks[number]);
         const [first, last] = [sections[0], sections[sections.length - 1]];
+        mustFit(first.name, first.length);
         const bytes = await this.readBytes(first.at, last.at + last.length - first.at);
         const part = (section: Section) =>
             bytes.slice(section.at - first.at, section.at - first.at + section.length);
@@ -268,6 +286,7 @@ export class Session {
     }
 
     private async read(section: Section): Promise<Uint8Array> {
+        mustFit(section.name, section.length);
         const bytes = await this.readBytes(section.at, section.length);
         check(section, bytes);
         return bytes;
@@ -275,7 +294,7 @@ export class Session {
 
     private async readBytes(at: number, length: number): Promise<Uint8Array> {
         const bytes = await this.source.read(at, length);
-        if (at + length > this.opened) this.bytes += length;
+        this.bytes += Math.max(0, Math.min(length, at + length - this.opened));
         return bytes;
     }
 }

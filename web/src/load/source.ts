@@ -10,6 +10,14 @@ export interface Source {
     read(at: number, length: number): Promise<Uint8Array>;
 }
 
+/** What a server may ask for before it sends a file. */
+export interface Access {
+    /** Headers of each request. */
+    headers?: Record<string, string>;
+    /** Whether cookies go along; only to the same origin by default. */
+    credentials?: RequestCredentials;
+}
+
 /** A file in memory. */
 export class MemorySource implements Source {
     constructor(private readonly bytes: Uint8Array) {}
@@ -41,6 +49,7 @@ export class HttpSource implements Source {
     constructor(
         private readonly url: string,
         private readonly signal: AbortSignal,
+        private readonly access: Access = {},
         private readonly get: typeof fetch = (url, options) => fetch(url, options),
     ) {}
 
@@ -55,16 +64,17 @@ export class HttpSource implements Source {
             this.first = joined([this.first, rest]);
             return this.first;
         }
-        const response = await this.request(0, count);
+        // What a cache has may be old: parts of it would not go with what the server sends.
+        const response = await this.request(0, count, "no-cache");
         this.validator = validatorOf(response);
         if (response.status === 200) {
             this.whole = new WholeBody(response);
             return this.whole.upTo(count);
         }
         const { at, total } = rangeOf(response);
-        const bytes = new Uint8Array(await response.arrayBuffer());
         this.length = total;
-        if (at !== 0 || bytes.length !== Math.min(count, total)) throw lied(this.url);
+        const bytes = await bodyOf(response, Math.min(count, total));
+        if (at !== 0 || !bytes) throw lied(this.url);
         this.first = bytes;
         return bytes;
     }
@@ -72,26 +82,37 @@ export class HttpSource implements Source {
     async read(at: number, length: number): Promise<Uint8Array> {
         if (this.whole) return this.whole.part(at, length);
         if (at + length > this.length) throw endsBefore(at + length, this.length);
-        if (at + length <= this.first.length) return this.first.subarray(at, at + length);
+        const known = this.first.subarray(at, at + length);
+        if (known.length === length) return known;
+        const rest = await this.fetch(at + known.length, length - known.length);
+        return known.length > 0 ? joined([known, rest]) : rest;
+    }
+
+    private async fetch(at: number, length: number): Promise<Uint8Array<ArrayBuffer>> {
         const response = await this.request(at, length);
         const isSame = validatorOf(response) === this.validator;
-        // A server answers with the whole file if it has changed.
         if (response.status === 200 || !isSame) {
             await response.body?.cancel();
             throw new MlodError("the file", `it has changed on the server: ${this.url}`);
         }
         const range = rangeOf(response);
-        const bytes = new Uint8Array(await response.arrayBuffer());
-        if (range.at !== at || range.total !== this.length || bytes.length !== length)
-            throw lied(this.url);
+        const bytes = await bodyOf(response, length);
+        if (range.at !== at || range.total !== this.length || !bytes) throw lied(this.url);
         return bytes;
     }
 
-    private async request(at: number, length: number): Promise<Response> {
-        const headers: Record<string, string> = { Range: `bytes=${at}-${at + length - 1}` };
-        if (this.validator !== null) headers["If-Range"] = this.validator;
-        const response = await this.get(this.url, { headers, signal: this.signal });
+    private async request(
+        at: number,
+        length: number,
+        cache: RequestCache = "default",
+    ): Promise<Response> {
+        // Nothing but a range, so that other origins are not asked for leave first: not `If-Range`.
+        const headers = { ...this.access.headers, Range: `bytes=${at}-${at + length - 1}` };
+        const { signal, access } = this;
+        const credentials = access.credentials ?? "same-origin";
+        const response = await this.get(this.url, { headers, signal, credentials, cache });
         if (response.status !== 206 && response.status !== 200) {
+            await response.body?.cancel();
             throw new MlodError("the file", `the server answers ${response.status}: ${this.url}`);
         }
         return response;
@@ -109,9 +130,30 @@ function validatorOf({ headers }: Response): string | null {
 }
 
 function rangeOf({ headers, url }: Response): { at: number; total: number } {
-    const match = /^bytes (\d+)-\d+\/(\d+)$/.exec(headers.get("Content-Range") ?? "");
+    const range = headers.get("Content-Range");
+    if (range === null) {
+        const why =
+            "the server does not say which bytes it sends; to pages of other origins it must";
+        throw new MlodError("the file", `${why} expose Content-Range: ${url}`);
+    }
+    const match = /^bytes (\d+)-\d+\/(\d+)$/.exec(range);
     if (!match) throw lied(url);
     return { at: Number(match[1]), total: Number(match[2]) };
+}
+
+/** Returns a body of the given length, or null if it has another; no more than that is read. */
+async function bodyOf({ body }: Response, length: number): Promise<Uint8Array<ArrayBuffer> | null> {
+    const reader = body?.getReader();
+    const parts: Uint8Array[] = [];
+    let count = 0;
+    for (let read; reader && !(read = await reader.read()).done;) {
+        parts.push(read.value);
+        count += read.value.length;
+        if (count <= length) continue;
+        await reader.cancel();
+        return null;
+    }
+    return count === length ? joined(parts) : null;
 }
 
 /** A response body, of which parts can be read as they come. */

@@ -1,5 +1,6 @@
 /** A file that streams, as its user sees it. */
 
+import { checkQuery } from "../cut/query.ts";
 import type { Query } from "../cut/query.ts";
 import { MlodError } from "../error.ts";
 import type { ScenePart } from "../scene/head.ts";
@@ -14,6 +15,7 @@ import type {
     StreamLimits,
 } from "./messages.ts";
 import type { Session } from "./session.ts";
+import type { Access } from "./source.ts";
 
 /** Who hears of what happens to a stream. */
 export interface StreamListener {
@@ -29,7 +31,7 @@ export interface StreamListener {
 }
 
 /** Options of `open`. */
-export interface StreamOptions extends StreamListener, StreamLimits {
+export interface StreamOptions extends StreamListener, StreamLimits, Access {
     /** Ends the stream, and rejects its opening. */
     signal?: AbortSignal;
     /** Makes the worker in which the file is decoded; without one that is done on this thread. */
@@ -39,7 +41,11 @@ export interface StreamOptions extends StreamListener, StreamLimits {
 /** An open file. */
 export interface MlodStream {
     readonly info: FileInfo;
-    /** Asks for a level; its geometry comes by patches. */
+    /**
+     * Asks for a level; its geometry comes by patches.
+     *
+     * @throws RangeError if the query is invalid; the one before goes on
+     */
     query(query: Query): void;
     /** Ends all work, and frees the memory. */
     dispose(): void;
@@ -57,9 +63,20 @@ export function open(
     const { signal, worker, memory, request, slice } = options;
     const limits = withoutMissing({ memory, request, slice });
     return new Promise((resolve, reject) => {
+        if (signal?.aborted) return void reject(signal.reason as Error);
         const port = worker ? workerPort(worker()) : localPort();
-        const dispose = () => port.close();
-        const query = (query: Query) => port.send({ kind: "query", query });
+        const abort = () => {
+            dispose();
+            reject(signal?.reason as Error);
+        };
+        const dispose = () => {
+            signal?.removeEventListener("abort", abort);
+            port.close();
+        };
+        const query = (query: Query) => {
+            checkQuery(query);
+            port.send({ kind: "query", query });
+        };
         let isOpen = false;
         port.listen((event) => {
             if (event.kind === "opened") {
@@ -70,12 +87,8 @@ export function open(
                 reject(new MlodError(event.section, event.why));
             } else tell(options, event);
         });
-        signal?.addEventListener("abort", () => {
-            dispose();
-            reject(signal.reason as Error);
-        });
-        if (signal?.aborted) return void reject(signal.reason as Error);
-        port.send({ kind: "open", origin: originOf(file), limits });
+        signal?.addEventListener("abort", abort);
+        port.send({ kind: "open", origin: originOf(file, options), limits });
     });
 }
 
@@ -87,11 +100,17 @@ function tell(listener: StreamListener, event: Event): void {
     else if (event.kind === "failed") listener.onError?.(new MlodError(event.section, event.why));
 }
 
-function originOf(file: string | URL | ArrayBuffer | Uint8Array): Origin {
+function originOf(
+    file: string | URL | ArrayBuffer | Uint8Array,
+    { headers, credentials }: Access,
+): Origin {
     if (file instanceof ArrayBuffer) return { bytes: new Uint8Array(file) };
     if (file instanceof Uint8Array) return { bytes: file };
     const base = typeof document === "undefined" ? undefined : document.baseURI;
-    return { url: new URL(file, base).href };
+    const access: Access = {};
+    if (headers) access.headers = headers;
+    if (credentials) access.credentials = credentials;
+    return { url: new URL(file, base).href, access };
 }
 
 function withoutMissing(limits: { [key in keyof StreamLimits]: number | undefined }): StreamLimits {
@@ -110,19 +129,36 @@ function workerPort(worker: Worker): Port {
         send: (request) => worker.postMessage(request),
         listen: (hear) => {
             worker.onmessage = ({ data }: MessageEvent<Event>) => hear(data);
-            worker.onerror = ({ message }) =>
-                hear({ kind: "failed", section: "the worker", why: message });
+            // Where the worker does not start there is no message.
+            worker.onerror = ({ message }: Partial<ErrorEvent>) =>
+                hear({
+                    kind: "failed",
+                    section: "the worker",
+                    why: message ?? "its script cannot be loaded",
+                });
         },
-        close: () => worker.terminate(),
+        close: () => {
+            worker.onmessage = worker.onerror = null;
+            worker.terminate();
+        },
     };
 }
 
 /** A session on this thread, whose code is only loaded where there is one. */
 function localPort(): Port {
-    let hear: (event: Event) => void = () => undefined;
-    const session: Promise<Session> = import("./session.ts").then(
+    const nobody = (): void => undefined;
+    let hear: (event: Event) => void = nobody;
+    const session: Promise<Session | null> = import("./session.ts").then(
         ({ Session }) => new Session((event) => hear(event)),
+        (error: unknown) => {
+            hear({ kind: "failed", section: "the decoder", why: String(error) });
+            return null;
+        },
     );
-    const send = (request: Request) => void session.then((session) => session.receive(request));
-    return { send, listen: (listener) => (hear = listener), close: () => send({ kind: "close" }) };
+    const send = (request: Request) => void session.then((session) => session?.receive(request));
+    const close = () => {
+        hear = nobody;
+        send({ kind: "close" });
+    };
+    return { send, listen: (listener) => (hear = listener), close };
 }

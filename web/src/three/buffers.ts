@@ -1,6 +1,6 @@
 /** The geometry that shows a stream, changed where its patches say. */
 
-import { BufferAttribute, BufferGeometry, Sphere, Vector3 } from "three";
+import { Box3, BufferAttribute, BufferGeometry, Sphere, Vector3 } from "three";
 import type { FileInfo, GeometryPatch, LayerInfo } from "../index.ts";
 import { attributeName } from "./attribute_name.ts";
 
@@ -37,8 +37,21 @@ export class StreamGeometry extends BufferGeometry {
     /** The bounds of the finest mesh, whatever is shown. */
     override computeBoundingSphere(): void {}
 
+    /** Finds the bounds of what is shown: the buffers have room for more. */
+    override computeBoundingBox(): void {
+        const box = (this.boundingBox ??= new Box3()).makeEmpty();
+        const { index, groups } = this;
+        const { array } = this.getAttribute("position");
+        const point = new Vector3();
+        for (const { start, count } of groups) {
+            for (let at = start; index && at < start + count; at++)
+                box.expandByPoint(point.fromArray(array, 3 * index.array[at]));
+        }
+    }
+
     /** Changes what a patch says. */
     apply(patch: GeometryPatch): void {
+        this.boundingBox = null;
         for (const column of this.columns) this.write(column, patch);
         this.writeIndex(patch);
         this.clearGroups();

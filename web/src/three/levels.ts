@@ -24,6 +24,9 @@ export class SharedLevels {
     private scene: SceneInfo | null = null;
     private readonly images = new Map<number, Uint8Array>();
     private timer: ReturnType<typeof setTimeout> | undefined;
+    /** Number of times that materials have been made, and the one whose materials are shown. */
+    private made = 0;
+    private shown = 0;
     private last = "";
     private isDisposed = false;
 
@@ -85,8 +88,11 @@ export class SharedLevels {
 
     private async remake(): Promise<void> {
         if (!this.scene || this.isDisposed) return;
+        const turn = ++this.made;
         const materials = await makeMaterials(this.scene, this.images, this.geometry, this.manager);
-        if (this.isDisposed) return disposeMaterials(materials);
+        // Images are decoded at their leisure: those of a later turn may have been faster.
+        if (this.isDisposed || turn < this.shown) return disposeMaterials(materials);
+        this.shown = turn;
         const old = this.materials;
         this.materials = materials;
         for (const copy of this.copies.keys()) if (copy.material === old) copy.material = materials;

@@ -50,24 +50,33 @@ export class MlodLoader extends Loader<MlodMesh> {
         const early: ((levels: SharedLevels) => void)[] = [];
         const later = (act: (levels: SharedLevels) => void) =>
             void (levels ? act(levels) : early.push(act));
+        let begin: () => void = () => undefined;
+        const begun = new Promise<void>((resolve) => (begin = resolve));
         const options: StreamOptions = {
             ...this.limits,
             onScene: (scene) => later((levels) => levels.setScene(scene)),
             onPart: ({ kind, image }, bytes) =>
                 later((levels) => kind !== "animations" && levels.setImage(image, bytes)),
             onPatch: (patch: GeometryPatch) => later((levels) => levels.geometry.apply(patch)),
-            onError: (error) => later((levels) => levels.fail(error)),
+            onError: (error) => {
+                later((levels) => levels.fail(error));
+                begin();
+            },
             onProgress: (progress) => {
                 later((levels) => (levels.progress = progress));
+                begin();
                 onProgress?.(new ProgressEvent("progress", { loaded: progress.bytes }));
             },
         };
+        options.headers = this.requestHeader;
+        if (this.withCredentials) options.credentials = "include";
         if (this.worker) options.worker = this.worker;
         const stream = await open(file, options);
         const opened = new SharedLevels(stream, this.manager, (error) => this.onStreamError(error));
         const mesh = new MlodMesh(opened);
         levels = opened;
         early.forEach((act) => act(opened));
+        await begun;
         return mesh;
     }
 }

@@ -1,7 +1,13 @@
 /** A mesh whose level follows a camera. */
 
-import { Matrix4, Mesh, OrthographicCamera, PerspectiveCamera, Vector2, Vector3 } from "three";
-import type { BufferGeometry, Camera, Material } from "three";
+import { Matrix4, Mesh, Vector2, Vector3 } from "three";
+import type {
+    BufferGeometry,
+    Camera,
+    Material,
+    OrthographicCamera,
+    PerspectiveCamera,
+} from "three";
 import type { FileInfo, Progress, Query, Vector } from "../index.ts";
 import type { SharedLevels } from "./levels.ts";
 
@@ -52,6 +58,9 @@ export class MlodMesh extends Mesh<BufferGeometry, Material[]> {
         this.eye.setFromMatrixPosition(this.toLocal);
         this.ahead.set(0, 0, -1).transformDirection(this.toLocal);
         this.upward.set(0, 1, 0).transformDirection(this.toLocal);
+        // Nothing is seen of what has no size, or from nowhere.
+        if (this.matrixWorld.determinant() === 0) return;
+        if (!this.toLocal.elements.every(Number.isFinite)) return;
         const query = this.queryOf(camera);
         if (query) this.levels.ask(this, query, this.nearness(query));
     }
@@ -59,12 +68,12 @@ export class MlodMesh extends Mesh<BufferGeometry, Material[]> {
     private queryOf(camera: Camera): Query | null {
         const [width, height] = [this.size.x, this.size.y];
         if (!(width > 0 && height > 0)) return null;
-        if (camera instanceof OrthographicCamera) {
+        if (isOrthographic(camera)) {
             const scale = this.toLocal.getMaxScaleOnAxis();
-            const pixel = ((camera.top - camera.bottom) / camera.zoom / height) * scale;
+            const pixel = (Math.abs(camera.top - camera.bottom) / camera.zoom / height) * scale;
             return { focus: null, tolerance: this.pixels * pixel };
         }
-        if (!(camera instanceof PerspectiveCamera)) return null;
+        if (!isPerspective(camera)) return null;
         const fov = (camera.getEffectiveFOV() * Math.PI) / 180;
         const look = this.ahead.clone().add(this.eye);
         const view = {
@@ -107,4 +116,12 @@ export class MlodMesh extends Mesh<BufferGeometry, Material[]> {
 
 function vector({ x, y, z }: Vector3): Vector {
     return [x, y, z];
+}
+
+function isPerspective(camera: Camera): camera is PerspectiveCamera {
+    return (camera as Partial<PerspectiveCamera>).isPerspectiveCamera === true;
+}
+
+function isOrthographic(camera: Camera): camera is OrthographicCamera {
+    return (camera as Partial<OrthographicCamera>).isOrthographicCamera === true;
 }
