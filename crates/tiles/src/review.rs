@@ -79,11 +79,11 @@ fn json(files: &TilesetFiles, name: &str) -> Result<Value, TilesError> {
 /// that of the edge in the other direction.
 type Edges = FxHashMap<[Point; 2], i64>;
 
-/// What is known of a tile by those that it refines.
+/// Knowledge of a tile by those that it refines.
 struct Above {
     error: f64,
     bounds: Option<[[f64; 3]; 2]>,
-    /// How far transforms below that of the root have moved the tile, in the axes of the tileset.
+    /// Sum of the transforms below that of the root, in the axes of the tileset.
     place: [f64; 3],
     /// Number of tilesets around it.
     files: usize,
@@ -108,19 +108,7 @@ impl Reviewer {
     fn tile(&mut self, tile: &Value, above: &Above) {
         let uri = tile["content"]["uri"].as_str().unwrap_or_default().to_owned();
         if uri.ends_with(".json") {
-            if !self.seen.insert(uri.clone()) {
-                return self.find(&uri, "more than one tile refers to it");
-            }
-            let moved = movement(tile);
-            let place = moved.map_or(above.place, |by| add(above.place, by));
-            match json(&self.files, &uri) {
-                Ok(inner) if above.files < MOST_FILES => {
-                    self.tile(&inner["root"], &Above { place, files: above.files + 1, ..*above });
-                }
-                Ok(_) => self.find(&uri, "tilesets are nested too deeply"),
-                Err(error) => self.review.findings.push(error.to_string()),
-            }
-            return;
+            return self.tileset(tile, uri, above);
         }
         let Ok(cell) = serde_json::from_value::<Cell>(tile["extras"]["cell"].clone()) else {
             return self.find(&uri, "its cell is missing");
@@ -166,6 +154,21 @@ impl Reviewer {
         }
         let below = Above { error, bounds, place: expected, files: above.files };
         children.iter().for_each(|child| self.tile(child, &below));
+    }
+
+    /// Reviews the tiles of another tileset, which a tile stands for.
+    fn tileset(&mut self, tile: &Value, uri: String, above: &Above) {
+        if !self.seen.insert(uri.clone()) {
+            return self.find(&uri, "more than one tile refers to it");
+        }
+        let place = movement(tile).map_or(above.place, |by| add(above.place, by));
+        match json(&self.files, &uri) {
+            Ok(inner) if above.files < MOST_FILES => {
+                self.tile(&inner["root"], &Above { place, files: above.files + 1, ..*above });
+            }
+            Ok(_) => self.find(&uri, "tilesets are nested too deeply"),
+            Err(error) => self.review.findings.push(error.to_string()),
+        }
     }
 
     /// Returns the way from the middle of one cell to that of another, in the axes of the tileset.
