@@ -77,8 +77,9 @@ pub fn section() -> Result<String> {
     Ok(text)
 }
 
-/// Prints the tables alone, each as soon as it is made. Arguments: `--program PATH` for another build of `meshlod`, `--large`
-/// for the largest model as well, then names of models, or parts of names; all without any.
+/// Prints the tables alone, each as soon as it is made. Arguments: `--program PATH` for another build
+/// of `meshlod`, `--large` for the largest model as well, then names of models, or parts of names;
+/// all without any.
 ///
 /// # Errors
 /// A name that no model has; a table that cannot be made.

@@ -179,7 +179,7 @@ fn plan_in_hold(
 fn note_large_images(look: &Look, watch: &dyn Watch) {
     let count = look.large_images();
     if count > 0 {
-        let text = format!("used at less resolution, larger than 4096 by 4096: {}", images(count));
+        let text = format!("used at a lower resolution: {} above 4096 by 4096", images(count));
         watch.remark(&Remark::new(About::Input, text));
     }
 }

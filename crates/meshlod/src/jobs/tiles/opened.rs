@@ -93,7 +93,8 @@ impl TilePlan {
         let _hold = Hold::shared(&self.folder)?;
         if !self.is_current() {
             let path = self.folder.path().display();
-            return Err(JobError::request("", format!("{path}: the plan was made anew meanwhile")));
+            let reason = format!("{path}: the plan has been replaced since it was opened");
+            return Err(JobError::request("", reason));
         }
         self.run_in_hold(task)
     }
