@@ -1,5 +1,11 @@
 //! Folder of a plan: files whose names say what is in them, so that what is done is there.
 
+mod block_file;
+mod names;
+pub mod record;
+mod sealed;
+mod tile_file;
+
 use std::fs::{self, File};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -7,16 +13,18 @@ use std::time::SystemTime;
 
 use meshlod_io::{Image, remove_abandoned, write_file};
 
-use crate::block_file;
 use crate::cell::Cell;
 use crate::error::TilesError;
 use crate::plan::{Look, Plan, PlanImage};
-use crate::record::TileRecord;
 use crate::scratch::read_blocks;
-use crate::sealed::{SEAL, seal, unseal};
 use crate::texture::DecodedImages;
 use crate::tile::{TileBuilder, TileMesh};
-use crate::tile_file;
+
+use names::{first, is_image};
+use record::TileRecord;
+use sealed::{SEAL, seal, unseal};
+
+pub use names::{is_of_tile, remove_tiles, remove_where};
 
 /// Folder of a plan.
 #[derive(Clone, Debug)]
@@ -323,52 +331,6 @@ impl Folder {
         // It would only take space.
         let _ = fs::remove_file(self.mesh_file(cell));
     }
-}
-
-/// Removes the files of tiles in a folder, and the folder if nothing else is in it.
-pub fn remove_tiles(folder: &Path) {
-    remove_where(folder, is_of_tile);
-    let _ = fs::remove_dir(folder);
-}
-
-/// Removes the files of a folder that have some names. What cannot be removed does no harm.
-pub fn remove_where(folder: &Path, is_meant: impl Fn(&str) -> bool) {
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        if entry.file_name().to_str().is_some_and(&is_meant) {
-            let _ = fs::remove_file(entry.path());
-        }
-    }
-}
-
-/// Returns true for the name of a file of a tile, such as `2-0-3-1.glb`, and of one in the making.
-pub fn is_of_tile(name: &str) -> bool {
-    let (name, is_part) = match name.strip_prefix('.') {
-        Some(name) => (name, true),
-        None => (name, false),
-    };
-    let Some((cell, kind)) = name.split_once('.') else { return false };
-    let kind = if is_part { first(kind) } else { kind };
-    let numbers: Vec<&str> = cell.split('-').collect();
-    ["json", "mesh", "glb"].contains(&kind) && numbers.len() == 4 && numbers.iter().all(is_number)
-}
-
-/// Returns true for the name of the file of an image, and of one in the making.
-fn is_image(name: &str) -> bool {
-    let (name, is_part) = match name.strip_prefix('.') {
-        Some(name) => (name, true),
-        None => (name, false),
-    };
-    let number = name.strip_prefix("image-");
-    number.is_some_and(|number| is_number(&if is_part { first(number) } else { number }))
-}
-
-fn is_number(text: &&str) -> bool {
-    !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
-}
-
-/// Returns the part of a name before its first dot.
-fn first(name: &str) -> &str {
-    name.split('.').next().unwrap_or(name)
 }
 
 #[cfg(test)]

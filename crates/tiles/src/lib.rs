@@ -14,15 +14,13 @@
 //! | `curves`, `chords`, `coarser` | a tile from its parts, by a rule that its neighbours share |
 //! | `errors` | how much each level may lose |
 //! | `texture`, `skirt`, `content` | the GLB of a tile |
-//! | `sealed`, `block_file`, `tile_file` | files of a plan |
-//! | `record`, `folder`, `task` | the folder of a plan, and its tasks |
+//! | `folder`, `task` | the folder of a plan with its files, and its tasks |
 //! | `chain`, `tileset` | proof that tiles meet, and `tileset.json` |
 //! | `archive`, `tileset_files`, `review` | tilesets in one file, and a check of tilesets |
 //! | `error` | why tiles cannot be made |
 #![forbid(unsafe_code)]
 
 pub mod archive;
-mod block_file;
 pub mod cell;
 pub mod chain;
 mod chords;
@@ -38,11 +36,9 @@ pub mod layout;
 pub mod merge;
 pub mod octree;
 pub mod plan;
-pub mod record;
 pub mod review;
 pub mod samples;
 pub mod scratch;
-mod sealed;
 mod skirt;
 pub mod source;
 pub mod space;
@@ -50,7 +46,6 @@ pub mod survey;
 pub mod task;
 pub mod texture;
 pub mod tile;
-mod tile_file;
 pub mod tileset;
 mod tileset_files;
 

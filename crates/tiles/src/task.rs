@@ -6,9 +6,9 @@ use crate::content::content;
 use crate::error::TilesError;
 use crate::errors::simplify_error;
 use crate::folder::Folder;
+use crate::folder::record::TileRecord;
 use crate::merge::merge;
 use crate::plan::{Look, Plan};
-use crate::record::TileRecord;
 use crate::samples::MeasuredError;
 use crate::tile::TileMesh;
 

@@ -7,8 +7,8 @@ use serde_json::{Value, json};
 use crate::cell::Cell;
 use crate::error::TilesError;
 use crate::folder::Folder;
+use crate::folder::record::TileRecord;
 use crate::plan::Plan;
-use crate::record::TileRecord;
 
 /// Number of levels in one file.
 const LEVELS: u8 = 5;
