@@ -61,7 +61,7 @@ pub(crate) fn run_within<'m>(
         return simplifier.run(Target::Error(error), observer);
     }
     let mut bound = RUN * error;
-    let mut report = simplifier.run(Target::Error(bound), observer)?;
+    let mut report = simplifier.run_to_compare(bound, observer)?;
     let whole = simplifier.input();
     let input = match simplifier.hierarchy() {
         Some(known) => PreparedSurface::with_hierarchy(whole, known),
@@ -103,7 +103,7 @@ pub(crate) fn run_within<'m>(
             let proved = distance_at_most(&input, &level, error);
             return Ok(with_proof(report, [error, proved], rounds));
         }
-        report = simplifier.run(Target::Error(bound), observer)?;
+        report = simplifier.run_to_compare(bound, observer)?;
     }
 }
 

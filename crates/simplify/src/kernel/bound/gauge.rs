@@ -17,11 +17,6 @@ use crate::kernel::mesh::one_ring::GHOST;
 /// A single step that goes this many times as far as the bound is refused without measuring.
 const TOO_FAR: f32 = 2.0;
 
-/// Part of the bound within which the new vertex and the input that is merged into it stand for the
-/// new faces. Where their insides are farther away than that, the proof of the level tells, and they
-/// are measured from then on: docs/notes/kernel.md has figures.
-const NEAR: f32 = 0.4;
-
 /// Number of points on each old edge that are compared with the new faces.
 const EDGE_POINTS: usize = 3;
 
@@ -76,7 +71,7 @@ impl Gauge<'_> {
         let mut near = None;
         let at_apex = moved.input.distance(apex, &mut near, [0.0, limit]).ok_or(Beyond::Surface)?;
         let farthest = at_apex.max(input_to_new);
-        if farthest <= NEAR * limit && limit == moved.max_error {
+        if farthest < moved.near * limit && limit == moved.max_error {
             return Ok(farthest);
         }
         let near = near.expect("a distance is to a face");
