@@ -29,6 +29,7 @@ pub use read::read;
 pub use skeleton::Skeleton;
 pub use skeleton::images::SkeletonImage;
 pub use write::levels::{Level, LodLayout};
+pub use write::needle::{ImageSizes, NeedleLevels, SizedImage};
 pub use write::output::GltfFiles;
 pub use write::parts::{QuantizedPart, write_parts_glb};
 pub use write::settings::{Bytes, Compression, CompressionReport, PositionGrid};

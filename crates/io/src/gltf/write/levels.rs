@@ -2,6 +2,9 @@
 
 use meshlod_mesh::Mesh;
 
+use super::needle::Needle;
+use crate::error::Unsupported;
+
 /// Coarser level of detail of a whole scene, to be written to a glTF file.
 #[derive(Clone, Debug)]
 pub struct Level {
@@ -30,10 +33,30 @@ pub enum LodLayout {
 pub(crate) struct Levels<'a> {
     pub levels: &'a [Level],
     pub layout: LodLayout,
+    /// Written instead of the layout, if there is one.
+    pub needle: Option<&'a Needle<'a>>,
 }
 
 impl<'a> From<&'a [Level]> for Levels<'a> {
     fn from(levels: &'a [Level]) -> Self {
-        Self { levels, layout: LodLayout::default() }
+        Self { levels, ..Self::default() }
     }
+}
+
+/// Refuses levels that do not fit a document with this number of meshes.
+pub(crate) fn check_levels(levels: &[Level], meshes: usize) -> Result<(), Unsupported> {
+    for (k, level) in levels.iter().enumerate() {
+        let wrong = |reason| Err(Unsupported::new(format!("level {}", k + 1), reason));
+        if level.meshes.len() != meshes {
+            let found = level.meshes.len();
+            return wrong(format!("has {found} meshes, but the scene has {meshes}"));
+        }
+        if !(0.0..=1.0).contains(&level.screen_coverage) {
+            return wrong(format!(
+                "the screen coverage must be in [0, 1], not {}",
+                level.screen_coverage
+            ));
+        }
+    }
+    Ok(())
 }
