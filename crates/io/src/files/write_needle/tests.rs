@@ -25,7 +25,7 @@ fn strip() -> Scene {
     scene
 }
 
-/// What is a PNG by its first bytes.
+/// Bytes that begin as a PNG does.
 fn picture(length: usize) -> Vec<u8> {
     [b"\x89PNG\r\n\x1a\n".to_vec(), vec![length as u8; length]].concat()
 }

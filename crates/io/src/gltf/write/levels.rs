@@ -2,7 +2,6 @@
 
 use meshlod_mesh::Mesh;
 
-use super::needle::Needle;
 use crate::error::Unsupported;
 
 /// Coarser level of detail of a whole scene, to be written to a glTF file.
@@ -26,6 +25,43 @@ pub enum LodLayout {
     /// All levels are shown nodes, `NAME_LOD0`, `NAME_LOD1` and so on, children of the node that had
     /// the mesh: the names from which engines build groups of levels.
     Siblings,
+}
+
+/// Levels of a scene and sizes of its images, to be written as `NEEDLE_progressive`.
+#[derive(Clone, Copy, Debug)]
+pub struct NeedleLevels<'a> {
+    /// Coarser levels of the scene, finest first; the last goes into the document.
+    pub levels: &'a [Level],
+    /// Measured error of each level in model units, if known: written to `extras`.
+    pub errors: &'a [Option<f64>],
+    /// Images in several sizes; all others go into the document as they are.
+    pub images: &'a [ImageSizes],
+}
+
+/// Image of a scene in several sizes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ImageSizes {
+    /// Index into [`Scene::images`](crate::Scene::images).
+    pub image: usize,
+    /// The sizes, largest first: the image itself, then smaller ones, at least one. The last goes
+    /// into the document.
+    pub sizes: Vec<SizedImage>,
+}
+
+/// One size of an image.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SizedImage {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Encoded bytes, as PNG, JPEG or WebP.
+    pub bytes: Vec<u8>,
+}
+
+/// Levels and images to be written as `NEEDLE_progressive`, and the name of the document without its suffix.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Needle<'a> {
+    pub levels: NeedleLevels<'a>,
+    pub stem: &'a str,
 }
 
 /// Levels of a scene and their layout; [`Levels::default`] has no levels.

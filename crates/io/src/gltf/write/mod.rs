@@ -18,6 +18,7 @@ pub(crate) mod output;
 pub(crate) mod parts;
 pub(crate) mod quantized;
 pub(crate) mod replacer;
+pub(crate) mod same_geometry;
 pub(crate) mod settings;
 pub(crate) mod strip_mesh;
 pub(crate) mod strips;

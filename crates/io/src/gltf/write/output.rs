@@ -1,6 +1,5 @@
 //! Document being written: its new geometry, then its files.
 
-use meshlod_mesh::Mesh;
 use serde_json::{Map, Value};
 
 use super::buffer::BufferBuilder;
@@ -13,6 +12,7 @@ use super::new_document::local_space::localized;
 use super::new_document::objects::split_objects;
 use super::quantized::{Grids, nodes};
 use super::replacer::Replacer;
+use super::same_geometry::same_geometry;
 use super::settings::{Compression, CompressionReport};
 use super::{lod, needle, new_document};
 use crate::error::{ParseError, Unsupported};
@@ -256,15 +256,6 @@ pub(crate) fn check_meshes(scene: &Scene, document: &Document<'_>) -> Result<(),
 /// Returns the error that the source document cannot be read again.
 pub(crate) fn unreadable(error: ParseError) -> Unsupported {
     Unsupported::new("source", error.to_string())
-}
-
-/// Reports whether two meshes would be written identically.
-pub(crate) fn same_geometry(a: &Mesh, b: &Mesh) -> bool {
-    let label = |mesh: &Mesh, face| mesh.materials.as_ref().map(|labels| labels.of(face));
-    a.positions == b.positions
-        && a.faces == b.faces
-        && a.attributes == b.attributes
-        && (0..a.faces.len()).all(|face| label(a, face) == label(b, face))
 }
 
 /// Returns the file that an image of a document refers to.

@@ -3,11 +3,11 @@
 use serde_json::{Map, Value, json};
 
 use super::meshes::set_extension;
-use super::part::{Part, head, id};
-use super::{ImageSizes, Needle, SizedImage};
+use super::part::{PartFile, head, id};
 use crate::error::Unsupported;
 use crate::gltf::document::extensions::{NEEDLE, WEBP, drop_entry, forget_names, list_extension};
 use crate::gltf::write::buffer::BufferBuilder;
+use crate::gltf::write::levels::{ImageSizes, Needle, SizedImage};
 use crate::scene::image_file::mime_type;
 use crate::scene::{Image, Scene};
 
@@ -123,7 +123,7 @@ fn write(
         let [width, height] = own.size;
         let (document, buffer) = document(own, &guids);
         let name = format!("image{image}_{width}x{height}");
-        let part = Part::new(needle.stem, &name, document, &buffer)?;
+        let part = PartFile::new(needle.stem, &name, document, &buffer)?;
         lods.push(json!({
             "path": part.path, "hash": part.hash, "width": width, "height": height,
         }));

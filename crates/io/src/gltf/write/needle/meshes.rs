@@ -6,15 +6,14 @@ use meshlod_mesh::Mesh;
 use serde_json::{Map, Value, json};
 
 use super::densities::{of_one_triangle, rounded};
-use super::part::{Part, head, id};
-use super::{Needle, NeedleLevels};
+use super::part::{PartFile, head, id};
 use crate::error::Unsupported;
 use crate::gltf::document::extensions::{NEEDLE, list_extension};
 use crate::gltf::write::buffer::BufferBuilder;
-use crate::gltf::write::levels::Level;
-use crate::gltf::write::output::same_geometry;
+use crate::gltf::write::levels::{Level, Needle, NeedleLevels};
 use crate::gltf::write::quantized::grid::QuantizationGrid;
 use crate::gltf::write::replacer::{Lines, Replacer, faces_by_primitive};
+use crate::gltf::write::same_geometry::same_geometry;
 use crate::scene::Image;
 
 /// Distinct levels of a mesh.
@@ -96,7 +95,7 @@ impl<'a> MeshChain<'a> {
         let [indices, vertices] = counts(&document);
         set_extension(&mut document["meshes"][0], json!({ "guid": guid }));
         let name = format!("mesh{}_LOD{number}", self.index);
-        let part = Part::new(needle.stem, &name, document, &buffer)?;
+        let part = PartFile::new(needle.stem, &name, document, &buffer)?;
         let densities = faces.iter().zip(one_triangle).map(|(&n, one)| rounded(n as f64 * one));
         let entry = json!({
             "path": part.path,

@@ -19,50 +19,13 @@ pub(crate) mod stand_in;
 use serde_json::Value;
 
 use super::empty_meshes::detach_meshes;
-use super::levels::{Level, check_levels};
+use super::levels::{Level, Needle, check_levels};
 use super::quantized::grid::QuantizationGrid;
 use super::replacer::Replacer;
 use crate::error::Unsupported;
 use crate::gltf::document::extensions::{NEEDLE, drop_entry, list_extension};
 use crate::scene::{Image, Scene};
 use meshes::MeshChain;
-
-/// Levels of a scene and sizes of its images, to be written as `NEEDLE_progressive`.
-#[derive(Clone, Copy, Debug)]
-pub struct NeedleLevels<'a> {
-    /// Coarser levels of the scene, finest first; the last goes into the document.
-    pub levels: &'a [Level],
-    /// Measured error of each level in model units, if known: written to `extras`.
-    pub errors: &'a [Option<f64>],
-    /// Images in several sizes; all others go into the document as they are.
-    pub images: &'a [ImageSizes],
-}
-
-/// Image of a scene in several sizes.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ImageSizes {
-    /// Index into [`Scene::images`].
-    pub image: usize,
-    /// The sizes, largest first: the image itself, then smaller ones, at least one. The last goes
-    /// into the document.
-    pub sizes: Vec<SizedImage>,
-}
-
-/// One size of an image.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SizedImage {
-    /// Width and height in pixels.
-    pub size: [u32; 2],
-    /// Encoded bytes, as PNG, JPEG or WebP.
-    pub bytes: Vec<u8>,
-}
-
-/// What is written as `NEEDLE_progressive`, and the name of the document without its suffix.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Needle<'a> {
-    pub levels: NeedleLevels<'a>,
-    pub stem: &'a str,
-}
 
 /// Puts the coarsest level of each mesh and the smallest size of each image into the document, and
 /// returns the files of all others.

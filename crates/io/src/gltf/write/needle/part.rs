@@ -10,14 +10,14 @@ use crate::scene::Image;
 pub(crate) const FOLDER: &str = "_levels";
 
 /// File of a level of a mesh or a size of an image, and what its entry in `lods` says of it.
-pub(crate) struct Part {
+pub(crate) struct PartFile {
     pub file: Image,
     /// Path of the file, as the client resolves it.
     pub path: String,
     pub hash: String,
 }
 
-impl Part {
+impl PartFile {
     /// Joins a document and its buffer to a file `NAME.HASH.glb` in the folder of the document
     /// `stem`: a file never changes its contents, so that no version of the document and no cache
     /// ever has those of another.
@@ -68,7 +68,7 @@ pub(crate) fn id<'a>(pieces: impl IntoIterator<Item = &'a [u8]>) -> String {
     format!("{hash:032x}")
 }
 
-/// Reports whether a file in the folder of a document has a name that [`Part::new`] gives.
+/// Reports whether a file in the folder of a document has a name that [`PartFile::new`] gives.
 pub(crate) fn is_part_name(name: &str) -> bool {
     let mut words = name.split('.');
     let what =
@@ -99,7 +99,7 @@ mod tests {
 
     #[test]
     fn names_are_recognised_and_no_path_is_absolute() {
-        let part = Part::new("httpd & co", "mesh0_LOD1", head(), b"").unwrap();
+        let part = PartFile::new("httpd & co", "mesh0_LOD1", head(), b"").unwrap();
         assert!(part.path.starts_with("%68ttpd%20%26%20co_levels/mesh0_LOD1."), "{}", part.path);
         let name = part.file.name.rsplit_once('/').unwrap().1;
         assert!(is_part_name(name), "{name}");
