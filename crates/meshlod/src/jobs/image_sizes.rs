@@ -54,7 +54,7 @@ fn color_images(scene: &Scene) -> BTreeSet<usize> {
 fn sizes(image: &Image, is_color: bool) -> Result<Option<Vec<SizedImage>>, String> {
     let header = image.header();
     let size = header.and_then(|header| header.pixels);
-    if image.bytes.is_empty() || size.is_some_and(|size| is_small(size)) {
+    if image.bytes.is_empty() || size.is_some_and(is_small) {
         return Ok(None);
     }
     let averaging = if is_color { Averaging::Light } else { Averaging::Values };
