@@ -9,6 +9,7 @@ use write_gltf::write_gltf;
 use write_obj::write_obj;
 use write_ply::write_ply;
 
+pub use write_needle::{WrittenFile, write_needle};
 pub use write_ply::write_ply_stream;
 
 use self::missing_images::note_missing_images;
@@ -30,6 +31,7 @@ pub(crate) mod names;
 pub(crate) mod replace;
 mod staged;
 mod write_gltf;
+mod write_needle;
 mod write_obj;
 mod write_ply;
 
@@ -108,7 +110,7 @@ pub fn write_lods(
             write_one(path, |out| out.write_all(&bytes))
         }
         Format::Gltf => {
-            let levels = Levels { levels, layout };
+            let levels = Levels { levels, layout, needle: None };
             write_gltf(path, |name| gltf::write::files(scene, levels, None, name)).map(drop)
         }
         _ => Err(unsupported(Unsupported::new(
