@@ -207,7 +207,7 @@ impl Tiles {
         let hearing = Hearing::new(session, input, output);
         check_output(output, &hearing)?;
         let request = self.form.request(self.memory);
-        let model = files::open(&self.inputs, &self.reading, session)?;
+        let model = files::open(&self.inputs, output, &self.reading, session)?;
         let done = tiles(model.input(), output, &request, &hearing);
         let report = done.map_err(|error| hearing.failure(error))?;
         let text = report::text(output, &report);
@@ -218,7 +218,7 @@ impl Tiles {
 impl PlanStep {
     fn run(self, session: &Session) -> Result<Answer, Failure> {
         let request = self.form.request(None);
-        let model = files::open(&self.inputs, &self.reading, session)?;
+        let model = files::open(&self.inputs, &self.plan, &self.reading, session)?;
         let hearing = Hearing::new(session, &self.inputs[0], &self.plan);
         let done = plan_tiles(model.input(), &self.plan, &request, &hearing);
         let tasks = done.map_err(|error| hearing.failure(error))?;
