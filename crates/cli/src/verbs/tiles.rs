@@ -28,8 +28,9 @@ use report::TilesFigures;
 /// OUT is a folder: tileset.json names the tiles in it. If it ends in .3tz it is an archive of these
 /// files. A run that was ended goes on where it stopped.
 ///
-/// Binary PLY and STL files from 64 MB on are read in passing, with little memory; of an .mlod file,
-/// the finest level is read. Of several files, the layers are kept that all of them have.
+/// Binary PLY, binary STL and OBJ files from 64 MB on are read in passing, with little memory; OBJ
+/// takes about its size on the disk of OUT meanwhile. Of an .mlod file, the finest level is read. Of
+/// several files, the layers are kept that all of them have.
 ///
 /// The steps plan, task and finish do the same with any number of processes or machines.
 #[derive(Args)]

@@ -251,7 +251,7 @@ fn files_in(input: &Path) -> Result<Vec<PathBuf>, TileFileError> {
 }
 
 /// Returns the materials of a scene by the labels that its faces have when it is one mesh.
-fn look(scene: &Scene) -> Look {
+pub(super) fn look(scene: &Scene) -> Look {
     if scene.materials.is_empty() {
         return Look::default();
     }
