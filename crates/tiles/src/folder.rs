@@ -352,9 +352,13 @@ mod tests {
         let folder = Folder::new(temporary.path());
         folder.make().unwrap();
         assert!(!folder.is_foreign());
-        fs::write(folder.path().join("content/article.md"), "text").unwrap();
+        let article = folder.path().join("content/article.md");
+        fs::write(&article, "text").unwrap();
+        assert!(folder.is_foreign());
         folder.remove();
-        assert!(folder.path().join("content/article.md").exists());
+        assert!(article.exists());
+        fs::remove_file(article).unwrap();
+        assert!(!folder.is_foreign());
         fs::write(folder.path().join("plan.json"), "{}").unwrap();
         assert!(folder.is_foreign());
         fs::remove_file(folder.path().join("plan.json")).unwrap();
