@@ -29,6 +29,9 @@ export class SharedLevels {
     /** Ends when materials have been made: one time after the other, or images would be decoded twice. */
     private making: Promise<void> = Promise.resolve();
     private last = "";
+    /** Factor of tolerances that keeps a budget, and the progress that it answers. */
+    private factor = 1;
+    private judged: Progress | null = null;
     private isDisposed = false;
 
     constructor(
@@ -66,6 +69,19 @@ export class SharedLevels {
         if (!best || key === this.last) return;
         this.last = key;
         this.stream.query(best.query);
+    }
+
+    /** Returns the factor of a tolerance that leaves about a number of faces, but no more. */
+    relief(most: number): number {
+        const { progress } = this;
+        if (!progress || progress === this.judged) return this.factor;
+        this.judged = progress;
+        const ratio = progress.faces / most;
+        if (ratio > 1) this.factor *= Math.min(2, 1.05 * Math.sqrt(ratio));
+        // Not while finer chunks are on their way, and not to and fro.
+        else if (ratio < 0.5 && progress.done && progress.missing === 0)
+            this.factor = Math.max(1, this.factor * Math.max(0.7, Math.sqrt(1.5 * ratio)));
+        return this.factor;
     }
 
     /** Takes the scene of the file. */

@@ -35,6 +35,7 @@ const openers = {
         const { MlodLoader } = await import("/dist/three/index.js");
         const mesh = await new MlodLoader().loadAsync(file);
         scene.add(mesh);
+        mesh.onlyInView = options.all === undefined;
         const isDone = () => mesh.progress.done && mesh.progress.missing === 0;
         return {
             update: () => mesh.update(camera, renderer),
@@ -93,7 +94,8 @@ function holesIn() {
 async function run() {
     const start = performance.now();
     const { update, isDone, faces } = await openers[kind]();
-    let [first, moments, holes, still, before] = [null, 0, 0, 0, -1];
+    const holes = [];
+    let [first, still, before] = [null, 0, -1];
     while (still < 5 && performance.now() - start < 240_000) {
         const state = await sent();
         update();
@@ -105,8 +107,7 @@ async function run() {
                 ms: Math.round(performance.now() - start),
                 network_ms: Math.round(state.busy_ms),
             };
-            moments++;
-            holes += found;
+            holes.push(found);
         }
         still = isDone() ? still + 1 : 0;
         if (found >= 0 && (state.sent !== before || still === 5)) {
@@ -125,7 +126,6 @@ async function run() {
         network_ms: Math.round(state.busy_ms),
         ms,
         faces: faces(),
-        moments,
         holes,
     };
 }
