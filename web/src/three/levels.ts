@@ -32,6 +32,7 @@ export class SharedLevels {
     /** Factor of tolerances that keeps a budget, and the progress that it answers. */
     private factor = 1;
     private judged: Progress | null = null;
+    private budget = Infinity;
     private isDisposed = false;
 
     constructor(
@@ -74,10 +75,12 @@ export class SharedLevels {
     /** Returns the factor of a tolerance that leaves about a number of faces, but no more. */
     relief(most: number): number {
         const { progress } = this;
-        if (!progress || progress === this.judged) return this.factor;
+        const isJudged = progress === this.judged && most === this.budget;
+        if (!progress || isJudged) return this.factor;
         this.judged = progress;
+        this.budget = most;
         const ratio = progress.faces / most;
-        if (ratio > 1) this.factor *= Math.min(2, 1.05 * Math.sqrt(ratio));
+        if (ratio > 1) this.factor *= Math.min(2, Math.max(1.25, Math.sqrt(ratio)));
         // Not while finer chunks are on their way, and not to and fro.
         else if (ratio < 0.5 && progress.done && progress.missing === 0)
             this.factor = Math.max(1, this.factor * Math.max(0.7, Math.sqrt(1.5 * ratio)));
