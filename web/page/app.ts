@@ -195,7 +195,10 @@ class Page {
             const camera = orbit.camera(width, height);
             const query = { focus: null, tolerance: { pixels: this.pixels, camera } };
             const key = JSON.stringify(query);
-            if (key !== this.lastQuery) model.ask(query);
+            if (key !== this.lastQuery) {
+                model.ask(query);
+                model.figures.done = model.isWhole;
+            }
             this.lastQuery = key;
         }
         this.renderer.draw(model?.drawn ?? null, orbit);

@@ -24,6 +24,8 @@ export interface Figures {
 export interface Model extends Ball {
     drawn: Drawn;
     figures: Figures;
+    /** True if there is one level only. */
+    isWhole: boolean;
     /** Number of triangles written, and milliseconds that took, since they were last set to 0. */
     written: number;
     writing: number;
@@ -99,6 +101,7 @@ function modelOf(gl: WebGL2RenderingContext, stream: MlodStream, watcher: Watche
         diagonal,
         drawn,
         figures: { bytes: 0, length, faces: 0, done: false },
+        isWhole: false,
         written: 0,
         writing: 0,
         ask: (query) => stream.query(query),
@@ -125,6 +128,7 @@ export function showWhole(
         diagonal,
         drawn,
         figures: { bytes, length: bytes, faces, done: true },
+        isWhole: true,
         written: faces,
         writing: 0,
         ask: () => undefined,
