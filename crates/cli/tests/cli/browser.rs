@@ -41,7 +41,7 @@ fn what_no_page_can_be_made_of_is_told() {
         (["page", "in.ply", "out.ply"], 2, "must end in .html"),
         (["page", "missing.ply", "out.html"], 1, "missing.ply"),
         (["page", "bad.mlod", "out.html"], 1, "bad.mlod: "),
-        (["page", "in.ply", "no/out.html"], 1, "no/out.html"),
+        (["page", "in.ply", "folder"], 2, "must end in .html"),
         (["serve", "missing", "--json"], 1, "missing: no such folder"),
         (["serve", "in.ply", "--json"], 1, "in.ply: is a file; name its folder"),
         (["serve", "folder", "--seconds=-1"], 2, "must be a number of seconds"),
