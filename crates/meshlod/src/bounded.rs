@@ -23,11 +23,6 @@ use crate::conditioned::ConditionedMesh;
 /// beyond would have to be mended: docs/notes/kernel.md has figures.
 const RUN: f64 = 0.99;
 
-/// As [`RUN`] where time counts more than faces: tiles of a terrain take a tenth less time, and have
-/// 2 to 5 % more faces.
-#[cfg(feature = "tiles")]
-const QUICK_RUN: f64 = 0.95;
-
 /// Largest number of times that contractions are taken back before the whole run is repeated. Of 64
 /// parts of robots within .1 % of the diagonal none took more than 11.
 const MOST_MENDS: usize = 24;
@@ -50,26 +45,6 @@ const CAUTION: f64 = 0.97;
 /// Limits of the factor by which the bound of a whole run is lowered.
 const FACTOR: [f64; 2] = [0.5, 0.93];
 
-/// Error that is held, in units of the mesh, and how far a run goes before it is compared.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Limit {
-    error: f64,
-    run: f64,
-}
-
-impl Limit {
-    /// Limit for as few faces as possible.
-    pub fn close(error: f64) -> Self {
-        Self { error, run: RUN * error }
-    }
-
-    /// Limit that a run stays farther from, so that little has to be mended.
-    #[cfg(feature = "tiles")]
-    pub fn quick(error: f64) -> Self {
-        Self { error, run: QUICK_RUN * error }
-    }
-}
-
 /// Simplifies within an error and proves that it is held.
 ///
 /// What is proved is in the report; nothing is if the mesh has no area, if the error is infinite, or
@@ -79,13 +54,14 @@ impl Limit {
 pub(crate) fn run_within<'m>(
     again: Option<(&'m ConditionedMesh<'_>, Option<f64>)>,
     simplifier: &mut Simplifier<'m>,
-    Limit { error, run: mut bound }: Limit,
+    error: f64,
     observer: &mut dyn Observe,
 ) -> Result<Report, SimplifyError> {
     if observer.needs_surface() || error == f64::INFINITY {
         return simplifier.run(Target::Error(error), observer);
     }
-    let mut report = simplifier.run(Target::Error(bound), observer)?;
+    let mut bound = RUN * error;
+    let mut report = simplifier.run_to_compare(bound, observer)?;
     let whole = simplifier.input();
     let input = match simplifier.hierarchy() {
         Some(known) => PreparedSurface::with_hierarchy(whole, known),
@@ -127,7 +103,7 @@ pub(crate) fn run_within<'m>(
             let proved = distance_at_most(&input, &level, error);
             return Ok(with_proof(report, [error, proved], rounds));
         }
-        report = simplifier.run(Target::Error(bound), observer)?;
+        report = simplifier.run_to_compare(bound, observer)?;
     }
 }
 

@@ -7,7 +7,7 @@ use meshlod_mesh::{
 };
 use meshlod_simplify::{Options, Report, Simplifier, SimplifyError, Target, Topology, VolumeLoss};
 
-use crate::bounded::{Limit, run_within};
+use crate::bounded::run_within;
 
 /// A mesh ready to be simplified, with the options for it.
 pub(crate) struct ConditionedMesh<'m> {
@@ -122,28 +122,6 @@ pub fn simplify(
     target: Target,
     options: &Options,
 ) -> Result<(Mesh, Report), SimplifyError> {
-    run(mesh, target, Limit::close, options)
-}
-
-/// Simplifies to an error as [`simplify`], in less time and with some percent more faces.
-///
-/// # Errors
-/// As [`simplify`].
-#[cfg(feature = "tiles")]
-pub(crate) fn simplify_quickly(
-    mesh: &Mesh,
-    error: f64,
-    options: &Options,
-) -> Result<(Mesh, Report), SimplifyError> {
-    run(mesh, Target::Error(error), Limit::quick, options)
-}
-
-fn run(
-    mesh: &Mesh,
-    target: Target,
-    limit: fn(f64) -> Limit,
-    options: &Options,
-) -> Result<(Mesh, Report), SimplifyError> {
     let ready = ConditionedMesh::new(mesh, options.clone(), Some(Borders::Stitch));
     let own = match target.valid()? {
         Target::Ratio(_) => Target::Faces(target.faces_of(mesh.faces.len())),
@@ -153,7 +131,7 @@ fn run(
     let report = match own {
         Target::Error(error) => {
             let again = Some((&ready, options.vanish_below));
-            run_within(again, &mut simplifier, limit(error), &mut ())?
+            run_within(again, &mut simplifier, error, &mut ())?
         }
         own => simplifier.run(own, &mut ())?,
     };

@@ -8,7 +8,7 @@ use meshlod_simplify::{
 };
 use thiserror::Error;
 
-use crate::bounded::{Limit, run_within};
+use crate::bounded::run_within;
 use crate::scene::ConditionedScene;
 use crate::scene::place::length_scale;
 
@@ -207,7 +207,7 @@ impl<'s> SceneSimplifier<'s> {
             let own = if own.is_nan() { f64::INFINITY } else { own };
             let mesh = &self.conditioned.meshes[part.mesh];
             let again = part.is_bounded.then_some((mesh, part.vanish_below));
-            let report = run_within(again, &mut part.simplifier, Limit::close(own), observer)?;
+            let report = run_within(again, &mut part.simplifier, own, observer)?;
             part.proof = report.proof;
         }
         let report = self.report()?;

@@ -98,11 +98,14 @@ pub(crate) struct Stop {
     pub(crate) error: f64,
     /// Largest cost of the next contraction at which the run goes on.
     pub(crate) cost: f64,
+    /// True if the caller compares the level with the input, so that less has to be measured.
+    pub(crate) is_compared: bool,
 }
 
 impl Stop {
     /// Limits that never stop a simplification run.
-    pub(crate) const NEVER: Self = Self { faces: 0, error: f64::INFINITY, cost: f64::INFINITY };
+    pub(crate) const NEVER: Self =
+        Self { faces: 0, error: f64::INFINITY, cost: f64::INFINITY, is_compared: false };
 }
 
 /// Observer of the contractions of a simplification. All methods do nothing by default.

@@ -151,7 +151,7 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
         let (refused_before, at_first) = (refused(&self.partition), self.partition.live_faces);
         let Self { source, partition, input, lowered, .. } = &mut *self;
         let mut bound =
-            is_bounded.then(|| bound((stop.error, &lowered.1), source, &partition.store, input));
+            is_bounded.then(|| bound(stop, &lowered.1, source, &partition.store, input));
         partition.run(faces, last, bound.as_mut(), &mut |gone| observer.gone(gone));
         if refused(&self.partition) > refused_before {
             self.refused_above = self.refused_above.min(stop.error);
@@ -176,9 +176,10 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
     }
 }
 
-/// Returns an error bound, given in model units. Builds the input surface if it is missing.
+/// Returns the error bound of a run. Builds the input surface if it is missing.
 fn bound<'o>(
-    (error, parts): (f64, &[f32]),
+    stop: &Stop,
+    parts: &[f32],
     source: &KernelInput<'_>,
     store: &VertexStore,
     input: &'o OnceCell<InputSurface>,
@@ -189,7 +190,9 @@ fn bound<'o>(
         let places = (0..store.all.len() as u32).map(place).collect();
         InputSurface::new(mesh, *frame, places, numbers(mesh, order, faces.as_deref()))
     });
-    ErrorBound::new((error / frame.unit) as f32, parts.to_vec(), input, store)
+    let max_error = (stop.error / frame.unit) as f32;
+    let bound = ErrorBound::new(max_error, parts.to_vec(), input, store);
+    if stop.is_compared { bound.to_compare() } else { bound }
 }
 
 impl<A: AttributeModel> Run for KernelRun<'_, A> {

@@ -11,7 +11,6 @@ use meshlod_simplify::{Options, SimplifyError, Target};
 use meshlod_tiles::coarser::Coarsen;
 use meshlod_tiles::plan::Plan;
 
-use crate::conditioned::simplify_quickly;
 use crate::simplify;
 
 /// Number of faces of a tile, as a multiple of what a leaf may have, from which it is simplified
@@ -60,7 +59,7 @@ impl Coarsen for Proven {
     ) -> Result<(Mesh, f64), TileFailure> {
         let locks = Locks { of_vertex: locks, ties: Vec::new() };
         let options = Options { locks, ..Options::default() };
-        let (level, report) = match simplify_quickly(mesh, error, &options) {
+        let (level, report) = match simplify(mesh, Target::Error(error), &options) {
             Err(SimplifyError::NoFaces) => return Ok((mesh.clone(), 0.0)),
             done => done.map_err(TileFailure::Simplify)?,
         };

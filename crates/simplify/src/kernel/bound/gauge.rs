@@ -3,6 +3,7 @@
 use std::sync::Mutex;
 
 use glam::Vec3;
+use meshlod_mesh::FaceId;
 use meshlod_spatial::Sheet;
 
 use crate::kernel::bound::input_surface::{Covered, InputSurface};
@@ -66,24 +67,31 @@ impl Gauge<'_> {
         }
         // Where a step was refused before, this most often sees it at the first point.
         let input_to_new = self.input_to_new_faces(moved, step, limit)?;
-        let new_to_input = self.new_faces_to_input(moved, step, limit);
-        new_to_input.map_or(Err(Beyond::Surface), |farthest| Ok(farthest.max(input_to_new)))
+        let apex = step.from + step.displacement;
+        let mut near = None;
+        let at_apex = moved.input.distance(apex, &mut near, [0.0, limit]).ok_or(Beyond::Surface)?;
+        let farthest = at_apex.max(input_to_new);
+        if farthest < moved.near * limit && limit == moved.max_error {
+            return Ok(farthest);
+        }
+        let near = near.expect("a distance is to a face");
+        let of_faces = self.new_faces_to_input(moved, step, limit, near);
+        of_faces.map_or(Err(Beyond::Surface), |of_faces| Ok(farthest.max(of_faces)))
     }
 
-    /// Returns the largest distance of the new faces from the input; `None` if it is beyond the
-    /// bound. Where no faces of the input cover them, it is that of sampled points, or counts as
+    /// Returns the largest distance of the new faces from the input, `near` being a face of it that
+    /// is near the new vertex; `None` if it is beyond the bound. Where no faces of the input cover them, it is that of sampled points, or counts as
     /// beyond if the bound has not been held before.
     fn new_faces_to_input(
         &mut self,
         moved: &MovedPart<'_>,
         step: &BoundedStep<'_>,
         limit: f32,
+        near: FaceId,
     ) -> Option<f32> {
         let &BoundedStep { edge_ring, from, displacement, .. } = step;
         let apex = from + displacement;
-        let mut near = None;
-        let at_apex = moved.input.distance(apex, &mut near, [0.0, limit])?;
-        let (near, mut farthest, mut is_unknown) = (near?, at_apex, false);
+        let (mut farthest, mut is_unknown) = (0.0f32, false);
         for i in (0..edge_ring.len).filter(|&i| edge_ring.is_face(i)) {
             let [to, next] = [i, i + 1].map(|i| from + edge_ring.relative(i));
             match moved.input.covered(&mut self.sheet, [apex, to, next], near, limit) {

@@ -30,12 +30,18 @@ use crate::kernel::bound::moved_part::MovedPart;
 pub(crate) use crate::kernel::bound::step::BoundedStep;
 use crate::kernel::mesh::one_ring::VertexStore;
 
+/// Part of the bound within which a new vertex stands for the faces around it, where the level is
+/// compared with the input later: docs/notes/kernel.md has figures.
+const NEAR: f32 = 0.4;
+
 /// Bound on the distance between surface and input, for the whole surface.
 pub(crate) struct ErrorBound<'m> {
     input: &'m InputSurface,
     between: EdgeSamples,
     /// The bound, in the frame's units.
     max_error: f32,
+    /// Part of the bound within which a new vertex stands for the faces around it; 0 if it never does.
+    near: f32,
     /// Rings of merged input vertices: the next one of each, through the one that is live.
     next: Vec<u32>,
     /// Distance that the surface has moved at each vertex, all steps added up.
@@ -72,12 +78,26 @@ impl<'m> ErrorBound<'m> {
             }
         }
         let travelled = store.all.iter().map(|vertex| vertex.moved.sqrt()).collect();
-        Self { input, between: input.between(max_error), max_error, next, travelled, parts }
+        Self {
+            input,
+            between: input.between(max_error),
+            max_error,
+            near: 0.0,
+            next,
+            travelled,
+            parts,
+        }
+    }
+
+    /// Leaves more to a comparison of the level with the input, which tells where the insides of new
+    /// faces are beyond the bound.
+    pub(crate) fn to_compare(self) -> Self {
+        Self { near: NEAR, ..self }
     }
 
     /// Splits the bound into consecutive vertex ranges of the given lengths.
     pub(crate) fn split(&mut self, lengths: &[usize]) -> Vec<BoundPart<'_>> {
-        let Self { input, between, max_error, next, travelled, parts: of_vertices } = self;
+        let Self { input, between, max_error, near, next, travelled, parts: of_vertices } = self;
         let (mut next, mut travelled, mut base) = (&mut next[..], &mut travelled[..], 0);
         let mut of_vertices = &mut of_vertices[..];
         let mut parts = Vec::with_capacity(lengths.len());
@@ -89,6 +109,7 @@ impl<'m> ErrorBound<'m> {
                 input,
                 between,
                 max_error: *max_error,
+                near: *near,
                 base,
                 next: own_next,
                 travelled: own_travelled,

@@ -18,6 +18,8 @@ pub(crate) struct MovedPart<'v> {
     pub(crate) between: &'v EdgeSamples,
     /// The bound where none is lower, in the frame's units.
     pub(crate) max_error: f32,
+    /// As in [`ErrorBound`](crate::kernel::bound::ErrorBound).
+    pub(crate) near: f32,
     /// Id of the first vertex.
     pub(crate) base: u32,
     /// As in [`ErrorBound`](crate::kernel::bound::ErrorBound).
@@ -142,8 +144,16 @@ mod tests {
         let (edge_ring, ends) = (&EdgeRing::new(1.0), [0, 1]);
         let is_sure = |now: f32, parts: &mut [f32]| {
             let (next, travelled) = (&mut vec![0; count][..], &mut vec![0.0; count][..]);
-            let moved =
-                MovedPart { input, between, max_error: 1.0, base: 0, next, travelled, parts };
+            let moved = MovedPart {
+                input,
+                between,
+                max_error: 1.0,
+                near: 0.0,
+                base: 0,
+                next,
+                travelled,
+                parts,
+            };
             let (from, displacement) = (Vec3::ZERO, Vec3::ZERO);
             let step = BoundedStep { edge_ring, ends, from, displacement, now };
             moved.is_sure(&step, moved.travelled_with(&step))
