@@ -30,23 +30,18 @@ pub fn part(value: Option<&str>, length: u64) -> Part {
         is_number.then(|| text.parse::<u64>().unwrap_or(u64::MAX))
     };
     match (number(first), number(last)) {
-        (Some(first), Some(last)) if first > last => Part::Whole,
-        (Some(first), _) if !last.is_empty() && number(last).is_none() || first == u64::MAX => {
-            if first == u64::MAX {
-                Part::Nothing
-            } else {
-                Part::Whole
-            }
+        (Some(first), None) if last.is_empty() => within(first, length, length),
+        (Some(first), Some(last)) if first <= last => within(first, last.saturating_add(1), length),
+        (None, Some(count)) if first.is_empty() => {
+            within(length.saturating_sub(count), length, length)
         }
-        (Some(first), _) if first >= length => Part::Nothing,
-        (Some(first), last) => {
-            Part::Some(first..last.map_or(length, |last| last.saturating_add(1).min(length)))
-        }
-        (None, Some(0)) if first.is_empty() => Part::Nothing,
-        (None, Some(_)) if first.is_empty() && length == 0 => Part::Nothing,
-        (None, Some(count)) if first.is_empty() => Part::Some(length.saturating_sub(count)..length),
         _ => Part::Whole,
     }
+}
+
+/// Returns the part of a file between two places, the second of which may be behind its end.
+fn within(start: u64, end: u64, length: u64) -> Part {
+    if start < length { Part::Some(start..end.min(length)) } else { Part::Nothing }
 }
 
 #[cfg(test)]
