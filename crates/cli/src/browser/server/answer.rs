@@ -9,10 +9,10 @@ use flate2::write::GzEncoder;
 
 use super::folder::{Folder, OpenFile};
 use super::head::Head;
-use super::range::{Part, part};
+use super::range::{SentPart, part};
 use crate::browser::{FORMATS, VIEWER};
 
-/// What is sent behind the head.
+/// Bytes that are sent behind the head.
 pub enum Body {
     Bytes(Vec<u8>),
     /// So many bytes of a file, from where it stands.
@@ -20,7 +20,7 @@ pub enum Body {
 }
 
 /// An answer.
-pub struct Answer {
+pub struct Response {
     pub status: u16,
     headers: Vec<(&'static str, String)>,
     pub body: Body,
@@ -36,46 +36,46 @@ fn packed(text: &str) -> Vec<u8> {
 }
 
 /// Returns the answer to a request.
-pub fn answer(head: &Head, folder: &Folder) -> Answer {
+pub fn answer(head: &Head, folder: &Folder) -> Response {
     match &*head.method {
         "GET" | "HEAD" => {}
         "OPTIONS" => return leave(),
-        _ => return Answer::error(405).with("Allow", "GET, HEAD, OPTIONS"),
+        _ => return Response::error(405).with("Allow", "GET, HEAD, OPTIONS"),
     }
     match &*head.path {
         "/" => text(head, VIEWER, &PACKED[0], "text/html; charset=utf-8"),
         "/.meshlod/formats.js" => text(head, FORMATS, &PACKED[1], "text/javascript; charset=utf-8"),
         "/.meshlod/files.json" => {
             let list = serde_json::to_vec(&folder.list()).unwrap_or_default();
-            Answer::new(200, Body::Bytes(list)).with("Content-Type", "application/json")
+            Response::new(200, Body::Bytes(list)).with("Content-Type", "application/json")
         }
-        path => folder.file(path).map_or_else(|| Answer::error(404), |file| sent(head, file)),
+        path => folder.file(path).map_or_else(|| Response::error(404), |file| sent(head, file)),
     }
 }
 
 /// Answers a browser that asks whether a page of another origin may ask.
-fn leave() -> Answer {
-    Answer::new(204, Body::Bytes(Vec::new()))
+fn leave() -> Response {
+    Response::new(204, Body::Bytes(Vec::new()))
         .with("Access-Control-Allow-Methods", "GET, HEAD, OPTIONS")
         .with("Access-Control-Allow-Headers", "Range, If-Range, If-None-Match")
         .with("Access-Control-Max-Age", "86400")
 }
 
-fn text(head: &Head, text: &str, packed: &[u8], media_type: &str) -> Answer {
+fn text(head: &Head, text: &str, packed: &[u8], media_type: &str) -> Response {
     let answer = match head.takes_gzip {
-        true => Answer::new(200, Body::Bytes(packed.to_vec())).with("Content-Encoding", "gzip"),
-        false => Answer::new(200, Body::Bytes(text.into())),
+        true => Response::new(200, Body::Bytes(packed.to_vec())).with("Content-Encoding", "gzip"),
+        false => Response::new(200, Body::Bytes(text.into())),
     };
     answer.with("Content-Type", media_type).with("Vary", "Accept-Encoding")
 }
 
 /// Returns a file, or the part of it that is asked for.
-fn sent(head: &Head, open: OpenFile) -> Answer {
+fn sent(head: &Head, open: OpenFile) -> Response {
     let OpenFile { mut file, length, modified, tag, media_type } = open;
     let date = httpdate::fmt_http_date(modified);
     let same =
         |tags: &str| tags.split(',').map(str::trim).any(|known| known == tag || known == "*");
-    let facts = |answer: Answer| {
+    let facts = |answer: Response| {
         answer
             .with("ETag", &tag)
             .with("Last-Modified", &date)
@@ -83,21 +83,21 @@ fn sent(head: &Head, open: OpenFile) -> Answer {
             .with("Cache-Control", "no-cache")
     };
     if head.if_none_match.as_deref().is_some_and(same) {
-        return facts(Answer::new(304, Body::Bytes(Vec::new())));
+        return facts(Response::new(304, Body::Bytes(Vec::new())));
     }
     // A part goes only with parts of the same file.
     let is_same = head.if_range.as_ref().is_none_or(|known| *known == tag || *known == date);
     let (status, range) = match part(head.range.as_deref().filter(|_| is_same), length) {
-        Part::Whole => (200, 0..length),
-        Part::Some(range) => (206, range),
-        Part::Nothing => {
-            return Answer::error(416).with("Content-Range", &format!("bytes */{length}"));
+        SentPart::Whole => (200, 0..length),
+        SentPart::Some(range) => (206, range),
+        SentPart::Nothing => {
+            return Response::error(416).with("Content-Range", &format!("bytes */{length}"));
         }
     };
     if range.start > 0 && file.seek(SeekFrom::Start(range.start)).is_err() {
-        return Answer::error(500);
+        return Response::error(500);
     }
-    let answer = Answer::new(status, Body::File(file, range.end - range.start));
+    let answer = Response::new(status, Body::File(file, range.end - range.start));
     let answer = facts(answer).with("Content-Type", media_type);
     match status {
         206 => {
@@ -108,7 +108,7 @@ fn sent(head: &Head, open: OpenFile) -> Answer {
     }
 }
 
-impl Answer {
+impl Response {
     fn new(status: u16, body: Body) -> Self {
         Self { status, headers: Vec::new(), body }
     }

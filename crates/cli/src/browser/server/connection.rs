@@ -5,8 +5,8 @@ use std::net::TcpStream;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-use super::Counts;
-use super::answer::{Answer, answer};
+use super::ServerCounts;
+use super::answer::{Response, answer};
 use super::folder::Folder;
 use super::head::{Head, Parsed, parse};
 
@@ -21,11 +21,11 @@ const BLOCK: usize = 64 << 10;
 /// Tells a client that there are too many.
 pub fn refuse(mut stream: TcpStream) {
     let _ = stream.set_write_timeout(Some(Duration::from_millis(100)));
-    let _ = stream.write_all(Answer::error(503).head(true).as_bytes());
+    let _ = stream.write_all(Response::error(503).head(true).as_bytes());
 }
 
 /// Answers requests until one side ends the connection.
-pub fn serve(mut stream: TcpStream, folder: &Folder, counts: &Counts) {
+pub fn serve(mut stream: TcpStream, folder: &Folder, counts: &ServerCounts) {
     let _ = stream.set_nodelay(true);
     let mut read = Vec::new();
     loop {
@@ -35,7 +35,7 @@ pub fn serve(mut stream: TcpStream, folder: &Folder, counts: &Counts) {
                 let reply = answer(&head, folder);
                 (Some(head), reply)
             }
-            Ok(Parsed::Wrong(status)) => (None, Answer::error(status)),
+            Ok(Parsed::Wrong(status)) => (None, Response::error(status)),
             Ok(Parsed::Part) | Err(_) => return,
         };
         let closes = head.as_ref().is_none_or(|head| head.closes);
@@ -81,9 +81,9 @@ fn is_late(error: &io::Error) -> bool {
 fn send(
     stream: &mut TcpStream,
     head: Option<&Head>,
-    reply: &mut Answer,
+    reply: &mut Response,
     closes: bool,
-    counts: &Counts,
+    counts: &ServerCounts,
 ) -> io::Result<()> {
     let length = reply.body.left();
     let end = Instant::now() + BODY_TIME + Duration::from_secs(length / LEAST_RATE);

@@ -18,7 +18,7 @@ pub struct Head {
     pub closes: bool,
 }
 
-/// What the bytes that have come so far are.
+/// Reading of the bytes that have come so far.
 #[derive(Debug)]
 pub enum Parsed {
     /// A head, and its length.

@@ -32,9 +32,9 @@ const MOST_CONNECTIONS: usize = 64;
 /// Time between two looks at whether the server should end.
 const PAUSE: Duration = Duration::from_millis(10);
 
-/// What a server has done so far.
+/// Requests and bytes of a server so far.
 #[derive(Debug, Default)]
-pub struct Counts {
+pub struct ServerCounts {
     /// Requests that were answered.
     pub requests: AtomicU64,
     /// Bytes of the bodies that were sent.
@@ -48,7 +48,7 @@ pub struct Counts {
 pub struct Server {
     listener: TcpListener,
     folder: Arc<Folder>,
-    counts: Arc<Counts>,
+    counts: Arc<ServerCounts>,
     open: Arc<AtomicUsize>,
 }
 
@@ -70,7 +70,7 @@ impl Server {
     }
 
     /// Returns what the server has done so far.
-    pub fn counts(&self) -> &Counts {
+    pub fn counts(&self) -> &ServerCounts {
         &self.counts
     }
 
@@ -107,7 +107,7 @@ impl Server {
     }
 }
 
-/// Counts a connection while it is open.
+/// ServerCounts a connection while it is open.
 struct OpenConnection(Arc<AtomicUsize>);
 
 impl OpenConnection {
