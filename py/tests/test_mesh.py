@@ -205,3 +205,27 @@ def test_the_boundary_can_be_locked():
     level = meshlod.Mesh(points, faces, uvs=uvs).simplify(0.7, lock_boundary=True)
     assert set(map(tuple, points[on])) <= set(map(tuple, level.vertices))
     assert (edges(welded(level.vertices, level.faces)) == 1).sum() == on.sum()
+
+
+def test_notebooks_get_a_live_view_a_picture_and_text(tmp_path, monkeypatch):
+    mesh = meshlod.Mesh(*torus())
+    bundle = mesh._repr_mimebundle_()
+    assert set(bundle) == {"text/plain", "image/png", "text/html"}
+    assert bundle["text/plain"] == repr(mesh) and bundle["image/png"] == mesh._repr_png_()
+    view = bundle["text/html"]
+    assert view.startswith("<iframe srcdoc=") and view.count("<") == 2
+    assert 'sandbox="allow-scripts"' in view
+    assert "data-name=&quot;mesh.mlod&quot;" in view
+    assert set(meshlod.Mesh([], [])._repr_mimebundle_()) == {"text/plain"}
+    model = mesh.build(tmp_path / "torus.mlod")
+    assert "torus.mlod – meshlod" in model._repr_mimebundle_()["text/html"]
+    monkeypatch.setattr("meshlod._view.MOST_BYTES", 10)
+    assert set(model._repr_mimebundle_()) == {"text/plain"}
+    assert set(mesh._repr_mimebundle_()) == {"text/plain", "image/png"}
+
+
+def test_a_view_of_many_faces_is_a_level(monkeypatch):
+    mesh = meshlod.Mesh(*torus())
+    whole = len(mesh._repr_mimebundle_()["text/html"])
+    monkeypatch.setattr("meshlod._view.MOST_FACES", len(mesh.faces) // 4)
+    assert len(mesh._repr_mimebundle_()["text/html"]) < whole

@@ -13,7 +13,7 @@ use crate::session::answer::Answer;
 use crate::session::failure::Failure;
 use crate::verbs::{
     batch, build, check, completions, compress, convert, decompress, extract, flock, info, lods,
-    man, measure, render, repair, run, sample, simplify, strip, tiles, view,
+    man, measure, page, render, repair, run, sample, serve, simplify, strip, tiles, view,
 };
 
 /// Level of detail for triangle meshes.
@@ -75,6 +75,8 @@ pub enum Verb {
     Sample(sample::Sample),
     Render(render::Render),
     View(view::View),
+    Serve(serve::Serve),
+    Page(page::Page),
     Flock(flock::Flock),
     Demo(Demo),
     Completions(completions::Completions),
@@ -101,6 +103,8 @@ impl Verb {
             Self::Sample(verb) => verb.run(session),
             Self::Render(verb) => verb.run(session),
             Self::View(verb) => verb.run(session),
+            Self::Serve(verb) => verb.run(session),
+            Self::Page(verb) => verb.run(session),
             Self::Flock(verb) => verb.run(session),
             Self::Demo(verb) => verb.run(run_line, session),
             Self::Completions(verb) => verb.run(Cli::command()),

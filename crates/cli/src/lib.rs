@@ -6,6 +6,7 @@
 #![forbid(unsafe_code)]
 
 mod batch;
+mod browser;
 mod check;
 mod command;
 mod compare;
@@ -131,6 +132,10 @@ pub fn record_file_of_batch(folder: &Path, recipe: &str, report: &str) -> Result
 pub fn end_at_signals() {
     // Without a handler, signals still end the program but may leave a temporary file.
     let _ = ctrlc::set_handler(|| {
+        // A server is ended by Ctrl-C, and then says what it has done.
+        if verbs::serve::end() {
+            return;
+        }
         meshlod::io::abandon_files();
         exit(INTERRUPTED);
     });

@@ -395,6 +395,13 @@ class Mesh(Immutable):
             return None
         return _native.render(self._native, list(PICTURE), False, "y", None, True)
 
+    def _repr_mimebundle_(
+        self, include: object = None, exclude: object = None
+    ) -> dict[str, object]:
+        from . import _view
+
+        return _view.bundle(_view.of_mesh(self), self._repr_png_(), repr(self))
+
     def __repr__(self) -> str:
         parts = [f"{len(self.vertices)} vertices", f"{len(self.faces)} faces", *self.attributes]
         return f"Mesh({', '.join(parts)})"

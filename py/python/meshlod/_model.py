@@ -70,6 +70,13 @@ class Model:
             warn(f"{self.path}: {text}")
         return Cut._of(native, self._native.diagonal())
 
+    def _repr_mimebundle_(
+        self, include: object = None, exclude: object = None
+    ) -> dict[str, object]:
+        from . import _view
+
+        return _view.bundle(_view.of_file(self.path), None, repr(self))
+
     def __repr__(self) -> str:
         return f"Model({self.path!r})"
 

@@ -152,6 +152,22 @@ impl Session {
         }
     }
 
+    /// Says a line while the work goes on: on standard output, or standard error where that is taken
+    /// by JSON, and nowhere with `--quiet`.
+    pub fn tell(&self, line: &str) {
+        if self.quiet || self.kept_warnings.is_some() {
+            return;
+        }
+        // If the stream is closed, nobody is left to tell.
+        self.progress.suspend(|| match self.json {
+            true => say(line),
+            false => {
+                let mut out = std::io::stdout();
+                let _ = writeln!(out, "{line}").and_then(|()| out.flush());
+            }
+        });
+    }
+
     /// Warns of a doubt about what is asked for a file, if there is one.
     pub fn doubt(&self, path: &Path, doubt: Option<String>) {
         if let Some(doubt) = doubt {

@@ -112,6 +112,8 @@ pub const VERBS: &[(&str, &str)] = &[
     ("compress", "pack encode zip quantize quantise draco meshopt"),
     ("decompress", "unpack decode unzip"),
     ("view", "show preview display open viewer"),
+    ("serve", "server http web host"),
+    ("page", "html embed"),
     ("render", "screenshot picture image snapshot thumbnail draw"),
     ("sample", "generate create primitive new"),
     ("strip", "stripify tristrip strips"),

@@ -8,6 +8,7 @@
 //! | `strip`, `compress`, `decompress`, `convert` | other forms |
 //! | `check`, `repair`, `measure`, `info` | what a mesh is |
 //! | `render`, `view`, `flock` | pictures |
+//! | `serve`, `page` | models in a browser |
 //! | `batch`, `run`, `sample` | many files, recipes, samples |
 
 pub mod batch;
@@ -23,10 +24,12 @@ pub mod info;
 pub mod lods;
 pub mod man;
 pub mod measure;
+pub mod page;
 pub mod render;
 pub mod repair;
 pub mod run;
 pub mod sample;
+pub mod serve;
 pub mod simplify;
 pub mod strip;
 pub mod tiles;

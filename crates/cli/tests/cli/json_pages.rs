@@ -131,7 +131,7 @@ const TWICE: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[
         "uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
 
 /// Lines to run, in an order in which each has its input.
-const LINES: [&str; 58] = [
+const LINES: [&str; 60] = [
     "sample knot in.ply --faces 2000",
     "info in.ply",
     "check in.ply --locks locks.json",
@@ -150,6 +150,8 @@ const LINES: [&str; 58] = [
     "info in.mlod",
     "check in.mlod",
     "extract in.mlod cut.ply -e 1%",
+    "page in.mlod page.html",
+    "serve . --port 0 --seconds 0",
     "tiles in.ply tiles --tile-faces 200",
     "tiles plan in.ply plan",
     "tiles task plan 0",

@@ -1,6 +1,7 @@
 //! Tests of the program from outside: exit codes, streams, files.
 
 mod batch;
+mod browser;
 mod check;
 mod compare;
 mod compress;
