@@ -20,6 +20,7 @@ use crate::format::facts::Holds;
 use crate::gltf;
 use crate::gltf::write::levels::{Levels, LodLayout};
 use crate::memory::{parse, write_to};
+use crate::obj::{ObjEnd, ObjStream};
 use crate::options::{ReadOptions, WriteOptions};
 use crate::scene::Scene;
 use replace::replace;
@@ -59,6 +60,21 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Scene, IoEr
         only.name = stem(path);
     }
     Ok(scene)
+}
+
+/// Ends an OBJ file that was read part by part, and loads its materials and images from the folder of
+/// `path`.
+///
+/// # Errors
+/// As those of [`ObjStream::finish`].
+pub fn finish_obj_stream(path: &Path, stream: ObjStream) -> Result<ObjEnd, IoError> {
+    let mut beside = Beside::of(path, Format::Obj);
+    let mut end = stream
+        .finish(&mut |name: &str| beside.read(name))
+        .map_err(|error| IoError::parse(path, error))?;
+    note_missing_images(&mut end.scene, path.parent());
+    end.scene.notes.extend(Some(beside.note()).filter(|note| note.count > 0));
+    Ok(end)
 }
 
 /// Writes a scene as a mesh file, with its `.bin`, `.mtl` and image files beside it.
