@@ -109,8 +109,9 @@ fn jpeg(size: [u16; 2], texels: &[[u8; 4]], is_color: bool) -> Result<Vec<u8>, S
 
 #[cfg(test)]
 mod tests {
+    use meshlod_io::Material;
+
     use super::*;
-    use crate::Material;
 
     fn picture(side: u32, alpha: u8) -> Image {
         let rgba = [200, 100, 50, alpha].repeat((side * side) as usize);
