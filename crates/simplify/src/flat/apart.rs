@@ -142,8 +142,7 @@ impl<'m> Faces<'m> {
         sorted.sort_unstable();
         let same = sorted.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() > 1);
         let is_filled = |region: &usize| !self.regions.list[*region].is_kept;
-        same.filter_map(|same| same.iter().map(|&(_, region)| region).filter(is_filled).next_back())
-            .collect()
+        same.filter_map(|same| same.iter().map(|&(_, region)| region).rfind(is_filled)).collect()
     }
 }
 

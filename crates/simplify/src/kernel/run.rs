@@ -192,7 +192,7 @@ fn bound<'o>(
     });
     let max_error = (stop.error / frame.unit) as f32;
     let bound = ErrorBound::new(max_error, parts.to_vec(), input, store);
-    if stop.is_compared { bound.to_compare() } else { bound }
+    if stop.is_compared { bound.compared() } else { bound }
 }
 
 impl<A: AttributeModel> Run for KernelRun<'_, A> {

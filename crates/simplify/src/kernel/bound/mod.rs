@@ -91,7 +91,7 @@ impl<'m> ErrorBound<'m> {
 
     /// Leaves more to a comparison of the level with the input, which tells where the insides of new
     /// faces are beyond the bound.
-    pub(crate) fn to_compare(self) -> Self {
+    pub(crate) fn compared(self) -> Self {
         Self { near: NEAR, ..self }
     }
 
