@@ -1,8 +1,9 @@
 // Bundles the package into `dist`, and fails if what a page loads is too large.
 
-import { readFileSync } from "node:fs";
+import { copyFileSync, readFileSync } from "node:fs";
 import { gzipSync } from "node:zlib";
 import { build } from "esbuild";
+import { localNames } from "./mangle.mjs";
 
 const MOST_BYTES = 40 << 10;
 const common = { bundle: true, minify: true, format: "esm", target: "es2022", logLevel: "warning" };
@@ -20,7 +21,15 @@ const { metafile } = await build({
     metafile: true,
     outdir: "dist",
 });
-await build({ ...common, entryPoints: ["src/worker.ts"], outfile: "dist/worker.min.js" });
+const mangleProps = new RegExp(`^(?:${localNames(import.meta.dirname).join("|")})$`);
+await build({
+    ...common,
+    entryPoints: ["src/worker.ts"],
+    mangleProps,
+    outfile: "dist/worker.min.js",
+});
+// The package has the licences of the project.
+for (const name of ["LICENSE-APACHE", "LICENSE-MIT"]) copyFileSync(`../${name}`, name);
 
 /** Adds a file and those that it imports at once; what is imported later counts when it is. */
 function addImports(file, files) {

@@ -51,7 +51,7 @@ pub fn tiles<'py>(
         let heard = Heard::new(watch);
         let work = || {
             jobs::check_tiles_folder(&out).map_err(|error| job.fault(error, &out))?;
-            let model = job.open(&heard)?;
+            let model = job.open(&out, &heard)?;
             let done = jobs::tiles(model.input(), &out, &job.request, &heard);
             done.map_err(|error| job.fault(error, &out))
         };
@@ -76,7 +76,7 @@ pub fn plan_tiles(
     let (done, notes) = run_to_end(py, None, move |watch| {
         let heard = Heard::new(watch);
         let work = || {
-            let model = job.open(&heard)?;
+            let model = job.open(&folder, &heard)?;
             let done = jobs::plan_tiles(model.input(), &folder, &job.request, &heard);
             done.map_err(|error| job.fault(error, &folder))
         };
@@ -188,8 +188,8 @@ impl TilesJob {
         Ok(Self { inputs, options: ReadOptions { weld }, request })
     }
 
-    fn open(&self, heard: &Heard) -> Result<TileModel, TilesFault> {
-        TileModel::open(&self.inputs, &ReadFiles { options: &self.options, heard })
+    fn open(&self, out: &Path, heard: &Heard) -> Result<TileModel, TilesFault> {
+        TileModel::open(&self.inputs, out, &ReadFiles { options: &self.options, heard })
     }
 
     fn fault(&self, error: JobError, out: &Path) -> TilesFault {

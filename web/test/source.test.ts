@@ -1,49 +1,11 @@
 import assert from "node:assert/strict";
-import { createServer } from "node:http";
 import type { IncomingMessage, ServerResponse } from "node:http";
-import type { AddressInfo } from "node:net";
 import { test } from "node:test";
 import { open } from "../src/load/stream.ts";
 import type { MlodStream, StreamListener } from "../src/load/stream.ts";
 import { HttpSource } from "../src/load/source.ts";
+import { file, never, sendRange, serving } from "./server.ts";
 import { conformanceFile, conformanceNames, vectorFile } from "./files.ts";
-
-const file = Buffer.from(Array.from({ length: 1000 }, (_, i) => (i * 7) & 255));
-
-/** Runs a test against a server. */
-async function serving(
-    answer: (request: IncomingMessage, response: ServerResponse) => void,
-    run: (url: string) => Promise<void>,
-): Promise<void> {
-    const server = createServer(answer);
-    await new Promise<void>((resolve) => server.listen(0, "127.0.0.1", resolve));
-    try {
-        await run(`http://127.0.0.1:${(server.address() as AddressInfo).port}/`);
-    } finally {
-        server.closeAllConnections();
-        server.close();
-    }
-}
-
-/** Answers a request for a range as servers do. */
-function sendRange(
-    body: Buffer,
-    request: IncomingMessage,
-    response: ServerResponse,
-    tag = '"1"',
-): void {
-    const match = /bytes=(\d+)-(\d+)/.exec(request.headers.range ?? "");
-    const isSame = (request.headers["if-range"] ?? tag) === tag;
-    if (!match || !isSame) {
-        response.writeHead(200, { ETag: tag }).end(body);
-        return;
-    }
-    const [at, end] = [Number(match[1]), Math.min(Number(match[2]) + 1, body.length)];
-    const range = `bytes ${at}-${end - 1}/${body.length}`;
-    response.writeHead(206, { "Content-Range": range, ETag: tag }).end(body.subarray(at, end));
-}
-
-const never = new AbortController().signal;
 
 test("parts are fetched by ranges, and only these", async () => {
     let sent = 0;
@@ -155,7 +117,7 @@ test("a server that lies about ranges, or fails, is not believed", async () => {
             });
             response.write(file.subarray(0, 40), () => response.destroy());
         },
-        (url) => assert.rejects(new HttpSource(url, never).start(100)),
+        (url) => assert.rejects(new HttpSource(url, never, {}, fetch, []).start(100), /the file: /),
     );
 });
 

@@ -44,6 +44,18 @@ test("a mesh follows its camera, and goes back", async () => {
     mesh.dispose();
 });
 
+test("a budget of faces is kept, and given up again", async () => {
+    const mesh = await loader().parse(vectorFile().buffer);
+    mesh.mostFaces = 20;
+    for (let i = 0; i < 20; i++) await look(mesh, 2);
+    const faces = mesh.progress?.faces ?? 0;
+    assert.ok(faces > 5 && faces <= 20, `${faces} faces`);
+    mesh.mostFaces = Infinity;
+    for (let i = 0; i < 20; i++) await look(mesh, 2);
+    assert.equal(mesh.progress?.faces, 32);
+    mesh.dispose();
+});
+
 test("pixels are those of the mesh as it is scaled and placed", async () => {
     const mesh = await loader().parse(vectorFile().buffer);
     new Scene().add(mesh);

@@ -41,7 +41,10 @@ pub use error::{FileLocation, IoError, ParseError, Unsupported};
 pub use files::replace::{
     abandon_files, check_place, remove_abandoned, write_file, write_file_with,
 };
-pub use files::{read, write, write_compressed, write_lods, write_ply_stream, write_strips};
+pub use files::{
+    WrittenFile, finish_obj_stream, read, write, write_compressed, write_lods, write_needle,
+    write_ply_stream, write_strips,
+};
 pub use format::{Format, StoredDigits};
 pub use limits::merged_instances;
 pub use memory::{read_bytes, write_to};

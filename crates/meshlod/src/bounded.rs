@@ -48,18 +48,43 @@ const FACTOR: [f64; 2] = [0.5, 0.93];
 /// Simplifies within an error and proves that it is held.
 ///
 /// What is proved is in the report; nothing is if the mesh has no area, if the error is infinite, or
-/// if the observer wants to see contractions, which then cannot be taken back. An error below the
-/// [rounding of `f64`](least_provable) cannot be held unless nothing changes; the report then says
-/// what is proved. `again` is the mesh with its option `vanish_below`, if the run may be repeated.
+/// if the observer wants to see contractions, which then cannot be taken back. `moved` is the part of
+/// the error that was used up before, when the mesh was
+/// [flattened](ConditionedMesh::flatten_within). An error below the [rounding of
+/// `f64`](least_provable) cannot be held unless nothing changes; the report then says what is proved.
+/// `again` is the mesh with its option `vanish_below`, if the run may be repeated.
 pub(crate) fn run_within<'m>(
+    again: Option<(&'m ConditionedMesh<'_>, Option<f64>)>,
+    simplifier: &mut Simplifier<'m>,
+    [error, moved]: [f64; 2],
+    observer: &mut dyn Observe,
+) -> Result<Report, SimplifyError> {
+    let left = error - moved;
+    if observer.needs_surface() || left == f64::INFINITY {
+        return simplifier.run(Target::Error(left), observer);
+    }
+    let report = match left > 0.0 {
+        true => run_and_prove(again, simplifier, left, observer)?,
+        // Nothing may move.
+        false => {
+            let report = simplifier.run(Target::Faces(simplifier.live_faces()), observer)?;
+            with_proof(report, [0.0; 2], 0)
+        }
+    };
+    let proof = report.proof.map(|proof| {
+        let proved = proof.proved + moved;
+        let proved = if report.reached { proved.min(error) } else { proved };
+        ErrorProof { asked: error, proved, ..proof }
+    });
+    Ok(Report { proof, ..report })
+}
+
+fn run_and_prove<'m>(
     again: Option<(&'m ConditionedMesh<'_>, Option<f64>)>,
     simplifier: &mut Simplifier<'m>,
     error: f64,
     observer: &mut dyn Observe,
 ) -> Result<Report, SimplifyError> {
-    if observer.needs_surface() || error == f64::INFINITY {
-        return simplifier.run(Target::Error(error), observer);
-    }
     let mut bound = RUN * error;
     let mut report = simplifier.run_to_compare(bound, observer)?;
     let whole = simplifier.input();

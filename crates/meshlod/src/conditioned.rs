@@ -5,9 +5,16 @@ use std::sync::OnceLock;
 use meshlod_mesh::{
     Borders, ConditionOptions, Conditioned, Conditioning, Locks, Mesh, Search, condition,
 };
-use meshlod_simplify::{Options, Report, Simplifier, SimplifyError, Target, Topology, VolumeLoss};
+use meshlod_simplify::{
+    FlatOptions, Flattened, Options, Report, Simplifier, SimplifyError, Target, Topology,
+    VolumeLoss, flatten,
+};
 
 use crate::bounded::run_within;
+
+/// Part of the largest coordinate by which what is flat may be off: rounding to 32 bits moves planes
+/// and lines in any direction by less.
+const FLAT: f64 = 1.0 / (1 << 20) as f64;
 
 /// A mesh ready to be simplified, with the options for it.
 pub(crate) struct ConditionedMesh<'m> {
@@ -17,8 +24,30 @@ pub(crate) struct ConditionedMesh<'m> {
     borders: Option<Borders>,
     /// The mesh with its borders sewn, if there were any to sew.
     sewn: Option<Conditioned>,
-    /// The mesh with all non-manifold vertices split too, once that has turned out to be needed.
+    /// That mesh with as few faces as its flats need, if that has been asked for.
+    flat: Option<Flattened>,
+    /// That mesh with all non-manifold vertices split, once that has turned out to be needed.
     split: OnceLock<Option<Conditioned>>,
+}
+
+/// A mesh with the constraints on its vertices.
+#[derive(Clone, Copy)]
+struct Held<'c> {
+    mesh: &'c Mesh,
+    locks: &'c Locks,
+    lock_boundary: bool,
+}
+
+impl<'c> Held<'c> {
+    fn of(conditioned: &'c Conditioned) -> Self {
+        // The locks include those of boundaries.
+        Self { mesh: &conditioned.mesh, locks: &conditioned.locks, lock_boundary: false }
+    }
+
+    fn condition(&self, borders: Borders, search: Search) -> Option<Conditioned> {
+        let options = ConditionOptions { search, borders, lock_boundary: self.lock_boundary };
+        condition(self.mesh, self.locks, &options)
+    }
 }
 
 impl<'m> ConditionedMesh<'m> {
@@ -29,25 +58,54 @@ impl<'m> ConditionedMesh<'m> {
             && has_valid_locks(input, &options.locks)
             && input.validate().is_ok();
         let borders = borders.filter(|_| is_wanted);
-        let mut this = Self { input, options, borders, sewn: None, split: OnceLock::new() };
-        this.sewn = this.condition(Search::Unbalanced);
+        let (sewn, flat) = (None, None);
+        let mut this = Self { input, options, borders, sewn, flat, split: OnceLock::new() };
+        this.sewn =
+            this.borders.and_then(|borders| this.unsplit().condition(borders, Search::Unbalanced));
         this
     }
 
-    fn condition(&self, search: Search) -> Option<Conditioned> {
-        let lock_boundary = self.options.lock_boundary;
-        let options = ConditionOptions { search, borders: self.borders?, lock_boundary };
-        condition(self.input, &self.options.locks, &options)
+    /// Gives the flats of the mesh as few faces as they need, without moving the surface by more
+    /// than an error, in units of the mesh.
+    pub(crate) fn flatten_within(&mut self, error: f64) {
+        if !has_valid_locks(self.input, &self.options.locks) || self.input.validate().is_err() {
+            return;
+        }
+        let bounds = self.input.bounds();
+        let most = bounds.min.into_iter().chain(bounds.max).map(f64::abs).fold(0.0, f64::max);
+        let Held { mesh, locks, lock_boundary } = self.unsplit();
+        let tolerance = error.min(FLAT * most);
+        self.flat = flatten(mesh, &FlatOptions { locks, lock_boundary, tolerance });
     }
 
-    /// Returns the conditioned mesh; `None` if the mesh is simplified as it is.
-    fn conditioned(&self) -> Option<&Conditioned> {
-        self.split.get().and_then(Option::as_ref).or(self.sewn.as_ref())
+    /// Returns how far the surface has moved before it is simplified.
+    pub(crate) fn moved(&self) -> f64 {
+        self.flat.as_ref().map_or(0.0, |flat| flat.moved)
+    }
+
+    /// Returns the mesh before non-manifold vertices are split.
+    fn unsplit(&self) -> Held<'_> {
+        let Options { locks, lock_boundary, .. } = &self.options;
+        let input = Held { mesh: self.input, locks, lock_boundary: *lock_boundary };
+        let sewn = self.sewn.as_ref().map_or(input, Held::of);
+        Held { mesh: self.flat.as_ref().map_or(sewn.mesh, |flat| &flat.mesh), ..sewn }
+    }
+
+    /// Returns the mesh as it is simplified.
+    fn whole(&self) -> Held<'_> {
+        self.split.get().and_then(Option::as_ref).map_or_else(|| self.unsplit(), Held::of)
+    }
+
+    /// Returns what the mesh went through, the last first.
+    fn stages(&self) -> impl Iterator<Item = &Conditioned> {
+        self.split.get().and_then(Option::as_ref).into_iter().chain(&self.sewn)
     }
 
     /// Returns what has been changed so far.
     pub(crate) fn counts(&self) -> Conditioning {
-        self.conditioned().map_or_else(Conditioning::default, |found| found.counts)
+        let mut counts = Conditioning::default();
+        self.stages().for_each(|stage| counts += stage.counts);
+        counts
     }
 
     /// Starts the simplification of the mesh. If non-manifold vertices turn up, they are split
@@ -57,35 +115,31 @@ impl<'m> ConditionedMesh<'m> {
         vanish_below: Option<f64>,
     ) -> Result<Simplifier<'_>, SimplifyError> {
         let first = self.start(vanish_below)?;
-        let may_split = self.borders.is_some() && self.split.get().is_none();
-        if !may_split || first.non_manifold_vertices() == 0 {
+        let Some(borders) = self.borders.filter(|_| self.split.get().is_none()) else {
+            return Ok(first);
+        };
+        if first.non_manifold_vertices() == 0 {
             return Ok(first);
         }
-        match self.split.get_or_init(|| self.condition(Search::All)) {
+        match self.split.get_or_init(|| self.unsplit().condition(borders, Search::All)) {
             Some(_) => self.start(vanish_below),
             None => Ok(first),
         }
     }
 
     fn start(&self, vanish_below: Option<f64>) -> Result<Simplifier<'_>, SimplifyError> {
-        let options = Options { vanish_below, ..self.options.clone() };
-        match self.conditioned() {
-            // The locks include those of boundaries.
-            Some(found) => {
-                let locks = found.locks.clone();
-                let options = Options { locks, lock_boundary: false, ..options };
-                Simplifier::new(&found.mesh, &options)
-            }
-            None => Simplifier::new(self.input, &options),
-        }
+        let Held { mesh, locks, lock_boundary } = self.whole();
+        let locks = locks.clone();
+        Simplifier::new(
+            mesh,
+            &Options { vanish_below, locks, lock_boundary, ..self.options.clone() },
+        )
     }
 
     /// Returns the current level in terms of the input, and notes in `loss` what it was repaid.
     pub(crate) fn settled_level(&self, simplifier: &Simplifier<'_>, loss: &mut VolumeLoss) -> Mesh {
         let mut level = simplifier.settled_level(loss);
-        if let Some(found) = self.conditioned() {
-            found.rejoin(&mut level);
-        }
+        self.stages().for_each(|stage| stage.rejoin(&mut level));
         level
     }
 }
@@ -94,12 +148,12 @@ impl<'m> ConditionedMesh<'m> {
 impl ConditionedMesh<'_> {
     /// Returns the mesh as it is simplified.
     pub(crate) fn mesh(&self) -> &Mesh {
-        self.conditioned().map_or(self.input, |found| &found.mesh)
+        self.whole().mesh
     }
 
     /// Returns the locks of the mesh as it is simplified.
     pub(crate) fn locks(&self) -> &Locks {
-        self.conditioned().map_or(&self.options.locks, |found| &found.locks)
+        self.whole().locks
     }
 }
 
@@ -122,16 +176,19 @@ pub fn simplify(
     target: Target,
     options: &Options,
 ) -> Result<(Mesh, Report), SimplifyError> {
-    let ready = ConditionedMesh::new(mesh, options.clone(), Some(Borders::Stitch));
+    let mut ready = ConditionedMesh::new(mesh, options.clone(), Some(Borders::Stitch));
     let own = match target.valid()? {
         Target::Ratio(_) => Target::Faces(target.faces_of(mesh.faces.len())),
         target => target,
     };
+    if let Target::Error(error) = own {
+        ready.flatten_within(error);
+    }
     let mut simplifier = ready.simplifier(options.vanish_below)?;
     let report = match own {
         Target::Error(error) => {
             let again = Some((&ready, options.vanish_below));
-            run_within(again, &mut simplifier, error, &mut ())?
+            run_within(again, &mut simplifier, [error, ready.moved()], &mut ())?
         }
         own => simplifier.run(own, &mut ())?,
     };

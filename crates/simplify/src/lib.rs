@@ -20,6 +20,7 @@
 mod clean;
 mod engine;
 mod excess;
+mod flat;
 mod held;
 mod history;
 mod kernel;
@@ -35,6 +36,7 @@ use meshlod_mesh::Mesh;
 
 pub use engine::policy::Observe;
 pub use excess::{Excess, ExcessFace};
+pub use flat::{FlatOptions, Flattened, flatten};
 pub use held::Held;
 pub use history::exact_volume::{Digits, ExactVolumeError, VolumeResidual, conserve_volume};
 pub use history::progressive::{Progressive, ProgressiveError};

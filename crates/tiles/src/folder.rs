@@ -24,7 +24,7 @@ use names::{first, is_image};
 use record::TileRecord;
 use sealed::{SEAL, seal, unseal};
 
-pub use names::{is_of_tile, remove_tiles, remove_where};
+pub use names::{has_other_files, is_of_tile, remove_tiles, remove_where};
 
 /// Folder of a plan.
 #[derive(Clone, Debug)]
@@ -300,7 +300,9 @@ impl Folder {
             !named.contains(&stem) && !is_image(name)
         };
         let is_plan = |bytes: Vec<u8>| bytes.is_empty() || bytes.starts_with(SEAL);
+        let inner = ["tiles", "content"].map(|name| self.path.join(name));
         entries.any(|entry| entry.file_name().to_str().is_none_or(is_foreign))
+            || inner.iter().any(|inner| has_other_files(inner))
             || fs::read(self.plan_file()).is_ok_and(|bytes| !is_plan(bytes))
     }
 
@@ -350,9 +352,13 @@ mod tests {
         let folder = Folder::new(temporary.path());
         folder.make().unwrap();
         assert!(!folder.is_foreign());
-        fs::write(folder.path().join("content/article.md"), "text").unwrap();
+        let article = folder.path().join("content/article.md");
+        fs::write(&article, "text").unwrap();
+        assert!(folder.is_foreign());
         folder.remove();
-        assert!(folder.path().join("content/article.md").exists());
+        assert!(article.exists());
+        fs::remove_file(article).unwrap();
+        assert!(!folder.is_foreign());
         fs::write(folder.path().join("plan.json"), "{}").unwrap();
         assert!(folder.is_foreign());
         fs::remove_file(folder.path().join("plan.json")).unwrap();

@@ -33,11 +33,30 @@ export class MemorySource implements Source {
     }
 }
 
+/** Milliseconds before each further try of a request, on an average. */
+const WAITS = [500, 1000, 2000];
+/** Longest wait that a server may ask for, in milliseconds. */
+const MOST_WAIT = 10_000;
+
+/** A server that may answer later. */
+class BusyError extends MlodError {
+    /** @param wait milliseconds that it asks for */
+    constructor(
+        why: string,
+        readonly wait: number,
+    ) {
+        super("the file", why);
+    }
+}
+
 function endsBefore(needed: number, length: number): MlodError {
     return new MlodError("the file", `it ends at byte ${length}, before byte ${needed}`);
 }
 
-/** A file on a server, of which only the parts that are needed are fetched. */
+/**
+ * A file on a server, of which only the parts that are needed are fetched. Connections that break and
+ * servers that are busy are tried again.
+ */
 export class HttpSource implements Source {
     private first = new Uint8Array(0);
     private length = Infinity;
@@ -51,6 +70,7 @@ export class HttpSource implements Source {
         private readonly signal: AbortSignal,
         private readonly access: Access = {},
         private readonly get: typeof fetch = (url, options) => fetch(url, options),
+        private readonly waits: readonly number[] = WAITS,
     ) {}
 
     async start(count: number): Promise<Uint8Array> {
@@ -64,6 +84,10 @@ export class HttpSource implements Source {
             this.first = joined([this.first, rest]);
             return this.first;
         }
+        return this.patiently(() => this.fetchStart(count));
+    }
+
+    private async fetchStart(count: number): Promise<Uint8Array> {
         // What a cache has may be old: parts of it would not go with what the server sends.
         const response = await this.request(0, count, "no-cache");
         this.validator = validatorOf(response);
@@ -84,7 +108,9 @@ export class HttpSource implements Source {
         if (at + length > this.length) throw endsBefore(at + length, this.length);
         const known = this.first.subarray(at, at + length);
         if (known.length === length) return known;
-        const rest = await this.fetch(at + known.length, length - known.length);
+        const rest = await this.patiently(() =>
+            this.fetch(at + known.length, length - known.length),
+        );
         return known.length > 0 ? joined([known, rest]) : rest;
     }
 
@@ -101,6 +127,27 @@ export class HttpSource implements Source {
         return bytes;
     }
 
+    /** Tries again what failed by the network alone, a few times. */
+    private async patiently<T>(attempt: () => Promise<T>): Promise<T> {
+        for (let tries = 0; ; tries++) {
+            try {
+                return await attempt();
+            } catch (error) {
+                const isBusy = error instanceof BusyError;
+                if (this.signal.aborted || (error instanceof MlodError && !isBusy)) throw error;
+                if (this.whole || tries === this.waits.length)
+                    throw isBusy
+                        ? error
+                        : new MlodError("the file", `${String(error)}: ${this.url}`);
+                const asked = isBusy ? Math.min(error.wait, MOST_WAIT) : 0;
+                await pause(
+                    Math.max(asked, this.waits[tries] * (0.75 + 0.5 * Math.random())),
+                    this.signal,
+                );
+            }
+        }
+    }
+
     private async request(
         at: number,
         length: number,
@@ -113,10 +160,29 @@ export class HttpSource implements Source {
         const response = await this.get(this.url, { headers, signal, credentials, cache });
         if (response.status !== 206 && response.status !== 200) {
             await response.body?.cancel();
-            throw new MlodError("the file", `the server answers ${response.status}: ${this.url}`);
+            const { status } = response;
+            const why = `the server answers ${status}: ${this.url}`;
+            if (status < 500 && status !== 429 && status !== 408)
+                throw new MlodError("the file", why);
+            throw new BusyError(why, 1000 * (Number(response.headers.get("Retry-After")) || 0));
         }
         return response;
     }
+}
+
+/** Waits, unless that is ended before. */
+function pause(time: number, signal: AbortSignal): Promise<void> {
+    return new Promise((resolve, reject) => {
+        const end = () => {
+            clearTimeout(timer);
+            reject(signal.reason as Error);
+        };
+        const timer = setTimeout(() => {
+            signal.removeEventListener("abort", end);
+            resolve();
+        }, time);
+        signal.addEventListener("abort", end);
+    });
 }
 
 function lied(url: string): MlodError {

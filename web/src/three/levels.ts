@@ -5,6 +5,7 @@ import type { LoadingManager } from "three";
 import type { MlodError, MlodStream, Progress, Query, SceneInfo } from "../index.ts";
 import { StreamGeometry } from "./buffers.ts";
 import { disposeMaterials, makeMaterials, plainMaterial } from "./materials.ts";
+import { Pictures, closeTextures } from "./pictures.ts";
 
 /** Milliseconds for which images are gathered before materials are made with them. */
 const GATHER = 50;
@@ -24,10 +25,14 @@ export class SharedLevels {
     private scene: SceneInfo | null = null;
     private readonly images = new Map<number, Uint8Array>();
     private timer: ReturnType<typeof setTimeout> | undefined;
-    /** Number of times that materials have been made, and the one whose materials are shown. */
-    private made = 0;
-    private shown = 0;
+    private readonly pictures = new Pictures();
+    /** Ends when materials have been made: one time after the other, or images would be decoded twice. */
+    private making: Promise<void> = Promise.resolve();
     private last = "";
+    /** Factor of tolerances that keeps a budget, and the progress that it answers. */
+    private factor = 1;
+    private judged: Progress | null = null;
+    private budget = Infinity;
     private isDisposed = false;
 
     constructor(
@@ -67,6 +72,21 @@ export class SharedLevels {
         this.stream.query(best.query);
     }
 
+    /** Returns the factor of a tolerance that leaves about a number of faces, but no more. */
+    relief(most: number): number {
+        const { progress } = this;
+        const isJudged = progress === this.judged && most === this.budget;
+        if (!progress || isJudged) return this.factor;
+        this.judged = progress;
+        this.budget = most;
+        const ratio = progress.faces / most;
+        if (ratio > 1) this.factor *= Math.min(2, Math.max(1.25, Math.sqrt(ratio)));
+        // Not while finer chunks are on their way, and not to and fro.
+        else if (ratio < 0.5 && progress.done && progress.missing === 0)
+            this.factor = Math.max(1, this.factor * Math.max(0.7, Math.sqrt(1.5 * ratio)));
+        return this.factor;
+    }
+
     /** Takes the scene of the file. */
     setScene(scene: SceneInfo): void {
         this.scene = scene;
@@ -82,21 +102,22 @@ export class SharedLevels {
     private remakeSoon(): void {
         this.timer ??= setTimeout(() => {
             this.timer = undefined;
-            this.remake().catch(this.onError);
+            this.making = this.making.then(() => this.remake()).catch(this.onError);
         }, GATHER);
     }
 
     private async remake(): Promise<void> {
         if (!this.scene || this.isDisposed) return;
-        const turn = ++this.made;
-        const materials = await makeMaterials(this.scene, this.images, this.geometry, this.manager);
-        // Images are decoded at their leisure: those of a later turn may have been faster.
-        if (this.isDisposed || turn < this.shown) return disposeMaterials(materials);
-        this.shown = turn;
-        const old = this.materials;
-        this.materials = materials;
-        for (const copy of this.copies.keys()) if (copy.material === old) copy.material = materials;
+        const { scene, geometry, manager, pictures } = this;
+        const images = new Map(this.images);
+        const made = await makeMaterials(scene, images, geometry, manager, pictures);
+        const old = this.isDisposed ? made.materials : this.materials;
+        if (!this.isDisposed) this.materials = made.materials;
+        for (const copy of this.copies.keys())
+            if (copy.material === old) copy.material = made.materials;
         disposeMaterials(old);
+        closeTextures(made.replaced);
+        if (this.isDisposed) pictures.dispose();
     }
 
     /** Forgets a copy; with the last one goes the stream. */
@@ -108,6 +129,7 @@ export class SharedLevels {
         this.stream.dispose();
         this.geometry.dispose();
         disposeMaterials(this.materials);
+        this.pictures.dispose();
     }
 
     /** What is known of the file. */

@@ -4,6 +4,7 @@ import { Mesh, MeshStandardMaterial } from "three";
 import type { BufferGeometry, LoadingManager, Material, Texture } from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import type { SceneInfo } from "../index.ts";
+import type { Pictures } from "./pictures.ts";
 
 type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
 type JsonObject = { [key: string]: Json };
@@ -21,9 +22,14 @@ export async function makeMaterials(
     images: ReadonlyMap<number, Uint8Array>,
     geometry: BufferGeometry,
     manager: LoadingManager,
-): Promise<Material[]> {
+    pictures: Pictures,
+): Promise<{ materials: Material[]; replaced: readonly Texture[] }> {
     const glb = materialsOnly(scene.document, images);
-    const { parser } = await new GLTFLoader(manager).parseAsync(glb, "");
+    const loader = new GLTFLoader(manager).register((parser) => {
+        pictures.lend(parser, images);
+        return { name: "MLOD_pictures" };
+    });
+    const { parser } = await loader.parseAsync(glb, "");
     const make = async (material: number | null): Promise<Material> => {
         const own =
             material === null
@@ -33,7 +39,9 @@ export async function makeMaterials(
         parser.assignFinalMaterial(mesh);
         return mesh.material;
     };
-    return Promise.all([...scene.slots.map((slot) => make(slot.material)), make(null)]);
+    const slots = [...scene.slots.map((slot) => make(slot.material)), make(null)];
+    const materials = await Promise.all(slots);
+    return { materials, replaced: await pictures.keep(parser, images) };
 }
 
 /** Returns the material of faces that have none. */

@@ -25,6 +25,11 @@ export class MlodMesh extends Mesh<BufferGeometry, Material[]> {
     readonly isMlodMesh = true;
     /** Number of pixels that an error may span. */
     pixels = 1;
+    /**
+     * Number of faces beyond which errors may span more pixels. It may be exceeded for some frames,
+     * and has no effect on a level of 0 pixels.
+     */
+    mostFaces = Infinity;
     /** True to refine only what the camera sees, false to refine all around it. */
     onlyInView = false;
 
@@ -61,17 +66,17 @@ export class MlodMesh extends Mesh<BufferGeometry, Material[]> {
         // Nothing is seen of what has no size, or from nowhere.
         if (this.matrixWorld.determinant() === 0) return;
         if (!this.toLocal.elements.every(Number.isFinite)) return;
-        const query = this.queryOf(camera);
+        const query = this.queryOf(camera, this.pixels * this.levels.relief(this.mostFaces));
         if (query) this.levels.ask(this, query, this.nearness(query));
     }
 
-    private queryOf(camera: Camera): Query | null {
+    private queryOf(camera: Camera, pixels: number): Query | null {
         const [width, height] = [this.size.x, this.size.y];
         if (!(width > 0 && height > 0)) return null;
         if (isOrthographic(camera)) {
             const scale = this.toLocal.getMaxScaleOnAxis();
             const pixel = (Math.abs(camera.top - camera.bottom) / camera.zoom / height) * scale;
-            return { focus: null, tolerance: this.pixels * pixel };
+            return { focus: null, tolerance: pixels * pixel };
         }
         if (!isPerspective(camera)) return null;
         const fov = (camera.getEffectiveFOV() * Math.PI) / 180;
@@ -83,7 +88,7 @@ export class MlodMesh extends Mesh<BufferGeometry, Material[]> {
             fov,
             viewport: [width, height],
         } as const;
-        const tolerance = { pixels: this.pixels, camera: view };
+        const tolerance = { pixels, camera: view };
         return { focus: this.onlyInView ? { frustum: view } : null, tolerance };
     }
 
@@ -102,6 +107,7 @@ export class MlodMesh extends Mesh<BufferGeometry, Material[]> {
     override copy(source: this, recursive?: boolean): this {
         super.copy(source, recursive);
         this.pixels = source.pixels;
+        this.mostFaces = source.mostFaces;
         this.onlyInView = source.onlyInView;
         this.material = source.material;
         return this;

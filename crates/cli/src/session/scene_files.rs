@@ -3,8 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
-use meshlod::io::Note;
-use meshlod::io::gltf::{Level, LodLayout, StripMesh};
+use meshlod::io::gltf::{Level, LodLayout, NeedleLevels, StripMesh};
+use meshlod::io::{Note, WrittenFile};
 use meshlod::jobs::{self, ConvertReport, ConvertRequest};
 use meshlod::{Mesh, Output, Scene};
 
@@ -73,6 +73,20 @@ pub fn write_levels(
     session.note(path, &scene.limits_of(format))?;
     session.progress.stage(&format!("writing {}", name(path)));
     Ok(output(path, session)?.write_levels(scene, levels, layout)?)
+}
+
+/// Writes a scene and its coarser levels to a glTF file and files that its client loads by need;
+/// returns all of them.
+pub fn write_needle(
+    path: &Path,
+    scene: &Scene,
+    levels: NeedleLevels<'_>,
+    session: &Session,
+) -> Result<Vec<WrittenFile>, Failure> {
+    let format = check_output(path, session)?;
+    session.note(path, &scene.limits_of(format))?;
+    session.progress.stage(&format!("writing {}", name(path)));
+    Ok(output(path, session)?.write_needle(scene, levels)?)
 }
 
 /// Writes a scene to a glTF file, with these strips for faces.

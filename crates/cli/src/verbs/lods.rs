@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use meshlod::io::gltf::{Level, LodLayout};
-use meshlod::io::write_file;
+use meshlod::io::gltf::{Level, LodLayout, NeedleLevels};
+use meshlod::io::{WrittenFile, write_file};
 use meshlod::jobs::{self, LodChain, LodReport, LodsReport, LodsRequest};
+use meshlod::measure::Distance;
 use meshlod::scene::world_bounds;
 use meshlod::{Format, Scene, Topology};
 
@@ -75,17 +76,19 @@ impl Lods {
         let done = jobs::lods(scene, &request, &hearing);
         let (chain, report) = done.map_err(|error| hearing.failure(error))?;
         topology::warn(report.near_borders, session);
-        let figures = self.figures(&report, layout);
-        let text = self.text(&report, layout);
         let guide = self.guide(&report, &world_bounds(&chain.scene), layout);
         let coarsest = chain.levels.last().map(|level| Stuck::of(&chain.scene, &level.meshes));
         let stuck = coarsest.filter(|_| !report.run.reached).unwrap_or_default();
-        self.write(layout, chain, &report, session)?;
+        let files = match layout {
+            ChainLayout::Needle => self.write_needle(&chain, &report, &hearing, session)?,
+            _ => self.write(layout, chain, &report, session).map(|()| Vec::new())?,
+        };
         write_file(&self.guide_file(), format!("{guide:#}\n").as_bytes())?;
         for level in &report.levels {
             self.warn_of(level, request.constraints.topology, stuck, session);
         }
-        Ok(Answer::new(figures, text))
+        let figures = self.figures(&report, layout, &files);
+        Ok(Answer::new(figures, self.text(&report, layout, &files)))
     }
 
     /// Fails if a file cannot be written, before any work is done.
@@ -98,6 +101,9 @@ impl Lods {
         if layout == ChainLayout::Files {
             (0..=self.levels.len())
                 .try_for_each(|i| files::check_place(&self.file_of(i, layout)))?;
+        }
+        if layout == ChainLayout::Needle {
+            self.check_levels_folder()?;
         }
         files::check_place(&self.guide_file())?;
         Ok((format, layout))
@@ -128,6 +134,21 @@ impl Lods {
         if level.is_same {
             session.warn(at("not written, since it is the same as the level before"));
         }
+    }
+
+    /// Writes the coarsest level to one file, and all others and larger images to files beside it.
+    fn write_needle(
+        &self,
+        chain: &LodChain,
+        report: &LodsReport,
+        hearing: &Hearing,
+        session: &Session,
+    ) -> Result<Vec<WrittenFile>, Failure> {
+        let images = jobs::image_sizes(&chain.scene, hearing);
+        let error = |level: &LodReport| level.measured.as_ref().map(Distance::max);
+        let errors: Vec<_> = report.levels.iter().map(error).collect();
+        let levels = NeedleLevels { levels: &chain.levels, errors: &errors, images: &images };
+        scene_files::write_needle(&self.output, &chain.scene, levels, session)
     }
 
     /// Writes all levels to one file, or each to its own.

@@ -28,8 +28,9 @@ use report::TilesFigures;
 /// OUT is a folder: tileset.json names the tiles in it. If it ends in .3tz it is an archive of these
 /// files. A run that was ended goes on where it stopped.
 ///
-/// Binary PLY and STL files from 64 MB on are read in passing, with little memory; of an .mlod file,
-/// the finest level is read. Of several files, the layers are kept that all of them have.
+/// Binary PLY, binary STL and OBJ files from 64 MB on are read in passing, with little memory; OBJ
+/// takes about its size on the disk of OUT meanwhile. Of an .mlod file, the finest level is read. Of
+/// several files, the layers are kept that all of them have.
 ///
 /// The steps plan, task and finish do the same with any number of processes or machines.
 #[derive(Args)]
@@ -207,7 +208,7 @@ impl Tiles {
         let hearing = Hearing::new(session, input, output);
         check_output(output, &hearing)?;
         let request = self.form.request(self.memory);
-        let model = files::open(&self.inputs, &self.reading, session)?;
+        let model = files::open(&self.inputs, output, &self.reading, session)?;
         let done = tiles(model.input(), output, &request, &hearing);
         let report = done.map_err(|error| hearing.failure(error))?;
         let text = report::text(output, &report);
@@ -218,7 +219,7 @@ impl Tiles {
 impl PlanStep {
     fn run(self, session: &Session) -> Result<Answer, Failure> {
         let request = self.form.request(None);
-        let model = files::open(&self.inputs, &self.reading, session)?;
+        let model = files::open(&self.inputs, &self.plan, &self.reading, session)?;
         let hearing = Hearing::new(session, &self.inputs[0], &self.plan);
         let done = plan_tiles(model.input(), &self.plan, &request, &hearing);
         let tasks = done.map_err(|error| hearing.failure(error))?;

@@ -131,7 +131,7 @@ const TWICE: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[
         "uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
 
 /// Lines to run, in an order in which each has its input.
-const LINES: [&str; 59] = [
+const LINES: [&str; 60] = [
     "sample knot in.ply --faces 2000",
     "info in.ply",
     "check in.ply --locks locks.json",
@@ -144,6 +144,7 @@ const LINES: [&str; 59] = [
     "info in.ply in.obj",
     "check in.ply in.obj",
     "lods in.ply levels.glb",
+    "lods in.ply page.glb --layout needle",
     "check twice.gltf",
     "build in.ply in.mlod",
     "info in.mlod",

@@ -83,6 +83,39 @@ fn every_layout_has_the_levels_and_a_guide() {
 }
 
 #[test]
+fn the_levels_of_a_page_are_files_beside_a_small_one() {
+    let run = Run::new();
+    run.sample("fish", 2_000, "in.obj");
+    let lods = ["lods", "in.obj", "out/fish.glb", "--levels", "50%,10%", "--layout", "needle"];
+    let report = run.json(&lods);
+    let files = report["files"].as_array().unwrap();
+    let sizes = files.iter().map(|file| {
+        let path = run.path("out").join(file["file"].as_str().unwrap());
+        assert_eq!(std::fs::metadata(&path).unwrap().len(), file["bytes"].as_u64().unwrap());
+        path
+    });
+    let paths: Vec<_> = sizes.collect();
+    assert_eq!(paths.len(), 3, "{report}");
+    let json = document(&std::fs::read(&paths[0]).unwrap());
+    let own = &json["meshes"][0]["extensions"]["NEEDLE_progressive"];
+    let errors = own["lods"].as_array().unwrap().iter().map(|lod| &lod["extras"]["error_measured"]);
+    let errors: Vec<_> = errors.chain([&own["extras"]["error_measured"]]).collect();
+    let measured = |level: usize| &report["levels"][level]["error_measured"]["max"];
+    assert_eq!(errors, [&Value::from(0.0), measured(0), measured(1)]);
+    assert_eq!(run.json(&["info", "out/fish.glb"])["faces"], report["levels"][1]["faces"]);
+    let text = run.run(&lods);
+    assert!(text.text().contains("in fish_levels\n") && text.err.is_empty(), "{text:?}");
+
+    let level = format!("out/{}", files[1]["file"].as_str().unwrap());
+    let before = std::fs::read(run.path(&level)).unwrap();
+    let refused = run.run(&["lods", &level, "out/fish.glb", "--layout", "needle"]);
+    assert!(refused.code == 1 && refused.err.contains("give OUT another name"), "{refused:?}");
+    assert_eq!(std::fs::read(run.path(&level)).unwrap(), before);
+    let refused = run.run(&["lods", "in.obj", "out.ply", "--layout", "needle"]);
+    assert!(refused.code == 2 && refused.err.contains("needs .glb or .gltf"), "{refused:?}");
+}
+
+#[test]
 fn levels_are_nested() {
     let run = Run::new();
     run.sample("knot", 1_000, "in.ply");

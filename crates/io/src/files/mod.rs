@@ -9,6 +9,7 @@ use write_gltf::write_gltf;
 use write_obj::write_obj;
 use write_ply::write_ply;
 
+pub use write_needle::{WrittenFile, write_needle};
 pub use write_ply::write_ply_stream;
 
 use self::missing_images::note_missing_images;
@@ -19,6 +20,7 @@ use crate::format::facts::Holds;
 use crate::gltf;
 use crate::gltf::write::levels::{Levels, LodLayout};
 use crate::memory::{parse, write_to};
+use crate::obj::{ObjEnd, ObjStream};
 use crate::options::{ReadOptions, WriteOptions};
 use crate::scene::Scene;
 use replace::replace;
@@ -30,6 +32,7 @@ pub(crate) mod names;
 pub(crate) mod replace;
 mod staged;
 mod write_gltf;
+mod write_needle;
 mod write_obj;
 mod write_ply;
 
@@ -57,6 +60,21 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Scene, IoEr
         only.name = stem(path);
     }
     Ok(scene)
+}
+
+/// Ends an OBJ file that was read part by part, and loads its materials and images from the folder of
+/// `path`.
+///
+/// # Errors
+/// As those of [`ObjStream::finish`].
+pub fn finish_obj_stream(path: &Path, stream: ObjStream) -> Result<ObjEnd, IoError> {
+    let mut beside = Beside::of(path, Format::Obj);
+    let mut end = stream
+        .finish(&mut |name: &str| beside.read(name))
+        .map_err(|error| IoError::parse(path, error))?;
+    note_missing_images(&mut end.scene, path.parent());
+    end.scene.notes.extend(Some(beside.note()).filter(|note| note.count > 0));
+    Ok(end)
 }
 
 /// Writes a scene as a mesh file, with its `.bin`, `.mtl` and image files beside it.
@@ -108,7 +126,7 @@ pub fn write_lods(
             write_one(path, |out| out.write_all(&bytes))
         }
         Format::Gltf => {
-            let levels = Levels { levels, layout };
+            let levels = Levels { levels, layout, needle: None };
             write_gltf(path, |name| gltf::write::files(scene, levels, None, name)).map(drop)
         }
         _ => Err(unsupported(Unsupported::new(

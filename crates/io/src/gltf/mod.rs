@@ -28,7 +28,7 @@ pub use read::primitive_rows::PrimitiveRows;
 pub use read::read;
 pub use skeleton::Skeleton;
 pub use skeleton::images::SkeletonImage;
-pub use write::levels::{Level, LodLayout};
+pub use write::levels::{ImageSizes, Level, LodLayout, NeedleLevels, SizedImage};
 pub use write::output::GltfFiles;
 pub use write::parts::{QuantizedPart, write_parts_glb};
 pub use write::settings::{Bytes, Compression, CompressionReport, PositionGrid};

@@ -7,6 +7,7 @@ use meshlod_mesh::{Mesh, VertexId};
 use super::bare_faces;
 use super::labels::LabelRuns;
 use super::mtl::{Library, resolve_materials};
+use super::outlines::Outlines;
 use super::polypaint::Polypaint;
 use super::skipped::Skipped;
 use super::smoothing::SmoothingRuns;
@@ -38,20 +39,15 @@ pub fn read(
     resolve: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
 ) -> Result<Scene, ParseError> {
     let mut reader = ObjReader::new(bytes)?;
-    loop {
-        reader.statement()?;
-        if !reader.text.next_line() {
-            break;
-        }
-    }
+    reader.statements()?;
     reader.finish(resolve)
 }
 
 /// Corner of a face; its ids count from 1 and are not yet range-checked.
 #[derive(Clone, Copy)]
-struct Corner {
-    vertex: NonZeroU32,
-    ids: CornerIds,
+pub(super) struct Corner {
+    pub(super) vertex: NonZeroU32,
+    pub(super) ids: CornerIds,
 }
 
 /// Polygon that refers to elements later in the file, for which `n - 2` placeholder faces are
@@ -62,10 +58,16 @@ struct Forward {
     corners: Vec<Corner>,
 }
 
-struct ObjReader<'a> {
-    text: TextCursor<'a>,
-    positions: Vec<[f64; 3]>,
-    pools: Pools,
+pub(super) struct ObjReader<'a> {
+    pub(super) text: TextCursor<'a>,
+    pub(super) content: ObjContent,
+}
+
+/// Contents of a file up to a statement.
+#[derive(Default)]
+pub(super) struct ObjContent {
+    pub(super) positions: Vec<[f64; 3]>,
+    pub(super) pools: Pools,
     faces: Vec<[VertexId; 3]>,
     /// Attribute ids of each face's corners; empty until a corner has any.
     corners: Vec<[CornerIds; 3]>,
@@ -73,45 +75,65 @@ struct ObjReader<'a> {
     objects: LabelRuns,
     materials: LabelRuns,
     smoothing: SmoothingRuns,
-    has_object: bool,
-    libraries: Vec<String>,
-    skipped: Skipped,
-    polypaint: Polypaint,
+    pub(super) has_object: bool,
+    pub(super) libraries: Vec<String>,
+    pub(super) skipped: Skipped,
+    pub(super) polypaint: Polypaint,
     /// Error about the first face with too few corners, in case the file has no others.
-    first_thin: Option<ParseError>,
+    pub(super) first_thin: Option<ParseError>,
     /// Current polygon, its vertices and its triangles.
     polygon: Vec<Corner>,
     outline: Vec<u32>,
     triangles: Vec<[u32; 3]>,
+    /// Faces as they are in the file, if it is read part by part: they take the place of `faces`,
+    /// `corners`, `forward` and the runs.
+    pub(super) outlines: Option<Outlines>,
+    /// Numbers of values that were taken from `positions` and `pools` already.
+    pub(super) before: Counts,
+}
+
+/// Numbers of the values that corners may refer to.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Counts {
+    pub(super) vertices: usize,
+    pub(super) uvs: usize,
+    pub(super) normals: usize,
+}
+
+impl ObjContent {
+    /// Content of a file that is read part by part.
+    pub(super) fn in_parts() -> Self {
+        Self { outlines: Some(Outlines::default()), ..Self::default() }
+    }
+
+    pub(super) fn counts(&self) -> Counts {
+        Counts {
+            vertices: self.before.vertices + self.positions.len(),
+            uvs: self.before.uvs + self.pools.uvs.len(),
+            normals: self.before.normals + self.pools.normals.len(),
+        }
+    }
 }
 
 impl<'a> ObjReader<'a> {
     fn new(bytes: &'a [u8]) -> Result<Self, ParseError> {
-        Ok(Self {
-            text: TextCursor::new(bytes)?,
-            positions: Vec::new(),
-            pools: Pools::default(),
-            faces: Vec::new(),
-            corners: Vec::new(),
-            forward: Vec::new(),
-            objects: LabelRuns::default(),
-            materials: LabelRuns::default(),
-            smoothing: SmoothingRuns::default(),
-            has_object: false,
-            libraries: Vec::new(),
-            skipped: Skipped::default(),
-            polypaint: Polypaint::default(),
-            first_thin: None,
-            polygon: Vec::new(),
-            outline: Vec::new(),
-            triangles: Vec::new(),
-        })
+        Ok(Self { text: TextCursor::new(bytes)?, content: ObjContent::default() })
+    }
+
+    /// Reads all statements of the text.
+    pub(super) fn statements(&mut self) -> Result<(), ParseError> {
+        loop {
+            self.statement()?;
+            if !self.text.next_line() {
+                return Ok(());
+            }
+        }
     }
 
     fn statement(&mut self) -> Result<(), ParseError> {
         if !self.text.more() {
             if self.text.take_word(b"#MRGB ") {
-                self.polypaint.add(self.text.raw_line());
+                self.content.polypaint.add(self.text.raw_line());
             }
             return Ok(());
         }
@@ -121,41 +143,50 @@ impl<'a> ObjReader<'a> {
             b"vn" => self.normal(),
             b"f" => self.face(),
             b"o" => {
-                self.has_object = true;
+                self.content.has_object = true;
                 let name = self.text.name();
-                self.objects.set(self.faces.len(), name);
+                if self.content.outlines.is_none() {
+                    self.content.objects.set(self.content.faces.len(), name);
+                }
                 Ok(())
             }
             b"g" => {
                 let name = self.text.name();
-                if !self.has_object {
-                    self.objects.set(self.faces.len(), name.clone());
+                if !self.content.has_object && self.content.outlines.is_none() {
+                    self.content.objects.set(self.content.faces.len(), name.clone());
                 }
                 if !name.is_empty() {
-                    self.skipped.groups.insert(name);
+                    self.content.skipped.groups.insert(name);
                 }
                 Ok(())
             }
             b"usemtl" => {
                 let name = self.text.name();
-                self.materials.set(self.faces.len(), name);
+                match &mut self.content.outlines {
+                    Some(outlines) => outlines.set_material(name),
+                    None => self.content.materials.set(self.content.faces.len(), name),
+                }
                 Ok(())
             }
             b"mtllib" => {
                 let name = self.text.name();
-                self.libraries.push(name);
+                self.content.libraries.push(name);
                 Ok(())
             }
             b"s" => {
                 let group = text_of(self.text.word());
-                if let Err(unknown) = self.smoothing.set(self.faces.len(), group) {
-                    self.skipped.smoothing.insert(unknown);
+                // Only the names are of interest where faces are not kept.
+                if self.content.outlines.is_some() {
+                    self.content.smoothing = SmoothingRuns::default();
+                }
+                if let Err(unknown) = self.content.smoothing.set(self.content.faces.len(), group) {
+                    self.content.skipped.smoothing.insert(unknown);
                 }
                 Ok(())
             }
             // Lines, curves, and vendor extensions of the format.
             other if is_keyword(other) => {
-                self.skipped.statement(other);
+                self.content.skipped.statement(other);
                 Ok(())
             }
             other => Err(self.text.error(format!("{} is not an OBJ statement", quoted(other)))),
@@ -165,10 +196,10 @@ impl<'a> ObjReader<'a> {
     fn vertex(&mut self) -> Result<(), ParseError> {
         const NEED: &str = "a vertex needs three coordinates";
         let position = [self.text.number(NEED)?, self.text.number(NEED)?, self.text.number(NEED)?];
-        if self.positions.len() == u32::MAX as usize {
+        if self.content.counts().vertices == u32::MAX as usize {
             return Err(self.text.error("more than 2^32 vertices are not supported"));
         }
-        self.positions.push(position);
+        self.content.positions.push(position);
         if self.text.more() { self.vertex_extras() } else { Ok(()) }
     }
 
@@ -182,11 +213,11 @@ impl<'a> ObjReader<'a> {
             count += 1;
         }
         if count < 3 {
-            self.skipped.weights += usize::from(count > 0 && extras[0] != 1.0);
+            self.content.skipped.weights += usize::from(count > 0 && extras[0] != 1.0);
         } else {
             let [r, g, b, a] = extras;
-            self.skipped.opacities += usize::from(count == 4 && a != 1.0 && a != 255.0);
-            self.pools.add_color(self.positions.len(), [r, g, b]);
+            self.content.skipped.opacities += usize::from(count == 4 && a != 1.0 && a != 255.0);
+            self.content.pools.add_color(self.content.positions.len(), [r, g, b]);
         }
         Ok(())
     }
@@ -194,9 +225,10 @@ impl<'a> ObjReader<'a> {
     fn uv(&mut self) -> Result<(), ParseError> {
         let u = self.text.attribute("a texture coordinate needs a number")?;
         let v = if self.text.more() { self.text.attribute("")? } else { 0.0 };
-        self.pools.uvs.push([u, v]);
+        self.content.pools.uvs.push([u, v]);
         if self.text.more() {
-            self.skipped.depths += usize::from(!self.text.attribute("").is_ok_and(|w| w == 0.0));
+            self.content.skipped.depths +=
+                usize::from(!self.text.attribute("").is_ok_and(|w| w == 0.0));
         }
         Ok(())
     }
@@ -205,42 +237,45 @@ impl<'a> ObjReader<'a> {
         const NEED: &str = "a normal needs three numbers";
         let normal =
             [self.text.attribute(NEED)?, self.text.attribute(NEED)?, self.text.attribute(NEED)?];
-        self.pools.normals.push(normal);
+        self.content.pools.normals.push(normal);
         Ok(())
     }
 
     fn face(&mut self) -> Result<(), ParseError> {
-        self.polygon.clear();
+        self.content.polygon.clear();
         let mut known = true;
         while self.text.more() {
             let corner = self.corner()?;
-            known &= is_known(corner, self.positions.len(), &self.pools);
-            self.polygon.push(corner);
+            known &= is_known(corner, self.content.counts());
+            self.content.polygon.push(corner);
         }
-        if self.polygon.len() < 3 {
+        if self.content.polygon.len() < 3 {
             return self.thin_face();
         }
-        let first_face = self.faces.len();
-        if first_face + self.polygon.len() > u32::MAX as usize / 3 {
+        if let Some(outlines) = &mut self.content.outlines {
+            return outlines.add(&self.content.polygon, known, &self.text);
+        }
+        let first_face = self.content.faces.len();
+        if first_face + self.content.polygon.len() > u32::MAX as usize / 3 {
             return Err(self.text.error("more than 2^32 corners are not supported"));
         }
         self.triangulate(known);
-        let has_ids = !self.corners.is_empty()
-            || self.polygon.iter().any(|corner| corner.ids != CornerIds::default());
+        let has_ids = !self.content.corners.is_empty()
+            || self.content.polygon.iter().any(|corner| corner.ids != CornerIds::default());
         if has_ids {
             // Has an effect once, for the faces before the first one with ids.
-            self.corners.resize(first_face, Default::default());
+            self.content.corners.resize(first_face, Default::default());
         }
-        for triangle in &self.triangles {
-            let corners = triangle.map(|i| self.polygon[i as usize]);
-            self.faces.push(corners.map(|corner| VertexId(corner.vertex.get() - 1)));
+        for triangle in &self.content.triangles {
+            let corners = triangle.map(|i| self.content.polygon[i as usize]);
+            self.content.faces.push(corners.map(|corner| VertexId(corner.vertex.get() - 1)));
             if has_ids {
-                self.corners.push(corners.map(|corner| corner.ids));
+                self.content.corners.push(corners.map(|corner| corner.ids));
             }
         }
         if !known {
-            let corners = self.polygon.clone();
-            self.forward.push(Forward { line: self.text.line(), first_face, corners });
+            let corners = self.content.polygon.clone();
+            self.content.forward.push(Forward { line: self.text.line(), first_face, corners });
         }
         Ok(())
     }
@@ -248,34 +283,42 @@ impl<'a> ObjReader<'a> {
     /// Skips a face with too few corners.
     #[cold]
     fn thin_face(&mut self) -> Result<(), ParseError> {
-        let found = self.polygon.len();
+        let found = self.content.polygon.len();
         let reason = format!("a face needs at least three corners, but this one has {found}");
         let error = self.text.error(reason);
-        self.first_thin.get_or_insert(error);
-        self.skipped.thin_faces += 1;
+        self.content.first_thin.get_or_insert(error);
+        self.content.skipped.thin_faces += 1;
         Ok(())
     }
 
     /// Triangulates `polygon` into `triangles`; as a fan while some positions are still unknown.
     fn triangulate(&mut self, known: bool) {
-        self.triangles.clear();
+        self.content.triangles.clear();
         if known {
-            self.outline.clear();
-            self.outline.extend(self.polygon.iter().map(|corner| corner.vertex.get() - 1));
-            triangulate(&self.positions, &self.outline, &mut self.triangles);
+            self.content.outline.clear();
+            self.content
+                .outline
+                .extend(self.content.polygon.iter().map(|corner| corner.vertex.get() - 1));
+            triangulate(
+                &self.content.positions,
+                &self.content.outline,
+                &mut self.content.triangles,
+            );
         } else {
-            self.triangles.extend((2..self.polygon.len() as u32).map(|i| [0, i - 1, i]));
+            self.content
+                .triangles
+                .extend((2..self.content.polygon.len() as u32).map(|i| [0, i - 1, i]));
         }
     }
 
     /// Reads `v`, `v/vt`, `v//vn` or `v/vt/vn`; the number after a slash may be missing.
     fn corner(&mut self) -> Result<Corner, ParseError> {
-        let vertex = self.index("vertex", self.positions.len())?;
+        let vertex = self.index("vertex", self.content.counts().vertices)?;
         let mut ids = CornerIds::default();
         if self.text.take(b'/') {
-            ids.uv = self.optional_index("texture coordinate", self.pools.uvs.len())?;
+            ids.uv = self.optional_index("texture coordinate", self.content.counts().uvs)?;
             if self.text.take(b'/') {
-                ids.normal = self.optional_index("normal", self.pools.normals.len())?;
+                ids.normal = self.optional_index("normal", self.content.counts().normals)?;
             }
         }
         if !self.text.at_blank() {
@@ -312,23 +355,30 @@ impl<'a> ObjReader<'a> {
         resolve: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
     ) -> Result<Scene, ParseError> {
         self.settle_forward()?;
-        if self.faces.is_empty() {
-            let points = self.positions.len();
+        if self.content.faces.is_empty() {
+            let points = self.content.positions.len();
             let reason = format!("the file ends without faces ({points} vertices)");
-            return Err(self.first_thin.unwrap_or_else(|| self.text.error(reason)));
+            return Err(self.content.first_thin.unwrap_or_else(|| self.text.error(reason)));
         }
-        let objects = self.objects.finish(self.faces.len());
-        let materials = self.materials.finish(self.faces.len());
-        let smoothing = self.smoothing.finish(self.faces.len());
-        self.skipped.not_finite = self.text.not_finite();
-        self.skipped.masks = self.polypaint.masked;
-        self.skipped.paint = self.pools.add_paint(self.polypaint.colors, self.positions.len());
+        let objects = self.content.objects.finish(self.content.faces.len());
+        let materials = self.content.materials.finish(self.content.faces.len());
+        let smoothing = self.content.smoothing.finish(self.content.faces.len());
+        self.content.skipped.not_finite = self.text.not_finite();
+        self.content.skipped.masks = self.content.polypaint.masked;
+        self.content.skipped.paint = self
+            .content
+            .pools
+            .add_paint(self.content.polypaint.colors, self.content.positions.len());
         // Without attributes at corners, colours change only between separate vertices.
-        let has_split_seams = self.corners.is_empty();
-        let attributes =
-            wedges::attributes(self.positions.len(), &self.faces, &self.corners, self.pools);
+        let has_split_seams = self.content.corners.is_empty();
+        let attributes = wedges::attributes(
+            self.content.positions.len(),
+            &self.content.faces,
+            &self.content.corners,
+            self.content.pools,
+        );
         let mut library = Library::default();
-        for name in &self.libraries {
+        for name in &self.content.libraries {
             library.add(name, resolve);
         }
         let used = materials.as_ref().map_or(&[][..], |labels| &labels.names);
@@ -338,10 +388,10 @@ impl<'a> ObjReader<'a> {
             materials,
             objects,
             face_layers: smoothing.into_iter().collect(),
-            ..Mesh::new(self.positions, self.faces)
+            ..Mesh::new(self.content.positions, self.content.faces)
         };
-        let bare = bare_faces::compute_normals(&mut mesh, &self.corners);
-        let mut notes = self.skipped.notes(self.has_object);
+        let bare = bare_faces::compute_normals(&mut mesh, &self.content.corners);
+        let mut notes = self.content.skipped.notes(self.content.has_object);
         notes.extend(bare);
         notes.extend(resolved.notes);
         Ok(Scene {
@@ -358,17 +408,17 @@ impl<'a> ObjReader<'a> {
 
     /// Checks and triangulates the polygons that referred to later elements.
     fn settle_forward(&mut self) -> Result<(), ParseError> {
-        for Forward { line, first_face, corners } in std::mem::take(&mut self.forward) {
+        for Forward { line, first_face, corners } in std::mem::take(&mut self.content.forward) {
             for &corner in &corners {
-                check_range(line, corner, self.positions.len(), &self.pools)?;
+                check_range(line, corner, self.content.counts())?;
             }
-            self.polygon = corners;
+            self.content.polygon = corners;
             self.triangulate(true);
-            for (i, triangle) in self.triangles.iter().enumerate() {
-                let corners = triangle.map(|corner| self.polygon[corner as usize]);
-                self.faces[first_face + i] = corners.map(|c| VertexId(c.vertex.get() - 1));
-                if !self.corners.is_empty() {
-                    self.corners[first_face + i] = corners.map(|c| c.ids);
+            for (i, triangle) in self.content.triangles.iter().enumerate() {
+                let corners = triangle.map(|corner| self.content.polygon[corner as usize]);
+                self.content.faces[first_face + i] = corners.map(|c| VertexId(c.vertex.get() - 1));
+                if !self.content.corners.is_empty() {
+                    self.content.corners[first_face + i] = corners.map(|c| c.ids);
                 }
             }
         }
@@ -381,24 +431,19 @@ fn is_keyword(word: &[u8]) -> bool {
 }
 
 #[inline]
-fn is_known(corner: Corner, positions: usize, pools: &Pools) -> bool {
+fn is_known(corner: Corner, counts: Counts) -> bool {
     let within =
         |id: Option<NonZeroU32>, count: usize| id.is_none_or(|id| id.get() as usize <= count);
-    corner.vertex.get() as usize <= positions
-        && within(corner.ids.uv, pools.uvs.len())
-        && within(corner.ids.normal, pools.normals.len())
+    corner.vertex.get() as usize <= counts.vertices
+        && within(corner.ids.uv, counts.uvs)
+        && within(corner.ids.normal, counts.normals)
 }
 
-fn check_range(
-    line: usize,
-    corner: Corner,
-    positions: usize,
-    pools: &Pools,
-) -> Result<(), ParseError> {
+pub(super) fn check_range(line: usize, corner: Corner, counts: Counts) -> Result<(), ParseError> {
     let ids = [
-        ("vertex", Some(corner.vertex), positions),
-        ("texture coordinate", corner.ids.uv, pools.uvs.len()),
-        ("normal", corner.ids.normal, pools.normals.len()),
+        ("vertex", Some(corner.vertex), counts.vertices),
+        ("texture coordinate", corner.ids.uv, counts.uvs),
+        ("normal", corner.ids.normal, counts.normals),
     ];
     for (what, id, count) in ids {
         if let Some(id) = id.filter(|id| id.get() as usize > count) {

@@ -19,7 +19,7 @@ pub(super) struct Pools {
     pub(super) uvs: Vec<[f32; 2]>,
     pub(super) normals: Vec<[f32; 3]>,
     /// Colours of the vertices up to the last coloured one; may be empty.
-    colors: Vec<[f32; 3]>,
+    pub(super) colors: Vec<[f32; 3]>,
 }
 
 impl Pools {

@@ -17,6 +17,9 @@ pub(crate) struct TextCursor<'a> {
     not_finite: usize,
 }
 
+/// Reason why a file with a zero byte is refused.
+const NOT_TEXT: &str = "a zero byte: this is not a text file";
+
 impl<'a> TextCursor<'a> {
     /// Creates a cursor at the first line, after a byte order mark if there is one.
     ///
@@ -30,10 +33,36 @@ impl<'a> TextCursor<'a> {
             return Err(ParseError::byte(0, "this is UTF-16 text; save it as UTF-8"));
         }
         if let Some(at) = bytes.iter().position(|&b| b == 0) {
-            return Err(ParseError::byte(at, "a zero byte: this is not a text file"));
+            return Err(ParseError::byte(at, NOT_TEXT));
         }
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
         Ok(Self { bytes, at, line: 1, not_finite: 0 })
+    }
+
+    /// Creates a cursor at the first line of a later part of a text, by the number of that line and
+    /// of the first byte.
+    ///
+    /// # Errors
+    /// If the part contains a NUL byte.
+    pub(crate) fn of_part(bytes: &'a [u8], line: usize, first: usize) -> Result<Self, ParseError> {
+        match bytes.iter().position(|&b| b == 0) {
+            Some(at) => Err(ParseError::byte(first + at, NOT_TEXT)),
+            None => Ok(Self { bytes, at: 0, line, not_finite: 0 }),
+        }
+    }
+
+    /// Returns the number of bytes at the beginning of a part of a text that end with a statement;
+    /// 0 if none ends in it for certain.
+    pub(crate) fn whole_statements(bytes: &[u8]) -> usize {
+        let ends = |at: usize| {
+            // The other half of a line end may follow.
+            let is_half = bytes[at] == b'\r' && at + 1 == bytes.len();
+            let pair = bytes[at] == b'\n' && at > 0 && bytes[at - 1] == b'\r';
+            let before = at - usize::from(pair);
+            let continues = before > 0 && bytes[before - 1] == b'\\';
+            is_line_end(bytes[at]) && !is_half && !continues
+        };
+        (0..bytes.len()).rev().find(|&at| ends(at)).map_or(0, |at| at + 1)
     }
 
     /// Returns the current line, counted from 1.

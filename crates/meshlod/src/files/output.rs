@@ -4,10 +4,10 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use meshlod_io::gltf::{Level, LodLayout, StripMesh};
+use meshlod_io::gltf::{Level, LodLayout, NeedleLevels, StripMesh};
 use meshlod_io::{
-    Format, IoError, Note, Scene, WriteOptions, check_place, write, write_file, write_lods,
-    write_strips, write_to,
+    Format, IoError, Note, Scene, WriteOptions, WrittenFile, check_place, write, write_file,
+    write_lods, write_needle, write_strips, write_to,
 };
 use meshlod_mesh::Mesh;
 
@@ -121,6 +121,20 @@ impl Output {
     ) -> Result<(), IoError> {
         let _naming = naming();
         write_lods(self.path(), scene, levels, layout)
+    }
+
+    /// Writes a scene and its coarser levels as `NEEDLE_progressive`; returns the files, that of this
+    /// output first.
+    ///
+    /// # Errors
+    /// Those of [`meshlod_io::write_needle`].
+    pub fn write_needle(
+        &self,
+        scene: &Scene,
+        levels: NeedleLevels<'_>,
+    ) -> Result<Vec<WrittenFile>, IoError> {
+        let _naming = naming();
+        write_needle(self.path(), scene, levels)
     }
 
     /// Writes a scene as glTF, with strips for faces.

@@ -26,6 +26,8 @@ mod extract;
 mod faceless;
 #[cfg(feature = "serde")]
 pub mod figures;
+#[cfg(feature = "picture")]
+mod image_sizes;
 #[cfg(feature = "check")]
 mod lods;
 #[cfg(feature = "multires")]
@@ -73,6 +75,8 @@ pub use extract::{
 };
 #[cfg(feature = "check")]
 pub use faceless::refuse_points;
+#[cfg(feature = "picture")]
+pub use image_sizes::image_sizes;
 #[cfg(feature = "check")]
 pub use lods::{LodChain, LodReport, LodsReport, LodsRequest, chain_samples, lods};
 #[cfg(feature = "multires")]

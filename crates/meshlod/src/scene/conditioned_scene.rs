@@ -5,7 +5,7 @@ use meshlod_mesh::{Borders, Conditioning, Mesh, NearBorders, near_borders};
 use meshlod_simplify::{Options, SimplifyError};
 
 use crate::conditioned::ConditionedMesh;
-use crate::scene::locks;
+use crate::scene::{locks, place};
 
 /// Smallest number of near boundary edges that is worth mentioning.
 const MANY_EDGES: usize = 100;
@@ -27,7 +27,7 @@ pub struct ConditionedScene<'s> {
     pub(crate) options: Options,
     pub(crate) meshes: Vec<ConditionedMesh<'s>>,
     /// Number of nodes that show each mesh.
-    copies: Vec<usize>,
+    pub(crate) copies: Vec<usize>,
 }
 
 impl<'s> ConditionedScene<'s> {
@@ -56,6 +56,17 @@ impl<'s> ConditionedScene<'s> {
             ConditionedMesh::new(&mesh.mesh, options, (copies > 0).then_some(borders))
         });
         Ok(Self { scene, options: options.clone(), meshes: meshes.collect(), copies })
+    }
+
+    /// Gives the flats of every mesh as few faces as they need, without moving anything by more than
+    /// an error, in world units.
+    ///
+    /// Cost: O(n log n), n = faces.
+    pub fn flatten_within(&mut self, error: f64) {
+        let sizes = place::sizes(self.scene);
+        for (mesh, size) in self.meshes.iter_mut().zip(sizes).filter(|(_, size)| *size > 0.0) {
+            mesh.flatten_within(error / size);
+        }
     }
 
     /// Returns what has been changed so far in the meshes of the scene, counting every instance.

@@ -127,6 +127,15 @@ pub fn moved_at_most(scene: &Scene, before: &[Mesh], after: &[Mesh]) -> f64 {
 /// Factor by which vertices of a level may lie farther out than those of its input.
 const BEYOND: f64 = 1.1;
 
+/// Returns world units per unit of each mesh, in its largest instance; 0 if no node shows it.
+pub(crate) fn sizes(scene: &Scene) -> Vec<f64> {
+    let mut sizes = vec![0.0f64; scene.meshes.len()];
+    for place in scene.instances() {
+        sizes[place.mesh] = sizes[place.mesh].max(length_scale(&place.transform));
+    }
+    sizes
+}
+
 /// Returns the largest factor by which a transform scales a length: its largest singular value.
 ///
 /// Repeated squaring of MᵀM isolates the direction of that factor. Only plain arithmetic is used,

@@ -10,7 +10,7 @@ use thiserror::Error;
 
 use crate::bounded::run_within;
 use crate::scene::ConditionedScene;
-use crate::scene::place::length_scale;
+use crate::scene::place;
 
 /// Simplifies all meshes of a scene to one common target, always contracting where it costs least
 /// in world space.
@@ -83,7 +83,8 @@ impl<'s> SceneSimplifier<'s> {
         let method = conditioned.options.method;
         let mut this = Self { conditioned, scene, method, parts: Vec::new(), still_faces: 0 };
         let mut still = None;
-        for (index, (copies, scale)) in shown(scene).into_iter().enumerate() {
+        let sizes = place::sizes(scene);
+        for (index, (&copies, scale)) in conditioned.copies.iter().zip(sizes).enumerate() {
             if copies == 0 {
                 continue;
             }
@@ -207,7 +208,8 @@ impl<'s> SceneSimplifier<'s> {
             let own = if own.is_nan() { f64::INFINITY } else { own };
             let mesh = &self.conditioned.meshes[part.mesh];
             let again = part.is_bounded.then_some((mesh, part.vanish_below));
-            let report = run_within(again, &mut part.simplifier, own, observer)?;
+            let errors = [own, mesh.moved()];
+            let report = run_within(again, &mut part.simplifier, errors, observer)?;
             part.proof = report.proof;
         }
         let report = self.report()?;
@@ -310,17 +312,6 @@ impl Part<'_> {
         let own = self.simplifier.next_cost().unwrap_or(0.0);
         own.max(world / self.cost_scale)
     }
-}
-
-/// Returns for each mesh the number of nodes that show it, and their largest length scale.
-fn shown(scene: &Scene) -> Vec<(usize, f64)> {
-    let mut shown = vec![(0, 0.0f64); scene.meshes.len()];
-    for placement in scene.instances() {
-        let (copies, scale) = &mut shown[placement.mesh];
-        *copies += 1;
-        *scale = scale.max(length_scale(&placement.transform));
-    }
-    shown
 }
 
 /// Returns the index of the lowest cost, the first of equal ones, and how far it may rise before

@@ -9,6 +9,12 @@ pub fn remove_tiles(folder: &Path) {
     let _ = fs::remove_dir(folder);
 }
 
+/// Returns true if a folder is there and holds anything but files of tiles.
+pub fn has_other_files(folder: &Path) -> bool {
+    let mut entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    entries.any(|entry| !entry.file_name().to_str().is_some_and(is_of_tile))
+}
+
 /// Removes the files of a folder that have some names. What cannot be removed does no harm.
 pub fn remove_where(folder: &Path, is_meant: impl Fn(&str) -> bool) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {

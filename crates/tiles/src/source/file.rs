@@ -23,6 +23,12 @@ impl PlacedFile {
         Ok(Self { file, path: path.to_owned(), length })
     }
 
+    /// Takes a file without a name in a folder, which errors name instead.
+    pub fn unnamed(file: File, folder: &Path) -> io::Result<Self> {
+        let length = file.metadata().map_err(|error| named(folder, error))?.len();
+        Ok(Self { file, path: folder.to_owned(), length })
+    }
+
     /// Fills `bytes` from a place of the file.
     pub fn read(&self, at: u64, bytes: &mut [u8]) -> io::Result<()> {
         read_at(&self.file, at, bytes).map_err(|error| named(&self.path, error))
@@ -48,7 +54,7 @@ impl PlacedFile {
 }
 
 /// Puts the name of a file before an error of the system.
-fn named(path: &Path, error: io::Error) -> io::Error {
+pub(super) fn named(path: &Path, error: io::Error) -> io::Error {
     io::Error::new(error.kind(), IoError::system(path, error))
 }
 

@@ -2,11 +2,14 @@
 
 mod file;
 mod joined;
+mod obj;
 mod open;
 mod pages;
 mod ply;
 mod scene;
+mod spool;
 mod stl;
+mod table;
 
 use std::io;
 
@@ -16,6 +19,7 @@ use crate::layout::Layout;
 
 pub(crate) use file::PlacedFile;
 pub use joined::JoinedSource;
+pub use obj::ObjSource;
 pub use open::{LEAST_STREAMED, Streamed, open_stream};
 pub use ply::PlySource;
 pub use scene::SceneSource;

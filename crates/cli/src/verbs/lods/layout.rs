@@ -18,6 +18,8 @@ pub(super) enum ChainLayout {
     Scene,
     /// One file a level, the input being NAME_LOD0
     Files,
+    /// A small glTF, and finer levels and larger textures in NAME_levels, as gltf-progressive loads
+    Needle,
 }
 
 impl ChainLayout {
@@ -40,6 +42,7 @@ impl ChainLayout {
             Self::Msft => "msft",
             Self::Scene => "scene",
             Self::Files => "files",
+            Self::Needle => "needle",
         }
     }
 }
@@ -68,6 +71,20 @@ impl Lods {
         match *self.layout.get_or_insert(ChainLayout::Files) {
             ChainLayout::Files => Ok(()),
             _ => files::check_apart(&self.output, &[&self.input]),
+        }
+    }
+
+    /// Refuses an input in the folder of the levels, whose old files go.
+    pub(super) fn check_levels_folder(&self) -> Result<(), Failure> {
+        let folder = format!("{}_levels", files::stem(&self.output));
+        let folder = self.output.with_file_name(folder).canonicalize();
+        let of_input = self.input.parent().and_then(|parent| parent.canonicalize().ok());
+        match folder.is_ok_and(|folder| of_input == Some(folder)) {
+            true => Err(Failure::at(
+                &self.input,
+                "is in the folder of levels that OUT replaces; give OUT another name",
+            )),
+            false => Ok(()),
         }
     }
 

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use meshlod::io::WrittenFile;
 use meshlod::jobs::LodsReport;
 use meshlod::measure::Distance;
 use meshlod::mesh::Bounds;
@@ -47,18 +48,33 @@ impl Lods {
         guide
     }
 
-    /// Returns the report of the job with the files that are written.
-    pub(super) fn figures(&self, report: &LodsReport, layout: ChainLayout) -> Value {
+    /// Returns the report of the job with the files that are written; `all` are those of a layout
+    /// that has many.
+    pub(super) fn figures(
+        &self,
+        report: &LodsReport,
+        layout: ChainLayout,
+        all: &[WrittenFile],
+    ) -> Value {
         let mut figures = json!(report);
         for (i, file) in self.files(report, layout).iter().enumerate() {
             figures["levels"][i]["file"] = json!(file.as_deref().map(files::name));
+        }
+        if layout == ChainLayout::Needle {
+            let file = |file: &WrittenFile| json!({ "file": file.name, "bytes": file.bytes });
+            figures["files"] = all.iter().map(file).collect();
         }
         figures["layout"] = layout.name().into();
         figures["guide"] = files::name(&self.guide_file()).into();
         figures
     }
 
-    pub(super) fn text(&self, report: &LodsReport, layout: ChainLayout) -> String {
+    pub(super) fn text(
+        &self,
+        report: &LodsReport,
+        layout: ChainLayout,
+        all: &[WrittenFile],
+    ) -> String {
         let mut text = aligned(&rows(report));
         text += "mean, RMS, max: measured distance from the input, in % of the diagonal\n";
         text += "coverage: the fraction of the screen below which the level is\n";
@@ -76,6 +92,7 @@ impl Lods {
         for file in written {
             text += &format!("{}\n", files::name(&file));
         }
+        text += &parts_line(all);
         text += &format!("{}\n", files::name(&self.guide_file()));
         text + &simplify_report::seconds_line(report.time)
     }
@@ -85,6 +102,17 @@ impl Lods {
         let levels = report.levels.iter().enumerate();
         levels.map(|(i, level)| (!level.is_same).then(|| self.file_of(i + 1, layout))).collect()
     }
+}
+
+/// Counts the files beside the first: `12 files, 34,567 bytes, in NAME_levels`.
+fn parts_line(all: &[WrittenFile]) -> String {
+    let parts = all.get(1..).unwrap_or_default();
+    let folder = parts.last().and_then(|file| Some(file.name.rsplit_once('/')?.0));
+    let Some(folder) = folder else { return String::new() };
+    let bytes: usize = parts.iter().map(|file| file.bytes).sum();
+    let (number, bytes) = (count(parts.len()), count(bytes));
+    let plural = if parts.len() == 1 { "" } else { "s" };
+    format!("{number} file{plural}, {bytes} bytes, in {folder}\n")
 }
 
 fn rows(report: &LodsReport) -> Vec<[String; 7]> {

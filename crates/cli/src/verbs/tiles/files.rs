@@ -11,13 +11,14 @@ use crate::session::Session;
 use crate::session::failure::Failure;
 use crate::session::files;
 
-/// Opens files and the files in folders, as one model.
+/// Opens files and the files in folders, as one model whose tiles or plan will be at `out`.
 pub fn open(
     inputs: &[PathBuf],
+    out: &Path,
     reading: &ReadArgs,
     session: &Session,
 ) -> Result<TileModel, Failure> {
-    TileModel::open(inputs, &ReadFiles { reading, session })
+    TileModel::open(inputs, out, &ReadFiles { reading, session })
 }
 
 /// The command as a reader of files.

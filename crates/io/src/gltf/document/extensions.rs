@@ -19,6 +19,9 @@ pub(crate) const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 /// Extension that links a node to its coarser levels.
 pub(crate) const MSFT_LOD: &str = "MSFT_lod";
 
+/// Extension of the client of Needle: finer levels of meshes and sizes of images, in other files.
+pub(crate) const NEEDLE: &str = "NEEDLE_progressive";
+
 /// Extension for emitted light brighter than 1.
 pub(crate) const EMISSIVE_STRENGTH: &str = "KHR_materials_emissive_strength";
 
@@ -52,7 +55,7 @@ pub(crate) fn check_head(json: &Value) -> Result<(), ParseError> {
 pub(crate) fn is_understood(name: &str) -> bool {
     const GEOMETRY: [&str; 6] =
         ["KHR_mesh_quantization", "MSFT_lod", INSTANCING, MESHOPT[0], MESHOPT[1], RTC];
-    const OTHERS: [&str; 12] = [
+    const OTHERS: [&str; 13] = [
         "KHR_materials_",
         "KHR_texture_",
         "KHR_lights_",
@@ -65,6 +68,7 @@ pub(crate) fn is_understood(name: &str) -> bool {
         "MSFT_packing_",
         "MSFT_screencoverage",
         "EXT_materials_",
+        NEEDLE,
     ];
     let is_draco = cfg!(feature = "draco") && name == DRACO;
     is_draco || GEOMETRY.contains(&name) || OTHERS.iter().any(|prefix| name.starts_with(prefix))

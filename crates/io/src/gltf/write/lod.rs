@@ -9,7 +9,7 @@ use crate::gltf::document::entries::extend;
 use crate::gltf::document::extensions::{MSFT_LOD, list_extension};
 use crate::gltf::document::primitive_kind::is_surface;
 use crate::gltf::read::nodes;
-use crate::gltf::write::levels::{Level, Levels, LodLayout};
+use crate::gltf::write::levels::{Level, Levels, LodLayout, check_levels};
 use crate::gltf::write::node_edits::{give_to_child, moving};
 
 /// Adds the levels of all meshes with triangles, and the nodes that show them.
@@ -20,10 +20,10 @@ pub(crate) fn add(
     json: &mut Value,
     templates: &[Value],
     grids: &[Option<QuantizationGrid>],
-    Levels { levels, layout }: Levels<'_>,
+    Levels { levels, layout, .. }: Levels<'_>,
     replacer: &mut Replacer<'_>,
 ) -> Result<(), Unsupported> {
-    check(levels, templates.len())?;
+    check_levels(levels, templates.len())?;
     let of_mesh = add_meshes(json, templates, grids, levels, replacer)?;
     let coverage: Vec<f64> = levels.iter().map(|level| level.screen_coverage).collect();
     let ids = |mesh: usize| of_mesh.get(mesh).cloned().unwrap_or_default();
@@ -81,23 +81,6 @@ fn show_all(json: &mut Value, ids_of: impl Fn(usize) -> Vec<usize>) {
         let coarser = coarser.into_iter().map(Value::from).collect();
         extend(&mut json["nodes"][node], "children", coarser);
     }
-}
-
-fn check(levels: &[Level], meshes: usize) -> Result<(), Unsupported> {
-    for (k, level) in levels.iter().enumerate() {
-        let wrong = |reason| Err(Unsupported::new(format!("level {}", k + 1), reason));
-        if level.meshes.len() != meshes {
-            let found = level.meshes.len();
-            return wrong(format!("has {found} meshes, but the scene has {meshes}"));
-        }
-        if !(0.0..=1.0).contains(&level.screen_coverage) {
-            return wrong(format!(
-                "the screen coverage must be in [0, 1], not {}",
-                level.screen_coverage
-            ));
-        }
-    }
-    Ok(())
 }
 
 /// Adds the meshes that have triangles, level after level, and returns the indices of the levels of

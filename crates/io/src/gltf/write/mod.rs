@@ -3,7 +3,7 @@
 //! Reading order: `output`, which makes the document and its files; `replacer`, which puts meshes
 //! into it; `arrays`, which encodes them; `buffer`, which collects the arrays. `new_document` makes
 //! the document of a scene from another format, `quantized` prepares compression, `lod` adds
-//! levels.
+//! levels, `needle` writes them to files of their own.
 
 pub(crate) mod arrays;
 pub(crate) mod attribute_names;
@@ -11,12 +11,14 @@ pub(crate) mod buffer;
 pub(crate) mod empty_meshes;
 pub(crate) mod levels;
 pub(crate) mod lod;
+pub(crate) mod needle;
 pub(crate) mod new_document;
 pub(crate) mod node_edits;
 pub(crate) mod output;
 pub(crate) mod parts;
 pub(crate) mod quantized;
 pub(crate) mod replacer;
+pub(crate) mod same_geometry;
 pub(crate) mod settings;
 pub(crate) mod strip_mesh;
 pub(crate) mod strips;
@@ -59,7 +61,7 @@ pub fn write_lods_glb(
     levels: &[Level],
     layout: LodLayout,
 ) -> Result<Vec<u8>, Unsupported> {
-    Output::of(scene, Levels { levels, layout }, None)?.into_glb(scene)
+    Output::of(scene, Levels { levels, layout, needle: None }, None)?.into_glb(scene)
 }
 
 /// Encodes a scene as a compressed GLB file, and returns the compressed sizes and the quantization

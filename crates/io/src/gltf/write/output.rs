@@ -1,19 +1,20 @@
 //! Document being written: its new geometry, then its files.
 
-use meshlod_mesh::Mesh;
 use serde_json::{Map, Value};
 
 use super::buffer::BufferBuilder;
 use super::buffer::accessor_use::free_accessors_with;
 use super::empty_meshes::detach_meshes;
 use super::levels::Levels;
+use super::needle::images::{with_small_images, without_images};
 use super::new_document::copies::with_copies_as_nodes;
 use super::new_document::local_space::localized;
 use super::new_document::objects::split_objects;
 use super::quantized::{Grids, nodes};
 use super::replacer::Replacer;
+use super::same_geometry::same_geometry;
 use super::settings::{Compression, CompressionReport};
-use super::{lod, new_document};
+use super::{lod, needle, new_document};
 use crate::error::{ParseError, Unsupported};
 use crate::files::names::inner_path;
 use crate::gltf::animation::packing::PackedAnimations;
@@ -39,6 +40,8 @@ pub(crate) struct Output {
     pub json: Map<String, Value>,
     pub builder: BufferBuilder,
     pub report: CompressionReport,
+    /// Files beside the document, by names with `/`.
+    pub parts: Vec<Image>,
 }
 
 impl Output {
@@ -52,7 +55,9 @@ impl Output {
             Some(source) => Self::with_source(scene, &source.0, levels, compression),
             None => {
                 let scene = with_copies_as_nodes(scene);
-                let (scene, moved) = localized(&scene, levels.levels);
+                let small = levels.needle.map(|needle| with_small_images(&scene, needle));
+                let scene = small.as_ref().unwrap_or(&scene);
+                let (scene, moved) = localized(scene, levels.levels);
                 let mut builder = BufferBuilder::default();
                 // Objects on grids of their own would come apart where they meet.
                 let split = compression.is_none().then(|| split_objects(&scene, &moved)).flatten();
@@ -77,7 +82,15 @@ impl Output {
         levels: Levels<'_>,
         compression: Option<&Compression>,
     ) -> Result<Self, Unsupported> {
-        let json = &source.json;
+        let own: Value;
+        let (json, dropped) = match levels.needle {
+            Some(needle) => {
+                let dropped;
+                (own, dropped) = without_images(&source.json, needle);
+                (&own, dropped)
+            }
+            None => (&source.json, Vec::new()),
+        };
         let document = Document::new(json, &source.buffers).map_err(unreadable)?;
         check_meshes(scene, &document)?;
         let mut changed = Vec::new();
@@ -88,7 +101,8 @@ impl Output {
                     mesh::read(&document, index, source.weld).map_err(unreadable)?;
                 Ok(!replaced.is_empty() || !same_geometry(&old, &mesh.mesh))
             };
-            changed.push(compression.is_some() || is_empty() || differs()?);
+            let is_new = compression.is_some() || levels.needle.is_some();
+            changed.push(is_new || is_empty() || differs()?);
         }
         let grids = grids((json, Some(&document)), scene, levels, compression);
         // A document of its own, so that its allowance of values is not spent on animations.
@@ -103,7 +117,8 @@ impl Output {
             free_accessors_with(&document, &changed, &grids.skins.replaced(json), &|place| {
                 animations.replaces(place)
             });
-        let mut replacer = Replacer::new(Some(&document), BufferBuilder::of(&document, &free));
+        let mut replacer =
+            Replacer::new(Some(&document), BufferBuilder::without(&document, &free, &dropped));
         replacer.compression = compression;
         let parts = (grids, animations);
         Self::finish(json.clone(), (scene, &changed), parts, replacer, levels)
@@ -127,6 +142,11 @@ impl Output {
             }
             animations.enter(&mut json, &mut replacer.builder);
         }
+        if let Some(needle) = levels.needle {
+            let parts =
+                needle::add(&mut json, scene, levels.levels, needle, &grids, &mut replacer)?;
+            return Self::of_json(json, replacer, kept, parts);
+        }
         let mut gone = Vec::new();
         for (index, mesh) in scene.meshes.iter().enumerate().filter(|&(index, _)| changed[index]) {
             let mut new = templates[index].clone();
@@ -140,10 +160,19 @@ impl Output {
         } else {
             lod::add(&mut json, &templates, &grids, levels, &mut replacer)?;
         }
+        Self::of_json(json, replacer, kept, Vec::new())
+    }
+
+    fn of_json(
+        mut json: Value,
+        replacer: Replacer<'_>,
+        kept: Vec<String>,
+        parts: Vec<Image>,
+    ) -> Result<Self, Unsupported> {
         let report = replacer.report(kept);
         replacer.list_extensions(&mut json);
         match json {
-            Value::Object(json) => Ok(Self { json, builder: replacer.builder, report }),
+            Value::Object(json) => Ok(Self { json, builder: replacer.builder, report, parts }),
             _ => Err(Unsupported::new("source", "is not a JSON object")),
         }
     }
@@ -227,15 +256,6 @@ pub(crate) fn check_meshes(scene: &Scene, document: &Document<'_>) -> Result<(),
 /// Returns the error that the source document cannot be read again.
 pub(crate) fn unreadable(error: ParseError) -> Unsupported {
     Unsupported::new("source", error.to_string())
-}
-
-/// Reports whether two meshes would be written identically.
-fn same_geometry(a: &Mesh, b: &Mesh) -> bool {
-    let label = |mesh: &Mesh, face| mesh.materials.as_ref().map(|labels| labels.of(face));
-    a.positions == b.positions
-        && a.faces == b.faces
-        && a.attributes == b.attributes
-        && (0..a.faces.len()).all(|face| label(a, face) == label(b, face))
 }
 
 /// Returns the file that an image of a document refers to.

@@ -9,6 +9,7 @@ use super::arrays;
 use super::arrays::{Arrays, Numbers, Typed};
 use super::attribute_names::by_attribute;
 use super::buffer::BufferBuilder;
+use super::needle::stand_in::stand_in;
 use super::quantized::grid::QuantizationGrid;
 use super::settings::{Compression, CompressionReport};
 use crate::error::Unsupported;
@@ -25,6 +26,15 @@ pub(crate) struct Replacer<'a> {
     pub compression: Option<&'a Compression>,
     /// Largest distance that quantization moved a vertex.
     pub position_error: f64,
+}
+
+/// Points and lines among the primitives of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Lines {
+    /// They stay.
+    Kept,
+    /// A triangle without area takes their place.
+    StoodInFor,
 }
 
 impl<'a> Replacer<'a> {
@@ -72,6 +82,54 @@ impl<'a> Replacer<'a> {
         }
         json["primitives"] = new.into();
         Ok(is_empty)
+    }
+
+    /// Replaces the triangle primitives in the JSON of a glTF mesh like [`replace`](Self::replace),
+    /// but keeps all of them, in order; returns the number of faces of each.
+    ///
+    /// One without faces gets a triangle without area, with the bounds and attributes of its faces
+    /// in `finest`, which must have faces.
+    ///
+    /// # Errors
+    /// Those of [`replace`](Self::replace).
+    pub fn replace_all(
+        &mut self,
+        json: &mut Value,
+        (mesh, finest): (&Mesh, &Mesh),
+        grid: Option<&QuantizationGrid>,
+        lines: Lines,
+    ) -> Result<Vec<usize>, Unsupported> {
+        let numbers = Numbers { compression: self.compression, grid };
+        let name = json.get("name").and_then(Value::as_str).unwrap_or_default().to_owned();
+        let wrong = |reason: String| Unsupported::new(format!("mesh {name:?}"), reason);
+        mesh.validate().map_err(|error| wrong(error.to_string()))?;
+        let old = json.get("primitives").and_then(Value::as_array).cloned().unwrap_or_default();
+        let faces = faces_by_primitive(mesh, &old).map_err(wrong)?;
+        let faces_before = faces_by_primitive(finest, &old).map_err(wrong)?;
+        let known = known_attributes(&old);
+        let mut new = Vec::new();
+        for (at, primitive) in old.iter().enumerate() {
+            if !is_surface(primitive) {
+                new.extend(match lines {
+                    Lines::Kept => vec![primitive.clone()],
+                    Lines::StoodInFor => self.nothing(finest, &[])?,
+                });
+                continue;
+            }
+            let other: Mesh;
+            let (mesh, faces) = match faces[at].is_empty() {
+                true => {
+                    other = stand_in(finest, &faces_before[at]);
+                    (&other, &[0][..])
+                }
+                false => (mesh, &faces[at][..]),
+            };
+            let (names, typed) = self.layers_of(primitive, &by_attribute(mesh), &known);
+            let arrays = arrays::arrays(mesh, faces, &typed, numbers)?;
+            new.extend(self.with_arrays(primitive, arrays, &names));
+        }
+        json["primitives"] = new.into();
+        Ok(faces.iter().map(Vec::len).collect())
     }
 
     /// Returns the layers of a primitive and their attribute names: its old attributes, and new
@@ -163,7 +221,10 @@ impl<'a> Replacer<'a> {
 }
 
 /// Groups the faces by primitive; without labels, all are in the first triangle primitive.
-fn faces_by_primitive(mesh: &Mesh, primitives: &[Value]) -> Result<Vec<Vec<u32>>, String> {
+pub(crate) fn faces_by_primitive(
+    mesh: &Mesh,
+    primitives: &[Value],
+) -> Result<Vec<Vec<u32>>, String> {
     let mut faces = vec![Vec::new(); primitives.len()];
     let only = primitives.iter().position(is_surface).unwrap_or(0);
     for face in 0..mesh.faces.len() {

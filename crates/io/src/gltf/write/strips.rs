@@ -103,9 +103,12 @@ fn finish(
         lod::link_nodes(&mut json, |mesh| coarser.get(mesh).cloned().unwrap_or_default(), None);
     }
     match json {
-        Value::Object(json) => {
-            Ok(Output { json, builder: replacer.builder, report: CompressionReport::default() })
-        }
+        Value::Object(json) => Ok(Output {
+            json,
+            builder: replacer.builder,
+            report: CompressionReport::default(),
+            parts: Vec::new(),
+        }),
         _ => Err(Unsupported::new("source", "is not a JSON object")),
     }
 }

@@ -104,7 +104,12 @@ impl Task<'_> {
     fn run(&self, target: Target) -> Result<(Vec<Mesh>, SimplifyReport), JobError> {
         let Self { scene, request, watch, .. } = *self;
         let choice = request.choice();
-        let (ready, time) = choice.condition(scene, watch)?;
+        let (mut ready, mut time) = choice.condition(scene, watch)?;
+        if let Target::Error(error) = target {
+            let start = Instant::now();
+            ready.flatten_within(error);
+            time += start.elapsed();
+        }
         let mut run = SceneRun::start(&ready, time, watch)?;
         let mut report = run.simplify_to(target)?;
         let mut level = run.level(&mut report);

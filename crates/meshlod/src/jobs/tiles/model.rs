@@ -90,16 +90,18 @@ struct ModelPart {
 
 impl TileModel {
     /// Opens files and the files in folders, as one model. Large ones are read in passing where that
-    /// is possible, the others as a whole.
+    /// is possible, the others as a whole. `out` is the folder or archive that the tiles or the plan
+    /// will be in, on the disk of which OBJ files that are read in passing take about their size.
     ///
     /// # Errors
     /// Files that cannot be read, that have no faces, or more materials than tiles can number.
-    pub fn open<F: TileFiles>(inputs: &[PathBuf], files: &F) -> Result<Self, F::Error> {
+    pub fn open<F: TileFiles>(inputs: &[PathBuf], out: &Path, files: &F) -> Result<Self, F::Error> {
         let paths = inputs.iter().map(|input| files_in(input)).collect::<Result<Vec<_>, _>>()?;
         let paths = paths.concat();
         // What is read as a whole is in memory at the same time.
         let least = LEAST_STREAMED / paths.len().max(1) as u64;
-        let open = |path: &PathBuf| ModelPart::open(path, least, files);
+        let scratch = folder_there(out);
+        let open = |path: &PathBuf| ModelPart::open(path, least, &scratch, files);
         let parts = paths.iter().map(open).collect::<Result<Vec<_>, _>>()?;
         let version = concat!("meshlod ", env!("CARGO_PKG_VERSION"));
         let keys = paths.iter().map(|path| key(path)).chain(parts.iter().map(ModelPart::key));
@@ -151,26 +153,37 @@ impl ModelPart {
     }
 
     /// Opens a file, in passing from a number of bytes on where that is possible.
-    fn open<F: TileFiles>(path: &Path, least: u64, files: &F) -> Result<Self, F::Error> {
+    fn open<F: TileFiles>(
+        path: &Path,
+        least: u64,
+        scratch: &Path,
+        files: &F,
+    ) -> Result<Self, F::Error> {
         let at = path.to_owned();
         let streamed = match files.is_read_whole(path) {
             true => None,
-            false => open_stream(path, least).map_err(TileFileError::from)?,
+            false => open_stream(path, least, scratch).map_err(TileFileError::from)?,
         };
         if let Some(streamed) = streamed {
             if !streamed.left_out.is_empty() {
                 let names = streamed.left_out.join(", ");
                 files.warn(Some(path), &format!("properties of faces left out: {names}"));
             }
-            return Ok(Self { path: at, source: streamed.source, look: Look::default() });
+            let look = match &streamed.scene {
+                Some(scene) => {
+                    files.note(path, &scene.notes)?;
+                    look(scene)
+                }
+                None => Look::default(),
+            };
+            check_materials(&look, path)?;
+            return Ok(Self { path: at, source: streamed.source, look });
         }
         let scene = files.read(path)?;
         check_faces(&scene).map_err(|reason| TileFileError::unfit(path, reason))?;
         files.note(path, &scene.tile_limits())?;
         let look = look(&scene);
-        if look.labels.len() > MOST_MATERIALS {
-            return Err(too_many_materials(path).into());
-        }
+        check_materials(&look, path)?;
         Ok(Self { path: at, source: Box::new(SceneSource::new(scene)), look })
     }
 }
@@ -202,9 +215,22 @@ fn add(all: &mut Look, mut own: Look, path: &Path) -> Result<u16, TileFileError>
     Ok(first as u16)
 }
 
+fn check_materials(look: &Look, path: &Path) -> Result<(), TileFileError> {
+    match look.labels.len() > MOST_MATERIALS {
+        true => Err(too_many_materials(path)),
+        false => Ok(()),
+    }
+}
+
 fn too_many_materials(path: &Path) -> TileFileError {
     let reason = format!("more than {MOST_MATERIALS} materials; tiles number them by 16 bits");
     TileFileError::unfit(path, reason)
+}
+
+/// Returns the folder nearest to a path that is to be made, which is there already.
+fn folder_there(path: &Path) -> PathBuf {
+    let there = path.ancestors().find(|folder| folder.is_dir());
+    there.map_or_else(|| PathBuf::from("."), Path::to_owned)
 }
 
 /// Returns the files of a folder that are read, by name; of a file or pipe, itself.
@@ -225,7 +251,7 @@ fn files_in(input: &Path) -> Result<Vec<PathBuf>, TileFileError> {
 }
 
 /// Returns the materials of a scene by the labels that its faces have when it is one mesh.
-fn look(scene: &Scene) -> Look {
+pub(super) fn look(scene: &Scene) -> Look {
     if scene.materials.is_empty() {
         return Look::default();
     }

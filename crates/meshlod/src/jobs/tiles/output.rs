@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use meshlod_tiles::archive::is_archive;
-use meshlod_tiles::folder::is_of_tile;
+use meshlod_tiles::folder::{has_other_files, is_of_tile};
 
 use crate::jobs::JobError;
 use crate::jobs::tiles::result::TILES;
@@ -50,6 +50,10 @@ pub fn check_tiles_folder(out: &Path) -> Result<(), JobError> {
             .all(|entry| entry.is_ok_and(|entry| entry.file_name().to_str().is_some_and(is_rest)))
     };
     match is_ours() || are_rests() {
+        true if has_other_files(&out.join(TILES)) => {
+            let reason = format!("its folder {TILES} holds other files; name a new folder");
+            Err(JobError::output(reason))
+        }
         true => Ok(()),
         false => Err(JobError::output("holds other files; name a new folder for the tiles")),
     }

@@ -309,3 +309,71 @@ fn coordinates_about_the_middle_of_the_earth_stay_there() {
     let both = TilesRequest { globe, ..request };
     assert!(tiles(input, folder.path(), &both, &()).is_err());
 }
+
+#[test]
+fn files_of_others_inside_are_told_before_the_work() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let (source, look) = (knot(), Look::default());
+    let input = TileInput { source: &source, look: &look, key: "knot" };
+    let request = TilesRequest { tile_faces: 20_000, ..TilesRequest::default() };
+    tiles(input, &out, &request, &()).unwrap();
+    check_tiles_folder(&out).unwrap();
+    let before = files(&out);
+    fs::write(out.join("tiles/wall.png"), "png").unwrap();
+    let error = tiles(input, &out, &request, &()).unwrap_err().to_string();
+    assert!(error.contains("its folder tiles holds other files"), "{error}");
+    fs::remove_file(out.join("tiles/wall.png")).unwrap();
+    assert_eq!(files(&out), before);
+    for inner in ["content", "tiles"] {
+        let plan = folder.path().join(inner);
+        fs::create_dir_all(plan.join(inner)).unwrap();
+        fs::write(plan.join(inner).join("wall.png"), "png").unwrap();
+        let error = plan_tiles(input, &plan, &request, &()).unwrap_err().to_string();
+        assert!(error.contains("holds other files"), "{error}");
+        assert_eq!(files(&plan).len(), 1);
+    }
+}
+
+#[test]
+fn an_obj_file_in_passing_gives_the_bytes_of_one_read_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.obj");
+    let scene = Scene::from_mesh("knot", samples::knot(20_000));
+    crate::write(&path, &scene, &crate::WriteOptions::default()).unwrap();
+    let text = fs::read_to_string(&path).unwrap();
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    let faces: Vec<usize> = (0..lines.len()).filter(|&at| lines[at].starts_with("f ")).collect();
+    for (number, &at) in faces.iter().enumerate() {
+        let material = if number % 3_000 == 0 {
+            ["usemtl a\r\n", "usemtl b\r\n"][number / 3_000 % 2]
+        } else {
+            ""
+        };
+        let uvs = if number % 5 == 0 {
+            lines[at].clone()
+        } else {
+            let corners =
+                lines[at].split(' ').skip(1).map(|corner| format!("{corner}/{}", number % 3 + 1));
+            format!("f {}", corners.collect::<Vec<_>>().join(" \\\r\n "))
+        };
+        lines[at] = format!("{material}{uvs}");
+    }
+    let head = "mtllib a.mtl\r\nvt 0 0\r\nvt 1 0\r\nvt .5 1\r\n";
+    fs::write(&path, head.to_owned() + &lines.join("\r\n")).unwrap();
+    fs::write(folder.path().join("a.mtl"), "newmtl b\nKd 1 0 0\nnewmtl a\nKd 0 1 0\n").unwrap();
+
+    let whole = crate::read(&path, &crate::ReadOptions::default()).unwrap();
+    let streamed = meshlod_tiles::source::open_stream(&path, 0, folder.path()).unwrap().unwrap();
+    let request = TilesRequest { tile_faces: 2_000, ..TilesRequest::default() };
+    let make = |name: &str, source: &dyn Source, look: Look| {
+        let out = folder.path().join(name);
+        let input = TileInput { source, look: &look, key: "a" };
+        tiles(input, &out, &request, &()).unwrap();
+        files(&out)
+    };
+    let look = model::look(&whole);
+    let expected = make("whole", &SceneSource::new(whole), look);
+    let look = model::look(streamed.scene.as_ref().unwrap());
+    assert_eq!(make("streamed", &*streamed.source, look), expected);
+}

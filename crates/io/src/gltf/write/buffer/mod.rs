@@ -44,6 +44,11 @@ impl BufferBuilder {
     /// Creates a builder from an existing document, without the accessors flagged in
     /// `free_accessors` and the buffer views that only they use.
     pub fn of(document: &Document<'_>, free_accessors: &[bool]) -> Self {
+        Self::without(document, free_accessors, &[])
+    }
+
+    /// Creates a builder like [`of`](Self::of), also without these views, if nothing uses them.
+    pub fn without(document: &Document<'_>, free_accessors: &[bool], dropped: &[usize]) -> Self {
         let array = |key| document.json.get(key).and_then(Value::as_array).cloned();
         let mut builder = Self {
             accessors: array("accessors").unwrap_or_default(),
@@ -51,7 +56,7 @@ impl BufferBuilder {
             ..Self::default()
         };
         mend_extents(document, free_accessors, &mut builder.accessors);
-        let free_views = free_views(document, &builder.accessors, free_accessors);
+        let free_views = free_views(document, &builder.accessors, free_accessors, dropped);
         builder.free_accessors = indices_of(free_accessors);
         builder.free_views = indices_of(&free_views);
         builder.keep_bytes(document, &free_views);
@@ -148,6 +153,14 @@ impl BufferBuilder {
     pub fn add_view(&mut self, bytes: &[u8]) -> usize {
         let view = self.view_of(bytes);
         insert(&mut self.views, &mut self.free_views, view.into())
+    }
+
+    /// Returns the bytes of a buffer view that was added; `None` if there is none, or compressed.
+    pub fn view_bytes(&self, view: usize) -> Option<&[u8]> {
+        let view = self.views.get(view)?;
+        let number = |key: &str| view.get(key).map_or(Some(0), Value::as_u64);
+        let at = number("byteOffset").filter(|_| number("buffer") == Some(0))? as usize;
+        self.bytes.get(at..at.checked_add(number("byteLength")? as usize)?)
     }
 
     /// Enters the accessors, buffer views and buffer length in the JSON document, and returns the

@@ -44,15 +44,19 @@ pub(crate) fn copy_views(
     }
 }
 
-/// Computes one flag per buffer view: true if only free accessors use it, or if it is empty and
-/// unused.
+/// Computes one flag per buffer view: true if only free accessors use it, or if it is unused and
+/// empty or `dropped`.
 pub(crate) fn free_views(
     document: &Document<'_>,
     accessors: &[Value],
     free_accessors: &[bool],
+    dropped: &[usize],
 ) -> Vec<bool> {
     let count = document.views.len();
     let (mut by_free, mut by_others) = (vec![false; count], vec![false; count]);
+    for &view in dropped.iter().filter(|&&view| view < count) {
+        by_free[view] = true;
+    }
     for (accessor, &free) in accessors.iter().zip(free_accessors) {
         mark_views(accessor, if free { &mut by_free } else { &mut by_others });
     }

@@ -1,0 +1,129 @@
+//! Flat regions with as few faces as their outlines need.
+//!
+//! Faces that lie in one plane and continue each other are a **region**. What is inside it goes, and
+//! so does each vertex on a straight part of its outline that both sides can do without; what is left
+//! of the outline is triangulated anew. No vertex moves and none is added. A closed model of flats
+//! has 2 (n - χ) faces then, n being its corners.
+//!
+//! Where regions cannot be told from the plane alone, they stay as they are: one that covers itself,
+//! one whose attributes are not linear in the plane, or one whose new edges are elsewhere already.
+//!
+//! Read in this order:
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `regions` | faces that lie in one plane and continue each other |
+//! | `linear` | whether attributes are linear over faces |
+//! | `outline` | the vertices of outlines that stay, and the sides between them |
+//! | `fill` | a region's outline, triangulated |
+//! | `apart` | new edges that are elsewhere already |
+
+mod apart;
+mod fill;
+mod linear;
+mod outline;
+mod regions;
+
+use meshlod_mesh::{Connectivity, Locks, Mesh, VertexId, WedgeId};
+use rayon::prelude::*;
+
+use crate::flat::fill::fill;
+use crate::flat::outline::Outlines;
+use crate::flat::regions::Regions;
+
+/// Mesh whose flat regions have as few faces as their outlines need.
+#[derive(Clone, Debug)]
+pub struct Flattened {
+    /// The mesh. Vertices and wedges keep their ids, and those that went are unused.
+    pub mesh: Mesh,
+    /// Upper bound of the distance between the mesh and its input, both ways, in model units: 0 if
+    /// all that went was exactly flat.
+    pub moved: f64,
+}
+
+/// Constraints on what may go.
+#[derive(Clone, Copy, Debug)]
+pub struct FlatOptions<'l> {
+    /// Vertices that stay where they are: all that are locked, protected or tied.
+    pub locks: &'l Locks,
+    /// True if no vertex on the boundary may go.
+    pub lock_boundary: bool,
+    /// Largest distance by which the surface may move, in model units. With 0 only what is exactly
+    /// flat goes.
+    pub tolerance: f64,
+}
+
+/// A face to be made: its vertices and wedges, and the face of the input that it has all else from.
+#[derive(Clone, Copy, Debug)]
+struct NewFace {
+    vertices: [VertexId; 3],
+    wedges: [WedgeId; 3],
+    like: u32,
+}
+
+/// Gives the flat regions of a mesh as few faces as their outlines need; `None` if no face goes.
+///
+/// Borders, edges between materials, objects or values of faces, seams of attributes, and the volume
+/// stay as they are. Attributes that are not linear in the plane of a region, to half of
+/// [`AttributeBounds`](meshlod_mesh::AttributeBounds) by default, keep it as it is.
+///
+/// Cost: O(n log n), n = faces.
+/// # Panics
+/// If the mesh is not valid, see [`Mesh::validate`].
+pub fn flatten(mesh: &Mesh, options: &FlatOptions<'_>) -> Option<Flattened> {
+    let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
+    let mut regions = Regions::find(mesh, &connectivity, options.tolerance);
+    let held = held(mesh, options.locks);
+    loop {
+        if regions.list.iter().all(|region| region.is_kept) {
+            return None;
+        }
+        let outlines = Outlines::new(mesh, &connectivity, &regions, &held, options);
+        let filled: Vec<Option<Vec<NewFace>>> = (0..regions.list.len())
+            .into_par_iter()
+            .map(|r| match regions.list[r].is_kept {
+                true => Some(Vec::new()),
+                false => fill(mesh, &regions.list[r], &outlines.sides[r]),
+            })
+            .collect();
+        let mut failed: Vec<usize> = (0..filled.len()).filter(|&r| filled[r].is_none()).collect();
+        if failed.is_empty() {
+            let filled: Vec<Vec<NewFace>> = filled.into_iter().flatten().collect();
+            match apart::take_apart(mesh, &regions, filled) {
+                Ok(faces) if faces.len() < mesh.faces.len() => {
+                    let moved = regions.moved(outlines.moved);
+                    return Some(Flattened { mesh: with_faces(mesh, &faces), moved });
+                }
+                Ok(_) => return None,
+                Err(together) => failed = together,
+            }
+        }
+        failed.into_iter().for_each(|r| regions.list[r].is_kept = true);
+    }
+}
+
+/// Returns which vertices must stay.
+fn held(mesh: &Mesh, locks: &Locks) -> Vec<bool> {
+    let locks = locks.with_ties_locked(mesh.positions.len());
+    let is_held = |v| locks.of(VertexId::new(v)) != meshlod_mesh::Lock::Free;
+    (0..mesh.positions.len()).map(is_held).collect()
+}
+
+fn with_faces(mesh: &Mesh, faces: &[NewFace]) -> Mesh {
+    let like: Vec<u32> = faces.iter().map(|face| face.like).collect();
+    let attributes = mesh.attributes.as_ref().map(|attributes| meshlod_mesh::Attributes {
+        corners: faces.iter().map(|face| face.wedges).collect(),
+        ..attributes.clone()
+    });
+    Mesh {
+        positions: mesh.positions.clone(),
+        faces: faces.iter().map(|face| face.vertices).collect(),
+        attributes,
+        materials: mesh.materials.as_ref().map(|labels| labels.select(&like)),
+        objects: mesh.objects.as_ref().map(|labels| labels.select(&like)),
+        face_layers: mesh.select_face_layers(&like),
+    }
+}
+
+#[cfg(test)]
+mod tests;

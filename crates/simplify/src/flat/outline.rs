@@ -1,0 +1,262 @@
+//! The vertices of outlines that stay, and the sides between them.
+
+use glam::DVec3;
+use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId, WedgeId};
+use robust::{Coord, orient2d};
+
+use crate::flat::FlatOptions;
+use crate::flat::linear::Linear;
+use crate::flat::regions::Regions;
+
+/// Part of the tolerance by which an outline may move in its plane.
+const ASIDE: f64 = 0.7;
+
+/// Side of a region's new outline; the region is on its left.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct OutlineSide {
+    pub(super) from: VertexId,
+    pub(super) to: VertexId,
+    /// Wedge of the region at `from`.
+    pub(super) wedge: WedgeId,
+}
+
+/// The outlines of all regions that are filled anew.
+#[derive(Debug)]
+pub(super) struct Outlines {
+    /// Sides of each region's outline.
+    pub(super) sides: Vec<Vec<OutlineSide>>,
+    /// Upper bound of the distance that an outline has moved.
+    pub(super) moved: f64,
+}
+
+/// Edge of the outline of one region or several.
+#[derive(Clone, Copy, Debug)]
+struct Edge {
+    ends: [u32; 2],
+    /// Its regions, as a range of those of all edges.
+    regions: [usize; 2],
+}
+
+/// Outlines as a graph: edges between vertices, each with its regions.
+struct Graph<'m> {
+    mesh: &'m Mesh,
+    edges: Vec<Edge>,
+    regions: Vec<u32>,
+    /// The first two edges at each vertex.
+    at: Vec<[u32; 2]>,
+    /// Number of edges at each vertex; 255 stands for more.
+    count: Vec<u8>,
+}
+
+impl Outlines {
+    pub(super) fn new(
+        mesh: &Mesh,
+        connectivity: &Connectivity,
+        regions: &Regions,
+        held: &[bool],
+        options: &FlatOptions<'_>,
+    ) -> Self {
+        let outer = outer_sides(mesh, connectivity, regions);
+        let graph = Graph::new(mesh, &outer);
+        let mut stays = held.to_vec();
+        hold_kept(mesh, regions, &mut stays);
+        if options.lock_boundary {
+            let is_open = |side: &&(u32, Side)| connectivity.twin(side.1) == Twin::Boundary;
+            let open = outer.iter().filter(is_open).flat_map(|(_, side)| side.ends(&mesh.faces));
+            open.for_each(|v| stays[v.index()] = true);
+        }
+        let most = ASIDE * options.tolerance;
+        let gone = (0..stays.len() as u32).map(|v| !stays[v as usize] && graph.is_spare(v, most));
+        let mut gone: Vec<bool> = gone.collect();
+        let moved = if most > 0.0 { graph.straighten(&mut gone, most) } else { 0.0 };
+        let mut sides = vec![Vec::new(); regions.list.len()];
+        for &(region, side) in &outer {
+            let [from, next] = side.ends(&mesh.faces);
+            if !gone[from.index()] {
+                let to = graph.follow(from.0, next.0, &gone);
+                let wedge = mesh.corner_wedges(side.face().index())[side.corner()];
+                sides[region as usize].push(OutlineSide { from, to: VertexId(to), wedge });
+            }
+        }
+        Self { sides, moved }
+    }
+}
+
+/// Returns the sides of faces that are outlines of regions to be filled.
+fn outer_sides(mesh: &Mesh, connectivity: &Connectivity, regions: &Regions) -> Vec<(u32, Side)> {
+    let linear = Linear::new(mesh);
+    let mut outer = Vec::new();
+    for (face, &region) in regions.of_face.iter().enumerate() {
+        if regions.list[region as usize].is_kept {
+            continue;
+        }
+        for side in (0..3).map(|k| Side::new(FaceId::new(face), k)) {
+            let is_inner = match connectivity.twin(side) {
+                Twin::Side(twin) => {
+                    let [[a, b], [c, d]] = [side, twin].map(|side| side.ends(&mesh.faces));
+                    regions.of_face[twin.face().index()] == region
+                        && [a, b] == [d, c]
+                        && !linear.is_seam(side, twin)
+                }
+                _ => false,
+            };
+            if !is_inner {
+                outer.push((region, side));
+            }
+        }
+    }
+    outer
+}
+
+/// Holds all vertices of regions that stay as they are.
+fn hold_kept(mesh: &Mesh, regions: &Regions, stays: &mut [bool]) {
+    for region in regions.list.iter().filter(|region| region.is_kept) {
+        for v in region.faces.iter().flat_map(|&face| mesh.faces[face as usize]) {
+            stays[v.index()] = true;
+        }
+    }
+}
+
+impl<'m> Graph<'m> {
+    fn new(mesh: &'m Mesh, outer: &[(u32, Side)]) -> Self {
+        let key = |&(region, side): &(u32, Side)| {
+            let [a, b] = side.ends(&mesh.faces).map(|v| v.0);
+            ([a.min(b), a.max(b)], region)
+        };
+        let mut sorted: Vec<([u32; 2], u32)> = outer.iter().map(key).collect();
+        sorted.sort_unstable();
+        let mut edges = Vec::new();
+        let mut start = 0;
+        for of_edge in sorted.chunk_by(|a, b| a.0 == b.0) {
+            let end = start + of_edge.len();
+            edges.push(Edge { ends: of_edge[0].0, regions: [start, end] });
+            start = end;
+        }
+        let regions = sorted.into_iter().map(|(_, region)| region).collect();
+        let count = vec![0u8; mesh.positions.len()];
+        let at = vec![[u32::MAX; 2]; mesh.positions.len()];
+        let mut this = Self { mesh, edges, regions, at, count };
+        for (i, edge) in this.edges.iter().enumerate() {
+            for v in edge.ends.map(|v| v as usize) {
+                if let Some(slot) = this.at[v].get_mut(usize::from(this.count[v])) {
+                    *slot = i as u32;
+                }
+                this.count[v] = this.count[v].saturating_add(1);
+            }
+        }
+        this
+    }
+
+    /// Returns the vertices before and after one that has two edges.
+    fn beside(&self, v: u32) -> [u32; 2] {
+        self.at[v as usize].map(|edge| {
+            let [a, b] = self.edges[edge as usize].ends;
+            if a == v { b } else { a }
+        })
+    }
+
+    /// Returns true if a vertex is on a straight line between the same regions: no more than `most`
+    /// beside it, or exactly on it if that is 0.
+    fn is_spare(&self, v: u32, most: f64) -> bool {
+        if self.count[v as usize] != 2 {
+            return false;
+        }
+        let regions = self.at[v as usize].map(|edge| {
+            let [start, end] = self.edges[edge as usize].regions;
+            &self.regions[start..end]
+        });
+        let [a, b] = self.beside(v).map(|v| self.place(v));
+        let at = self.place(v);
+        regions[0] == regions[1]
+            && (at - a).dot(b - at) > 0.0
+            && if most > 0.0 { beside([a, b], at) <= most } else { is_on_line([a, at, b]) }
+    }
+
+    /// Returns the first vertex that stays on the way from one to the next.
+    fn follow(&self, from: u32, next: u32, gone: &[bool]) -> u32 {
+        let (mut last, mut at) = (from, next);
+        while gone[at as usize] && at != from {
+            let [a, b] = self.beside(at);
+            (last, at) = (at, if a == last { b } else { a });
+        }
+        at
+    }
+
+    /// Brings vertices back until none that is gone is more than `most` from the line that replaces
+    /// it. Returns the largest distance.
+    fn straighten(&self, gone: &mut [bool], most: f64) -> f64 {
+        let mut farthest = 0.0f64;
+        let mut is_done = vec![false; gone.len()];
+        for stays in [true, false] {
+            // Rings of vertices that are all gone come last, and keep the first one.
+            for v in 0..gone.len() as u32 {
+                let is_start = gone[v as usize] && !is_done[v as usize];
+                let begins = is_start && self.beside(v).iter().any(|&u| !gone[u as usize]);
+                if is_start && (begins || !stays) {
+                    gone[v as usize] &= stays;
+                    let chain = self.chain(v, gone);
+                    chain.iter().for_each(|&v| is_done[v as usize] = true);
+                    farthest = farthest.max(self.divide(&chain, gone, most));
+                }
+            }
+        }
+        farthest
+    }
+
+    /// Returns the vertices from one that stays to the next, through one that is gone, or all of a
+    /// ring from one that stays on.
+    fn chain(&self, v: u32, gone: &[bool]) -> Vec<u32> {
+        let [a, b] = self.beside(v);
+        let mut chain = match gone[v as usize] {
+            true if !gone[a as usize] => vec![a, v],
+            true => vec![b, v],
+            false => vec![v, a],
+        };
+        while let [.., last, at] = chain[..]
+            && gone[at as usize]
+        {
+            let [a, b] = self.beside(at);
+            chain.push(if a == last { b } else { a });
+        }
+        chain
+    }
+
+    /// Brings back the vertex of a chain that is farthest from the line between its ends, and so in
+    /// both parts, while one is too far [DP73].
+    fn divide(&self, chain: &[u32], gone: &mut [bool], most: f64) -> f64 {
+        let mut farthest = 0.0f64;
+        let mut parts = vec![[0, chain.len() - 1]];
+        while let Some([first, last]) = parts.pop() {
+            let ends = [first, last].map(|i| self.place(chain[i]));
+            let inner = (first + 1..last).map(|i| (beside(ends, self.place(chain[i])), i));
+            let Some((distance, i)) = inner.max_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
+            if distance > most {
+                gone[chain[i] as usize] = false;
+                parts.extend([[first, i], [i, last]]);
+            } else {
+                farthest = farthest.max(distance);
+            }
+        }
+        farthest
+    }
+
+    fn place(&self, v: u32) -> DVec3 {
+        self.mesh.positions[v as usize].into()
+    }
+}
+
+/// Returns the distance of a point from a segment.
+fn beside([a, b]: [DVec3; 2], point: DVec3) -> f64 {
+    let along = b - a;
+    let part = (point - a).dot(along) / along.length_squared();
+    let part = if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 };
+    point.distance(a + part * along)
+}
+
+/// Returns true if three points are exactly on one line.
+fn is_on_line(points: [DVec3; 3]) -> bool {
+    [[0, 1], [1, 2], [2, 0]].iter().all(|&[x, y]| {
+        let [a, b, c] = points.map(|point| Coord { x: point[x], y: point[y] });
+        orient2d(a, b, c) == 0.0
+    })
+}

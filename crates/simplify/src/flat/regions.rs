@@ -1,0 +1,202 @@
+//! Faces that lie in one plane and continue each other.
+
+use glam::DVec3;
+use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, UnionFind};
+use robust::{Coord3D, orient3d};
+
+use crate::flat::linear::Linear;
+
+/// Part of the tolerance that a region may be high. Outlines move across that, so that both may have
+/// seven tenths.
+const HEIGHT: f64 = 0.7;
+
+/// Faces in one plane that continue each other.
+#[derive(Debug)]
+pub(super) struct Region {
+    /// The faces in order.
+    pub(super) faces: Vec<u32>,
+    /// Normal of the plane, not of unit length.
+    pub(super) normal: DVec3,
+    /// Largest distance between two planes along the normal that have all faces between them.
+    pub(super) height: f64,
+    /// True if the faces stay as they are.
+    pub(super) is_kept: bool,
+}
+
+/// All regions of a mesh.
+#[derive(Debug)]
+pub(super) struct Regions {
+    /// Region of each face.
+    pub(super) of_face: Vec<u32>,
+    /// The regions, in the order of their first faces.
+    pub(super) list: Vec<Region>,
+}
+
+impl Regions {
+    /// Finds the regions. Those of one face are kept, and so are those that are too high.
+    pub(super) fn find(mesh: &Mesh, connectivity: &Connectivity, tolerance: f64) -> Self {
+        let mut this = Self::group(mesh, connectivity, tolerance);
+        let linear = Linear::new(mesh);
+        for region in &mut this.list {
+            region.normal = region.faces.iter().map(|&face| normal(mesh, face)).sum();
+            if tolerance > 0.0 {
+                region.height = height(mesh, region);
+            }
+            let is_low = region.height <= HEIGHT * tolerance;
+            region.is_kept = region.faces.len() < 2
+                || !is_low
+                || region.normal == DVec3::ZERO
+                || !linear.is_linear_over(region);
+        }
+        this
+    }
+
+    /// Returns the bound of how far the surface moves, given how far outlines do: a point is beside
+    /// its region by as much, and below or above it by no more than its height.
+    pub(super) fn moved(&self, outlines: f64) -> f64 {
+        let filled = self.list.iter().filter(|region| !region.is_kept);
+        filled.map(|region| region.height).fold(0.0, f64::max).hypot(outlines)
+    }
+
+    fn group(mesh: &Mesh, connectivity: &Connectivity, tolerance: f64) -> Self {
+        let planes = Planes { mesh, tolerance, linear: Linear::new(mesh) };
+        let mut joined = UnionFind::new(mesh.faces.len());
+        let mut without_area = Vec::new();
+        for face in (0..mesh.faces.len()).map(FaceId::new) {
+            if normal(mesh, face.0) == DVec3::ZERO {
+                without_area.push(face);
+                continue;
+            }
+            for side in (0..3).map(|k| Side::new(face, k)) {
+                if let Twin::Side(twin) = connectivity.twin(side)
+                    && face < twin.face()
+                    && planes.continues(side, twin)
+                {
+                    joined.union(face.0, twin.face().0);
+                }
+            }
+        }
+        for face in without_area {
+            planes.join_without_area(face, connectivity, &mut joined);
+        }
+        Self::of_groups(mesh.faces.len(), &mut joined)
+    }
+
+    fn of_groups(count: usize, joined: &mut UnionFind) -> Self {
+        let mut list: Vec<Region> = Vec::new();
+        let mut of_root = vec![u32::MAX; count];
+        let of_face = (0..count as u32).map(|face| {
+            let root = joined.find(face) as usize;
+            if of_root[root] == u32::MAX {
+                of_root[root] = list.len() as u32;
+                list.push(Region {
+                    faces: Vec::new(),
+                    normal: DVec3::ZERO,
+                    height: 0.0,
+                    is_kept: false,
+                });
+            }
+            list[of_root[root] as usize].faces.push(face);
+            of_root[root]
+        });
+        Self { of_face: of_face.collect(), list }
+    }
+}
+
+/// Decides which faces continue each other.
+struct Planes<'m> {
+    mesh: &'m Mesh,
+    tolerance: f64,
+    linear: Linear<'m>,
+}
+
+impl Planes<'_> {
+    /// Returns true if two faces with areas that share an edge lie in one plane, face the same way,
+    /// and have all else in common.
+    fn continues(&self, side: Side, twin: Side) -> bool {
+        let faces = [side, twin].map(|side| side.face().0);
+        let [ends, of_twin] = [side, twin].map(|side| side.ends(&self.mesh.faces));
+        let [normal, other] = faces.map(|face| normal(self.mesh, face));
+        other != DVec3::ZERO
+            && ends == [of_twin[1], of_twin[0]]
+            && normal.dot(other) > 0.0
+            && self.is_alike(faces)
+            && self.contains(faces[0], opposite(self.mesh, twin))
+            && (self.tolerance == 0.0 || self.contains(faces[1], opposite(self.mesh, side)))
+            && self.linear.is_linear_across(side, twin)
+    }
+
+    /// Joins a face without area to the region across its longest edge, and that to others around
+    /// which are in the same plane.
+    fn join_without_area(&self, face: FaceId, connectivity: &Connectivity, joined: &mut UnionFind) {
+        let length = |side: &Side| {
+            let [a, b] = side.ends(&self.mesh.faces).map(|v| self.mesh.positions[v.index()]);
+            DVec3::from(a).distance_squared(b.into())
+        };
+        let mut sides = [0, 1, 2].map(|k| Side::new(face, k));
+        sides.sort_by(|a, b| length(b).total_cmp(&length(a)));
+        let mut first: Option<u32> = None;
+        for side in sides {
+            let Twin::Side(twin) = connectivity.twin(side) else { continue };
+            let other = twin.face().0;
+            let is_face = normal(self.mesh, other) != DVec3::ZERO;
+            let fits = is_face
+                && self.is_alike([face.0, other])
+                && self.linear.is_linear_across(twin, side)
+                && first.is_none_or(|first| self.is_same_plane(first, other));
+            if fits {
+                joined.union(face.0, other);
+                first.get_or_insert(other);
+            }
+        }
+    }
+
+    fn is_same_plane(&self, a: u32, b: u32) -> bool {
+        let corners = self.mesh.triangle(self.mesh.faces[b as usize]);
+        normal(self.mesh, a).dot(normal(self.mesh, b)) > 0.0
+            && corners.iter().all(|&corner| self.contains(a, corner))
+    }
+
+    /// Returns true if a point is in the plane of a face, to the tolerance.
+    fn contains(&self, face: u32, point: DVec3) -> bool {
+        let corners = self.mesh.triangle(self.mesh.faces[face as usize]);
+        if self.tolerance > 0.0 {
+            let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize();
+            return normal.dot(point - corners[0]).abs() <= self.tolerance;
+        }
+        let [a, b, c, d] = [corners[0], corners[1], corners[2], point]
+            .map(|DVec3 { x, y, z }| Coord3D { x, y, z });
+        orient3d(a, b, c, d) == 0.0
+    }
+
+    /// Returns true if two faces have the same material, object and numbers.
+    fn is_alike(&self, [a, b]: [u32; 2]) -> bool {
+        let [a, b] = [a as usize, b as usize];
+        let labels = [&self.mesh.materials, &self.mesh.objects].into_iter().flatten();
+        labels.into_iter().all(|labels| labels.of(a) == labels.of(b))
+            && self.mesh.face_layers.iter().all(|layer| layer.values[a] == layer.values[b])
+    }
+}
+
+/// Returns the normal of a face, twice its area long.
+fn normal(mesh: &Mesh, face: u32) -> DVec3 {
+    let [a, b, c] = mesh.triangle(mesh.faces[face as usize]);
+    (b - a).cross(c - a)
+}
+
+/// Returns the corner of a face that is not on one of its sides.
+fn opposite(mesh: &Mesh, side: Side) -> DVec3 {
+    mesh.triangle(mesh.faces[side.face().index()])[(side.corner() + 2) % 3]
+}
+
+/// Returns how high a region is along its normal.
+fn height(mesh: &Mesh, region: &Region) -> f64 {
+    let normal = region.normal.normalize_or_zero();
+    let first = mesh.triangle(mesh.faces[region.faces[0] as usize])[0];
+    let corners = region.faces.iter().flat_map(|&face| mesh.triangle(mesh.faces[face as usize]));
+    let [mut low, mut high] = [0.0f64; 2];
+    for height in corners.map(|corner| normal.dot(corner - first)) {
+        (low, high) = (low.min(height), high.max(height));
+    }
+    high - low
+}
