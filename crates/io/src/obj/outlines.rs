@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::num::NonZeroU32;
 
-use super::read::{Corner, Counts, check_range};
+use super::read::{Corner, ValueCounts, check_range};
 use crate::error::ParseError;
 use crate::text::cursor::TextCursor;
 
@@ -143,7 +143,7 @@ impl Outlines {
     }
 
     /// Fails if a corner refers to what the file does not have.
-    pub fn check(&self, counts: Counts) -> Result<(), ParseError> {
+    pub fn check(&self, counts: ValueCounts) -> Result<(), ParseError> {
         let mut forward: Vec<(usize, Corner)> = self.forward.into_iter().flatten().collect();
         forward.sort_by_key(|&(line, _)| line);
         forward.into_iter().try_for_each(|(line, corner)| check_range(line, corner, counts))

@@ -89,12 +89,12 @@ pub(super) struct ObjContent {
     /// `corners`, `forward` and the runs.
     pub(super) outlines: Option<Outlines>,
     /// Numbers of values that were taken from `positions` and `pools` already.
-    pub(super) before: Counts,
+    pub(super) before: ValueCounts,
 }
 
 /// Numbers of the values that corners may refer to.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Counts {
+pub(super) struct ValueCounts {
     pub(super) vertices: usize,
     pub(super) uvs: usize,
     pub(super) normals: usize,
@@ -106,8 +106,8 @@ impl ObjContent {
         Self { outlines: Some(Outlines::default()), ..Self::default() }
     }
 
-    pub(super) fn counts(&self) -> Counts {
-        Counts {
+    pub(super) fn counts(&self) -> ValueCounts {
+        ValueCounts {
             vertices: self.before.vertices + self.positions.len(),
             uvs: self.before.uvs + self.pools.uvs.len(),
             normals: self.before.normals + self.pools.normals.len(),
@@ -130,6 +130,7 @@ impl<'a> ObjReader<'a> {
         }
     }
 
+    // Long because each kind of statement has its line.
     fn statement(&mut self) -> Result<(), ParseError> {
         if !self.text.more() {
             if self.text.take_word(b"#MRGB ") {
@@ -431,7 +432,7 @@ fn is_keyword(word: &[u8]) -> bool {
 }
 
 #[inline]
-fn is_known(corner: Corner, counts: Counts) -> bool {
+fn is_known(corner: Corner, counts: ValueCounts) -> bool {
     let within =
         |id: Option<NonZeroU32>, count: usize| id.is_none_or(|id| id.get() as usize <= count);
     corner.vertex.get() as usize <= counts.vertices
@@ -439,7 +440,11 @@ fn is_known(corner: Corner, counts: Counts) -> bool {
         && within(corner.ids.normal, counts.normals)
 }
 
-pub(super) fn check_range(line: usize, corner: Corner, counts: Counts) -> Result<(), ParseError> {
+pub(super) fn check_range(
+    line: usize,
+    corner: Corner,
+    counts: ValueCounts,
+) -> Result<(), ParseError> {
     let ids = [
         ("vertex", Some(corner.vertex), counts.vertices),
         ("texture coordinate", corner.ids.uv, counts.uvs),

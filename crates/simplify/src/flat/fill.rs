@@ -12,7 +12,7 @@ use crate::flat::outline::OutlineSide;
 use crate::flat::regions::Region;
 
 type Delaunay = ConstrainedDelaunayTriangulation<Point2<f64>>;
-type Edge<'d> = DirectedEdgeHandle<'d, Point2<f64>, (), spade::CdtEdge<()>, ()>;
+type MadeEdge<'d> = DirectedEdgeHandle<'d, Point2<f64>, (), spade::CdtEdge<()>, ()>;
 
 /// Outline of a region in its plane. Vertices at one place are one point.
 struct Outline<'s> {
@@ -80,7 +80,7 @@ impl<'s> Outline<'s> {
         };
         let mut ends: Vec<&[usize; 2]> = self.side.keys().collect();
         ends.sort_unstable();
-        let outer = ends.into_iter().map(edge).collect::<Option<Vec<Edge<'_>>>>()?;
+        let outer = ends.into_iter().map(edge).collect::<Option<Vec<MadeEdge<'_>>>>()?;
         let mut found = FxHashSet::default();
         let mut inside = Vec::new();
         for edge in &outer {
@@ -107,7 +107,7 @@ impl<'s> Outline<'s> {
 
     /// Returns the vertex and wedge at the start of an edge of a face: those of the next side of the
     /// outline in clockwise order, since several vertices or wedges may be at one point.
-    fn corner(&self, start: Edge<'_>) -> Option<(VertexId, WedgeId)> {
+    fn corner(&self, start: MadeEdge<'_>) -> Option<(VertexId, WedgeId)> {
         let mut edge = start;
         loop {
             let ends = [edge.from(), edge.to()].map(|vertex| vertex.index());

@@ -38,12 +38,12 @@ pub struct ObjSource {
     /// Label of the faces by number of a material.
     labels: Vec<u32>,
     layout: Layout,
-    idle: Mutex<Vec<Caches>>,
+    idle: Mutex<Vec<ObjCaches>>,
 }
 
 /// Caches of one thread.
 #[derive(Debug)]
-struct Caches {
+struct ObjCaches {
     positions: Pages,
     uvs: Option<Pages>,
     normals: Option<Pages>,
@@ -88,10 +88,10 @@ impl ObjSource {
         Ok((source, end.scene))
     }
 
-    fn take(&self) -> Caches {
+    fn take(&self) -> ObjCaches {
         let idle = self.idle.lock().expect("no thread panics here").pop();
         let pages = |table: &Option<Table>| table.as_ref().map(Table::pages);
-        idle.unwrap_or_else(|| Caches {
+        idle.unwrap_or_else(|| ObjCaches {
             positions: self.positions.pages(),
             uvs: pages(&self.uvs),
             normals: pages(&self.normals),
@@ -99,7 +99,7 @@ impl ObjSource {
         })
     }
 
-    fn give(&self, caches: Caches) {
+    fn give(&self, caches: ObjCaches) {
         self.idle.lock().expect("no thread panics here").push(caches);
     }
 }

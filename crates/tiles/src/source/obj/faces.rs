@@ -6,7 +6,7 @@ use meshlod_io::obj::OutlineRow;
 use meshlod_io::triangulate;
 use rayon::prelude::*;
 
-use super::{Caches, ObjSource};
+use super::{ObjCaches, ObjSource};
 use crate::source::table::{Pages, Table};
 use crate::source::{MOST_TRIANGLES, Triangles};
 
@@ -18,7 +18,7 @@ const GROUP: usize = 1 << 12;
 
 /// Consecutive faces, decoded by one thread.
 #[derive(Clone, Copy, Debug)]
-struct Group {
+struct RowGroup {
     /// Words of the window.
     start: usize,
     end: usize,
@@ -36,7 +36,7 @@ pub(super) struct Batches<'s> {
     /// Byte of the file that the window ends at.
     end: u64,
     material: u32,
-    groups: Vec<Group>,
+    groups: Vec<RowGroup>,
 }
 
 impl<'s> Batches<'s> {
@@ -91,7 +91,7 @@ impl<'s> Batches<'s> {
     fn add(&mut self, size: usize, triangles: usize) {
         let (start, material) = (self.at, self.material);
         if self.groups.last().is_none_or(|group| group.triangles >= GROUP) {
-            self.groups.push(Group { start, end: start, material, triangles: 0 });
+            self.groups.push(RowGroup { start, end: start, material, triangles: 0 });
         }
         if let Some(group) = self.groups.last_mut() {
             group.end = start + size;
@@ -109,9 +109,9 @@ impl<'s> Batches<'s> {
             let (materials, materials_left) = rest.2.split_at_mut(group.triangles);
             rest = (places_left, values_left, materials_left);
             let places = places.as_flattened_mut();
-            work.push((group, Slots { places, values, materials, width, at: 0 }));
+            work.push((group, ObjSlots { places, values, materials, width, at: 0 }));
         }
-        let decode = |(group, slots): (&Group, Slots<'_>)| {
+        let decode = |(group, slots): (&RowGroup, ObjSlots<'_>)| {
             let mut caches = self.source.take();
             let words = &self.words[group.start..group.end];
             let decoded = self.source.decode(words, group.material, slots, &mut caches);
@@ -123,7 +123,7 @@ impl<'s> Batches<'s> {
 }
 
 /// Triangles of a group, to be filled one after the other.
-struct Slots<'t> {
+struct ObjSlots<'t> {
     places: &'t mut [[f64; 3]],
     values: &'t mut [f32],
     materials: &'t mut [u16],
@@ -133,7 +133,7 @@ struct Slots<'t> {
     at: usize,
 }
 
-impl Slots<'_> {
+impl ObjSlots<'_> {
     /// Fills the next corner.
     #[inline]
     fn put(&mut self, place: [f64; 3], values: &[f32]) {
@@ -145,7 +145,7 @@ impl Slots<'_> {
 
 /// Corners of a face.
 #[derive(Default)]
-struct Polygon {
+struct ObjPolygon {
     places: Vec<[f64; 3]>,
     values: Vec<f32>,
     order: Vec<u32>,
@@ -158,10 +158,10 @@ impl ObjSource {
         &self,
         words: &[u32],
         mut material: u32,
-        mut slots: Slots<'_>,
-        caches: &mut Caches,
+        mut slots: ObjSlots<'_>,
+        caches: &mut ObjCaches,
     ) -> io::Result<()> {
-        let mut polygon = Polygon::default();
+        let mut polygon = ObjPolygon::default();
         let mut at = 0;
         while let Some((row, size)) = OutlineRow::read(&words[at..]) {
             at += size;
@@ -192,8 +192,8 @@ impl ObjSource {
         &self,
         vertex: u64,
         [uv, normal]: [u32; 2],
-        caches: &mut Caches,
-        polygon: &mut Polygon,
+        caches: &mut ObjCaches,
+        polygon: &mut ObjPolygon,
     ) -> io::Result<()> {
         let row = self.positions.row(&mut caches.positions, vertex)?.ok_or_else(short)?;
         let half = |i: usize| u64::from(row[i]);
@@ -236,8 +236,8 @@ fn add_value(
 }
 
 /// Cuts a face into triangles.
-fn put_all(polygon: &mut Polygon, slots: &mut Slots<'_>) {
-    let Polygon { places, values, order, triangles } = polygon;
+fn put_all(polygon: &mut ObjPolygon, slots: &mut ObjSlots<'_>) {
+    let ObjPolygon { places, values, order, triangles } = polygon;
     triangles.clear();
     order.clear();
     order.extend(0..places.len() as u32);
