@@ -104,7 +104,7 @@ fn what_cannot_be_proved_is_told() {
     let (level, report) = nearly(&plates);
     assert!(level.faces.len() == 4 && report.reached && report.proof.unwrap().proved <= 1e-300);
     // What is flat only in 32 bits, to which places are rounded on the way.
-    let mut uneven = plates;
+    let mut uneven = plates.clone();
     uneven.positions.iter_mut().enumerate().for_each(|(i, at)| at[1] += (i % 3) as f64 * 1e-10);
     let (level, report) = nearly(&uneven);
     assert!(level.faces.len() < uneven.faces.len() && !report.reached);
