@@ -1,6 +1,7 @@
 // The page of `browser.mjs`: shows a model from far away and from near, and looks at the pixels.
 import * as THREE from "three";
 import { MlodLoader } from "/dist/three/index.js";
+import { look } from "./look.js";
 
 const SIZE = 256;
 const BACKGROUND = 0xff00ff;
@@ -37,7 +38,7 @@ async function run() {
             still = isDone() ? still + 1 : 0;
         }
         faces.push(mesh.progress.faces);
-        looks.push(look(renderer));
+        looks.push(look(renderer.getContext(), SIZE, SIZE));
     }
     const ray = new THREE.Raycaster();
     let hits = 0;
@@ -48,7 +49,7 @@ async function run() {
         }
     }
     const holes = looks.map((look) => look.holes);
-    const { covered } = looks[1];
+    const covered = looks[1].covered / SIZE ** 2;
     const materials = mesh.material.map(
         (material) => `${material.type}${material.map ? " map" : ""}`,
     );
@@ -64,26 +65,6 @@ async function run() {
         hit: hits > 0,
         materials,
     };
-}
-
-/**
- * Returns the part of the picture that is covered, and background pixels all of whose neighbours
- * are covered.
- */
-function look(renderer) {
-    const gl = renderer.getContext();
-    const pixels = new Uint8Array(4 * SIZE * SIZE);
-    gl.readPixels(0, 0, SIZE, SIZE, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
-    const isEmpty = (i) => pixels[4 * i] > 250 && pixels[4 * i + 1] < 5 && pixels[4 * i + 2] > 250;
-    let [covered, holes] = [0, 0];
-    for (let y = 1; y + 1 < SIZE; y++) {
-        for (let x = 1; x + 1 < SIZE; x++) {
-            const i = y * SIZE + x;
-            if (!isEmpty(i)) covered++;
-            else if (![i - 1, i + 1, i - SIZE, i + SIZE].some(isEmpty)) holes++;
-        }
-    }
-    return { covered: covered / SIZE ** 2, holes };
 }
 
 run().then(

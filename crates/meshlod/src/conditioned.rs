@@ -164,10 +164,12 @@ impl ConditionedMesh<'_> {
 /// holds only what its faces use. If the target is out of reach, the mesh is reduced as far as the
 /// rules allow, and the report says so and counts the reasons.
 ///
-/// A [`Target::Error`] is proved: no point of the result is farther from the mesh, and no point of
+/// Within a [`Target::Error`] flats first get as few faces as their outlines need, see
+/// [`flatten`]. It is proved: no point of the result is farther from the mesh, and no point of
 /// the mesh farther from the result, in exact arithmetic on the positions in memory. Writing them
-/// as 32-bit floats rounds them; `jobs::simplify` proves what is written. The [proof](Report::proof) in the report says so, or what holds
-/// instead where an error as small as the rounding of positions is out of reach.
+/// as 32-bit floats rounds them; `jobs::simplify` proves what is written. The [proof](Report::proof)
+/// in the report says so, or what holds instead where an error as small as the rounding of positions
+/// is out of reach.
 ///
 /// # Errors
 /// The mesh, the target or an option is invalid, see [`SimplifyError`].

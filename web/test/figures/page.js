@@ -2,6 +2,7 @@
 import * as THREE from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { MeshoptDecoder } from "three/addons/libs/meshopt_decoder.module.js";
+import { look } from "/test/look.js";
 
 const [WIDTH, HEIGHT] = [1280, 720];
 const options = Object.fromEntries(new URLSearchParams(location.search));
@@ -74,23 +75,6 @@ const openers = {
     },
 };
 
-/** Counts background pixels all of whose neighbours are covered; negative if nothing is covered. */
-function holesIn() {
-    const gl = renderer.getContext();
-    const pixels = new Uint8Array(4 * WIDTH * HEIGHT);
-    gl.readPixels(0, 0, WIDTH, HEIGHT, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
-    const isEmpty = (i) => pixels[4 * i] > 250 && pixels[4 * i + 1] < 5 && pixels[4 * i + 2] > 250;
-    let [holes, covered] = [0, 0];
-    for (let y = 1; y + 1 < HEIGHT; y++) {
-        for (let x = 1; x + 1 < WIDTH; x++) {
-            const i = y * WIDTH + x;
-            if (!isEmpty(i)) covered++;
-            else if (![i - 1, i + 1, i - WIDTH, i + WIDTH].some(isEmpty)) holes++;
-        }
-    }
-    return covered > 0 ? holes : -1;
-}
-
 async function run() {
     const start = performance.now();
     const { update, isDone, faces } = await openers[kind]();
@@ -100,8 +84,8 @@ async function run() {
         const state = await sent();
         update();
         renderer.render(scene, camera);
-        const found = holesIn();
-        if (found >= 0) {
+        const { covered, holes: found } = look(renderer.getContext(), WIDTH, HEIGHT);
+        if (covered > 0) {
             first ??= {
                 bytes: state.sent,
                 ms: Math.round(performance.now() - start),
@@ -110,7 +94,7 @@ async function run() {
             holes.push(found);
         }
         still = isDone() ? still + 1 : 0;
-        if (found >= 0 && (state.sent !== before || still === 5)) {
+        if (covered > 0 && (state.sent !== before || still === 5)) {
             before = state.sent;
             const picture = await new Promise((resolve) => renderer.domElement.toBlob(resolve));
             await fetch(`/picture?bytes=${state.sent}`, { method: "POST", body: picture });

@@ -24,10 +24,11 @@ mod linear;
 mod outline;
 mod regions;
 
-use meshlod_mesh::{Connectivity, Locks, Mesh, VertexId, WedgeId};
+use meshlod_mesh::{Attributes, Connectivity, Lock, Locks, Mesh, VertexId, WedgeId};
 use rayon::prelude::*;
 
 use crate::flat::fill::fill;
+use crate::flat::linear::Linear;
 use crate::flat::outline::Outlines;
 use crate::flat::regions::Regions;
 
@@ -67,18 +68,19 @@ struct NewFace {
 /// stay as they are. Attributes that are not linear in the plane of a region, to half of
 /// [`AttributeBounds`](meshlod_mesh::AttributeBounds) by default, keep it as it is.
 ///
-/// Cost: O(n log n), n = faces.
+/// Cost: O(n log n), n = faces, and again for each time that regions turn out to stay as they are.
 /// # Panics
 /// If the mesh is not valid, see [`Mesh::validate`].
 pub fn flatten(mesh: &Mesh, options: &FlatOptions<'_>) -> Option<Flattened> {
     let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
-    let mut regions = Regions::find(mesh, &connectivity, options.tolerance);
+    let linear = Linear::new(mesh);
+    let mut regions = Regions::find(mesh, &connectivity, &linear, options.tolerance);
     let held = held(mesh, options.locks);
     loop {
         if regions.list.iter().all(|region| region.is_kept) {
             return None;
         }
-        let outlines = Outlines::new(mesh, &connectivity, &regions, &held, options);
+        let outlines = Outlines::new(mesh, &connectivity, &linear, &regions, &held, options);
         let filled: Vec<Option<Vec<NewFace>>> = (0..regions.list.len())
             .into_par_iter()
             .map(|r| match regions.list[r].is_kept {
@@ -105,13 +107,13 @@ pub fn flatten(mesh: &Mesh, options: &FlatOptions<'_>) -> Option<Flattened> {
 /// Returns which vertices must stay.
 fn held(mesh: &Mesh, locks: &Locks) -> Vec<bool> {
     let locks = locks.with_ties_locked(mesh.positions.len());
-    let is_held = |v| locks.of(VertexId::new(v)) != meshlod_mesh::Lock::Free;
+    let is_held = |v| locks.of(VertexId::new(v)) != Lock::Free;
     (0..mesh.positions.len()).map(is_held).collect()
 }
 
 fn with_faces(mesh: &Mesh, faces: &[NewFace]) -> Mesh {
     let like: Vec<u32> = faces.iter().map(|face| face.like).collect();
-    let attributes = mesh.attributes.as_ref().map(|attributes| meshlod_mesh::Attributes {
+    let attributes = mesh.attributes.as_ref().map(|attributes| Attributes {
         corners: faces.iter().map(|face| face.wedges).collect(),
         ..attributes.clone()
     });

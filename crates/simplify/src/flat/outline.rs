@@ -52,11 +52,12 @@ impl Outlines {
     pub(super) fn new(
         mesh: &Mesh,
         connectivity: &Connectivity,
+        linear: &Linear<'_>,
         regions: &Regions,
         held: &[bool],
         options: &FlatOptions<'_>,
     ) -> Self {
-        let outer = outer_sides(mesh, connectivity, regions);
+        let outer = outer_sides(mesh, connectivity, linear, regions);
         let graph = Graph::new(mesh, &outer);
         let mut stays = held.to_vec();
         hold_kept(mesh, regions, &mut stays);
@@ -83,8 +84,12 @@ impl Outlines {
 }
 
 /// Returns the sides of faces that are outlines of regions to be filled.
-fn outer_sides(mesh: &Mesh, connectivity: &Connectivity, regions: &Regions) -> Vec<(u32, Side)> {
-    let linear = Linear::new(mesh);
+fn outer_sides(
+    mesh: &Mesh,
+    connectivity: &Connectivity,
+    linear: &Linear<'_>,
+    regions: &Regions,
+) -> Vec<(u32, Side)> {
     let mut outer = Vec::new();
     for (face, &region) in regions.of_face.iter().enumerate() {
         if regions.list[region as usize].is_kept {

@@ -34,9 +34,14 @@ pub(super) struct Regions {
 
 impl Regions {
     /// Finds the regions. Those of one face are kept, and so are those that are too high.
-    pub(super) fn find(mesh: &Mesh, connectivity: &Connectivity, tolerance: f64) -> Self {
-        let mut this = Self::group(mesh, connectivity, tolerance);
-        let linear = Linear::new(mesh);
+    pub(super) fn find(
+        mesh: &Mesh,
+        connectivity: &Connectivity,
+        linear: &Linear<'_>,
+        tolerance: f64,
+    ) -> Self {
+        let planes = Planes { mesh, tolerance, linear };
+        let mut this = Self::group(&planes, connectivity);
         for region in &mut this.list {
             region.normal = region.faces.iter().map(|&face| normal(mesh, face)).sum();
             if tolerance > 0.0 {
@@ -58,8 +63,8 @@ impl Regions {
         filled.map(|region| region.height).fold(0.0, f64::max).hypot(outlines)
     }
 
-    fn group(mesh: &Mesh, connectivity: &Connectivity, tolerance: f64) -> Self {
-        let planes = Planes { mesh, tolerance, linear: Linear::new(mesh) };
+    fn group(planes: &Planes<'_>, connectivity: &Connectivity) -> Self {
+        let mesh = planes.mesh;
         let mut joined = UnionFind::new(mesh.faces.len());
         let mut without_area = Vec::new();
         for face in (0..mesh.faces.len()).map(FaceId::new) {
@@ -107,7 +112,7 @@ impl Regions {
 struct Planes<'m> {
     mesh: &'m Mesh,
     tolerance: f64,
-    linear: Linear<'m>,
+    linear: &'m Linear<'m>,
 }
 
 impl Planes<'_> {

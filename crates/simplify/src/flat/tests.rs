@@ -1,6 +1,5 @@
 use meshlod_fixtures::shape::{bare, topology, volume};
 use meshlod_fixtures::{charted, cube, grid, mesh};
-use meshlod_mesh::{Lock, Locks, Mesh, VertexId};
 use meshlod_samples as samples;
 
 use super::*;
@@ -102,7 +101,7 @@ fn linear_attributes_go_along_and_others_keep_a_flat_as_it_is() {
         };
         let corners = mesh.faces.iter().map(|face| face.map(|v| WedgeId(v.0))).collect();
         let wedge_count = mesh.positions.len();
-        let attributes = meshlod_mesh::Attributes { corners, wedge_count, layers: vec![layer] };
+        let attributes = Attributes { corners, wedge_count, layers: vec![layer] };
         Mesh { attributes: Some(attributes), ..mesh }
     };
     let linear = flat(&with(|x, y| [0.3 * x + 0.1 * y, 0.7 * y - 0.2 * x]));

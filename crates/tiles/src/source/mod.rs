@@ -6,6 +6,7 @@ mod obj;
 mod open;
 mod pages;
 mod ply;
+mod polygon;
 mod scene;
 mod spool;
 mod stl;

@@ -4,11 +4,11 @@ use std::io;
 use std::path::Path;
 
 use meshlod_io::ply::{FaceRows, RowFault, StreamLayout, stream_layout};
-use meshlod_io::triangulate;
 use rayon::prelude::*;
 
 use super::file::PlacedFile;
 use super::pages::{Cache, Caches};
+use super::polygon::{Polygon, Slots};
 use super::{MOST_TRIANGLES, Source, Triangles};
 use crate::layout::Layout;
 
@@ -178,36 +178,6 @@ impl<'s> Window<'s> {
     }
 }
 
-/// Triangles of a group, to be filled one after the other.
-struct Slots<'t> {
-    places: &'t mut [[f64; 3]],
-    values: &'t mut [f32],
-    /// Number of values of a corner.
-    width: usize,
-    /// Corners that are filled.
-    at: usize,
-}
-
-impl Slots<'_> {
-    /// Fills the next corner.
-    #[inline]
-    fn put(&mut self, place: [f64; 3], values: &[f32]) {
-        self.places[self.at] = place;
-        self.values[self.at * self.width..][..self.width].copy_from_slice(values);
-        self.at += 1;
-    }
-}
-
-/// Buffers of a polygon.
-#[derive(Default)]
-struct Polygon {
-    vertices: Vec<u64>,
-    places: Vec<[f64; 3]>,
-    values: Vec<f32>,
-    order: Vec<u32>,
-    triangles: Vec<[u32; 3]>,
-}
-
 impl PlySource {
     /// Decodes the current rows of a window.
     fn decode_all(&self, window: &Window<'_>, some: &mut Triangles) -> io::Result<()> {
@@ -244,18 +214,26 @@ impl PlySource {
         mut slots: Slots<'_>,
         cache: &mut Cache,
     ) -> io::Result<()> {
-        let mut polygon = Polygon::default();
+        let (mut vertices, mut polygon) = (Vec::new(), Polygon::default());
         let mut at = group.at;
         for row in group.first..group.first + group.rows as u64 {
-            at += self.read_vertices(row, (window, at), &mut polygon.vertices)?;
-            match polygon.vertices[..] {
+            at += self.read_vertices(row, (window, at), &mut vertices)?;
+            match vertices[..] {
                 [a, b, c] => {
                     for vertex in [a, b, c] {
                         let (place, values) = self.vertices.vertex(&self.file, cache, vertex)?;
                         slots.put(place, values);
                     }
                 }
-                _ => self.cut(&mut polygon, &mut slots, cache)?,
+                _ => {
+                    polygon.clear();
+                    for &vertex in &vertices {
+                        let (place, values) = self.vertices.vertex(&self.file, cache, vertex)?;
+                        polygon.places.push(place);
+                        polygon.values.extend_from_slice(values);
+                    }
+                    polygon.cut_into(&mut slots);
+                }
             }
         }
         self.layout.fill_normals(slots.places.as_chunks().0, slots.values);
@@ -280,32 +258,6 @@ impl PlySource {
             wrong(&format!("refers to vertex {index}, but there are only {count}, counted from 0"))
         })?;
         Ok(face.size)
-    }
-
-    /// Cuts a polygon into triangles.
-    fn cut(
-        &self,
-        polygon: &mut Polygon,
-        slots: &mut Slots<'_>,
-        cache: &mut Cache,
-    ) -> io::Result<()> {
-        polygon.places.clear();
-        polygon.values.clear();
-        for &vertex in &polygon.vertices {
-            let (place, values) = self.vertices.vertex(&self.file, cache, vertex)?;
-            polygon.places.push(place);
-            polygon.values.extend_from_slice(values);
-        }
-        polygon.order.clear();
-        polygon.order.extend(0..polygon.places.len() as u32);
-        polygon.triangles.clear();
-        triangulate(&polygon.places, &polygon.order, &mut polygon.triangles);
-        let width = slots.width;
-        for corner in polygon.triangles.as_flattened() {
-            let corner = *corner as usize;
-            slots.put(polygon.places[corner], &polygon.values[corner * width..][..width]);
-        }
-        Ok(())
     }
 
     /// Creates the error of a face, by the byte of the file that it begins at.

@@ -107,7 +107,7 @@ impl Server {
     }
 }
 
-/// ServerCounts a connection while it is open.
+/// Counts a connection while it is open.
 struct OpenConnection(Arc<AtomicUsize>);
 
 impl OpenConnection {

@@ -59,11 +59,7 @@ impl<'a> Replacer<'a> {
         grid: Option<&QuantizationGrid>,
     ) -> Result<bool, Unsupported> {
         let numbers = Numbers { compression: self.compression, grid };
-        let name = json.get("name").and_then(Value::as_str).unwrap_or_default().to_owned();
-        let wrong = |reason: String| Unsupported::new(format!("mesh {name:?}"), reason);
-        mesh.validate().map_err(|error| wrong(error.to_string()))?;
-        let old = json.get("primitives").and_then(Value::as_array).cloned().unwrap_or_default();
-        let faces = faces_by_primitive(mesh, &old).map_err(wrong)?;
+        let (old, faces) = primitives(json, mesh)?;
         let layers = by_attribute(mesh);
         let known = known_attributes(&old);
         let mut new = Vec::new();
@@ -100,12 +96,8 @@ impl<'a> Replacer<'a> {
         lines: Lines,
     ) -> Result<Vec<usize>, Unsupported> {
         let numbers = Numbers { compression: self.compression, grid };
-        let name = json.get("name").and_then(Value::as_str).unwrap_or_default().to_owned();
-        let wrong = |reason: String| Unsupported::new(format!("mesh {name:?}"), reason);
-        mesh.validate().map_err(|error| wrong(error.to_string()))?;
-        let old = json.get("primitives").and_then(Value::as_array).cloned().unwrap_or_default();
-        let faces = faces_by_primitive(mesh, &old).map_err(wrong)?;
-        let faces_before = faces_by_primitive(finest, &old).map_err(wrong)?;
+        let (old, faces) = primitives(json, mesh)?;
+        let (_, faces_before) = primitives(json, finest)?;
         let known = known_attributes(&old);
         let mut new = Vec::new();
         for (at, primitive) in old.iter().enumerate() {
@@ -218,6 +210,16 @@ impl<'a> Replacer<'a> {
         };
         arrays.indices.into_iter().map(with_indices).collect()
     }
+}
+
+/// Returns the primitives in the JSON of a glTF mesh, and the faces of `mesh` that each gets.
+fn primitives(json: &Value, mesh: &Mesh) -> Result<(Vec<Value>, Vec<Vec<u32>>), Unsupported> {
+    let name = json.get("name").and_then(Value::as_str).unwrap_or_default();
+    let wrong = |reason: String| Unsupported::new(format!("mesh {name:?}"), reason);
+    mesh.validate().map_err(|error| wrong(error.to_string()))?;
+    let old = json.get("primitives").and_then(Value::as_array).cloned().unwrap_or_default();
+    let faces = faces_by_primitive(mesh, &old).map_err(wrong)?;
+    Ok((old, faces))
 }
 
 /// Groups the faces by primitive; without labels, all are in the first triangle primitive.

@@ -26,8 +26,8 @@ pub use request::{Aim, SimplifyRequest};
 /// Simplifies all meshes of a scene to one common target, and returns the scene with a report.
 ///
 /// An error is proved of the scene [as it is written](SimplifyRequest::written_as): the run leaves
-/// room for the rounding of coordinates, and the report says what holds, in what precision. See
-/// [`ConditionedScene`] for what happens to the meshes before, and
+/// room for the rounding of coordinates, and the report says what holds, in what precision. Within an
+/// error, [flats](ConditionedScene::flatten_within) go first. See [`ConditionedScene`] for what happens to the meshes before, and
 /// [`SceneSimplifier`](crate::scene::SceneSimplifier) for the run.
 ///
 /// Cost: O(n log n), n = faces, and several times that for an error.

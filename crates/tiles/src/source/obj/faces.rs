@@ -3,10 +3,10 @@
 use std::io;
 
 use meshlod_io::obj::OutlineRow;
-use meshlod_io::triangulate;
 use rayon::prelude::*;
 
 use super::{ObjCaches, ObjSource};
+use crate::source::polygon::{Polygon, Slots};
 use crate::source::table::{Pages, Table};
 use crate::source::{MOST_TRIANGLES, Triangles};
 
@@ -109,47 +109,18 @@ impl<'s> Batches<'s> {
             let (materials, materials_left) = rest.2.split_at_mut(group.triangles);
             rest = (places_left, values_left, materials_left);
             let places = places.as_flattened_mut();
-            work.push((group, ObjSlots { places, values, materials, width, at: 0 }));
+            work.push((group, Slots { places, values, width, at: 0 }, materials));
         }
-        let decode = |(group, slots): (&RowGroup, ObjSlots<'_>)| {
+        let decode = |(group, slots, materials): (&RowGroup, Slots<'_>, &mut [u16])| {
             let mut caches = self.source.take();
             let words = &self.words[group.start..group.end];
-            let decoded = self.source.decode(words, group.material, slots, &mut caches);
+            let decoded =
+                self.source.decode(words, group.material, (slots, materials), &mut caches);
             self.source.give(caches);
             decoded
         };
         work.into_par_iter().map(decode).collect()
     }
-}
-
-/// Triangles of a group, to be filled one after the other.
-struct ObjSlots<'t> {
-    places: &'t mut [[f64; 3]],
-    values: &'t mut [f32],
-    materials: &'t mut [u16],
-    /// Number of values of a corner.
-    width: usize,
-    /// Corners that are filled.
-    at: usize,
-}
-
-impl ObjSlots<'_> {
-    /// Fills the next corner.
-    #[inline]
-    fn put(&mut self, place: [f64; 3], values: &[f32]) {
-        self.places[self.at] = place;
-        self.values[self.at * self.width..][..self.width].copy_from_slice(values);
-        self.at += 1;
-    }
-}
-
-/// Corners of a face.
-#[derive(Default)]
-struct ObjPolygon {
-    places: Vec<[f64; 3]>,
-    values: Vec<f32>,
-    order: Vec<u32>,
-    triangles: Vec<[u32; 3]>,
 }
 
 impl ObjSource {
@@ -158,10 +129,10 @@ impl ObjSource {
         &self,
         words: &[u32],
         mut material: u32,
-        mut slots: ObjSlots<'_>,
+        (mut slots, materials): (Slots<'_>, &mut [u16]),
         caches: &mut ObjCaches,
     ) -> io::Result<()> {
-        let mut polygon = ObjPolygon::default();
+        let mut polygon = Polygon::default();
         let mut at = 0;
         while let Some((row, size)) = OutlineRow::read(&words[at..]) {
             at += size;
@@ -172,15 +143,14 @@ impl ObjSource {
                 continue;
             };
             let first = slots.at;
-            polygon.places.clear();
-            polygon.values.clear();
+            polygon.clear();
             for (corner, &vertex) in vertices.iter().enumerate() {
                 let ids = [uvs, normals].map(|ids| ids.get(corner).copied().unwrap_or(0));
                 self.corner(vertex.into(), ids, caches, &mut polygon)?;
             }
-            put_all(&mut polygon, &mut slots);
+            polygon.cut_into(&mut slots);
             let label = self.labels.get(material as usize).copied().unwrap_or(0) as u16;
-            slots.materials[first / 3..slots.at / 3].fill(label);
+            materials[first / 3..slots.at / 3].fill(label);
         }
         self.layout.fill_normals(slots.places.as_chunks().0, slots.values);
         Ok(())
@@ -193,7 +163,7 @@ impl ObjSource {
         vertex: u64,
         [uv, normal]: [u32; 2],
         caches: &mut ObjCaches,
-        polygon: &mut ObjPolygon,
+        polygon: &mut Polygon,
     ) -> io::Result<()> {
         let row = self.positions.row(&mut caches.positions, vertex)?.ok_or_else(short)?;
         let half = |i: usize| u64::from(row[i]);
@@ -233,23 +203,4 @@ fn add_value(
         None => values.extend((0..width).map(|_| 0.0)),
     }
     Ok(())
-}
-
-/// Cuts a face into triangles.
-fn put_all(polygon: &mut ObjPolygon, slots: &mut ObjSlots<'_>) {
-    let ObjPolygon { places, values, order, triangles } = polygon;
-    triangles.clear();
-    order.clear();
-    order.extend(0..places.len() as u32);
-    triangulate(places, order, triangles);
-    let width = slots.width;
-    for corner in triangles.as_flattened() {
-        let corner = *corner as usize;
-        slots.put(places[corner], &values[corner * width..][..width]);
-    }
-}
-
-/// Creates the error of a row that the file had when it was read.
-fn short() -> io::Error {
-    io::Error::new(io::ErrorKind::UnexpectedEof, "a scratch file lacks values")
 }
