@@ -204,3 +204,8 @@ fn add_value(
     }
     Ok(())
 }
+
+/// Creates the error of a row that the file had when it was read.
+fn short() -> io::Error {
+    io::Error::new(io::ErrorKind::UnexpectedEof, "a scratch file lacks values")
+}
