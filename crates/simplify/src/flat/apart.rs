@@ -16,7 +16,7 @@ struct Faces<'m> {
     list: Vec<NewFace>,
     /// Region of each face.
     region: Vec<u32>,
-    /// Faces at each edge, whose ends are in order.
+    /// Faces at each edge, whose ends are in order; empty while no edge has too many.
     at: FxHashMap<[u32; 2], Vec<u32>>,
 }
 
@@ -54,9 +54,7 @@ impl<'m> Faces<'m> {
             }
             region.resize(list.len(), r as u32);
         }
-        let mut this = Self { mesh, regions, list, region, at: FxHashMap::default() };
-        (0..this.list.len() as u32).for_each(|face| this.enter(face));
-        this
+        Self { mesh, regions, list, region, at: FxHashMap::default() }
     }
 
     fn enter(&mut self, face: u32) {
@@ -72,20 +70,39 @@ impl<'m> Faces<'m> {
     }
 
     /// Returns the edges of more than two faces, two of which are of a region that was filled.
-    fn crowded(&self) -> Vec<[u32; 2]> {
-        let is_crowded = |(&ends, faces): (&[u32; 2], &Vec<u32>)| {
-            (faces.len() > 2 && self.inner(ends).is_some()).then_some(ends)
-        };
-        let mut crowded: Vec<[u32; 2]> = self.at.iter().filter_map(is_crowded).collect();
+    fn crowded(&mut self) -> Vec<[u32; 2]> {
+        let mut count: FxHashMap<[u32; 2], u32> = FxHashMap::default();
+        // Most meshes have few flats, so only their edges are counted.
+        for is_filled in [true, false] {
+            let faces = self.list.iter().zip(&self.region);
+            for (face, _) in faces.filter(|&(_, &r)| self.is_filled(r) == is_filled) {
+                for ends in edges(face) {
+                    if is_filled {
+                        *count.entry(ends).or_default() += 1;
+                    } else if let Some(count) = count.get_mut(&ends) {
+                        *count += 1;
+                    }
+                }
+            }
+        }
+        let is_crowded = |(ends, count): ([u32; 2], u32)| (count > 2).then_some(ends);
+        let mut crowded: Vec<[u32; 2]> = count.into_iter().filter_map(is_crowded).collect();
+        if !crowded.is_empty() {
+            (0..self.list.len() as u32).for_each(|face| self.enter(face));
+        }
+        crowded.retain(|&ends| self.inner(ends).is_some());
         crowded.sort_unstable();
         crowded
+    }
+
+    fn is_filled(&self, region: u32) -> bool {
+        !self.regions.list[region as usize].is_kept
     }
 
     /// Returns the two faces of a region that was filled at an edge, if there are any.
     fn inner(&self, ends: [u32; 2]) -> Option<[u32; 2]> {
         let faces = &self.at[&ends];
-        let is_filled =
-            |face: &&u32| !self.regions.list[self.region[**face as usize] as usize].is_kept;
+        let is_filled = |face: &&u32| self.is_filled(self.region[**face as usize]);
         faces.iter().filter(is_filled).find_map(|&a| {
             let is_other =
                 |b: &&u32| **b != a && self.region[**b as usize] == self.region[a as usize];
@@ -133,16 +150,19 @@ impl<'m> Faces<'m> {
 
     /// Returns the regions that have new faces with the same corners as another face.
     fn twice(&self) -> Vec<usize> {
-        let mut sorted: Vec<([u32; 3], usize)> = Vec::with_capacity(self.list.len());
+        let mut sorted: Vec<([u32; 3], u32)> = Vec::with_capacity(self.list.len());
         for (face, &region) in self.list.iter().zip(&self.region) {
             let mut corners = face.vertices.map(|v| v.0);
             corners.sort_unstable();
-            sorted.push((corners, region as usize));
+            sorted.push((corners, region));
         }
         sorted.sort_unstable();
         let same = sorted.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() > 1);
-        let is_filled = |region: &usize| !self.regions.list[*region].is_kept;
-        same.filter_map(|same| same.iter().map(|&(_, region)| region).rfind(is_filled)).collect()
+        let last = |same: &[([u32; 3], u32)]| {
+            let found = same.iter().rfind(|(_, region)| self.is_filled(*region));
+            found.map(|&(_, region)| region as usize)
+        };
+        same.filter_map(last).collect()
     }
 }
 
