@@ -28,6 +28,7 @@ use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends, Mobility};
 use crate::kernel::components::Components;
 use crate::kernel::contraction_log::{Logged, LoggedContraction};
+use crate::kernel::handles::Handles;
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
 use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
@@ -85,6 +86,8 @@ pub(crate) struct CollapseLoop<'v, A> {
     pub(crate) ties: Option<&'v mut Ties>,
     /// Components that may vanish as a whole, if any may.
     pub(crate) components: Option<&'v mut Components>,
+    /// Handles that may close, if there are any.
+    pub(crate) handles: Option<&'v mut Handles>,
     pub(crate) queue: &'v mut BucketQueue,
     pub(crate) edge_ring: &'v mut EdgeRing,
     pub(crate) deferral: &'v mut Deferral,
@@ -116,21 +119,34 @@ struct PricedEdge {
 }
 
 /// A priced edge with its new vertex placed.
-struct PlacedEdge {
+pub(crate) struct PlacedEdge {
     priced: PricedEdge,
     /// Old place of the vertex that stays, and the new one.
     from: Vec3,
     place: Vec3,
     /// Square of the distance by which the step would move the surface.
-    now: f32,
+    pub(crate) now: f32,
 }
 
 impl PlacedEdge {
     /// Returns the squared distance of all steps together.
     #[inline(always)]
-    fn moved(&self, vertices: &Vertices<'_>) -> f32 {
+    pub(crate) fn moved(&self, vertices: &Vertices<'_>) -> f32 {
         let Ends { v0, v1, .. } = self.priced.ends;
         self.now + vertices.get(v0).moved.max(vertices.get(v1).moved)
+    }
+
+    /// Returns the bucket of the cost.
+    pub(crate) fn bucket(&self) -> u16 {
+        self.priced.bucket
+    }
+
+    #[inline(always)]
+    fn collapse(&self) -> Collapse {
+        let &Self { priced: PricedEdge { ends, ref quadric, .. }, from, place, .. } = self;
+        let displacement = place - from;
+        let from_middle = displacement.as_dvec3() - quadric.half;
+        Collapse { ends, half: quadric.half, from_middle, place, displacement }
     }
 
     #[inline(always)]
@@ -163,6 +179,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
             records_values: false,
             ties: None,
             components: None,
+            handles: None,
             queue,
             edge_ring,
             deferral,
@@ -322,6 +339,12 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
             Some(_) if self.are_tied([v, target]) => self.collapse_together([v, target], front),
             _ => self.contract(v, target, front),
         };
+        let done = match done {
+            Err(Rejection::Refused(Refusal::Link, _)) if self.handles.is_some() => {
+                self.close_handle([v, target], front)
+            }
+            done => done,
+        };
         match done {
             Ok(kept) => self.defer(kept, front + NEW_VERTEX_DELAY),
             Err(Rejection::Deferred(bucket)) => self.defer(v, bucket),
@@ -405,7 +428,12 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
 
     /// Places the new vertex of an edge whose cost is within the slack of the front.
     #[inline(always)]
-    fn place(&mut self, v: u32, target: u32, front: u16) -> Result<PlacedEdge, Rejection> {
+    pub(crate) fn place(
+        &mut self,
+        v: u32,
+        target: u32,
+        front: u16,
+    ) -> Result<PlacedEdge, Rejection> {
         let priced = self.price(v, target, front)?;
         let PricedEdge { ends, quadric, from_middle, bucket } = priced;
         let Self { vertices, edge_ring, room, .. } = self;
@@ -439,16 +467,13 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     fn contract(&mut self, v: u32, target: u32, front: u16) -> Result<u32, Rejection> {
         let placed = self.place(v, target, front)?;
         let mut moved = placed.moved(&self.vertices);
-        let PlacedEdge { priced: PricedEdge { ends, ref quadric, bucket, .. }, from, place, now } =
-            placed;
+        let PlacedEdge { priced: PricedEdge { ends, ref quadric, bucket, .. }, now, .. } = placed;
         let Self { vertices, model, edge_ring, deferral, room, .. } = self;
         let refused = |refusal| Rejection::Refused(refusal, bucket);
         if let Some(bucket) = deferral.wait(now, moved, front) {
             return Err(Rejection::Deferred(bucket));
         }
-        let displacement = place - from;
-        let from_middle = displacement.as_dvec3() - quadric.half;
-        let collapse = Collapse { ends, half: quadric.half, from_middle, place, displacement };
+        let collapse = placed.collapse();
         if is_out_of_proportion(now, self.error as f32, *room) {
             return Err(refused(Refusal::Disproportion));
         }
@@ -465,6 +490,19 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         Ok(ends.v0)
     }
 
+    /// Contracts an edge that has been placed and checked before, and has still the same ring.
+    /// Returns the vertex that stays.
+    pub(crate) fn contract_placed(&mut self, placed: &PlacedEdge, moved: f32, front: u16) -> u32 {
+        let Self { vertices, model, edge_ring, .. } = self;
+        let (collapse, quadric) = (placed.collapse(), &placed.priced.quadric);
+        let Ends { v0, v1, .. } = collapse.ends;
+        let again = edge_ring.gather(vertices, v0, v1);
+        again.and_then(|()| edge_ring.try_place(collapse.displacement)).expect("checked before");
+        model.preview(vertices, edge_ring, &collapse);
+        self.commit(&collapse, quadric, moved, front);
+        v0
+    }
+
     /// Carries out a contraction that has passed all checks, and records it.
     #[inline(always)]
     pub(crate) fn commit(
@@ -477,6 +515,9 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         let Ends { v0, v1, mobility, .. } = collapse.ends;
         let Collapse { place, displacement, .. } = *collapse;
         self.contractions += 1;
+        if let Some(handles) = &mut self.handles {
+            handles.merge(v0, v1);
+        }
         self.error = self.error.max(moved.into());
         let lost = quadric.level - quadric.normal.dot(displacement.as_dvec3() - quadric.half);
         let is_open = self.edge_ring.is_open(&self.vertices, v0);

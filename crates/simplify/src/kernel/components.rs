@@ -244,6 +244,11 @@ impl Components {
         self.waiting.iter().map(faces_of).sum::<usize>() > faces / EARLY_SHARE
     }
 
+    /// Returns the number of components of the input.
+    pub(crate) fn count(&self) -> usize {
+        self.all.len()
+    }
+
     /// Returns the vertices of a component.
     pub(crate) fn vertices(&self, component: u32) -> &[u32] {
         &self.vertices[self.all[component as usize].vertices.clone()]

@@ -47,16 +47,29 @@ pub(crate) struct InputNames<'w> {
 }
 
 impl InputNames<'_> {
-    /// Returns the input vertex that `v` is, or is a copy of.
+    /// Returns the input vertex that `v` is, or is a copy of. Vertices of cuts come after those of
+    /// the input.
     #[inline]
     pub(crate) fn input(&self, v: u32) -> VertexId {
-        VertexId(self.order.input(self.store.origin(v)))
+        let InputNames { mesh, order, store, .. } = self;
+        match (v as usize).checked_sub(store.own()) {
+            Some(spare) if store.spare > 0 => VertexId::new(mesh.positions.len() + spare),
+            _ => VertexId(order.input(store.origin(v))),
+        }
+    }
+
+    /// Returns the number of vertices of the input and of those for cuts.
+    pub(crate) fn count(&self) -> usize {
+        self.mesh.positions.len() + self.store.spare
     }
 
     /// Returns the position in model units of an input vertex at a place.
     #[inline]
     pub(crate) fn position(&self, input: VertexId, place: Vec3) -> [f64; 3] {
-        self.frame.to_model_or_input(self.mesh.positions[input.index()], place)
+        match self.mesh.positions.get(input.index()) {
+            Some(&position) => self.frame.to_model_or_input(position, place),
+            None => self.frame.to_model(place),
+        }
     }
 }
 

@@ -23,7 +23,7 @@ pub(crate) fn level(
         None => order.face(&mesh.faces[i]),
     };
     let faces = live_faces(mesh.faces.len(), of_input, &live);
-    let mut ids = vec![NO_VERTEX; mesh.positions.len()];
+    let mut ids = vec![NO_VERTEX; names.count()];
     let mut level = Mesh::default();
     for (_, corners) in &faces {
         for &v in corners {
@@ -56,10 +56,12 @@ pub(crate) fn workspace(
     let live = store.live_vertices();
     let now = |v: u32| names.input(live[v as usize]);
     let now = |[a, b, c]: [u32; 3]| [now(a), now(b), now(c)];
-    let place = |v: VertexId| names.position(v, store.all[order.id(v) as usize].place());
+    let of_input = (0..mesh.positions.len() as u32).map(|v| order.id(VertexId(v)));
+    let all = of_input.chain((store.own() as u32..).take(store.spare));
+    let place = |v: u32| names.position(names.input(v), store.all[v as usize].place());
     let faces = numbers(mesh, order, split);
     Mesh {
-        positions: (0..mesh.positions.len() as u32).map(|v| place(VertexId(v))).collect(),
+        positions: all.map(place).collect(),
         faces: faces.clone().map(now).collect(),
         attributes: model.all_attributes(faces),
         materials: mesh.materials.clone(),

@@ -35,6 +35,7 @@ mod collapse;
 mod collapse_loop;
 mod components;
 mod contraction_log;
+mod handles;
 mod level;
 mod mesh;
 mod metric;

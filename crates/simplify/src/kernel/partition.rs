@@ -19,6 +19,7 @@ use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse_loop::CollapseLoop;
 use crate::kernel::components::Components;
 use crate::kernel::contraction_log::{Logged, merge};
+use crate::kernel::handles::Handles;
 use crate::kernel::mesh::one_ring::{GHOST, LongRing, VertexStore, Vertices};
 use crate::kernel::mesh::vertex::VertexFlags;
 use crate::kernel::retrace::Retrace;
@@ -65,6 +66,8 @@ pub(crate) struct Whole {
     pub(crate) ties: Option<Ties>,
     /// Components that may vanish once the surface is in one part, if there are any.
     pub(crate) components: Option<Components>,
+    /// Handles that may close once the surface is in one part, if there are any.
+    pub(crate) handles: Option<Handles>,
     /// Half the size of the input's box, centred in the frame and a little larger. A metric that
     /// preserves the volume keeps all vertices in it.
     pub(crate) room: Vec3,
@@ -72,7 +75,7 @@ pub(crate) struct Whole {
 
 impl Default for Whole {
     fn default() -> Self {
-        Self { ties: None, components: None, room: Vec3::INFINITY }
+        Self { ties: None, components: None, handles: None, room: Vec3::INFINITY }
     }
 }
 
@@ -307,7 +310,7 @@ impl<A: AttributeModel> Partition<A> {
 
     /// Returns a loop for each part, with the part's waiting vertices.
     fn loops(&mut self) -> Vec<(CollapseLoop<'_, A>, &mut Vec<u32>)> {
-        let first_copy = self.store.own() as u32;
+        let first_copy = self.store.first_copy();
         let (error, room, records_values) = (self.error, self.whole.room, self.records_values);
         let VertexStore { all, copied, split, protection, .. } = &mut self.store;
         let mut rest = &mut all[..];
@@ -328,6 +331,7 @@ impl<A: AttributeModel> Partition<A> {
         if let [(collapse_loop, _)] = &mut loops[..] {
             collapse_loop.ties = self.whole.ties.as_mut();
             collapse_loop.components = self.whole.components.as_mut();
+            collapse_loop.handles = self.whole.handles.as_mut();
         }
         loops
     }

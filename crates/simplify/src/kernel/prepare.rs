@@ -12,6 +12,7 @@ use crate::kernel::attributes::layers::AttributeLayers;
 use crate::kernel::attributes::seam_release::SeamRelease;
 use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
 use crate::kernel::components::{Components, Pieces};
+use crate::kernel::handles::{Handles, PER_CUT, genus};
 use crate::kernel::mesh::local_frame::Frame;
 use crate::kernel::mesh::one_ring::GHOST;
 use crate::kernel::mesh::vertex::VertexFlags;
@@ -86,7 +87,7 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
         let input = InputSummary { degenerate_faces, duplicate_faces, non_manifold_vertices, held };
         let room = frame.to_local(bounds.max);
         let room = room + Vec3::splat(BEYOND * (bounds.diagonal() / frame.unit) as f32);
-        let whole = Whole { ties: None, components: None, room };
+        let whole = Whole { room, ..Whole::default() };
         let mut prepared = Self { metric, mesh, frame, order, fans, faces, input, whole };
         prepared.pin();
         let is_held = prepared.lock(options);
@@ -158,6 +159,22 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
         self.whole.components = Components::new::<M>(&pieces, faces, below);
     }
 
+    /// Counts the handles, and makes room for cutting them.
+    fn find_handles(&mut self) {
+        let store = &mut self.fans.store;
+        if !store.copied.is_empty() {
+            return;
+        }
+        let components = self.whole.components.as_ref().map_or(1, Components::count);
+        let genus = genus(&store.whole(), components);
+        if genus > 0 {
+            let faces = numbers(self.mesh, &self.order, self.faces.as_deref()).collect();
+            let handles = Handles::new(genus, faces, store.own() as u32);
+            store.add_spare(PER_CUT * genus);
+            self.whole.handles = Some(handles);
+        }
+    }
+
     /// Applies the locks. Returns for each vertex of the input whether it is locked.
     fn lock(&mut self, options: &Options) -> Vec<bool> {
         self.fans.store.protection = options.protection_of_cost() as f32;
@@ -219,10 +236,13 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
 
 impl<'m, M: Metric + 'm> Prepared<'m, M> {
     /// Builds the attribute quadrics, and costs all vertices.
-    pub(crate) fn start(self, options: &Options) -> Box<dyn Run + 'm> {
+    pub(crate) fn start(mut self, options: &Options) -> Box<dyn Run + 'm> {
         let faces = numbers(self.mesh, &self.order, self.faces.as_deref());
         let Some(corners) = Corners::new(self.mesh, faces, self.fans.store.all.len()) else {
             let metric = self.metric;
+            if options.topology == Topology::Free {
+                self.find_handles();
+            }
             return self.run(NoAttributes(metric));
         };
         let layers = AttributeLayers::new(self.mesh, &self.frame, &options.weights, MAX_CHANNELS);

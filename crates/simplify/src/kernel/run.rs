@@ -13,10 +13,11 @@ use crate::kernel::attributes::AttributeModel;
 use crate::kernel::bound::ErrorBound;
 use crate::kernel::bound::input_surface::InputSurface;
 use crate::kernel::contraction_log::{InputNames, Logged, replay};
+use crate::kernel::handles::Handles;
 use crate::kernel::level::{level, live_faces, workspace};
 use crate::kernel::mesh::local_frame::Frame;
 use crate::kernel::mesh::one_ring::VertexStore;
-use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
+use crate::kernel::mesh::vertex::{NO_VERTEX, Vertex, VertexFlags};
 use crate::kernel::metric::Metric;
 use crate::kernel::partition::Partition;
 use crate::kernel::repay::{Debt, repay};
@@ -64,6 +65,12 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
         Self { source, partition, refused_above: f64::INFINITY, input, steps, lowered, surface }
     }
 
+    /// Returns the faces of the input in the kernel's vertices, if they differ from its own.
+    fn faces(&self) -> Option<&[[u32; 3]]> {
+        let cut = self.partition.whole.handles.as_ref().map(Handles::faces);
+        cut.or(self.source.faces.as_deref())
+    }
+
     fn names(&self) -> InputNames<'_> {
         let KernelInput { mesh, frame, order, .. } = &self.source;
         InputNames { mesh, frame, order, store: &self.partition.store }
@@ -71,7 +78,7 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
 
     /// Returns the current mesh, and the id there of each input vertex.
     fn numbered_level(&self) -> (Mesh, Vec<u32>) {
-        level(self.names(), &self.partition.models[0], self.source.faces.as_deref())
+        level(self.names(), &self.partition.models[0], self.faces())
     }
 
     /// Returns for each vertex of a level whether a pin or a tie holds it, given the ids of the
@@ -79,8 +86,9 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
     fn held(&self, ids: &[u32]) -> Vec<bool> {
         let KernelInput { order, .. } = &self.source;
         let used = (0..).zip(ids).filter(|(_, id)| **id != NO_VERTEX);
+        let of_input = self.source.mesh.positions.len() as u32;
         let flags = |v: u32| self.partition.store.all[order.id(VertexId(v)) as usize].flags;
-        used.map(|(v, _)| flags(v).any(VertexFlags::HELD)).collect()
+        used.map(|(v, _)| v < of_input && flags(v).any(VertexFlags::HELD)).collect()
     }
 
     /// Returns the factor from the kernel's costs to model units.
@@ -112,7 +120,8 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
 
     /// Returns the corners of faces in live vertices.
     fn far_faces(&self, excess: &[Excess]) -> Vec<FarFace> {
-        let KernelInput { mesh, order, faces, .. } = &self.source;
+        let KernelInput { mesh, order, .. } = &self.source;
+        let faces = self.faces();
         let of_input = |i: usize| match faces {
             Some(faces) => faces[i],
             None => order.face(&mesh.faces[i]),
@@ -187,7 +196,9 @@ fn bound<'o>(
     let KernelInput { mesh, frame, order, faces } = source;
     let input = input.get_or_init(|| {
         let place = |v: u32| frame.to_local(mesh.positions[order.input(store.origin(v)) as usize]);
-        let places = (0..store.all.len() as u32).map(place).collect();
+        let of_cuts = store.all[store.all.len() - store.spare..].iter().map(Vertex::place);
+        let all = 0..(store.all.len() - store.spare) as u32;
+        let places = all.map(place).chain(of_cuts).collect();
         InputSurface::new(mesh, *frame, places, numbers(mesh, order, faces.as_deref()))
     });
     let max_error = (stop.error / frame.unit) as f32;
@@ -265,7 +276,7 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
     fn surface(&self) -> &Surface {
         self.surface.get_or_init(|| {
             let mesh =
-                workspace(self.names(), &self.partition.models[0], self.source.faces.as_deref());
+                workspace(self.names(), &self.partition.models[0], self.faces());
             let (connectivity, _) = clean::connect(&mesh);
             let mut surface = Surface::new(&mesh, &connectivity);
             surface.rims = Rims::new(&mesh, &connectivity);

@@ -57,14 +57,20 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         }
     }
 
+    /// Returns the vertices that are left of a component.
+    fn left_of(&self, component: u32) -> Vec<u32> {
+        let Some(components) = &self.components else { return Vec::new() };
+        let of_input = components.vertices(component);
+        let is_live = |v: &u32| !self.vertices.get(*v).flags.any(VertexFlags::DEAD);
+        let cuts = self.handles.iter().flat_map(|handles| handles.copies());
+        let of_cuts = cuts.filter(|(_, of)| of_input.binary_search(of).is_ok()).map(|(v, _)| v);
+        of_input.iter().copied().chain(of_cuts).filter(is_live).collect()
+    }
+
     /// Returns the faces that are left of a component.
     pub(crate) fn faces_of(&mut self, component: u32) -> Vec<[u32; 3]> {
         let mut faces = Vec::new();
-        let Some(components) = &self.components else { return faces };
-        for &v in components.vertices(component) {
-            if self.vertices.get(v).flags.any(VertexFlags::DEAD) {
-                continue;
-            }
+        for v in self.left_of(component) {
             self.vertices.refresh(v);
             let ring = self.vertices.neighbours(v);
             for (&a, &b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
@@ -78,9 +84,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
 
     /// Merges all vertices of a component into one without faces.
     pub(crate) fn vanish(&mut self, component: u32, faces: &[[u32; 3]]) {
-        let Some(components) = &self.components else { return };
-        let live = |v: &u32| !self.vertices.get(*v).flags.any(VertexFlags::DEAD);
-        let left: Vec<u32> = components.vertices(component).iter().copied().filter(live).collect();
+        let left = self.left_of(component);
         self.count_volume(&left, faces);
         self.live_faces -= faces.len();
         // What has vanished owes nothing.

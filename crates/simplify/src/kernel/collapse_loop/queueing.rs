@@ -96,7 +96,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
 
     /// Queues a vertex behind the front without costing it.
     #[inline(always)]
-    pub(super) fn defer(&mut self, v: u32, bucket: u16) {
+    pub(crate) fn defer(&mut self, v: u32, bucket: u16) {
         let vertex = self.vertices.get_mut(v);
         vertex.target = NO_VERTEX;
         vertex.bucket = last_bucket().min(bucket);

@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use glam::Vec4;
+use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
 use crate::kernel::mesh::vertex::{Bf16, NO_VERTEX, RING, Vertex, VertexFlags, VertexQuadric};
@@ -44,6 +44,9 @@ pub(crate) struct VertexStore {
     pub(crate) copied: Vec<u32>,
     /// Vertices that have copies, sorted.
     pub(crate) split: Vec<u32>,
+    /// Number of vertices at the end that are none of the input's: they are for cuts. Then there
+    /// are no copies.
+    pub(crate) spare: usize,
     /// Weight of boundary edges.
     pub(crate) boundary_weight: f32,
     /// Factor on the cost of an edge at a protected vertex.
@@ -83,19 +86,32 @@ impl VertexStore {
         let mut split = copied.clone();
         split.sort_unstable();
         split.dedup();
-        Self { all, long, copied, split, boundary_weight, protection: 1.0 }
+        Self { all, long, copied, split, spare: 0, boundary_weight, protection: 1.0 }
     }
 
     /// Borrows the whole surface: all vertices.
     pub(crate) fn whole(&mut self) -> Vertices<'_> {
-        let first_copy = self.own() as u32;
+        let first_copy = self.first_copy();
         let Self { all, long, copied, split, protection, .. } = self;
         Vertices { all, base: 0, long, copied, split, first_copy, protection: *protection }
     }
 
     /// Returns the number of vertices of the input, without copies.
     pub(crate) fn own(&self) -> usize {
-        self.all.len() - self.copied.len()
+        self.all.len() - self.copied.len() - self.spare
+    }
+
+    /// Returns the id of the first copy; that of no vertex if there are none.
+    pub(crate) fn first_copy(&self) -> u32 {
+        (self.all.len() - self.copied.len()) as u32
+    }
+
+    /// Appends vertices for cuts. There must be no copies.
+    pub(crate) fn add_spare(&mut self, count: usize) {
+        let mut vertex = Vertex::at(Vec3::ZERO);
+        vertex.flags.set(VertexFlags::BARRED);
+        self.all.resize(self.all.len() + count, vertex);
+        self.spare += count;
     }
 
     /// Returns the input vertex that `v` is, or is a copy of.
