@@ -47,6 +47,7 @@ pub fn of_run<'py>(py: Python<'py>, report: &Report) -> PyResult<Bound<'py, PyDi
     dict.set_item("error_proved", report.proof.map(|proof| proof.proved))?;
     dict.set_item("contractions", report.contractions.edges + report.contractions.faces)?;
     dict.set_item("vanished", report.vanished)?;
+    dict.set_item("handles_closed", report.handles.map(|handles| handles.closed))?;
     dict.set_item("degenerate_faces", report.degenerate_faces)?;
     dict.set_item("duplicate_faces", report.duplicate_faces)?;
     dict.set_item("non_manifold_vertices", report.non_manifold_vertices)?;

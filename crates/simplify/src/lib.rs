@@ -44,7 +44,8 @@ pub use history::volume::{Unconserved, VolumeLoss};
 pub use history::{Contraction, History};
 pub use method::Method;
 pub use options::{
-    AttributeWeights, Contractions, ErrorProof, Options, Report, SimplifyError, Target, Topology,
+    AttributeWeights, Contractions, ErrorProof, HandleCounts, Options, Report, SimplifyError,
+    Target, Topology,
 };
 pub use refusal::{Refusal, Refusals};
 pub use simplifier::Simplifier;

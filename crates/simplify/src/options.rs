@@ -77,14 +77,16 @@ const PROTECTION: f64 = 2.0;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Topology {
-    /// Connected components may vanish where that costs less than contracting them further. Seams
+    /// Connected components may vanish, and handles close, where that costs less than contracting
+    /// further: tunnels are filled, and arms of rings cut. Handles stay within a [`Target::Error`],
+    /// where an observer sees contractions, and at seams. Seams
     /// of textures and borders of materials give way where nothing else is left at a price in
     /// proportion, so charts may vanish too. Non-manifold vertices move only where
     /// [`meshlod_mesh::condition`] has split them before.
     #[default]
     Free,
-    /// Closed surfaces stay closed, manifold surfaces stay manifold, and no component or chart
-    /// vanishes.
+    /// Closed surfaces stay closed, manifold surfaces stay manifold, no component or chart
+    /// vanishes, and no handle closes.
     Keep,
 }
 
@@ -313,6 +315,23 @@ pub struct ErrorProof {
     pub rounds: usize,
 }
 
+/// Handles of a surface: a torus has one, and so has a plate with one hole through it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct HandleCounts {
+    /// Number of handles before the run, the sum over all components.
+    pub before: usize,
+    /// Number of handles that have been closed: tunnels filled, or arms of rings cut.
+    pub closed: usize,
+}
+
+impl AddAssign for HandleCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.before += other.before;
+        self.closed += other.closed;
+    }
+}
+
 /// Report of a mesh simplification.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -335,6 +354,8 @@ pub struct Report {
     pub contractions: Contractions,
     /// Number of connected components that were removed as a whole.
     pub vanished: usize,
+    /// Handles of the mesh; `None` where none may close, as with [`Topology::Keep`].
+    pub handles: Option<HandleCounts>,
     /// True if the target number of faces was reached, or the error is not proved to be exceeded.
     pub reached: bool,
     /// Greatest estimated distance of any contraction from the input, in model units.

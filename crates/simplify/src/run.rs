@@ -10,7 +10,7 @@ use crate::excess::Excess;
 use crate::held::Held;
 use crate::history::volume::VolumeLoss;
 use crate::kernel::retrace::Retrace;
-use crate::options::Contractions;
+use crate::options::{Contractions, HandleCounts};
 use crate::refusal::Refusals;
 use crate::surface::Surface;
 use crate::surface::level::level;
@@ -56,6 +56,8 @@ pub(crate) trait Run {
 pub(crate) struct Tally {
     /// Number of connected components that have been removed as a whole.
     pub(crate) vanished: usize,
+    /// Handles, if any may close.
+    pub(crate) handles: Option<HandleCounts>,
     pub(crate) contractions: Contractions,
     pub(crate) refusals: Refusals,
     /// Greatest estimated distance of any contraction from the input, in model units.

@@ -174,7 +174,7 @@ impl<'m> Simplifier<'m> {
     /// Builds the report of the run so far.
     fn report(&self, target: Target, stop: &Stop) -> Report {
         let output_faces = self.live_faces();
-        let Tally { vanished, contractions, refusals, error_estimate, volume } =
+        let Tally { vanished, handles, contractions, refusals, error_estimate, volume } =
             self.engine.tally();
         let reached = matches!(target, Target::Error(_)) || output_faces <= stop.faces;
         Report {
@@ -187,6 +187,7 @@ impl<'m> Simplifier<'m> {
             output_faces,
             contractions,
             vanished,
+            handles,
             reached,
             error_estimate,
             proof: None,

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use meshlod::jobs::LostVolume;
-use meshlod::simplify::Refusal;
+use meshlod::simplify::{HandleCounts, Refusal};
 use meshlod::{Report, Topology};
 
 use crate::text::numbers::{count, faces, percent, value};
@@ -93,6 +93,8 @@ pub fn mesh_notes(report: &Report) -> String {
         false => "removed".into(),
     };
     line(report.vanished, ["component", "components"], &removed);
+    let HandleCounts { before, closed } = report.handles.unwrap_or_default();
+    line(closed, ["handle", "handles"], &format!("closed, of {}", count(before)));
     text
 }
 

@@ -2,7 +2,9 @@
 
 use meshlod_measure::{Bracket, CertifiedDistance, Distance, OneSidedDistance, Place};
 use meshlod_mesh::Conditioning;
-use meshlod_simplify::{Contractions, Held, Method, Refusals, Report, Unconserved, VolumeLoss};
+use meshlod_simplify::{
+    Contractions, HandleCounts, Held, Method, Refusals, Report, Unconserved, VolumeLoss,
+};
 use serde::{Serialize, Serializer};
 
 use crate::jobs::{LodReport, LodsReport, SimplifyReport};
@@ -158,13 +160,14 @@ struct RunFigures {
     held: Held,
     vanished: usize,
     vanished_volume: f64,
+    handles: Option<HandleCounts>,
     refusals: Refusals,
 }
 
 impl From<&Report> for RunFigures {
     fn from(report: &Report) -> Self {
-        let Report { held, vanished, refusals, volume, .. } = *report;
-        Self { held, vanished, vanished_volume: volume.vanished, refusals }
+        let Report { held, vanished, handles, refusals, volume, .. } = *report;
+        Self { held, vanished, vanished_volume: volume.vanished, handles, refusals }
     }
 }
 

@@ -3,8 +3,8 @@
 use meshlod_io::Scene;
 use meshlod_mesh::Mesh;
 use meshlod_simplify::{
-    Contractions, ErrorProof, Held, Method, Observe, Refusals, Report, Simplifier, SimplifyError,
-    Target, VolumeLoss,
+    Contractions, ErrorProof, HandleCounts, Held, Method, Observe, Refusals, Report, Simplifier,
+    SimplifyError, Target, VolumeLoss,
 };
 use thiserror::Error;
 
@@ -260,6 +260,7 @@ impl<'s> SceneSimplifier<'s> {
             output_faces: self.live_faces(),
             contractions: Contractions::default(),
             vanished: 0,
+            handles: None,
             reached: true,
             error_estimate: 0.0,
             proof: None,
@@ -278,6 +279,10 @@ impl<'s> SceneSimplifier<'s> {
             whole.duplicate_faces += part.copies * (report.duplicate_faces + left_out);
             whole.non_manifold_vertices += part.copies * report.non_manifold_vertices;
             whole.vanished += part.copies * report.vanished;
+            if let Some(HandleCounts { before, closed }) = report.handles {
+                let [before, closed] = [before, closed].map(|count| part.copies * count);
+                *whole.handles.get_or_insert_default() += HandleCounts { before, closed };
+            }
             whole.held.add(&report.held, part.copies);
             whole.error_estimate = whole.error_estimate.max(part.scale * report.error_estimate);
             whole.contractions += report.contractions;

@@ -356,7 +356,7 @@ where
 
     fn tally(&self) -> Tally {
         let &Self { vanished, contractions, refusals, error_estimate, volume, .. } = self;
-        Tally { vanished, contractions, refusals, error_estimate, volume }
+        Tally { vanished, handles: None, contractions, refusals, error_estimate, volume }
     }
 }
 

@@ -237,12 +237,12 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
 impl<'m, M: Metric + 'm> Prepared<'m, M> {
     /// Builds the attribute quadrics, and costs all vertices.
     pub(crate) fn start(mut self, options: &Options) -> Box<dyn Run + 'm> {
+        if options.topology == Topology::Free {
+            self.find_handles();
+        }
         let faces = numbers(self.mesh, &self.order, self.faces.as_deref());
         let Some(corners) = Corners::new(self.mesh, faces, self.fans.store.all.len()) else {
             let metric = self.metric;
-            if options.topology == Topology::Free {
-                self.find_handles();
-            }
             return self.run(NoAttributes(metric));
         };
         let layers = AttributeLayers::new(self.mesh, &self.frame, &options.weights, MAX_CHANNELS);

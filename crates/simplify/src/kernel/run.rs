@@ -275,8 +275,7 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
 
     fn surface(&self) -> &Surface {
         self.surface.get_or_init(|| {
-            let mesh =
-                workspace(self.names(), &self.partition.models[0], self.faces());
+            let mesh = workspace(self.names(), &self.partition.models[0], self.faces());
             let (connectivity, _) = clean::connect(&mesh);
             let mut surface = Surface::new(&mesh, &connectivity);
             surface.rims = Rims::new(&mesh, &connectivity);
@@ -302,6 +301,7 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
                 .components
                 .as_ref()
                 .map_or(0, |all| all.vanished().len()),
+            handles: self.partition.whole.handles.as_ref().map(Handles::counts),
             contractions: Contractions { edges: self.partition.contractions, faces: 0 },
             refusals: self.partition.refusals,
             error_estimate: self.partition.error.sqrt() * self.source.frame.unit,

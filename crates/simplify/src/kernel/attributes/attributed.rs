@@ -3,7 +3,7 @@
 use meshlod_mesh::Attributes;
 
 use crate::kernel::attributes::attribute_quadric::{
-    add_attribute_quadrics, add_pair_f64, add_unpaired_f64,
+    AttributeQuadric, add_attribute_quadrics, add_pair_f64, add_unpaired_f64,
 };
 use crate::kernel::attributes::update_at_seams::UpdateAtSeams;
 use crate::kernel::attributes::uv_flips::UvFlipsAtSeams;
@@ -11,6 +11,7 @@ use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
 use crate::kernel::attributes::{AttributeModel, RecordedValues};
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends};
+use crate::kernel::handles::PER_CUT;
 use crate::kernel::mesh::one_ring::Vertices;
 use crate::kernel::mesh::vertex::VertexQuadric;
 use crate::kernel::metric::Metric;
@@ -98,6 +99,27 @@ impl<M: Metric, const K: usize> AttributeModel for WedgeQuadrics<'_, M, K> {
         self.move_uncosted(edge_ring, collapse, None);
         self.apply_smooth(edge_ring, collapse);
         VertexQuadric::default()
+    }
+
+    type Whole = [AttributeQuadric<K>; PER_CUT];
+
+    fn part(&mut self, vertices: &Vertices, copies: [[u32; 2]; PER_CUT]) -> Self::Whole {
+        let whole = copies.map(|[v, _]| *self.quadric(v));
+        for [v, copy] in copies {
+            self.quadrics[copy as usize] = self.quadrics[v as usize];
+            self.layers.copy_all_uncosted(copy, v);
+            self.merged_into[copy as usize] = copy;
+        }
+        for v in copies.into_iter().flatten() {
+            self.quadrics[v as usize] = self.renewed(vertices, v);
+        }
+        whole
+    }
+
+    fn rejoin(&mut self, vertices: [u32; PER_CUT], whole: Self::Whole) {
+        for (v, quadric) in vertices.into_iter().zip(whole) {
+            self.quadrics[v as usize] = quadric;
+        }
     }
 
     #[inline(always)]

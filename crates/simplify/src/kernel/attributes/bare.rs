@@ -5,6 +5,7 @@ use meshlod_mesh::Attributes;
 use crate::kernel::attributes::{AttributeModel, RecordedValues};
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends, Mobility};
+use crate::kernel::handles::PER_CUT;
 use crate::kernel::mesh::one_ring::Vertices;
 use crate::kernel::mesh::vertex::VertexQuadric;
 use crate::kernel::metric::Metric;
@@ -58,6 +59,12 @@ impl<M: Metric> AttributeModel for NoAttributes<M> {
     fn apply(&mut self, _: &mut Vertices, _: &EdgeRing, _: &Collapse) -> VertexQuadric {
         VertexQuadric::default()
     }
+
+    type Whole = ();
+
+    fn part(&mut self, _: &Vertices, _: [[u32; 2]; PER_CUT]) {}
+
+    fn rejoin(&mut self, _: [u32; PER_CUT], (): ()) {}
 
     #[inline(always)]
     fn prefetch(&self, _: u32) -> u32 {

@@ -96,10 +96,11 @@ impl<'m> Corners<'m> {
         self.others.dedup();
     }
 
-    /// Returns the slot of a wedge at a vertex.
+    /// Returns the slot of a wedge at a vertex. A vertex of a cut has one slot alone.
     #[inline]
     fn slot(&self, v: u32, wedge: WedgeId) -> u32 {
-        if self.first[v as usize] == wedge.0 {
+        let first = self.first[v as usize];
+        if first == wedge.0 || first == NO_VERTEX {
             return v;
         }
         let found = self.others.binary_search(&(v, wedge.0)).unwrap_or_default();

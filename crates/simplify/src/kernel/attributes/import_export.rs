@@ -154,12 +154,18 @@ impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
     }
 
     /// Returns the attributes of all faces, with the input's wedge indices. Degenerate faces have
-    /// one extra wedge.
+    /// one extra wedge, and so has each vertex of a cut.
     pub(crate) fn to_all_attributes(&self, faces: impl Iterator<Item = [u32; 3]>) -> Attributes {
         let live = self.live_slots();
-        let wedges: Vec<u32> = self.corners.wedges().collect();
-        let count = self.corners.own + self.corners.split.len();
+        let mut wedges: Vec<u32> = self.corners.wedges().collect();
+        let mut count = self.corners.own + self.corners.split.len();
         let none = WedgeId::new(count);
+        for (slot, wedge) in (0..).zip(&mut wedges).filter(|(_, wedge)| **wedge == NO_VERTEX) {
+            if self.merged_into[slot as usize] == slot {
+                count += 1;
+                *wedge = count as u32;
+            }
+        }
         let corner = |slot: u32| WedgeId(wedges[live[slot as usize] as usize]);
         let corners = faces.enumerate().map(|(i, face)| {
             let [a, b, c] = self.corners.slots(i, face);

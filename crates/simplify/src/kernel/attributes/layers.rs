@@ -165,6 +165,14 @@ impl<'m> AttributeLayers<'m> {
         }
     }
 
+    /// Copies all values that channels do not hold from another slot.
+    pub(crate) fn copy_all_uncosted(&mut self, slot: u32, other: u32) {
+        for layer in &mut self.uncosted {
+            let from = other as usize * layer.width;
+            layer.values.copy_within(from..from + layer.width, slot as usize * layer.width);
+        }
+    }
+
     /// Copies joints and their weights from another slot: all wedges of a vertex move as one.
     pub(crate) fn copy_skin(&mut self, slot: u32, other: u32) {
         let is_skin =

@@ -36,6 +36,7 @@ use meshlod_mesh::{Attributes, WedgeId};
 
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends};
+use crate::kernel::handles::PER_CUT;
 use crate::kernel::mesh::one_ring::Vertices;
 use crate::kernel::mesh::vertex::VertexQuadric;
 use crate::kernel::metric::Metric;
@@ -99,6 +100,17 @@ pub(crate) trait AttributeModel: Sized + Send + Sync {
         edge_ring: &EdgeRing,
         collapse: &Collapse,
     ) -> VertexQuadric;
+
+    /// Values that [parting](Self::part) replaces.
+    type Whole;
+
+    /// Gives the copies of vertices that a cut parts wedges of their own, and renews the quadrics
+    /// of both, whose rings are those after the cut. None of them or of their neighbours is on a
+    /// seam.
+    fn part(&mut self, vertices: &Vertices, copies: [[u32; 2]; PER_CUT]) -> Self::Whole;
+
+    /// Takes back that vertices were parted.
+    fn rejoin(&mut self, vertices: [u32; PER_CUT], whole: Self::Whole);
 
     /// Reads what will soon be needed of a vertex.
     fn prefetch(&self, v: u32) -> u32;

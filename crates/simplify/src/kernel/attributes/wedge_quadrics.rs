@@ -16,6 +16,7 @@ use crate::kernel::attributes::layers::AttributeLayers;
 use crate::kernel::attributes::scratch::Scratch;
 use crate::kernel::attributes::seam_release::SeamRelease;
 use crate::kernel::attributes::seam_sectors::SeamSectors;
+use crate::kernel::mesh::one_ring::{GHOST, Vertices};
 use crate::kernel::metric::Metric;
 
 /// Quadrics of all wedges of a surface.
@@ -47,6 +48,25 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     #[inline(always)]
     pub(crate) fn quadric(&self, slot: u32) -> &AttributeQuadric<K> {
         self.quadrics.get(slot as usize).unwrap_or(&self.none)
+    }
+
+    /// Returns the quadric of a vertex by the faces in its ring, of which none is at a seam.
+    pub(crate) fn renewed(&self, vertices: &Vertices<'_>, v: u32) -> AttributeQuadric<K> {
+        let (from, own) = (vertices.get(v).place(), self.quadric(v).values());
+        let to = |w: u32| {
+            let mut values = self.quadric(w).values();
+            values.iter_mut().zip(own).for_each(|(value, own)| *value -= own);
+            (vertices.get(w).place() - from, values)
+        };
+        let mut quadric = AttributeQuadric::of_values(own);
+        let ring = vertices.neighbours(v);
+        for (&a, &b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
+            if a != GHOST && b != GHOST {
+                let ((a, to_a), (b, to_b)) = (to(a), to(b));
+                quadric.add(&AttributeQuadric::face::<M>(a, b, to_a, to_b));
+            }
+        }
+        quadric
     }
 
     /// Returns the chart of a slot. Slots of one vertex that differ in normals and tangents only

@@ -33,12 +33,15 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         let spare = self.handles.as_ref().and_then(|handles| handles.spare());
         // Within an error bound, and for an observer, topology stays.
         let is_seen = self.within.is_some() || self.log.is_some() || self.ties.is_some();
-        let Some(first_copy) = spare.filter(|_| !is_seen) else { return Err(refused(Refusal::Link)) };
+        let Some(first_copy) = spare.filter(|_| !is_seen) else {
+            return Err(refused(Refusal::Link));
+        };
         let Some(neck) = Neck::of_edge(&self.vertices, edge) else {
             return Err(refused(Refusal::Link));
         };
         let weight = self.edge_ring.boundary_weight;
         let uncut = neck.cut::<A::Metric>(&mut self.vertices, first_copy, weight);
+        let whole = self.model.part(&self.vertices, neck.copies(first_copy));
         let closing = self.price_closing(&neck, first_copy, front).and_then(|closing| {
             match are_joined(&mut self.vertices, [edge[0], first_copy]) {
                 true => Ok(closing),
@@ -49,6 +52,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
             Ok(closing) => Ok(self.close(&neck, first_copy, &closing, front)),
             Err(rejection) => {
                 uncut.restore(&mut self.vertices);
+                self.model.rejoin(neck.vertices, whole);
                 Err(rejection)
             }
         }
@@ -68,11 +72,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         let radius = 2.0 * area / around.max(f32::MIN_POSITIVE);
         let far = self.place(first_copy, first_copy + 1, last_bucket())?;
         let near = self.place(v0, v1, last_bucket())?;
-        let lid = A::Metric::vanishing_cost(
-            2.0 * area,
-            FACES,
-            MEAN_IN_TRIANGLE * radius * radius,
-        );
+        let lid = A::Metric::vanishing_cost(2.0 * area, FACES, MEAN_IN_TRIANGLE * radius * radius);
         let cost = [&near, &far].iter().map(|edge| min_cost_in(edge.bucket())).sum::<f32>() + lid;
         let now = near.now.max(far.now).max(radius * radius);
         let moved = near.moved(&self.vertices).max(far.moved(&self.vertices)).max(now);

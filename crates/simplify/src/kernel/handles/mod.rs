@@ -25,6 +25,7 @@ mod neck;
 use crate::kernel::handles::faces::HandleFaces;
 use crate::kernel::handles::neck::Neck;
 use crate::kernel::mesh::one_ring::Vertices;
+use crate::options::HandleCounts;
 
 pub(crate) use crate::kernel::handles::genus::genus;
 
@@ -77,8 +78,8 @@ impl Handles {
     }
 
     /// Returns the numbers of handles of the input and of those that have closed.
-    pub(crate) fn counts(&self) -> [usize; 2] {
-        [self.genus, self.closed()]
+    pub(crate) fn counts(&self) -> HandleCounts {
+        HandleCounts { before: self.genus, closed: self.closed() }
     }
 
     /// Notes that a vertex has been contracted into another.

@@ -55,9 +55,19 @@ impl Neck {
             near: [between(0, 1, 2)?, between(1, 1, 2)?, between(2, 1, 2)?],
             far: [between(0, 2, 1)?, between(1, 2, 1)?, between(2, 2, 1)?],
         };
-        // A long ring does not hear of the copies.
-        let is_long = |&v: &u32| vertices.get(v).len == LONG;
-        (!neck.far.iter().flatten().any(is_long)).then_some(neck)
+        // A long ring and the sectors at a seam do not hear of the copies.
+        let is_deaf = |v: u32| {
+            let vertex = vertices.get(v);
+            vertex.len == LONG || vertex.flags.any(VertexFlags::SEAM)
+        };
+        let mut around = neck.near.iter().chain(&neck.far).flatten().filter(|&&w| w != GHOST);
+        (!around.any(|&v| is_deaf(v))).then_some(neck)
+    }
+
+    /// Returns each vertex with its copy.
+    pub(crate) fn copies(&self, first_copy: u32) -> [[u32; 2]; PER_CUT] {
+        let [v0, v1, w] = self.vertices;
+        [[v0, first_copy], [v1, first_copy + 1], [w, first_copy + 2]]
     }
 
     /// Returns true if a vertex follows in a far face of the vertex with this index. Others of the
