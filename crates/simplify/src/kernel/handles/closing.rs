@@ -3,7 +3,7 @@
 use crate::kernel::attributes::AttributeModel;
 use crate::kernel::collapse_loop::{CollapseLoop, PlacedEdge, Rejection, is_out_of_proportion};
 use crate::kernel::handles::PER_CUT;
-use crate::kernel::handles::neck::{Neck, are_joined};
+use crate::kernel::handles::neck::{Neck, across, are_joined};
 use crate::kernel::metric::Metric;
 use crate::kernel::schedule::bucket_queue::{bucket, last_bucket, min_cost_in};
 use crate::refusal::Refusal;
@@ -36,16 +36,28 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         let Some(first_copy) = spare.filter(|_| !is_seen) else {
             return Err(refused(Refusal::Link));
         };
-        let Some(neck) = Neck::of_edge(&self.vertices, edge) else {
-            return Err(refused(Refusal::Link));
-        };
+        let mut rejection = refused(Refusal::Link);
+        for w in across(&mut self.vertices, edge) {
+            match self.close_at([edge[0], edge[1], w], first_copy, front) {
+                Err(Rejection::Refused(Refusal::Link, _)) => {}
+                Err(other) => rejection = other,
+                done => return done,
+            }
+        }
+        Err(rejection)
+    }
+
+    /// Closes a handle whose neck has these vertices, of which the first two are an edge.
+    fn close_at(&mut self, three: [u32; 3], first_copy: u32, front: u16) -> Result<u32, Rejection> {
+        let refused = Rejection::Refused(Refusal::Link, front);
+        let Some(neck) = Neck::new(&mut self.vertices, three) else { return Err(refused) };
         let weight = self.edge_ring.boundary_weight;
         let uncut = neck.cut::<A::Metric>(&mut self.vertices, first_copy, weight);
         let whole = self.model.part(&self.vertices, neck.copies(first_copy));
         let closing = self.price_closing(&neck, first_copy, front).and_then(|closing| {
-            match are_joined(&mut self.vertices, [edge[0], first_copy]) {
+            match are_joined(&mut self.vertices, [three[0], first_copy]) {
                 true => Ok(closing),
-                false => Err(refused(Refusal::Link)),
+                false => Err(refused),
             }
         });
         match closing {

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use rustc_hash::FxHashMap;
 
 use crate::kernel::handles::PER_CUT;
-use crate::kernel::mesh::one_ring::{GHOST, LONG, Vertices, index_in};
+use crate::kernel::mesh::one_ring::{GHOST, Vertices, index_in, is_seam};
 use crate::kernel::mesh::vertex::{Bf16, NO_VERTEX, Vertex, VertexFlags, VertexQuadric};
 use crate::kernel::metric::Metric;
 use crate::kernel::schedule::bucket_queue::NONE;
@@ -27,26 +27,21 @@ pub(crate) struct Neck {
     far: [Vec<u32>; 3],
 }
 
-/// Records of all vertices that a cut has changed.
-pub(crate) struct Uncut(Vec<(u32, Vertex)>);
+/// Records and rings of all vertices that a cut has changed.
+pub(crate) struct Uncut {
+    vertices: Vec<(u32, Vertex, Vec<u32>)>,
+    long: usize,
+}
 
 impl Neck {
-    /// Returns the neck of an edge whose ends have one neighbour in common beyond its wings; `None`
-    /// if there is none, or a vertex of it must not be parted.
-    pub(crate) fn of_edge(vertices: &Vertices<'_>, [v0, v1]: [u32; 2]) -> Option<Self> {
-        let (ring0, ring1) = (vertices.neighbours(v0), vertices.neighbours(v1));
-        let at = index_in(ring0, v1)?;
-        let wings = [ring0[(at + 1) % ring0.len()], ring0[(at + ring0.len() - 1) % ring0.len()]];
-        let mut common = ring0.iter().filter(|w| !wings.contains(w) && ring1.contains(w));
-        let (&w, None) = (common.next()?, common.next()) else { return None };
-        let three = [v0, v1, w];
-        let must_stay = |&v: &u32| {
-            let vertex = vertices.get(v);
-            v == GHOST || vertex.len == LONG || vertex.flags.any(WHOLE)
-        };
+    /// Returns the neck of an edge and a vertex that both ends have for a neighbour, but not for a
+    /// wing; `None` if a vertex of it must not be parted.
+    pub(crate) fn new(vertices: &mut Vertices<'_>, three: [u32; 3]) -> Option<Self> {
+        let must_stay = |&v: &u32| v == GHOST || vertices.get(v).flags.any(WHOLE);
         if three.iter().any(must_stay) {
             return None;
         }
+        three.iter().for_each(|&v| vertices.refresh(v));
         let between = |k: usize, from: usize, to: usize| {
             arc(vertices.neighbours(three[k]), three[(k + from) % 3], three[(k + to) % 3])
         };
@@ -55,13 +50,9 @@ impl Neck {
             near: [between(0, 1, 2)?, between(1, 1, 2)?, between(2, 1, 2)?],
             far: [between(0, 2, 1)?, between(1, 2, 1)?, between(2, 2, 1)?],
         };
-        // A long ring and the sectors at a seam do not hear of the copies.
-        let is_deaf = |v: u32| {
-            let vertex = vertices.get(v);
-            vertex.len == LONG || vertex.flags.any(VertexFlags::SEAM)
-        };
-        let mut around = neck.near.iter().chain(&neck.far).flatten().filter(|&&w| w != GHOST);
-        (!around.any(|&v| is_deaf(v))).then_some(neck)
+        // The sectors at a seam do not hear of the copies.
+        let is_seam = |&v: &u32| v != GHOST && is_seam(vertices, v);
+        (!neck.near.iter().chain(&neck.far).flatten().any(is_seam)).then_some(neck)
     }
 
     /// Returns each vertex with its copy.
@@ -89,16 +80,19 @@ impl Neck {
         let copies: [u32; PER_CUT] = [first_copy, first_copy + 1, first_copy + 2];
         let around = self.far.iter().flatten().copied().filter(|&w| w != GHOST);
         let all = self.vertices.into_iter().chain(copies).chain(around);
-        let uncut = Uncut(all.map(|v| (v, *vertices.get(v))).collect());
+        let record = |v: u32| {
+            vertices.refresh(v);
+            (v, *vertices.get(v), vertices.neighbours(v).to_vec())
+        };
+        let uncut = Uncut { vertices: all.map(record).collect(), long: vertices.long.len() };
         for k in 0..3 {
             let [next, last] = [(k + 1) % 3, (k + 2) % 3];
             let (v, copy) = (self.vertices[k], copies[k]);
             *vertices.get_mut(copy) = copy_of(vertices.get(v));
             for &w in self.far[k].iter().filter(|&&w| w != GHOST) {
-                let neighbour = vertices.get_mut(w);
-                neighbour.replace_neighbour(v, copy);
+                vertices.replace_neighbour(w, v, copy);
                 // Its cheapest edge may have led to the near side.
-                neighbour.target = NO_VERTEX;
+                vertices.get_mut(w).target = NO_VERTEX;
             }
             let near = [&[self.vertices[next]], &self.near[k][..], &[self.vertices[last]]].concat();
             let far = [&[copies[last]], &self.far[k][..], &[copies[next]]].concat();
@@ -115,11 +109,24 @@ impl Neck {
 impl Uncut {
     /// Takes the cut back.
     pub(crate) fn restore(self, vertices: &mut Vertices<'_>) {
+        vertices.long.truncate(self.long);
         // A vertex may have been noted twice, the same each time.
-        for (v, vertex) in self.0 {
+        for (v, vertex, ring) in self.vertices {
             *vertices.get_mut(v) = vertex;
+            vertices.set_ring(v, &ring);
         }
     }
+}
+
+/// Returns the vertices that both ends of an edge have for a neighbour, but not for a wing.
+pub(crate) fn across(vertices: &mut Vertices<'_>, [v0, v1]: [u32; 2]) -> Vec<u32> {
+    vertices.refresh(v0);
+    vertices.refresh(v1);
+    let (ring0, ring1) = (vertices.neighbours(v0), vertices.neighbours(v1));
+    let Some(at) = index_in(ring0, v1) else { return Vec::new() };
+    let wings = [ring0[(at + 1) % ring0.len()], ring0[(at + ring0.len() - 1) % ring0.len()]];
+    let is_across = |w: &&u32| !wings.contains(w) && ring1.contains(w);
+    ring0.iter().filter(is_across).copied().collect()
 }
 
 /// Returns the neighbours in a ring between two, counter-clockwise.
@@ -132,7 +139,7 @@ fn arc(ring: &[u32], from: u32, to: u32) -> Option<Vec<u32>> {
 fn copy_of(vertex: &Vertex) -> Vertex {
     let mut flags = vertex.flags;
     flags.clear(VertexFlags::STALE);
-    Vertex { flags, floor: 0, bucket: NONE, target: NO_VERTEX, ..*vertex }
+    Vertex { flags, len: 0, floor: 0, bucket: NONE, target: NO_VERTEX, ..*vertex }
 }
 
 /// Gives a vertex the quadric of its faces, without what it remembers.

@@ -228,6 +228,17 @@ impl<'v> Vertices<'v> {
         }
     }
 
+    /// Replaces a neighbour in the ring of a vertex by another.
+    pub(crate) fn replace_neighbour(&mut self, v: u32, gone: u32, kept: u32) {
+        self.refresh(v);
+        let vertex = self.get_mut(v);
+        if vertex.len != LONG {
+            return vertex.replace_neighbour(gone, kept);
+        }
+        let slot = vertex.ring[0] as usize;
+        self.long[slot].ring.iter_mut().for_each(|w| *w = if *w == gone { kept } else { *w });
+    }
+
     /// Replaces contracted neighbours in a long ring by their live vertices.
     #[cold]
     fn refresh_long(&mut self, v: u32) {
