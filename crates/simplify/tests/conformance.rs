@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 
 use glam::DVec3;
 use meshlod_fixtures as fixtures;
-use meshlod_fixtures::shape::{bare, defects, topology, volume};
+use meshlod_fixtures::shape::{TopologyCounts, bare, defects, topology, volume};
 use meshlod_mesh::{
     Attributes, Connectivity, FaceId, Layer, LayerKind, Lock, Locks, Mesh, VertexId, WedgeId,
 };
@@ -161,13 +161,20 @@ fn the_reason_for_stopping_is_reported() {
 #[test]
 fn every_single_step_keeps_a_closed_surface_closed() {
     for runner in Runner::all() {
-        let mesh = samples::torus(300);
-        let mut simplifier = runner.start(&mesh, &Options::default()).unwrap();
-        while simplifier.step(f64::INFINITY, &mut ()) {
-            let level = simplifier.level();
-            assert_eq!(topology(&level), topology(&mesh));
+        for kept in Topology::ALL {
+            let mesh = samples::torus(300);
+            let options = Options { topology: kept, ..Options::default() };
+            let mut simplifier = runner.start(&mesh, &options).unwrap();
+            while simplifier.step(f64::INFINITY, &mut ()) {
+                let report = simplifier.run(Target::Ratio(1.0), &mut ()).unwrap();
+                let closed = report.handles.map_or(0, |handles| handles.closed as i64);
+                assert!(closed == 0 || kept == Topology::Free);
+                let of_mesh = topology(&mesh);
+                let expected = TopologyCounts { euler: of_mesh.euler + 2 * closed, ..of_mesh };
+                assert_eq!(topology(&simplifier.level()), expected);
+            }
+            assert!(simplifier.live_faces() < 40);
         }
-        assert!(simplifier.live_faces() < 40);
     }
 }
 
