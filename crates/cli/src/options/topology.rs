@@ -32,12 +32,13 @@ pub struct TopologyArgs {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum TopologyArg {
-    /// Components may vanish where that costs less than simplifying them, borders that lie on each
-    /// other are sewn together, non-manifold places may move and come apart, and charts and borders
-    /// of materials give way where little else is left
+    /// Components may vanish and handles close (tunnels are filled, rings cut) where that costs less
+    /// than simplifying them, borders that lie on each other are sewn together, non-manifold places
+    /// may move and come apart, and charts and borders of materials give way where little else is
+    /// left. Handles stay within --error and in .mlod files
     Free,
-    /// Closed stays closed, manifold stays manifold, and no component vanishes, as printing and
-    /// simulation need it
+    /// Closed stays closed, manifold stays manifold, no component vanishes and no handle closes, as
+    /// printing and simulation need it
     Keep,
 }
 
