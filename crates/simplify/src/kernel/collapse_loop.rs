@@ -18,14 +18,18 @@
 //! only mark it as stale. It is recosted when its entry comes up, first by that one edge, and goes
 //! ahead if the cost has risen by at most [`Metric::SLACK`] buckets.
 
+mod placed_edge;
 mod queueing;
+
+pub(crate) use crate::kernel::collapse_loop::placed_edge::PlacedEdge;
 
 use glam::{DVec3, Vec3};
 
 use crate::kernel::attributes::AttributeModel;
-use crate::kernel::bound::{BoundPart, BoundedStep};
+use crate::kernel::bound::BoundPart;
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends, Mobility};
+use crate::kernel::collapse_loop::placed_edge::PricedEdge;
 use crate::kernel::components::Components;
 use crate::kernel::contraction_log::{Logged, LoggedContraction};
 use crate::kernel::handles::Handles;
@@ -105,56 +109,6 @@ pub(crate) enum Rejection {
     Deferred(u16),
     /// It must not be contracted. The bucket is that of its cost.
     Refused(Refusal, u16),
-}
-
-/// An edge whose cost is within the slack of the front.
-struct PricedEdge {
-    ends: Ends,
-    /// Quadric of the geometry alone.
-    quadric: EdgeQuadricF64,
-    /// Place of the new vertex relative to the middle of the edge.
-    from_middle: DVec3,
-    /// Bucket of the cost.
-    bucket: u16,
-}
-
-/// A priced edge with its new vertex placed.
-pub(crate) struct PlacedEdge {
-    priced: PricedEdge,
-    /// Old place of the vertex that stays, and the new one.
-    from: Vec3,
-    place: Vec3,
-    /// Square of the distance by which the step would move the surface.
-    pub(crate) now: f32,
-}
-
-impl PlacedEdge {
-    /// Returns the squared distance of all steps together.
-    #[inline(always)]
-    pub(crate) fn moved(&self, vertices: &Vertices<'_>) -> f32 {
-        let Ends { v0, v1, .. } = self.priced.ends;
-        self.now + vertices.get(v0).moved.max(vertices.get(v1).moved)
-    }
-
-    /// Returns the bucket of the cost.
-    pub(crate) fn bucket(&self) -> u16 {
-        self.priced.bucket
-    }
-
-    #[inline(always)]
-    fn collapse(&self) -> Collapse {
-        let &Self { priced: PricedEdge { ends, ref quadric, .. }, from, place, .. } = self;
-        let displacement = place - from;
-        let from_middle = displacement.as_dvec3() - quadric.half;
-        Collapse { ends, half: quadric.half, from_middle, place, displacement }
-    }
-
-    #[inline(always)]
-    fn step<'a>(&self, edge_ring: &'a EdgeRing) -> BoundedStep<'a> {
-        let Ends { v0, v1, .. } = self.priced.ends;
-        let &Self { from, place, now, .. } = self;
-        BoundedStep { edge_ring, ends: [v0, v1], from, displacement: place - from, now }
-    }
 }
 
 impl<'v, A: AttributeModel> CollapseLoop<'v, A> {

@@ -166,7 +166,7 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
             return;
         }
         let components = self.whole.components.as_ref().map_or(1, Components::count);
-        let genus = genus(&store.whole(), components);
+        let genus = genus(&store.whole(), self.fans.faces, components);
         if genus > 0 {
             let faces = numbers(self.mesh, &self.order, self.faces.as_deref()).collect();
             let handles = Handles::new(genus, faces, store.own() as u32);

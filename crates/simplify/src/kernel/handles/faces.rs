@@ -13,11 +13,11 @@ use crate::kernel::setup::vertex_order::is_face;
 pub(crate) struct HandleFaces {
     all: Vec<[u32; 3]>,
     /// Which corners each vertex has, from the first cut on.
-    corners: Option<Corners>,
+    corners: Option<CornersByVertex>,
 }
 
 /// For each vertex, the vertices contracted into it and the faces at each of them.
-struct Corners {
+struct CornersByVertex {
     /// Vertices that have been contracted into one, in a circle.
     next: Vec<u32>,
     /// Start of each vertex's faces.
@@ -53,7 +53,7 @@ impl HandleFaces {
         [v, copy]: [u32; 2],
         is_far: impl Fn(u32) -> bool,
     ) {
-        let corners = self.corners.get_or_insert_with(|| Corners::new(vertices, &self.all));
+        let corners = self.corners.get_or_insert_with(|| CornersByVertex::new(vertices, &self.all));
         let mut moved = Vec::new();
         for leaf in corners.leaves(v) {
             for &face in corners.faces_at(leaf) {
@@ -71,7 +71,7 @@ impl HandleFaces {
     }
 }
 
-impl Corners {
+impl CornersByVertex {
     fn new(vertices: &mut Vertices<'_>, faces: &[[u32; 3]]) -> Self {
         let count = vertices.all.len();
         let mut next: Vec<u32> = (0..count as u32).collect();

@@ -2,33 +2,28 @@
 
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
 
-/// Returns the number of handles of all components together, given the number of components.
+/// Returns the number of handles of all components together, given the numbers of faces and of
+/// components. Rings are those that were just built: an open one ends with the ghost.
 ///
 /// Cost: O(n), n = vertices.
-pub(crate) fn genus(vertices: &Vertices<'_>, components: usize) -> usize {
-    let (mut used, mut ends, mut faces) = (0i64, 0i64, 0i64);
-    let mut open = Vec::new();
+pub(crate) fn genus(vertices: &Vertices<'_>, faces: usize, components: usize) -> usize {
+    let (mut used, mut open) = (0usize, Vec::new());
     for v in vertices.ids() {
-        let ring = vertices.neighbours(v);
-        if ring.is_empty() {
-            continue;
-        }
-        let is_open = ring.contains(&GHOST);
-        let neighbours = ring.len() as i64 - i64::from(is_open);
-        used += 1;
-        ends += neighbours;
-        faces += neighbours - i64::from(is_open);
-        if is_open {
-            open.push(v);
+        if let Some(&last) = vertices.neighbours(v).last() {
+            used += 1;
+            if last == GHOST {
+                open.push(v);
+            }
         }
     }
-    let euler = used - ends / 2 + faces / 3;
-    let most = (2 * components as i64 - euler) / 2;
-    if most <= 0 {
+    // An edge has two faces, one at the boundary, where there are as many edges as vertices.
+    let edges = (3 * faces + open.len()) / 2;
+    let euler = used as i64 - edges as i64 + faces as i64;
+    let of_closed = 2 * components as i64 - euler;
+    if of_closed <= 0 {
         return 0;
     }
-    let holes = holes(vertices, &open);
-    ((2 * components as i64 - holes as i64 - euler) / 2).max(0) as usize
+    ((of_closed - holes(vertices, &open) as i64) / 2).max(0) as usize
 }
 
 /// Returns the number of boundary loops, given all vertices on them in order.
@@ -39,19 +34,12 @@ fn holes(vertices: &Vertices<'_>, open: &[u32]) -> usize {
         let mut at = start;
         holes += usize::from(!is_seen[at]);
         while !std::mem::replace(&mut is_seen[at], true) {
-            let Ok(next) = open.binary_search(&after_ghost(vertices.neighbours(open[at]))) else {
-                break;
-            };
+            let next = vertices.neighbours(open[at]).first();
+            let Some(Ok(next)) = next.map(|next| open.binary_search(next)) else { break };
             at = next;
         }
     }
     holes
-}
-
-/// Returns the neighbour that follows the ghost in a ring.
-fn after_ghost(ring: &[u32]) -> u32 {
-    let ghost = ring.iter().position(|&w| w == GHOST).unwrap_or(0);
-    ring[(ghost + 1) % ring.len()]
 }
 
 #[cfg(test)]
@@ -79,7 +67,7 @@ mod tests {
             let places = vec![Vec3::ZERO; 25];
             let mut fans =
                 Fans::new::<SweptVolume>((&places, Vec::new()), faces.len(), |i| faces[i], 1.0);
-            assert_eq!(genus(&fans.store.whole(), 1), 1, "{left_out} faces left out");
+            assert_eq!(genus(&fans.store.whole(), faces.len(), 1), 1, "{left_out} faces left out");
         }
     }
 }

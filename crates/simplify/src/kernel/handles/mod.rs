@@ -1,10 +1,10 @@
 //! Handles that close where that costs least: tunnels are filled, arms of rings are cut.
 //!
-//! An edge whose ends have a neighbour in common beyond its wings must not be contracted, since the
-//! triangle of the three, which is no face, would become an edge of four faces. Around a handle there
-//! is nothing but such edges in the end. There the surface is cut along the triangle, and both
+//! An edge whose ends have a neighbour in common beyond its wings must not be contracted: the
+//! triangle of the three is not a face, and would become an edge of four faces. Around a handle
+//! there is nothing but such edges in the end. There the surface is cut along the triangle, and both
 //! sides are closed with a face. Then both copies of the edge are contracted, which takes these two
-//! faces away again: a level never has a face that is none of the input's.
+//! faces away again: a level never has a face that the input does not have.
 //!
 //! ```text
 //!      near side        the triangle v0 v1 w goes around          far side
@@ -28,9 +28,7 @@ use crate::kernel::mesh::one_ring::Vertices;
 use crate::options::HandleCounts;
 
 pub(crate) use crate::kernel::handles::genus::genus;
-
-/// Number of vertices that a cut needs.
-pub(crate) const PER_CUT: usize = 3;
+pub(crate) use crate::kernel::handles::neck::PER_CUT;
 
 /// Handles that may close, and those that have closed.
 pub(crate) struct Handles {

@@ -4,11 +4,13 @@ use std::collections::VecDeque;
 
 use rustc_hash::FxHashMap;
 
-use crate::kernel::handles::PER_CUT;
 use crate::kernel::mesh::one_ring::{GHOST, Vertices, index_in, is_seam};
 use crate::kernel::mesh::vertex::{Bf16, NO_VERTEX, Vertex, VertexFlags, VertexQuadric};
 use crate::kernel::metric::Metric;
 use crate::kernel::schedule::bucket_queue::NONE;
+
+/// Number of vertices that a cut needs.
+pub(crate) const PER_CUT: usize = 3;
 
 /// Vertices that must not be parted.
 const WHOLE: VertexFlags =

@@ -44,7 +44,7 @@ pub(crate) struct VertexStore {
     pub(crate) copied: Vec<u32>,
     /// Vertices that have copies, sorted.
     pub(crate) split: Vec<u32>,
-    /// Number of vertices at the end that are none of the input's: they are for cuts. Then there
+    /// Number of vertices at the end that the input does not have: they are for cuts. Then there
     /// are no copies.
     pub(crate) spare: usize,
     /// Weight of boundary edges.
