@@ -193,9 +193,11 @@ fn levels_are_as_small_as_asked_for_and_as_whole_as_the_input() {
         for level in levels(sample) {
             let wanted = level["ratio"].as_f64().unwrap() * sample["faces"].as_f64().unwrap();
             assert!(level["faces"].as_f64().unwrap() <= wanted && level["reached"] == true);
-            for field in ["closed", "genus", "components"] {
+            for field in ["closed", "components"] {
                 assert_eq!(level[field], sample[field], "{field} of {}", level["file"]);
             }
+            // Handles may close.
+            assert!(level["genus"].as_f64() <= sample["genus"].as_f64(), "{}", level["file"]);
         }
     }
 }

@@ -162,8 +162,8 @@ impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
         let none = WedgeId::new(count);
         for (slot, wedge) in (0..).zip(&mut wedges).filter(|(_, wedge)| **wedge == NO_VERTEX) {
             if self.merged_into[slot as usize] == slot {
-                count += 1;
-                *wedge = count as u32;
+                *wedge = self.wedge_of(slot);
+                count = count.max(*wedge as usize);
             }
         }
         let corner = |slot: u32| WedgeId(wedges[live[slot as usize] as usize]);
@@ -193,6 +193,14 @@ impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
         SurvivingWedge { slot, own, wedge, moved, channels: self.quadric(slot).values() }
     }
 
+    /// Returns the wedge of a slot; that of a vertex of a cut comes after those of the input.
+    fn wedge_of(&self, slot: u32) -> u32 {
+        match self.corners.wedge(slot) {
+            NO_VERTEX => (self.corners.own + self.corners.split.len()) as u32 + 1 + slot,
+            wedge => wedge,
+        }
+    }
+
     /// Records the values that a contraction has given to the wedges of a vertex.
     pub(crate) fn record_values(&mut self, vertex: u32) {
         let sectors = self.seams.of(vertex).iter().map(|sector| sector.slot);
@@ -203,7 +211,7 @@ impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
         slots.sort_unstable();
         slots.dedup();
         for slot in slots.into_iter().filter(|&slot| self.merged_into[slot as usize] == slot) {
-            let own = self.corners.wedge(slot);
+            let own = self.wedge_of(slot);
             let layers = self.layers.layers(&[self.left(slot, own)]);
             let values = layers.into_iter().flat_map(|layer| layer.values).collect();
             self.record.push(RecordedValues { number: self.logged, wedge: WedgeId(own), values });
