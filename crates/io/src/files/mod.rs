@@ -20,8 +20,8 @@ use crate::files::names::stem;
 use crate::format::Format;
 use crate::format::facts::Holds;
 use crate::gltf;
-use crate::gltf::{GltfStream, StoreFiles, StreamHead};
 use crate::gltf::write::levels::{Levels, LodLayout};
+use crate::gltf::{GltfStream, StoreFiles, StreamHead};
 use crate::memory::{parse, write_to};
 use crate::obj::{ObjEnd, ObjStream};
 use crate::options::{ReadOptions, WriteOptions};
@@ -80,8 +80,9 @@ pub fn finish_obj_stream(path: &Path, stream: ObjStream) -> Result<ObjEnd, IoErr
     Ok(end)
 }
 
-/// Opens a glTF or GLB file to read its geometry in passing, if the file and its buffers have at least
-/// a number of bytes and it is no other tile; the layers of corners are those that are kept.
+/// Opens a glTF or GLB file to read its geometry in passing, if the file and its buffers, or what is
+/// compressed in them, have at least a number of bytes and it is no other tile; the layers of corners
+/// are those that are kept.
 ///
 /// The scene has what [`read()`] gives but the values of its meshes; it is not to be written.
 ///

@@ -34,16 +34,15 @@ pub struct GltfSource {
 }
 
 impl GltfSource {
-    /// Opens a file; `None` if it has fewer than `least` bytes with its buffers, or must be read as a
-    /// whole. Returns a scene, too, whose meshes have no faces: materials, images and notes.
+    /// Opens a file; `None` if it has fewer than `least` bytes with its buffers and when nothing is
+    /// compressed, or must be read as a whole. Returns a scene, too, whose meshes have no faces: materials, images and notes.
     ///
     /// # Errors
     /// Errors of the system, and those of [`meshlod_io::open_gltf_stream`].
     pub fn open(path: &Path, least: u64, scratch: &Path) -> io::Result<Option<(Self, Scene)>> {
         let files: Arc<dyn StoreFiles> = Arc::new(PassingFiles { scratch: scratch.to_owned() });
         let opened = meshlod_io::open_gltf_stream(path, least, files, Layout::keeps);
-        let opened =
-            opened.map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))?;
+        let opened = opened.map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))?;
         let Some((stream, scene)) = opened else { return Ok(None) };
         let layout = Layout::of(stream.layers());
         let width = layout.width();
@@ -52,7 +51,8 @@ impl GltfSource {
         let mut firsts = Vec::new();
         for pool in 0..stream.pools() {
             firsts.push(count);
-            count = (count + stream.vertices_of(pool) as u64).next_multiple_of(1 << page_shift(size));
+            count =
+                (count + stream.vertices_of(pool) as u64).next_multiple_of(1 << page_shift(size));
         }
         let caches = Caches::new(count, size, width, rayon::current_num_threads());
         Ok(Some((Self { path: path.to_owned(), stream, firsts, caches, layout }, scene)))
@@ -184,10 +184,7 @@ impl GltfSource {
     }
 
     fn invalid(&self, error: meshlod_io::ParseError) -> io::Error {
-        io::Error::new(
-            io::ErrorKind::InvalidData,
-            meshlod_io::IoError::parse(&self.path, error),
-        )
+        io::Error::new(io::ErrorKind::InvalidData, meshlod_io::IoError::parse(&self.path, error))
     }
 }
 

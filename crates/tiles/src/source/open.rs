@@ -22,8 +22,9 @@ pub struct Streamed {
     pub scene: Option<Scene>,
 }
 
-/// Opens a file to be read in passing if it has at least a number of bytes, those of a `.gltf` file
-/// with its buffers, and is binary PLY, binary STL, OBJ or glTF; `None` if it must be read as a whole.
+/// Opens a file to be read in passing if it has at least a number of bytes, glTF with its buffers and
+/// when nothing is compressed, and is binary PLY, binary STL, OBJ or glTF; `None` if it must be read
+/// as a whole.
 ///
 /// PLY is told by its content, the others by the suffix of the name. What is read of an OBJ file and
 /// what is decompressed goes into files without a name in the folder `scratch`, which must exist.
@@ -32,7 +33,7 @@ pub struct Streamed {
 /// indices.
 pub fn open_stream(path: &Path, least: u64, scratch: &Path) -> Result<Option<Streamed>, IoError> {
     let Ok(facts) = path.metadata() else { return Ok(None) };
-    let is_gltf = has_suffix(path, "gltf");
+    let is_gltf = is_gltf(path);
     if !facts.is_file() || facts.len() < least && !is_gltf {
         return Ok(None);
     }
@@ -42,6 +43,11 @@ pub fn open_stream(path: &Path, least: u64, scratch: &Path) -> Result<Option<Str
 
 fn has_suffix(path: &Path, suffix: &str) -> bool {
     path.extension().is_some_and(|own| own.eq_ignore_ascii_case(suffix))
+}
+
+/// Returns true for a file whose size says little: it may be compressed, or in others.
+fn is_gltf(path: &Path) -> bool {
+    has_suffix(path, "gltf") || has_suffix(path, "glb")
 }
 
 fn stream(path: &Path, least: u64, scratch: &Path) -> io::Result<Option<Streamed>> {
@@ -55,12 +61,10 @@ fn stream(path: &Path, least: u64, scratch: &Path) -> io::Result<Option<Streamed
         }));
     }
     let plain = |source: Box<dyn Source>| Streamed { source, left_out: Vec::new(), scene: None };
-    if ["gltf", "glb"].iter().any(|suffix| has_suffix(path, suffix)) {
+    if is_gltf(path) {
         let opened = GltfSource::open(path, least, scratch)?;
-        return Ok(opened.map(|(source, scene)| Streamed {
-            scene: Some(scene),
-            ..plain(Box::new(source))
-        }));
+        return Ok(opened
+            .map(|(source, scene)| Streamed { scene: Some(scene), ..plain(Box::new(source)) }));
     }
     if has_suffix(path, "obj") {
         let (source, scene) = ObjSource::open(path, scratch)?;

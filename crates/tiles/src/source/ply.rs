@@ -245,11 +245,7 @@ impl PlySource {
 
     /// Returns the place of a vertex, and its values.
     #[inline]
-    fn vertex<'c>(
-        &self,
-        cache: &'c mut Cache,
-        vertex: u64,
-    ) -> io::Result<([f64; 3], &'c [f32])> {
+    fn vertex<'c>(&self, cache: &'c mut Cache, vertex: u64) -> io::Result<([f64; 3], &'c [f32])> {
         self.caches.vertex(cache, vertex, |page: Page<'_>| {
             page.bytes.resize(page.count * self.vertices.size, 0);
             let at = self.vertices.start + page.first * self.vertices.size as u64;

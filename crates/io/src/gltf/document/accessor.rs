@@ -188,8 +188,7 @@ impl Document<'_> {
         let end = length.and_then(|length| start.checked_add(length));
         if accessor.count > 0 && end.is_none_or(|end| end > view.byte_length) {
             let (count, found) = (accessor.count, view.byte_length);
-            let reason =
-                format!("{count} elements do not fit in its buffer view of {found} bytes");
+            let reason = format!("{count} elements do not fit in its buffer view of {found} bytes");
             return Err(wrong(index, reason));
         }
         let start = view.byte_offset.saturating_add(start);

@@ -91,9 +91,8 @@ fn stream<'a>(
     let CompressedView { buffer, byte_offset: offset, byte_length: length, .. } = *compressed;
     let found = buffers.part(buffer)?.length();
     buffers.range(buffer, offset, length)?.ok_or_else(|| {
-        let reason = format!(
-            "the compressed range of {length} bytes at {offset} exceeds its {found} bytes"
-        );
+        let reason =
+            format!("the compressed range of {length} bytes at {offset} exceeds its {found} bytes");
         ParseError::part(format!("buffer {buffer}"), reason)
     })
 }

@@ -19,10 +19,10 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use crate::error::ParseError;
+use crate::gltf::document::buffers::{BufferPart, Buffers};
 use crate::gltf::document::extensions::check_head;
 use crate::gltf::document::facts::FileFacts;
 use crate::gltf::document::source::{Contents, SourceDocument};
-use crate::gltf::document::buffers::{BufferPart, Buffers};
 use crate::gltf::document::{Document, buffers, container, missing};
 use crate::gltf::draco;
 use crate::notes::Note;

@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use crate::error::ParseError;
 use crate::gltf::document::buffers::{self, BufferPart};
+use crate::gltf::document::component;
 use crate::gltf::document::container::{self, Chunks};
 use crate::gltf::document::entries::entries;
 use crate::gltf::document::stored::{Store, StoreFiles, StoredBytes};
@@ -46,11 +47,21 @@ impl StreamHead {
         Ok(Some(Self { json, chunk, own }))
     }
 
-    /// Returns the number of bytes of the file and of the files of its buffers.
+    /// Returns the number of bytes of the file and of the files of its buffers, or of its accessors
+    /// when nothing is compressed, if that is more.
     pub fn bytes(&self) -> u64 {
-        let is_beside = |buffer: &&Value| {
-            buffer["uri"].as_str().is_some_and(|uri| !uri.starts_with("data:"))
+        let size = |accessor: &Value| {
+            let width = component::width(accessor["type"].as_str()?)?;
+            let size = component::size(u32::try_from(accessor["componentType"].as_u64()?).ok()?)?;
+            Some(accessor["count"].as_u64()?.saturating_mul((width * size) as u64))
         };
+        let expanded = entries(&self.json, "accessors").filter_map(size);
+        self.stored_bytes().max(expanded.fold(0, u64::saturating_add))
+    }
+
+    fn stored_bytes(&self) -> u64 {
+        let is_beside =
+            |buffer: &&Value| buffer["uri"].as_str().is_some_and(|uri| !uri.starts_with("data:"));
         let beside = entries(&self.json, "buffers").filter(is_beside);
         let bytes = beside.filter_map(|buffer| buffer["byteLength"].as_u64());
         bytes.fold(self.own, u64::saturating_add)

@@ -51,7 +51,8 @@ impl GltfStream {
         scene.images = images::read_images(&document, resolve)?;
         scene.materials = materials::materials(&json, scene.images.len())?;
         let count = document.meshes.len();
-        let meshes = (0..count).map(|mesh| survey(&document, mesh)).collect::<Result<Vec<_>, _>>()?;
+        let meshes =
+            (0..count).map(|mesh| survey(&document, mesh)).collect::<Result<Vec<_>, _>>()?;
         for (index, mesh) in meshes.iter().enumerate() {
             scene.meshes.push(scene_mesh(&document, index, mesh, scene.materials.len())?);
         }
@@ -62,8 +63,13 @@ impl GltfStream {
         let expanded = rows.expanded;
         drop(document);
         buffers.push(expanded)?;
-        let contents =
-            Contents { json, buffers: Buffers::default(), weld: Weld::Off, emptied: Vec::new(), facts };
+        let contents = Contents {
+            json,
+            buffers: Buffers::default(),
+            weld: Weld::Off,
+            emptied: Vec::new(),
+            facts,
+        };
         scene.source = Some(SourceDocument(Arc::new(contents)));
         let rounding = normals::rounding(&scene);
         let stream = Self { buffers, layers, pools, placements, runs, rounding };
@@ -99,7 +105,8 @@ impl GltfStream {
         Ok([replaced, normals::scaled_note(all.scaled), bare, self.bare_note()])
     }
 
-    /// Notes the faces that lack normals, although others have them.
+    /// Notes the faces that lack normals, although others have them; those of strips and fans without
+    /// an area count, too.
     fn bare_note(&self) -> Note {
         let normals = self.layers.iter().position(|layer| layer.kind == LayerKind::Normal);
         let lacks = |run: &&GltfRun| {
@@ -204,7 +211,8 @@ impl Opening<'_> {
         let mut find = |accessor: &Option<usize>| {
             accessor.map(|accessor| self.rows.find(document, accessor)).transpose()
         };
-        let values = key.1.iter().map(&mut find).collect::<Result<Vec<Option<AccessorRows>>, _>>()?;
+        let values =
+            key.1.iter().map(&mut find).collect::<Result<Vec<Option<AccessorRows>>, _>>()?;
         self.pools.push(Pool { count, positions, values });
         self.known.insert(key, self.pools.len() - 1);
         Ok(self.pools.len() - 1)

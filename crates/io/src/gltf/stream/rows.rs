@@ -3,9 +3,9 @@
 use rustc_hash::FxHashMap;
 
 use crate::error::ParseError;
+use crate::gltf::document::Document;
 use crate::gltf::document::accessor::{Span, beyond, not_finite, numbers, whole_numbers};
 use crate::gltf::document::buffers::{Buffers, Growing};
-use crate::gltf::document::Document;
 
 /// Accessor whose elements are all stored one after the other.
 #[derive(Clone, Copy, Debug)]

@@ -74,7 +74,9 @@ impl SurveyedMesh {
         if width != 3 {
             return Err(ParseError::part(format!("accessor {positions}"), "POSITION must be VEC3"));
         }
+        document.plain_span(positions)?;
         for (name, accessor) in accessors.iter().filter(|(name, _)| name != "POSITION") {
+            document.plain_span(*accessor)?;
             let (accessor, width, _) = document.typed(*accessor)?;
             let found = accessor.count;
             if found != vertices {
@@ -86,6 +88,7 @@ impl SurveyedMesh {
         let corners = match primitive.indices {
             Some(indices) => {
                 document.check_indices(indices)?;
+                document.plain_span(indices)?;
                 document.accessors[indices].count
             }
             None => vertices,
