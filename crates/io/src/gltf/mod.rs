@@ -26,7 +26,7 @@ pub use animation::{Animator, Moment, Pose, Skin};
 pub use document::facts::{AnimationFacts, FileFacts};
 pub use document::schema::parse_target_name;
 pub use document::source::SourceDocument;
-pub use document::stored::{Scratch, Store, StoreFiles};
+pub use document::stored::{ScratchFile, Store, StoreFiles};
 pub use read::primitive_rows::PrimitiveRows;
 pub use read::read;
 pub use skeleton::Skeleton;

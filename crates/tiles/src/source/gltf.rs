@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use meshlod_io::Scene;
-use meshlod_io::gltf::{GltfStream, Scratch, Store, StoreFiles};
+use meshlod_io::gltf::{GltfStream, ScratchFile, Store, StoreFiles};
 use rayon::prelude::*;
 
 use super::file::PlacedFile;
@@ -200,7 +200,7 @@ impl StoreFiles for PassingFiles {
         Ok(Arc::new(PlacedFile::open(path)?))
     }
 
-    fn scratch(&self) -> io::Result<Box<dyn Scratch>> {
+    fn scratch(&self) -> io::Result<Box<dyn ScratchFile>> {
         Ok(Box::new(Spool::new(&self.scratch)?))
     }
 }
@@ -215,7 +215,7 @@ impl Store for PlacedFile {
     }
 }
 
-impl Scratch for Spool {
+impl ScratchFile for Spool {
     fn add(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.add_bytes(bytes)
     }

@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::extensions::MESHOPT;
 use super::schema::Buffer;
-use super::stored::{Scratch, StoreFiles, StoredBytes};
+use super::stored::{ScratchFile, StoreFiles, StoredBytes};
 use super::uri::Uri;
 use super::{missing, schema, uri};
 use crate::error::ParseError;
@@ -104,7 +104,7 @@ impl Buffers {
 /// Buffer in the making: in memory, or in a file.
 pub(crate) struct Growing {
     files: Option<Arc<dyn StoreFiles>>,
-    scratch: Option<Box<dyn Scratch>>,
+    scratch: Option<Box<dyn ScratchFile>>,
     held: Vec<u8>,
     length: usize,
 }

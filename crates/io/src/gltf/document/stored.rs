@@ -19,7 +19,7 @@ pub trait Store: Debug + Send + Sync {
 }
 
 /// File that is written from its start to its end, to be read afterwards.
-pub trait Scratch: Send {
+pub trait ScratchFile: Send {
     /// Appends bytes.
     ///
     /// # Errors
@@ -45,7 +45,7 @@ pub trait StoreFiles: Debug + Send + Sync {
     ///
     /// # Errors
     /// Errors of the system.
-    fn scratch(&self) -> io::Result<Box<dyn Scratch>>;
+    fn scratch(&self) -> io::Result<Box<dyn ScratchFile>>;
 }
 
 /// Part of a file.
