@@ -170,9 +170,11 @@ impl NativeTilePlan {
 
     /// For each task, whether it is done.
     fn done(&self, py: Python<'_>) -> PyResult<Vec<bool>> {
-        let done = py.detach(|| (0..self.0.tasks()).map(|task| self.0.is_done(task)).collect());
+        let is_done = |task: usize| self.0.is_done(task);
+        let done: Result<Vec<bool>, JobError> =
+            py.detach(|| (0..self.0.tasks()).map(is_done).collect());
         let path = Path::new("");
-        done.map_err(|error: JobError| TilesFault::of_job(error, path, path).raised())
+        done.map_err(|error| TilesFault::of_job(error, path, path).raised())
     }
 
     /// Number of faces from which a part of the model is divided.
