@@ -58,7 +58,7 @@ mod _native {
     use super::simplify::{levels, simplify, simplify_scene};
     #[pymodule_export]
     use super::tiles::{
-        NativeTilePlan, assemble_tiles, plan_tiles, remove_tile_plan, tile_plan_folder, tiles,
+        NativeTilePlan, NativeTileRun, assemble_tiles, plan_tiles, tile_plan_folder, tiles,
     };
     #[pymodule_export]
     use super::verbs::{check, compress, measure, render, repair, sizes, strip};

@@ -5,7 +5,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use meshlod::io::{Note, Weld};
 use meshlod::jobs::{
-    self, JobError, Remark, TileFileError, TileFiles, TileModel, TilePlan, TilesRequest, Watch as _,
+    self, JobError, PlanFolder, Remark, TileFileError, TileFiles, TileModel, TilePlan, TileRun,
+    TilesRequest, Watch as _,
 };
 use meshlod::{AnyFile, AnyFileError, IoError, ReadOptions, Scene};
 use pyo3::prelude::*;
@@ -60,7 +61,7 @@ pub fn tiles<'py>(
     Ok((report::of_json(py, &done.map_err(TilesFault::raised)?)?, notes))
 }
 
-/// Plans the tiles of a model in a folder; returns notes on what was left out.
+/// Plans the tiles of a model in the folder of a run; returns notes on what was left out.
 ///
 /// # Errors
 /// As [`tiles`].
@@ -70,6 +71,7 @@ pub fn plan_tiles(
     inputs: Vec<PathBuf>,
     folder: PathBuf,
     asked: TilesAsked,
+    key: String,
 ) -> PyResult<Vec<String>> {
     let job = TilesJob::new(inputs, &asked)?;
     let folder = absolute(folder)?;
@@ -77,7 +79,8 @@ pub fn plan_tiles(
         let heard = Heard::new(watch);
         let work = || {
             let model = job.open(&folder, &heard)?;
-            let done = jobs::plan_tiles(model.input(), &folder, &job.request, &heard);
+            let place = PlanFolder::of_run(&folder, &key);
+            let done = jobs::plan_tiles(model.input(), place, &job.request, &heard);
             done.map_err(|error| job.fault(error, &folder))
         };
         (on_threads(asked.threads, work), heard.notes())
@@ -86,7 +89,8 @@ pub fn plan_tiles(
     Ok(notes)
 }
 
-/// Makes the tileset of a plan whose tasks are done, and returns its report. The plan stays.
+/// Makes the tileset of a run's plan whose tasks are done; returns its report, and notes on what was
+/// left out. The plan stays.
 ///
 /// # Errors
 /// A task that is not done, tiles that do not meet, and errors of the file system.
@@ -95,10 +99,16 @@ pub fn assemble_tiles(
     py: Python<'_>,
     folder: PathBuf,
     out: PathBuf,
-) -> PyResult<Bound<'_, PyDict>> {
+    key: String,
+) -> PyResult<(Bound<'_, PyDict>, Vec<String>)> {
     let at = out.clone();
-    let done = run_to_end(py, None, move |watch| jobs::assemble_tiles(&folder, &out, watch))?;
-    report::of_json(py, &done.map_err(|error| TilesFault::of_job(error, &at, &at).raised())?)
+    let (done, notes) = run_to_end(py, None, move |watch| {
+        let heard = Heard::new(watch);
+        let place = PlanFolder::of_run(&folder, &key);
+        (jobs::assemble_tiles(place, &out, &heard), heard.notes())
+    })?;
+    let report = done.map_err(|error| TilesFault::of_job(error, &at, &at).raised())?;
+    Ok((report::of_json(py, &report)?, notes))
 }
 
 /// Returns the folder of the plan of a tileset, if tiles can go there.
@@ -112,10 +122,31 @@ pub fn tile_plan_folder(out: PathBuf) -> PyResult<PathBuf> {
     Ok(jobs::tile_plan_folder(&out))
 }
 
-/// Removes the files of a plan.
-#[pyfunction]
-pub fn remove_tile_plan(py: Python<'_>, folder: PathBuf) {
-    py.detach(|| jobs::remove_tile_plan(&folder));
+/// Right to the folder of a plan, from before it is made until `end`.
+#[pyclass(frozen, module = "meshlod._native")]
+pub struct NativeTileRun(Mutex<Option<TileRun>>);
+
+#[pymethods]
+impl NativeTileRun {
+    /// Takes a folder.
+    #[new]
+    fn new(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
+        let begun = py.detach(|| TileRun::begin(&folder));
+        let run = begun.map_err(|error| TilesFault::of_job(error, &folder, &folder).raised())?;
+        Ok(Self(Mutex::new(Some(run))))
+    }
+
+    /// The key that its steps show.
+    fn key(&self) -> String {
+        let run = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        run.as_ref().map_or_else(String::new, |run| run.key().to_owned())
+    }
+
+    /// Gives the folder back; `done` removes the files of the plan before.
+    fn end(&self, py: Python<'_>, done: bool) {
+        let run = self.0.lock().unwrap_or_else(PoisonError::into_inner).take();
+        py.detach(|| run.filter(|_| done).iter().for_each(TileRun::remove));
+    }
 }
 
 /// Plan of tiles, opened once for many of its tasks.
@@ -138,8 +169,12 @@ impl NativeTilePlan {
     }
 
     /// For each task, whether it is done.
-    fn done(&self, py: Python<'_>) -> Vec<bool> {
-        py.detach(|| (0..self.0.tasks()).map(|task| self.0.is_done(task)).collect())
+    fn done(&self, py: Python<'_>) -> PyResult<Vec<bool>> {
+        let is_done = |task: usize| self.0.is_done(task);
+        let done: Result<Vec<bool>, JobError> =
+            py.detach(|| (0..self.0.tasks()).map(is_done).collect());
+        let path = Path::new("");
+        done.map_err(|error| TilesFault::of_job(error, path, path).raised())
     }
 
     /// Number of faces from which a part of the model is divided.

@@ -136,6 +136,18 @@ def test_a_run_that_was_interrupted_goes_on(sample, tmp_path):
     assert contents(tmp_path / "out") == expected
 
 
+def test_a_run_has_its_folder_between_its_tasks(sample, tmp_path):
+    path, expected = sample
+    out = tmp_path / "out"
+    run = _native.NativeTileRun(_native.tile_plan_folder(str(out)))
+    for _ in range(2):
+        with pytest.raises(OSError, match="another process is making tiles here"):
+            meshlod.tiles(path, out, tile_faces=2000)
+    run.end(False)
+    meshlod.tiles(path, out, tile_faces=2000)
+    assert contents(out) == expected
+
+
 def test_portions_hold_each_task_once_and_in_order():
     pytest.importorskip("distributed")
     from meshlod.dask._units import Units

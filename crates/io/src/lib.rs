@@ -42,8 +42,8 @@ pub use files::replace::{
     abandon_files, check_place, remove_abandoned, write_file, write_file_with,
 };
 pub use files::{
-    WrittenFile, finish_obj_stream, read, write, write_compressed, write_lods, write_needle,
-    write_ply_stream, write_strips,
+    WrittenFile, finish_obj_stream, open_gltf_stream, read, write, write_compressed, write_lods,
+    write_needle, write_ply_stream, write_strips,
 };
 pub use format::{Format, StoredDigits};
 pub use limits::merged_instances;

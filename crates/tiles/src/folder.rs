@@ -7,7 +7,7 @@ mod sealed;
 mod tile_file;
 
 use std::fs::{self, File};
-use std::io::ErrorKind;
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
@@ -60,6 +60,11 @@ impl Folder {
     /// Returns the path of the file that a process locks while it works on the plan.
     pub fn lock_file(&self) -> PathBuf {
         self.path.join("lock")
+    }
+
+    /// Returns the path of the file that a process locks for a run of several steps.
+    pub fn run_file(&self) -> PathBuf {
+        self.path.join("run")
     }
 
     /// Returns the path of the scratch file.
@@ -176,26 +181,27 @@ impl Folder {
         let cell = plan.cell(task)?;
         let path = self.record_file(cell);
         let damaged = |path| Err(TilesError::DamagedTile { path, task });
-        let Ok(bytes) = fs::read(&path) else { return Ok(None) };
+        let Some(bytes) = read_if_there(&path)? else { return Ok(None) };
         let Ok(record) = unseal::<TileRecord>(&bytes) else { return damaged(path) };
         if record.cell != cell {
             return damaged(path);
         }
         let content = self.content(cell);
-        match fs::metadata(&content).is_ok_and(|facts| facts.len() == record.bytes) {
-            true => Ok(Some(record)),
-            false => damaged(content),
+        match fs::metadata(&content) {
+            Ok(facts) if facts.len() == record.bytes => Ok(Some(record)),
+            Err(error) if !is_missing(&error) => Err(TilesError::system(&content, error)),
+            _ => damaged(content),
         }
     }
 
     /// Checks the bytes of the content of a tile.
     ///
     /// # Errors
-    /// A content that is not as it was written.
+    /// A content that is not as it was written, and errors of the system.
     pub fn check_content(&self, task: usize, record: &TileRecord) -> Result<(), TilesError> {
         let path = self.content(record.cell);
         let is_same = |bytes: Vec<u8>| crc32fast::hash(&bytes) == record.content_checksum;
-        match fs::read(&path).is_ok_and(is_same) {
+        match read_if_there(&path)?.is_some_and(is_same) {
             true => Ok(()),
             false => Err(TilesError::DamagedTile { path, task }),
         }
@@ -204,33 +210,45 @@ impl Folder {
     /// Reads the mesh of a tile.
     ///
     /// # Errors
-    /// A file that is not there, or not as it was written.
+    /// A file that is not there, or not as it was written, and errors of the system.
     pub fn mesh(
         &self,
         plan: &Plan,
         task: usize,
         record: &TileRecord,
     ) -> Result<TileMesh, TilesError> {
-        let bytes = self.mesh_bytes(record);
+        let bytes = self.mesh_bytes(record)?;
         let mesh = bytes.and_then(|bytes| tile_file::decode(&bytes, &plan.layout, &plan.labels));
         mesh.ok_or_else(|| TilesError::DamagedTile { path: self.mesh_file(record.cell), task })
     }
 
-    fn mesh_bytes(&self, record: &TileRecord) -> Option<Vec<u8>> {
-        let bytes = fs::read(self.mesh_file(record.cell)).ok()?;
-        (crc32fast::hash(&bytes) == record.mesh_checksum).then_some(bytes)
+    fn mesh_bytes(&self, record: &TileRecord) -> Result<Option<Vec<u8>>, TilesError> {
+        let bytes = read_if_there(&self.mesh_file(record.cell))?;
+        Ok(bytes.filter(|bytes| crc32fast::hash(bytes) == record.mesh_checksum))
     }
 
     /// Returns the record of a tile if all that was made of it is there, as it was written.
-    pub fn done(&self, plan: &Plan, task: usize) -> Option<TileRecord> {
-        let record = self.shown(plan, task)?;
-        self.mesh_bytes(&record).map(|_| record)
+    ///
+    /// # Errors
+    /// A task that there is not, and files that are there and cannot be read.
+    pub fn done(&self, plan: &Plan, task: usize) -> Result<Option<TileRecord>, TilesError> {
+        let Some(record) = self.shown(plan, task)? else { return Ok(None) };
+        Ok(self.mesh_bytes(&record)?.map(|_| record))
     }
 
     /// Returns the record of a tile if its content is there, as it was written; its mesh need not be.
-    pub fn shown(&self, plan: &Plan, task: usize) -> Option<TileRecord> {
-        let record = self.record(plan, task).ok().flatten()?;
-        self.check_content(task, &record).ok().map(|()| record)
+    ///
+    /// # Errors
+    /// As [`Folder::done`].
+    pub fn shown(&self, plan: &Plan, task: usize) -> Result<Option<TileRecord>, TilesError> {
+        let checked = self.record(plan, task).and_then(|record| match record {
+            Some(record) => self.check_content(task, &record).map(|()| Some(record)),
+            None => Ok(None),
+        });
+        match checked {
+            Err(TilesError::DamagedTile { .. }) => Ok(None),
+            checked => checked,
+        }
     }
 
     /// Writes what was made of a tile, its record last.
@@ -260,6 +278,7 @@ impl Folder {
     pub fn remove(&self) {
         self.forget_plan();
         self.forget_tiles();
+        let _ = fs::remove_file(self.run_file());
         let _ = fs::remove_file(self.lock_file());
         let _ = fs::remove_dir(&self.path);
     }
@@ -296,7 +315,7 @@ impl Folder {
         let is_foreign = |name: &str| {
             let name = name.strip_prefix('.').unwrap_or(name);
             let stem = if name.starts_with("plan.json") { "plan.json" } else { first(name) };
-            let named = ["plan.json", "blocks", "pieces", "lock", "tiles", "content"];
+            let named = ["plan.json", "blocks", "pieces", "lock", "run", "tiles", "content"];
             !named.contains(&stem) && !is_image(name)
         };
         let is_plan = |bytes: Vec<u8>| bytes.is_empty() || bytes.starts_with(SEAL);
@@ -333,6 +352,19 @@ impl Folder {
         // It would only take space.
         let _ = fs::remove_file(self.mesh_file(cell));
     }
+}
+
+/// Reads a file; `None` if there is none.
+fn read_if_there(path: &Path) -> Result<Option<Vec<u8>>, TilesError> {
+    match fs::read(path) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(error) if is_missing(&error) => Ok(None),
+        Err(error) => Err(TilesError::system(path, error)),
+    }
+}
+
+fn is_missing(error: &io::Error) -> bool {
+    matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory)
 }
 
 #[cfg(test)]

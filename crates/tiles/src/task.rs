@@ -23,7 +23,7 @@ pub fn run_task<C: Coarsen>(
     method: &C,
 ) -> Result<TileRecord, TilesError> {
     let cell = plan.cell(task)?;
-    if let Some(record) = folder.done(plan, task) {
+    if let Some(record) = folder.done(plan, task)? {
         return Ok(record);
     }
     let (tile, record) = match plan.parts(task)[..] {

@@ -44,8 +44,8 @@ def tiles(
 
     ``inputs`` are files, and folders of them, that are read as one model; ``out`` is a folder, in
     which ``tileset.json`` names the tiles, or an archive of these files if it ends in ``.3tz``.
-    Binary PLY, binary STL and OBJ files from 64 MB on are read in passing, with little memory; OBJ
-    takes about its size on the disk of ``out`` meanwhile. The bytes are those of ``meshlod tiles``
+    Binary PLY, binary STL, OBJ and glTF files from 64 MB on are read in passing, with little memory;
+    OBJ and compressed glTF take their room on the disk of ``out`` meanwhile. The bytes are those of ``meshlod tiles``
     with the same options, and a call that was ended goes on where it stopped.
 
     A part of the model with more than ``tile_faces`` faces is divided. Contents are compressed by

@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand, ValueEnum};
 use meshlod::io::check_place;
 use meshlod::jobs::{
-    Globe, TilesRequest, Up, check_tiles_folder, finish_tiles, plan_tiles, run_tile_task, tiles,
+    Globe, PlanFolder, TilesRequest, Up, check_tiles_folder, finish_tiles, plan_tiles,
+    run_tile_task, tiles,
 };
 use meshlod::tiles::archive::is_archive;
 use serde_json::json;
@@ -28,9 +29,9 @@ use report::TilesFigures;
 /// OUT is a folder: tileset.json names the tiles in it. If it ends in .3tz it is an archive of these
 /// files. A run that was ended goes on where it stopped.
 ///
-/// Binary PLY, binary STL and OBJ files from 64 MB on are read in passing, with little memory; OBJ
-/// takes about its size on the disk of OUT meanwhile. Of an .mlod file, the finest level is read. Of
-/// several files, the layers are kept that all of them have.
+/// Binary PLY, binary STL, OBJ and glTF files from 64 MB on are read in passing, with little memory;
+/// OBJ and compressed glTF take their room on the disk of OUT meanwhile. Of an .mlod file, the finest
+/// level is read. Of several files, the layers are kept that all of them have.
 ///
 /// The steps plan, task and finish do the same with any number of processes or machines.
 #[derive(Args)]
@@ -221,7 +222,8 @@ impl PlanStep {
         let request = self.form.request(None);
         let model = files::open(&self.inputs, &self.plan, &self.reading, session)?;
         let hearing = Hearing::new(session, &self.inputs[0], &self.plan);
-        let done = plan_tiles(model.input(), &self.plan, &request, &hearing);
+        let place = PlanFolder::new(&self.plan);
+        let done = plan_tiles(model.input(), place, &request, &hearing);
         let tasks = done.map_err(|error| hearing.failure(error))?;
         let plan = session_files::name(&self.plan);
         let last = tasks - 1;

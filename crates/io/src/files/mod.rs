@@ -3,8 +3,10 @@
 use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
+use std::sync::Arc;
 
 use beside::Beside;
+use meshlod_mesh::Layer;
 use write_gltf::write_gltf;
 use write_obj::write_obj;
 use write_ply::write_ply;
@@ -19,6 +21,7 @@ use crate::format::Format;
 use crate::format::facts::Holds;
 use crate::gltf;
 use crate::gltf::write::levels::{Levels, LodLayout};
+use crate::gltf::{GltfStream, StoreFiles, StreamHead};
 use crate::memory::{parse, write_to};
 use crate::obj::{ObjEnd, ObjStream};
 use crate::options::{ReadOptions, WriteOptions};
@@ -75,6 +78,41 @@ pub fn finish_obj_stream(path: &Path, stream: ObjStream) -> Result<ObjEnd, IoErr
     note_missing_images(&mut end.scene, path.parent());
     end.scene.notes.extend(Some(beside.note()).filter(|note| note.count > 0));
     Ok(end)
+}
+
+/// Opens a glTF or GLB file to read its geometry in passing, if the file and its buffers, or what is
+/// compressed in them, have at least a number of bytes and it is no other tile; the layers of corners
+/// are those that are kept.
+///
+/// The scene has what [`read()`] gives but the values of its meshes; it is not to be written.
+///
+/// # Errors
+/// As those of [`read()`]. An index that is too large is only found when its triangle is read.
+pub fn open_gltf_stream(
+    path: &Path,
+    least: u64,
+    files: Arc<dyn StoreFiles>,
+    keeps: fn(&Layer) -> bool,
+) -> Result<Option<(GltfStream, Scene)>, IoError> {
+    let file = files.open(path).map_err(|error| IoError::system(path, error))?;
+    let parse = |error| IoError::parse(path, error);
+    let length = file.length();
+    let head = match StreamHead::read(file) {
+        Ok(head) => head.filter(|head| head.bytes() >= least),
+        // A small file tells it when it is read as a whole.
+        Err(_) if length < least => None,
+        Err(error) => return Err(parse(error)),
+    };
+    let Some(head) = head else { return Ok(None) };
+    let mut beside = Beside::of(path, Format::Gltf);
+    let opened = |name: &str| beside.find(name).and_then(|path| files.open(&path).ok());
+    let document = head.load(&files, opened).map_err(parse)?;
+    let opened = GltfStream::open(document, &mut |name| beside.read(name), keeps).map_err(parse)?;
+    Ok(opened.map(|(stream, mut scene)| {
+        note_missing_images(&mut scene, path.parent());
+        scene.notes.extend(Some(beside.note()).filter(|note| note.count > 0));
+        (stream, scene)
+    }))
 }
 
 /// Writes a scene as a mesh file, with its `.bin`, `.mtl` and image files beside it.

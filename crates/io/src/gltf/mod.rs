@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `document` | the file: container, JSON, buffers, accessors, and the [`SourceDocument`] of a scene |
 //! | `read` | scenes from documents |
+//! | `stream` | triangles of documents that are larger than memory |
 //! | `draco` | decompression of primitives, before they are read |
 //! | `write` | documents from scenes: new geometry, levels, strips, compression |
 //! | `animation` | poses of nodes, and packing of key frames |
@@ -16,6 +17,7 @@ pub(crate) mod document;
 mod draco;
 mod read;
 mod skeleton;
+mod stream;
 #[cfg(test)]
 mod tests;
 pub(crate) mod write;
@@ -24,10 +26,13 @@ pub use animation::{Animator, Moment, Pose, Skin};
 pub use document::facts::{AnimationFacts, FileFacts};
 pub use document::schema::parse_target_name;
 pub use document::source::SourceDocument;
+pub use document::stored::{ScratchFile, Store, StoreFiles};
 pub use read::primitive_rows::PrimitiveRows;
 pub use read::read;
 pub use skeleton::Skeleton;
 pub use skeleton::images::SkeletonImage;
+pub(crate) use stream::StreamHead;
+pub use stream::{GltfRun, GltfStream};
 pub use write::levels::{ImageSizes, Level, LodLayout, NeedleLevels, SizedImage};
 pub use write::output::GltfFiles;
 pub use write::parts::{QuantizedPart, write_parts_glb};

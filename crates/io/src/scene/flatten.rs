@@ -260,7 +260,7 @@ pub fn transform(mesh: &mut Mesh, transform: &[[f64; 4]; 4]) {
 
 /// Collects every distinct layer of the meshes, without values; colours get the largest width
 /// found.
-fn union_of_layers<'a>(meshes: impl Iterator<Item = &'a Mesh>) -> Vec<Layer> {
+pub(crate) fn union_of_layers<'a>(meshes: impl Iterator<Item = &'a Mesh>) -> Vec<Layer> {
     let mut union: Vec<Layer> = Vec::new();
     for layer in meshes.filter_map(|mesh| mesh.attributes.as_ref()).flat_map(|a| &a.layers) {
         match union.iter_mut().find(|known| same_meaning(known, layer)) {
@@ -323,7 +323,41 @@ fn append_values(layer: &mut Layer, own: &Layer) {
     }
 }
 
+/// Move of points and directions from the space of a mesh to world space.
+#[derive(Debug)]
+pub(crate) struct Placement {
+    /// Nothing for the identity, which changes no bit.
+    moved: Option<(DMat4, Directions)>,
+    /// True if faces change their winding.
+    pub mirrors: bool,
+}
+
+impl Placement {
+    pub fn of(instance: &MeshInstance) -> Self {
+        let world = DMat4::from_cols_array_2d(&instance.transform);
+        let is_moved = instance.transform != IDENTITY;
+        let moved = is_moved.then(|| (world, Directions::new(instance.linear())));
+        Self { moved, mirrors: instance.mirrors() }
+    }
+
+    /// Moves a point.
+    pub fn point(&self, point: [f64; 3]) -> [f64; 3] {
+        match &self.moved {
+            Some((world, _)) => world.transform_point3(point.into()).to_array(),
+            None => point,
+        }
+    }
+
+    /// Turns values of a layer if they are directions.
+    pub fn turn(&self, kind: LayerKind, width: usize, values: &mut [f32]) {
+        if let Some((_, directions)) = &self.moved {
+            directions.turn(kind, width, values);
+        }
+    }
+}
+
 /// Matrices that rotate the normals and tangents of a mesh with its node.
+#[derive(Debug)]
 struct Directions {
     tangents: DMat3,
     normals: DMat3,

@@ -17,8 +17,7 @@ const ROUNDING_OF_BYTES: f64 = 2e-2;
 ///
 /// Cost: linear; a single pass if all normals are unit.
 pub(crate) fn make_unit(scene: &mut Scene) {
-    let quantized = scene.source.as_ref().is_some_and(|source| source.is_quantized());
-    let rounding = if quantized { ROUNDING_OF_BYTES } else { ROUNDING };
+    let rounding = rounding(scene);
     let (mut scaled, mut computed) = (0, 0);
     let source = scene.source.as_ref();
     for (index, mesh) in scene.meshes.iter_mut().enumerate() {
@@ -28,7 +27,7 @@ pub(crate) fn make_unit(scene: &mut Scene) {
         computed += counts.computed;
     }
     let notes = [
-        Note::changed(scaled, "normal scaled to unit length", "normals scaled to unit length"),
+        scaled_note(scaled),
         Note::changed(
             computed,
             "normal without a length computed from the faces around it",
@@ -36,6 +35,17 @@ pub(crate) fn make_unit(scene: &mut Scene) {
         ),
     ];
     scene.notes.extend(notes.into_iter().filter(|note| note.count > 0));
+}
+
+/// Returns the largest deviation of a normal's length from 1 that counts as rounding.
+pub(crate) fn rounding(scene: &Scene) -> f64 {
+    let quantized = scene.source.as_ref().is_some_and(|source| source.is_quantized());
+    if quantized { ROUNDING_OF_BYTES } else { ROUNDING }
+}
+
+/// Notes how many normals were scaled.
+pub(crate) fn scaled_note(count: usize) -> Note {
+    Note::changed(count, "normal scaled to unit length", "normals scaled to unit length")
 }
 
 /// Computes the normals of length 0 at the corners of these faces from the faces around them.
@@ -59,7 +69,7 @@ pub(crate) fn unit(normal: [f32; 3]) -> Option<[f32; 3]> {
     unit_within(normal, ROUNDING)
 }
 
-fn unit_within(normal: [f32; 3], rounding: f64) -> Option<[f32; 3]> {
+pub(crate) fn unit_within(normal: [f32; 3], rounding: f64) -> Option<[f32; 3]> {
     let squared: f32 = normal.iter().map(|x| x * x).sum();
     if (f64::from(squared) - 1.0).abs() <= 2.0 * rounding {
         return Some(normal);

@@ -98,9 +98,10 @@ pub use strip::{
 pub use switching::{Switch, SwitchCamera};
 #[cfg(feature = "tiles")]
 pub use tiles::{
-    Globe, TileFileError, TileFiles, TileInput, TileLevel, TileModel, TilePlan, TilesReport,
-    TilesRequest, TilesetReport, Up, assemble_tiles, check_tiles_folder, check_tileset,
-    finish_tiles, plan_tiles, remove_tile_plan, run_tile_task, tile_plan_folder, tiles,
+    Globe, PlanFolder, TileFileError, TileFiles, TileInput, TileLevel, TileModel, TilePlan,
+    TileRun, TilesReport, TilesRequest, TilesetReport, Up, assemble_tiles, check_tiles_folder,
+    check_tileset, finish_tiles, plan_tiles, remove_tile_plan, run_tile_task, tile_plan_folder,
+    tiles,
 };
 pub use watch::{About, Remark, Watch};
 #[cfg(feature = "check")]

@@ -1,6 +1,7 @@
 //! Where triangles come from: a scene in memory, or files that are read in passing.
 
 mod file;
+mod gltf;
 mod joined;
 mod obj;
 mod open;
@@ -19,6 +20,7 @@ use meshlod_mesh::Bounds;
 use crate::layout::Layout;
 
 pub(crate) use file::PlacedFile;
+pub use gltf::GltfSource;
 pub use joined::JoinedSource;
 pub use obj::ObjSource;
 pub use open::{LEAST_STREAMED, Streamed, open_stream};

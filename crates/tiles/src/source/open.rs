@@ -6,7 +6,7 @@ use std::path::Path;
 
 use meshlod_io::{IoError, Scene};
 
-use super::{ObjSource, PlySource, Source, StlSource};
+use super::{GltfSource, ObjSource, PlySource, Source, StlSource};
 
 /// Bytes from which a file is read in passing where that is possible. A smaller one takes less
 /// memory as a scene than the tiles in the making.
@@ -22,23 +22,35 @@ pub struct Streamed {
     pub scene: Option<Scene>,
 }
 
-/// Opens a file to be read in passing if it has at least a number of bytes and is binary PLY, binary
-/// STL or OBJ; `None` if it must be read as a whole.
+/// Opens a file to be read in passing if it has at least a number of bytes, glTF with its buffers and
+/// when nothing is compressed, and is binary PLY, binary STL, OBJ or glTF; `None` if it must be read
+/// as a whole.
 ///
-/// PLY is told by its content, the others by the suffix of the name. What is read of an OBJ file goes
-/// into files without a name in the folder `scratch`, which must exist.
+/// PLY is told by its content, the others by the suffix of the name. What is read of an OBJ file and
+/// what is decompressed goes into files without a name in the folder `scratch`, which must exist.
 /// # Errors
-/// Errors of the system, and of the header; of OBJ, of all its content.
+/// Errors of the system, and of the header; of OBJ, of all its content, and of glTF, of all but the
+/// indices.
 pub fn open_stream(path: &Path, least: u64, scratch: &Path) -> Result<Option<Streamed>, IoError> {
-    let is_large = path.metadata().is_ok_and(|facts| facts.is_file() && facts.len() >= least);
-    if !is_large {
+    let Ok(facts) = path.metadata() else { return Ok(None) };
+    let is_gltf = is_gltf(path);
+    if !facts.is_file() || facts.len() < least && !is_gltf {
         return Ok(None);
     }
-    stream(path, scratch)
+    stream(path, least, scratch)
         .map_err(|error| error.downcast().unwrap_or_else(|error| IoError::system(path, error)))
 }
 
-fn stream(path: &Path, scratch: &Path) -> io::Result<Option<Streamed>> {
+fn has_suffix(path: &Path, suffix: &str) -> bool {
+    path.extension().is_some_and(|own| own.eq_ignore_ascii_case(suffix))
+}
+
+/// Returns true for a file whose size says little: it may be compressed, or in others.
+fn is_gltf(path: &Path) -> bool {
+    has_suffix(path, "gltf") || has_suffix(path, "glb")
+}
+
+fn stream(path: &Path, least: u64, scratch: &Path) -> io::Result<Option<Streamed>> {
     let mut begins = [0; 3];
     let is_ply = File::open(path)?.read_exact(&mut begins).is_ok() && begins == *b"ply";
     if is_ply {
@@ -48,14 +60,17 @@ fn stream(path: &Path, scratch: &Path) -> io::Result<Option<Streamed>> {
             Streamed { source: Box::new(source), left_out, scene: None }
         }));
     }
-    let has_suffix =
-        |suffix: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(suffix));
     let plain = |source: Box<dyn Source>| Streamed { source, left_out: Vec::new(), scene: None };
-    if has_suffix("obj") {
+    if is_gltf(path) {
+        let opened = GltfSource::open(path, least, scratch)?;
+        return Ok(opened
+            .map(|(source, scene)| Streamed { scene: Some(scene), ..plain(Box::new(source)) }));
+    }
+    if has_suffix(path, "obj") {
         let (source, scene) = ObjSource::open(path, scratch)?;
         return Ok(Some(Streamed { scene: Some(scene), ..plain(Box::new(source)) }));
     }
-    if has_suffix("stl") {
+    if has_suffix(path, "stl") {
         return Ok(StlSource::open(path)?.map(|source| plain(Box::new(source))));
     }
     Ok(None)

@@ -6,10 +6,6 @@
 use std::io;
 use std::sync::Mutex;
 
-use meshlod_io::ply::VertexRows;
-
-use super::file::PlacedFile;
-
 /// Bytes of a page, about. On a terrain of 20 million faces pages of 16 and 64 KiB took as long;
 /// 200,000 faces of vertices in no order took 4.8 s, and with those pages 11 s and 37 s.
 const PAGE: usize = 1 << 12;
@@ -23,10 +19,11 @@ const LEAST: usize = 1 << 22;
 /// Marks a slot without a page.
 const NONE: u64 = u64::MAX;
 
-/// Caches of all threads, and what they are caches of.
+/// Caches of all threads.
 #[derive(Debug)]
 pub(super) struct Caches {
-    rows: VertexRows,
+    /// Number of vertices.
+    pub count: u64,
     /// Values of a vertex.
     width: usize,
     /// A page has two to the power of this many vertices.
@@ -46,20 +43,31 @@ pub(super) struct Cache {
     bytes: Vec<u8>,
 }
 
+/// Page that is to be filled.
+pub(super) struct Page<'c> {
+    /// First vertex, and the number of vertices.
+    pub first: u64,
+    pub count: usize,
+    pub places: &'c mut Vec<[f64; 3]>,
+    pub values: &'c mut Vec<f32>,
+    /// Room for what is read.
+    pub bytes: &'c mut Vec<u8>,
+}
+
+/// Returns the binary logarithm of the number of vertices in a page, by their bytes in the file.
+pub(super) fn page_shift(size: usize) -> u32 {
+    (PAGE / size.max(1)).max(1).ilog2()
+}
+
 impl Caches {
-    pub fn new(rows: VertexRows, threads: usize) -> Self {
-        let width: usize = rows.layers().iter().map(|layer| layer.width).sum();
-        let shift = (PAGE / rows.size).max(1).ilog2();
+    /// Makes caches of a number of vertices, each of so many bytes in the file and values.
+    pub fn new(count: u64, size: usize, width: usize, threads: usize) -> Self {
+        let shift = page_shift(size);
         let page = (size_of::<[f64; 3]>() + size_of::<f32>() * width) << shift;
         let most = ((ALL / threads.max(1)).max(LEAST) / page).max(1);
-        let pages = usize::try_from(rows.count >> shift).unwrap_or(most) + 1;
+        let pages = usize::try_from(count >> shift).unwrap_or(most) + 1;
         let slots = 1 << most.min(pages.next_power_of_two()).ilog2();
-        Self { rows, width, shift, slots, idle: Mutex::default() }
-    }
-
-    /// Returns the number of vertices.
-    pub fn count(&self) -> u64 {
-        self.rows.count
+        Self { count, width, shift, slots, idle: Mutex::default() }
     }
 
     /// Lends a cache that no other thread has.
@@ -78,35 +86,38 @@ impl Caches {
         self.idle.lock().expect("no thread panics here").push(cache);
     }
 
-    /// Returns the place of a vertex, which there must be, and its values.
+    /// Returns the place of a vertex, which there must be, and its values; `fill` reads its page.
     #[inline]
     pub fn vertex<'c>(
         &self,
-        file: &PlacedFile,
         cache: &'c mut Cache,
         vertex: u64,
+        fill: impl FnOnce(Page<'_>) -> io::Result<()>,
     ) -> io::Result<([f64; 3], &'c [f32])> {
         let page = vertex >> self.shift;
         let slot = page as usize & (self.slots - 1);
         if cache.pages[slot] != page {
-            self.load(file, cache, page, slot)?;
+            self.load(cache, page, slot, fill)?;
         }
         let row = (vertex & ((1 << self.shift) - 1)) as usize;
         Ok((cache.places[slot][row], &cache.values[slot][row * self.width..][..self.width]))
     }
 
     #[cold]
-    fn load(&self, file: &PlacedFile, cache: &mut Cache, page: u64, slot: usize) -> io::Result<()> {
+    fn load(
+        &self,
+        cache: &mut Cache,
+        page: u64,
+        slot: usize,
+        fill: impl FnOnce(Page<'_>) -> io::Result<()>,
+    ) -> io::Result<()> {
         cache.pages[slot] = NONE;
         let first = page << self.shift;
-        let count = (1 << self.shift).min(self.rows.count - first) as usize;
-        cache.bytes.resize(count * self.rows.size, 0);
-        file.read(self.rows.start + first * self.rows.size as u64, &mut cache.bytes)?;
+        let count = (1 << self.shift).min(self.count - first) as usize;
         let (places, values) = (&mut cache.places[slot], &mut cache.values[slot]);
         places.clear();
         values.clear();
-        let read = self.rows.read(first, &cache.bytes, places, values);
-        read.map_err(|error| file.invalid(error))?;
+        fill(Page { first, count, places, values, bytes: &mut cache.bytes })?;
         cache.pages[slot] = page;
         Ok(())
     }

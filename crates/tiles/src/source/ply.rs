@@ -3,11 +3,11 @@
 use std::io;
 use std::path::Path;
 
-use meshlod_io::ply::{FaceRows, RowFault, StreamLayout, stream_layout};
+use meshlod_io::ply::{FaceRows, RowFault, StreamLayout, VertexRows, stream_layout};
 use rayon::prelude::*;
 
 use super::file::PlacedFile;
-use super::pages::{Cache, Caches};
+use super::pages::{Cache, Caches, Page};
 use super::polygon::{Polygon, Slots};
 use super::{MOST_TRIANGLES, Source, Triangles};
 use crate::layout::Layout;
@@ -29,7 +29,8 @@ const GROUP: usize = 1 << 12;
 pub struct PlySource {
     file: PlacedFile,
     faces: FaceRows,
-    vertices: Caches,
+    vertices: VertexRows,
+    caches: Caches,
     layout: Layout,
     left_out: Vec<String>,
 }
@@ -46,8 +47,10 @@ impl PlySource {
         let Some(StreamLayout { mut vertices, faces, left_out }) = found else { return Ok(None) };
         vertices.keep_layers(Layout::keeps);
         let layout = Layout::of(&vertices.layers());
-        let vertices = Caches::new(vertices, rayon::current_num_threads());
-        Ok(Some(Self { file, faces, vertices, layout, left_out }))
+        let width = vertices.layers().iter().map(|layer| layer.width).sum();
+        let threads = rayon::current_num_threads();
+        let caches = Caches::new(vertices.count, vertices.size, width, threads);
+        Ok(Some(Self { file, faces, vertices, caches, layout, left_out }))
     }
 
     /// Returns the properties of faces that are passed over, although scenes keep them.
@@ -197,9 +200,9 @@ impl PlySource {
         let decoded: Vec<io::Result<()>> = work
             .into_par_iter()
             .map(|(group, slots)| {
-                let mut cache = self.vertices.take();
+                let mut cache = self.caches.take();
                 let decoded = self.decode(group, window, slots, &mut cache);
-                self.vertices.give(cache);
+                self.caches.give(cache);
                 decoded
             })
             .collect();
@@ -221,14 +224,14 @@ impl PlySource {
             match vertices[..] {
                 [a, b, c] => {
                     for vertex in [a, b, c] {
-                        let (place, values) = self.vertices.vertex(&self.file, cache, vertex)?;
+                        let (place, values) = self.vertex(cache, vertex)?;
                         slots.put(place, values);
                     }
                 }
                 _ => {
                     polygon.clear();
                     for &vertex in &vertices {
-                        let (place, values) = self.vertices.vertex(&self.file, cache, vertex)?;
+                        let (place, values) = self.vertex(cache, vertex)?;
                         polygon.places.push(place);
                         polygon.values.extend_from_slice(values);
                     }
@@ -238,6 +241,18 @@ impl PlySource {
         }
         self.layout.fill_normals(slots.places.as_chunks().0, slots.values);
         Ok(())
+    }
+
+    /// Returns the place of a vertex, and its values.
+    #[inline]
+    fn vertex<'c>(&self, cache: &'c mut Cache, vertex: u64) -> io::Result<([f64; 3], &'c [f32])> {
+        self.caches.vertex(cache, vertex, |page: Page<'_>| {
+            page.bytes.resize(page.count * self.vertices.size, 0);
+            let at = self.vertices.start + page.first * self.vertices.size as u64;
+            self.file.read(at, page.bytes)?;
+            let read = self.vertices.read(page.first, page.bytes, page.places, page.values);
+            read.map_err(|error| self.file.invalid(error))
+        })
     }
 
     /// Reads the vertices of a row; returns the size of the row.
@@ -253,7 +268,7 @@ impl PlySource {
         let wrong = |reason: &str| self.wrong(place, row, reason);
         let face = self.faces.row(bytes).map_err(|_| wrong("has changed"))?;
         vertices.clear();
-        let count = self.vertices.count();
+        let count = self.vertices.count;
         self.faces.vertices(face, bytes, count, vertices).map_err(|index| {
             wrong(&format!("refers to vertex {index}, but there are only {count}, counted from 0"))
         })?;

@@ -30,6 +30,11 @@ impl Spool {
         self.out.write_all(&self.bytes).map_err(|error| named(&self.folder, error))
     }
 
+    /// Appends bytes, which are not counted.
+    pub fn add_bytes(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.out.write_all(bytes).map_err(|error| named(&self.folder, error))
+    }
+
     pub fn add_floats(&mut self, values: &[f32]) -> io::Result<()> {
         self.add(values.iter().map(|value| value.to_bits()))
     }

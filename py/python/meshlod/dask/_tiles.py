@@ -79,18 +79,23 @@ class _Run:
     def tiles(
         self, names: list[str], asked: TilesAsked, show: Callable[[float], object]
     ) -> TilesReport:
+        # Held between the tasks, too, so that no other run plans there meanwhile.
+        run = _native.NativeTileRun(self.folder)
+        is_made = False
         try:
-            planned = self._result(_plan, names, self.folder, asked)
-        except (MeshlodError, OSError):
+            planned = self._result(_plan, names, self.folder, asked, run.key())
+            notes, parts, done, faces = planned
+            for note in notes:
+                warn(note)
+            self._make(Units(parts, done, faces), show)
+            fields, notes = self._result(_assemble, self.folder, self.out, run.key())
+            is_made = True
+        finally:
+            run.end(is_made)
             with suppress(OSError):
                 os.rmdir(self.out)
-            raise
-        notes, parts, done, faces = planned
         for note in notes:
             warn(note)
-        self._make(Units(parts, done, faces), show)
-        fields = self._result(_assemble, self.folder, self.out)
-        _native.remove_tile_plan(self.folder)
         show(1.0)
         return TilesReport._of(fields)
 
@@ -162,9 +167,11 @@ def _killed() -> MeshlodError:
     return MeshlodError("workers died at the same task; it may need more memory than they have")
 
 
-def _plan(names: list[str], folder: str, asked: TilesAsked) -> tuple[list[str], Any, Any, int]:
+def _plan(
+    names: list[str], folder: str, asked: TilesAsked, key: str
+) -> tuple[list[str], Any, Any, int]:
     """Plans, on a worker; returns notes, and what tasks there are."""
-    notes = _native.plan_tiles(names, folder, asked)
+    notes = _native.plan_tiles(names, folder, asked, key)
     plan = _opened(folder)
     return notes, plan.parts(), plan.done(), plan.tile_faces()
 
@@ -174,9 +181,9 @@ def _do(folder: str, tasks: list[int]) -> None:
     _opened(folder).run(tasks)
 
 
-def _assemble(folder: str, out: str) -> dict[str, Any]:
-    """Makes the tileset, on a worker."""
-    return _native.assemble_tiles(folder, out)
+def _assemble(folder: str, out: str, key: str) -> tuple[dict[str, Any], list[str]]:
+    """Makes the tileset, on a worker; returns its report, and notes."""
+    return _native.assemble_tiles(folder, out, key)
 
 
 #: The plan that this worker opened last, by its folder.

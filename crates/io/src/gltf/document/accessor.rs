@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use super::buffers::Buffers;
 use super::schema::{Accessor, Sparse};
 use super::{Document, missing};
 use crate::error::ParseError;
@@ -13,6 +14,41 @@ struct PackedElements<'a> {
     /// Components per element.
     width: usize,
     bytes: Cow<'a, [u8]>,
+}
+
+/// Place of the elements of an accessor in a buffer, all of which are there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Span {
+    pub buffer: usize,
+    /// Byte of the buffer that the first element begins at.
+    pub start: usize,
+    /// Bytes from one element to the next.
+    pub stride: usize,
+    /// Bytes of an element.
+    pub element: usize,
+    pub count: usize,
+}
+
+impl Span {
+    /// Reads some of the elements, without the gaps between them; they must be there.
+    pub fn read<'b>(
+        &self,
+        buffers: &'b Buffers,
+        first: usize,
+        count: usize,
+    ) -> Result<Cow<'b, [u8]>, ParseError> {
+        let Some(last) = count.checked_sub(1) else { return Ok(Cow::Borrowed(&[])) };
+        let (at, length) = (self.start + first * self.stride, last * self.stride + self.element);
+        let bytes = buffers.range(self.buffer, at, length)?.unwrap_or_default();
+        if self.stride == self.element {
+            return Ok(bytes);
+        }
+        let mut packed = Vec::with_capacity(count * self.element);
+        for at in bytes.chunks(self.stride) {
+            packed.extend_from_slice(&at[..self.element]);
+        }
+        Ok(Cow::Owned(packed))
+    }
 }
 
 /// Elements of an accessor as floats, normalised if the accessor is.
@@ -35,12 +71,9 @@ impl Document<'_> {
     /// Reads an accessor of any type as floats, all of them finite.
     pub fn floats(&self, index: usize) -> Result<Values, ParseError> {
         let read = self.stored_floats(index)?;
-        match read.values.iter().position(|x| !x.is_finite()) {
+        match not_finite(index, 0, read.width, &read.values) {
             None => Ok(read),
-            Some(i) => {
-                let (element, value) = (i / read.width, read.values[i]);
-                Err(wrong(index, format!("element {element} is not finite: {value}")))
-            }
+            Some(error) => Err(error),
         }
     }
 
@@ -60,7 +93,18 @@ impl Document<'_> {
 
     /// Reads an accessor of vertex indices, each of which must be below `limit`.
     pub fn indices(&self, index: usize, limit: usize) -> Result<Vec<u32>, ParseError> {
-        let PackedElements { accessor, width, bytes } = self.packed(index)?;
+        self.check_indices(index)?;
+        let PackedElements { accessor, bytes, .. } = self.packed(index)?;
+        let indices = whole_numbers(&bytes, accessor.component_type);
+        match beyond(index, 0, &indices, limit) {
+            None => Ok(indices),
+            Some(error) => Err(error),
+        }
+    }
+
+    /// Checks that an accessor is one of indices.
+    pub fn check_indices(&self, index: usize) -> Result<(), ParseError> {
+        let (accessor, width, _) = self.typed(index)?;
         let kind = accessor.component_type;
         if width != 1 || !matches!(kind, component::U8 | component::U16 | component::U32) {
             let shape = &accessor.shape;
@@ -68,18 +112,11 @@ impl Document<'_> {
                 format!("indices must be SCALAR of an unsigned type, not {shape} of type {kind}");
             return Err(wrong(index, reason));
         }
-        let indices = whole_numbers(&bytes, kind);
-        match indices.iter().position(|&i| i as usize >= limit) {
-            None => Ok(indices),
-            Some(at) => {
-                let reason =
-                    format!("index {at} is {}, but there are only {limit} vertices", indices[at]);
-                Err(wrong(index, reason))
-            }
-        }
+        Ok(())
     }
 
-    fn packed(&self, index: usize) -> Result<PackedElements<'_>, ParseError> {
+    /// Returns an accessor with its components per element and the bytes of one.
+    pub fn typed(&self, index: usize) -> Result<(&Accessor, usize, usize), ParseError> {
         let Some(accessor) = self.accessors.get(index) else {
             return Err(missing("accessor", index, self.accessors.len()));
         };
@@ -95,11 +132,34 @@ impl Document<'_> {
                 "matrices of 8-bit or 16-bit integers are not supported".to_owned(),
             ));
         }
+        Ok((accessor, width, size))
+    }
+
+    /// Returns where the elements of an accessor are that are stored as they are, one after the
+    /// other; `None` of one that is sparse or has no buffer view.
+    pub fn plain_span(&self, index: usize) -> Result<Option<Span>, ParseError> {
+        let (accessor, width, size) = self.typed(index)?;
+        match (accessor.buffer_view, &accessor.sparse) {
+            (Some(view), None) => self.span(index, view, accessor, width * size).map(Some),
+            _ => Ok(None),
+        }
+    }
+
+    /// Reads all elements of an accessor as they are stored.
+    pub fn stored_bytes(&self, index: usize) -> Result<Cow<'_, [u8]>, ParseError> {
+        Ok(self.packed(index)?.bytes)
+    }
+
+    fn packed(&self, index: usize) -> Result<PackedElements<'_>, ParseError> {
+        let (accessor, width, size) = self.typed(index)?;
         let values = accessor.count.saturating_mul(width);
         self.spend(&format!("accessor {index}"), values)?;
         let element = width * size;
         let mut bytes = match accessor.buffer_view {
-            Some(view) => self.elements(index, view, accessor, element)?,
+            Some(view) => {
+                let span = self.span(index, view, accessor, element)?;
+                span.read(self.buffers, 0, span.count)?
+            }
             None => Cow::Owned(vec![0; values * size]),
         };
         if let Some(sparse) = &accessor.sparse {
@@ -108,40 +168,31 @@ impl Document<'_> {
         Ok(PackedElements { accessor, width, bytes })
     }
 
-    fn elements(
+    fn span(
         &self,
         index: usize,
         view: usize,
         accessor: &Accessor,
         element: usize,
-    ) -> Result<Cow<'_, [u8]>, ParseError> {
-        let (view, bytes) = self.view(view)?;
+    ) -> Result<Span, ParseError> {
+        let view = self.view(view)?;
         let stride = view.byte_stride.filter(|&stride| stride > 0).unwrap_or(element);
         if stride < element {
             let reason =
                 format!("the stride of {stride} bytes is less than the element size of {element}");
             return Err(wrong(index, reason));
         }
-        let Some(last) = accessor.count.checked_sub(1) else { return Ok(Cow::Borrowed(&[])) };
-        let length = last.checked_mul(stride).and_then(|length| length.checked_add(element));
         let start = accessor.byte_offset;
-        let bytes = length
-            .and_then(|length| bytes.get(start..start.checked_add(length)?))
-            .ok_or_else(|| {
-                let (count, found) = (accessor.count, bytes.len());
-                wrong(
-                    index,
-                    format!("{count} elements do not fit in its buffer view of {found} bytes"),
-                )
-            })?;
-        if stride == element {
-            return Ok(Cow::Borrowed(bytes));
+        let last = accessor.count.saturating_sub(1);
+        let length = last.checked_mul(stride).and_then(|length| length.checked_add(element));
+        let end = length.and_then(|length| start.checked_add(length));
+        if accessor.count > 0 && end.is_none_or(|end| end > view.byte_length) {
+            let (count, found) = (accessor.count, view.byte_length);
+            let reason = format!("{count} elements do not fit in its buffer view of {found} bytes");
+            return Err(wrong(index, reason));
         }
-        let mut packed = Vec::with_capacity(accessor.count * element);
-        for at in bytes.chunks(stride) {
-            packed.extend_from_slice(&at[..element]);
-        }
-        Ok(Cow::Owned(packed))
+        let start = view.byte_offset.saturating_add(start);
+        Ok(Span { buffer: view.buffer, start, stride, element, count: accessor.count })
     }
 
     fn replace_sparse(
@@ -152,10 +203,8 @@ impl Document<'_> {
         into: &mut [u8],
     ) -> Result<(), ParseError> {
         let cut = |view: usize, offset: usize, size: usize| {
-            let (_, bytes) = self.view(view)?;
-            let length = sparse.count.checked_mul(size);
-            let part = length.and_then(|length| bytes.get(offset..offset.checked_add(length)?));
-            part.ok_or_else(|| {
+            let length = sparse.count.saturating_mul(size);
+            self.part_of_view(view, offset, length)?.ok_or_else(|| {
                 let count = sparse.count;
                 wrong(index, format!("{count} sparse elements do not fit in bufferView {view}"))
             })
@@ -174,7 +223,7 @@ impl Document<'_> {
         };
         let indices = cut(sparse.indices.buffer_view, sparse.indices.byte_offset, size)?;
         let values = cut(sparse.values.buffer_view, sparse.values.byte_offset, element)?;
-        for (at, value) in whole_numbers(indices, kind).into_iter().zip(values.chunks(element)) {
+        for (at, value) in whole_numbers(&indices, kind).into_iter().zip(values.chunks(element)) {
             let start = (at as usize).saturating_mul(element);
             let Some(place) = into.get_mut(start..start.saturating_add(element)) else {
                 let count = into.len() / element;
@@ -188,12 +237,37 @@ impl Document<'_> {
     }
 }
 
+/// Returns the error of the first index, counted from `first`, that is not below `limit`.
+pub(crate) fn beyond(
+    accessor: usize,
+    first: usize,
+    indices: &[u32],
+    limit: usize,
+) -> Option<ParseError> {
+    let at = indices.iter().position(|&i| i as usize >= limit)?;
+    let (number, found) = (first + at, indices[at]);
+    let reason = format!("index {number} is {found}, but there are only {limit} vertices");
+    Some(wrong(accessor, reason))
+}
+
+/// Returns the error of the first element, counted from `first`, that is not finite.
+pub(crate) fn not_finite(
+    accessor: usize,
+    first: usize,
+    width: usize,
+    values: &[f32],
+) -> Option<ParseError> {
+    let at = values.iter().position(|x| !x.is_finite())?;
+    let (element, value) = (first + at / width, values[at]);
+    Some(wrong(accessor, format!("element {element} is not finite: {value}")))
+}
+
 fn wrong(index: usize, reason: String) -> ParseError {
     ParseError::part(format!("accessor {index}"), reason)
 }
 
 /// Converts components to floats; `normalized` integers become [-1, 1] or [0, 1].
-fn numbers(bytes: &[u8], kind: u32, normalized: bool) -> Vec<f32> {
+pub(crate) fn numbers(bytes: &[u8], kind: u32, normalized: bool) -> Vec<f32> {
     let scaled = |greatest: f32| if normalized { greatest } else { 1.0 };
     match kind {
         component::I8 => map(bytes, |[b]| f32::from(b as i8) / scaled(127.0), normalized),
@@ -218,7 +292,7 @@ fn map<const N: usize>(bytes: &[u8], number: impl Fn([u8; N]) -> f32, clamped: b
     }
 }
 
-fn whole_numbers(bytes: &[u8], kind: u32) -> Vec<u32> {
+pub(crate) fn whole_numbers(bytes: &[u8], kind: u32) -> Vec<u32> {
     match kind {
         component::U8 => bytes.iter().map(|&b| u32::from(b)).collect(),
         component::U16 => {
@@ -233,7 +307,6 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::gltf::document::buffers::Buffers;
 
     /// The floats of accessor 0 over a buffer of 16 bytes: 0, 1, 2 …
     fn floats(accessor: serde_json::Value) -> Result<Values, String> {

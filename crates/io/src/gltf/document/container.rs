@@ -1,5 +1,7 @@
 //! GLB container: a JSON chunk and a binary chunk in one file.
 
+use std::ops::Range;
+
 use super::extensions::OLD;
 use crate::error::{ParseError, Unsupported};
 
@@ -8,12 +10,38 @@ const JSON: &[u8; 4] = b"JSON";
 const BIN: &[u8; 4] = b"BIN\0";
 const HEADER: usize = 12;
 
+/// Reader of four bytes at a place of a file.
+pub(crate) type Word<'w> = &'w dyn Fn(usize) -> Result<[u8; 4], ParseError>;
+
+/// Places of the chunks of a GLB in its file.
+pub(crate) struct Chunks {
+    pub json: Range<usize>,
+    pub bin: Option<Range<usize>>,
+}
+
 /// Splits a file into JSON and binary chunk; a file without the GLB magic is JSON only.
 pub(crate) fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ParseError> {
-    if !bytes.starts_with(MAGIC) {
+    if !is_glb(bytes) {
         return plain_json(bytes).map(|json| (json, None));
     }
-    let version = word(bytes, 4)?;
+    let word = |at: usize| Ok(bytes[at..].first_chunk().copied().unwrap_or_default());
+    let Chunks { json, bin } = chunks(bytes.len(), &word)?;
+    Ok((unpadded(&bytes[json]), bin.map(|bin| &bytes[bin])))
+}
+
+/// Reports whether a file that begins so is a GLB.
+pub(crate) fn is_glb(begins: &[u8]) -> bool {
+    begins.starts_with(MAGIC)
+}
+
+/// Returns the JSON of a chunk without the padding of some writers, zeros instead of spaces.
+pub(crate) fn unpadded(json: &[u8]) -> &[u8] {
+    &json[..json.len() - json.iter().rev().take_while(|&&byte| byte == 0).count()]
+}
+
+/// Finds the chunks of a GLB of this length; `word` reads four bytes at a place, which are there.
+pub(crate) fn chunks(length: usize, word: Word<'_>) -> Result<Chunks, ParseError> {
+    let version = number(length, 4, word)?;
     if version != 2 {
         return Err(ParseError::byte(
             4,
@@ -23,25 +51,21 @@ pub(crate) fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ParseError> 
             },
         ));
     }
-    let length = word(bytes, 8)?;
-    if length < HEADER || length > bytes.len() {
-        let found = bytes.len();
-        let reason = format!("the header declares {length} bytes, but the file has {found}");
+    let declared = number(length, 8, word)?;
+    if declared < HEADER || declared > length {
+        let reason = format!("the header declares {declared} bytes, but the file has {length}");
         return Err(ParseError::byte(8, reason));
     }
-    let bytes = &bytes[..length];
-    let (kind, json, next) = chunk(bytes, HEADER)?;
-    if kind != JSON {
+    let (kind, json) = chunk(declared, HEADER, word)?;
+    if &kind != JSON {
         return Err(ParseError::byte(HEADER + 4, "the first chunk of a GLB must be JSON"));
     }
-    // Some writers pad with zeros instead of spaces.
-    let json = &json[..json.len() - json.iter().rev().take_while(|&&byte| byte == 0).count()];
     // Chunks of other types are extensions and may be skipped; only the second chunk may be BIN.
-    if next == bytes.len() {
-        return Ok((json, None));
+    if json.end == declared {
+        return Ok(Chunks { json, bin: None });
     }
-    let (kind, bin, _) = chunk(bytes, next)?;
-    Ok((json, (kind == BIN).then_some(bin)))
+    let (kind, bin) = chunk(declared, json.end, word)?;
+    Ok(Chunks { json, bin: (&kind == BIN).then_some(bin) })
 }
 
 /// Joins JSON and binary chunk into a GLB file.
@@ -70,7 +94,7 @@ pub(crate) fn join(json: &[u8], bin: &[u8]) -> Result<Vec<u8>, Unsupported> {
     Ok(out)
 }
 
-fn plain_json(bytes: &[u8]) -> Result<&[u8], ParseError> {
+pub(crate) fn plain_json(bytes: &[u8]) -> Result<&[u8], ParseError> {
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     match text.first() {
         Some(b'{') => Ok(text),
@@ -86,21 +110,25 @@ fn plain_json(bytes: &[u8]) -> Result<&[u8], ParseError> {
     }
 }
 
-fn chunk(bytes: &[u8], at: usize) -> Result<(&[u8], &[u8], usize), ParseError> {
-    let length = word(bytes, at)?;
-    let kind = bytes.get(at + 4..at + 8).ok_or_else(|| ends(at))?;
+fn chunk(length: usize, at: usize, word: Word<'_>) -> Result<([u8; 4], Range<usize>), ParseError> {
     let start = at + 8;
-    let contents = &bytes[start..];
-    let contents = contents.get(..length).ok_or_else(|| {
-        let left = contents.len();
-        ParseError::byte(at, format!("the chunk declares {length} bytes, but only {left} are left"))
-    })?;
-    Ok((kind, contents, start + length))
+    if start > length {
+        return Err(ends(at));
+    }
+    let (size, kind) = (number(length, at, word)?, word(at + 4)?);
+    let left = length - start;
+    if size > left {
+        let reason = format!("the chunk declares {size} bytes, but only {left} are left");
+        return Err(ParseError::byte(at, reason));
+    }
+    Ok((kind, start..start + size))
 }
 
-fn word(bytes: &[u8], at: usize) -> Result<usize, ParseError> {
-    let word = bytes.get(at..at + 4).and_then(|word| word.try_into().ok());
-    word.map(|word| u32::from_le_bytes(word) as usize).ok_or_else(|| ends(at))
+fn number(length: usize, at: usize, word: Word<'_>) -> Result<usize, ParseError> {
+    if at + 4 > length {
+        return Err(ends(at));
+    }
+    word(at).map(|word| u32::from_le_bytes(word) as usize)
 }
 
 fn ends(at: usize) -> ParseError {

@@ -1,7 +1,7 @@
 //! Checked access to a glTF document: its JSON, buffers and accessors.
 //!
 //! Reading order: `container` splits the file, `extensions` checks what it requires, `buffers`
-//! loads its bytes, `schema` types its JSON. [`Document`] holds these; `accessor` reads arrays from
+//! loads its bytes or leaves them in files (`stored`), `schema` types its JSON. [`Document`] holds these; `accessor` reads arrays from
 //! it.
 
 pub(crate) mod accessor;
@@ -14,14 +14,16 @@ pub(crate) mod facts;
 pub(crate) mod primitive_kind;
 pub(crate) mod schema;
 pub(crate) mod source;
+pub mod stored;
 pub(crate) mod uri;
 
+use std::borrow::Cow;
 use std::cell::Cell;
 
 use serde_json::Value;
 
 use crate::error::ParseError;
-use crate::gltf::document::buffers::Buffers;
+use crate::gltf::document::buffers::{BufferPart, Buffers};
 use crate::gltf::document::extensions::{compressed, compresses};
 use schema::{Accessor, BufferView};
 
@@ -34,7 +36,7 @@ const MAX_EXPANSION: u64 = 64;
 /// JSON document with its typed entries and its buffers.
 pub(crate) struct Document<'a> {
     pub json: &'a Value,
-    pub buffers: &'a [Vec<u8>],
+    pub buffers: &'a Buffers,
     pub accessors: Vec<Accessor>,
     pub views: Vec<BufferView>,
     pub meshes: Vec<schema::GltfMesh>,
@@ -45,7 +47,6 @@ pub(crate) struct Document<'a> {
 impl<'a> Document<'a> {
     /// Parses the accessors, buffer views and meshes of a document and checks them.
     pub fn new(json: &'a Value, buffers: &'a Buffers) -> Result<Self, ParseError> {
-        let Buffers { bytes: buffers, stored } = buffers;
         let views: Vec<BufferView> = schema::array(json, "bufferViews", "bufferView")?;
         for (i, view) in views.iter().enumerate() {
             check_view(i, view, buffers)?;
@@ -64,18 +65,31 @@ impl<'a> Document<'a> {
         // An entry of the document takes about a hundred bytes of JSON.
         let entries = accessors.len() + meshes.iter().map(|m| m.primitives.len()).sum::<usize>();
         // Decompression has used part of the allowance, but each byte it made may be a value.
-        let decompressed = buffers.iter().map(Vec::len).sum::<usize>() as u64;
-        let values = (stored + 100 * entries) as u64 * MAX_EXPANSION;
+        let decompressed = buffers.parts.iter().map(BufferPart::length).sum::<usize>() as u64;
+        let values = (buffers.stored + 100 * entries) as u64 * MAX_EXPANSION;
         let budget = Cell::new((1 << 16) + values.max(4 * decompressed));
         Ok(Self { json, buffers, accessors, views, meshes, budget })
     }
 
-    /// Returns a buffer view by index, with its bytes.
-    pub fn view(&self, index: usize) -> Result<(&BufferView, &'a [u8]), ParseError> {
-        let Some(view) = self.views.get(index) else {
-            return Err(missing("bufferView", index, self.views.len()));
-        };
-        Ok((view, &self.buffers[view.buffer][view.byte_offset..][..view.byte_length]))
+    /// Returns a buffer view by index.
+    pub fn view(&self, index: usize) -> Result<&BufferView, ParseError> {
+        self.views.get(index).ok_or_else(|| missing("bufferView", index, self.views.len()))
+    }
+
+    /// Returns some bytes of a buffer view; `None` if they are not all in it.
+    pub fn part_of_view(
+        &self,
+        index: usize,
+        at: usize,
+        length: usize,
+    ) -> Result<Option<Cow<'a, [u8]>>, ParseError> {
+        let view = self.view(index)?;
+        match at.checked_add(length) {
+            Some(end) if end <= view.byte_length => {
+                self.buffers.range(view.buffer, view.byte_offset + at, length)
+            }
+            _ => Ok(None),
+        }
     }
 
     /// Counts numbers about to be read against a limit that grows with the file size, so that a
@@ -95,18 +109,16 @@ pub(crate) fn missing(entry: &str, index: usize, count: usize) -> ParseError {
     ParseError::part(format!("{entry} {index}"), format!("does not exist: there are only {count}"))
 }
 
-fn check_view(index: usize, view: &BufferView, buffers: &[Vec<u8>]) -> Result<(), ParseError> {
+fn check_view(index: usize, view: &BufferView, buffers: &Buffers) -> Result<(), ParseError> {
     let part = format!("bufferView {index}");
     if let Some(extension) = view.extensions.keys().find(|name| compresses(name)) {
         return Err(compressed(&part, extension));
     }
-    let Some(buffer) = buffers.get(view.buffer) else {
-        return Err(missing("buffer", view.buffer, buffers.len()));
-    };
+    let found = buffers.part(view.buffer)?.length();
     match view.byte_offset.checked_add(view.byte_length) {
-        Some(end) if end <= buffer.len() => Ok(()),
+        Some(end) if end <= found => Ok(()),
         _ => {
-            let (offset, length, found) = (view.byte_offset, view.byte_length, buffer.len());
+            let (offset, length) = (view.byte_offset, view.byte_length);
             let reason = format!(
                 "{length} bytes at {offset} exceed buffer {}, which has {found} bytes",
                 view.buffer

@@ -1,5 +1,7 @@
 //! Accessors filled with the decoded arrays of Draco streams.
 
+use std::borrow::Cow;
+
 use rustc_hash::{FxHashMap, FxHashSet};
 use serde_json::{Map, Value};
 
@@ -7,7 +9,7 @@ use super::header::{Ceiling, TOO_LARGE};
 use super::primitive::{Compressed, Extension, Place};
 use super::stream::{Array, Decoded};
 use crate::error::ParseError;
-use crate::gltf::document::buffers::Buffers;
+use crate::gltf::document::buffers::{Buffers, Growing};
 use crate::gltf::document::extensions::DRACO;
 use crate::gltf::document::schema::{Accessor, BufferView};
 use crate::gltf::document::{missing, schema};
@@ -36,7 +38,7 @@ pub(crate) fn unpack(
         buffers,
         filled: FxHashMap::default(),
         taken: FxHashSet::default(),
-        bytes: Vec::new(),
+        bytes: buffers.grow(),
     };
     // Primitives that share a stream usually follow each other.
     let mut last: Option<(usize, Decoded)> = None;
@@ -50,10 +52,7 @@ pub(crate) fn unpack(
         last = Some((view, decoded));
     }
     let decompressed = unpacker.bytes;
-    if !decompressed.is_empty() {
-        buffers.bytes.push(decompressed);
-    }
-    Ok(())
+    buffers.push(decompressed)
 }
 
 /// Source of an accessor's data: the buffer view of a stream, and the id of an attribute; `None`
@@ -70,7 +69,7 @@ struct Unpacker<'a> {
     /// Buffer views of streams that now hold decompressed arrays.
     taken: FxHashSet<usize>,
     /// Decompressed arrays.
-    bytes: Vec<u8>,
+    bytes: Growing,
     /// Remaining decompressed bytes allowed.
     room: usize,
 }
@@ -90,23 +89,19 @@ impl Unpacker<'_> {
         let faces = if is_strip(primitive) { of_accessor } else { of_accessor.div_ceil(3) };
         let ceiling = Ceiling { faces, bytes: self.room };
         let decoded =
-            Decoded::from_stream(stream, ceiling).map_err(|reason| place.wrong(reason))?;
+            Decoded::from_stream(&stream, ceiling).map_err(|reason| place.wrong(reason))?;
         self.spend(place, decoded.size())?;
         Ok(decoded)
     }
 
     /// Returns the bytes of a stream.
-    fn stream(&self, index: usize) -> Result<&[u8], ParseError> {
+    fn stream(&self, index: usize) -> Result<Cow<'_, [u8]>, ParseError> {
         let Some(view) = self.views.get(index) else {
             return Err(missing("bufferView", index, self.views.len()));
         };
-        let Some(bytes) = self.buffers.bytes.get(view.buffer) else {
-            return Err(missing("buffer", view.buffer, self.buffers.bytes.len()));
-        };
+        let found = self.buffers.part(view.buffer)?.length();
         let (offset, length) = (view.byte_offset, view.byte_length);
-        let end = offset.checked_add(length);
-        end.and_then(|end| bytes.get(offset..end)).ok_or_else(|| {
-            let found = bytes.len();
+        self.buffers.range(view.buffer, offset, length)?.ok_or_else(|| {
             let reason =
                 format!("{length} bytes at {offset} exceed its buffer, which has {found} bytes");
             ParseError::part(format!("bufferView {index}"), reason)
@@ -186,7 +181,7 @@ impl Unpacker<'_> {
             return Ok(accessor);
         }
         self.spend(place, array.bytes.len())?;
-        let view = self.add_view(json, source.0, &array);
+        let view = self.add_view(json, source.0, &array)?;
         let accessors = json["accessors"].as_array_mut().expect("it has an accessor");
         let accessor = match before {
             None => accessor,
@@ -212,23 +207,27 @@ impl Unpacker<'_> {
     }
 
     /// Adds a view of an array; the first one replaces the view of its stream.
-    fn add_view(&mut self, json: &mut Value, stream: usize, array: &Array) -> usize {
-        self.bytes.resize(self.bytes.len().next_multiple_of(8), 0);
+    fn add_view(
+        &mut self,
+        json: &mut Value,
+        stream: usize,
+        array: &Array,
+    ) -> Result<usize, ParseError> {
+        let start = self.bytes.add(&array.bytes)?;
         let mut view = Map::new();
-        view.insert("buffer".into(), self.buffers.bytes.len().into());
-        view.insert("byteOffset".into(), self.bytes.len().into());
+        view.insert("buffer".into(), self.buffers.parts.len().into());
+        view.insert("byteOffset".into(), start.into());
         view.insert("byteLength".into(), array.bytes.len().into());
         if let Some(stride) = array.stride {
             view.insert("byteStride".into(), stride.into());
         }
-        self.bytes.extend_from_slice(&array.bytes);
         let views = json["bufferViews"].as_array_mut().expect("the stream has a view");
         if self.taken.insert(stream) {
             views[stream] = view.into();
-            return stream;
+            return Ok(stream);
         }
         views.push(view.into());
-        views.len() - 1
+        Ok(views.len() - 1)
     }
 }
 

@@ -18,8 +18,9 @@ pub(crate) fn read_images(
     let mut read = |(i, image): (usize, schema::GltfImage)| {
         let named = |bytes: &[u8]| file_name(image.name.clone(), i, bytes);
         if let Some(view) = image.buffer_view {
-            let (_, bytes) = document.view(view)?;
-            return Ok(Image { name: named(bytes), bytes: bytes.to_vec() });
+            let length = document.view(view)?.byte_length;
+            let bytes = document.part_of_view(view, 0, length)?.unwrap_or_default();
+            return Ok(Image { name: named(&bytes), bytes: bytes.into_owned() });
         }
         Ok(match image.uri.as_deref().map(uri::parse) {
             Some(Ok(Uri::Data(bytes))) => Image { name: named(&bytes), bytes },

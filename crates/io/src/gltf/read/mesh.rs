@@ -82,7 +82,7 @@ struct Builder {
 }
 
 /// Number of replaced attributes that were not finite.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Replaced {
     /// Normals, which become zero and are later computed from the faces.
     pub normals: usize,
@@ -95,14 +95,14 @@ impl Replaced {
         self.normals == 0 && self.values == 0
     }
 
-    fn add(&mut self, other: Self) {
+    pub fn add(&mut self, other: Self) {
         self.normals += other.normals;
         self.values += other.values;
     }
 }
 
 /// Replaces and counts values that are not finite.
-fn make_finite(kind: LayerKind, of: &mut Values) -> Replaced {
+pub(crate) fn make_finite(kind: LayerKind, of: &mut Values) -> Replaced {
     let mut replaced = Replaced::default();
     for element in of.values.chunks_exact_mut(of.width) {
         let odd = element.iter().filter(|x| !x.is_finite()).count();
@@ -255,7 +255,7 @@ fn ids_fit(accessor: usize, count: usize) -> Result<(), ParseError> {
     Err(ParseError::part(format!("accessor {accessor}"), reason))
 }
 
-fn fits(kind: LayerKind, width: usize) -> bool {
+pub(crate) fn fits(kind: LayerKind, width: usize) -> bool {
     match kind {
         LayerKind::Normal => width == 3,
         LayerKind::Uv(_) => width == 2,
@@ -276,7 +276,7 @@ fn add_alpha(width: &mut usize, values: &mut Vec<f32>) {
 
 /// Lists the triangles of an index list, strip or fan. Degenerate triangles, which strips and fans
 /// use as joints, are dropped.
-fn triangles(mode: u32, indices: &[u32]) -> impl Iterator<Item = [u32; 3]> {
+pub(crate) fn triangles(mode: u32, indices: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     let list = (mode == 4).then(|| indices.as_chunks::<3>().0.iter().copied());
     let windows = if mode == 4 { &[][..] } else { indices };
     let turning = windows.windows(3).enumerate().filter_map(move |(i, next)| {

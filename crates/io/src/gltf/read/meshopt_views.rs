@@ -3,13 +3,14 @@
 //!
 //! The rest of the reader sees an uncompressed document.
 
+use std::borrow::Cow;
+
 use serde::Deserialize;
 use serde_json::Value;
 
 use crate::error::ParseError;
 use crate::gltf::document::buffers::Buffers;
 use crate::gltf::document::extensions::{MESHOPT, drop_entry, forget_names};
-use crate::gltf::document::missing;
 use crate::meshopt;
 use crate::meshopt::{Filter, Layout, Mode};
 
@@ -39,8 +40,8 @@ struct CompressedView {
 /// # Errors
 /// The view, and the reason.
 pub(crate) fn decompress(json: &mut Value, buffers: &mut Buffers) -> Result<(), ParseError> {
-    let mut decompressed = Vec::new();
-    let target = buffers.bytes.len();
+    let mut decompressed = buffers.grow();
+    let target = buffers.parts.len();
     let views = json.get_mut("bufferViews").and_then(Value::as_array_mut);
     for (i, view) in views.into_iter().flatten().enumerate() {
         let wrong = |reason: String| ParseError::part(format!("bufferView {i}"), reason);
@@ -59,15 +60,11 @@ pub(crate) fn decompress(json: &mut Value, buffers: &mut Buffers) -> Result<(), 
             let reason = "decompresses to far more than the file has data for";
             return Err(wrong(reason.to_owned()));
         }
-        let bytes = meshopt::decode(stream, &layout).map_err(|error| wrong(error.to_string()))?;
-        decompressed.resize(decompressed.len().next_multiple_of(8), 0);
+        let bytes = meshopt::decode(&stream, &layout).map_err(|error| wrong(error.to_string()))?;
         view["buffer"] = target.into();
-        view["byteOffset"] = decompressed.len().into();
-        decompressed.extend(bytes);
+        view["byteOffset"] = decompressed.add(&bytes)?.into();
     }
-    if !decompressed.is_empty() {
-        buffers.bytes.push(decompressed);
-    }
+    buffers.push(decompressed)?;
     forget(json);
     Ok(())
 }
@@ -87,17 +84,15 @@ fn take_extension(view: &mut Value) -> Result<Option<CompressedView>, String> {
     Ok(Some(compressed))
 }
 
-fn stream<'a>(compressed: &CompressedView, buffers: &'a Buffers) -> Result<&'a [u8], ParseError> {
+fn stream<'a>(
+    compressed: &CompressedView,
+    buffers: &'a Buffers,
+) -> Result<Cow<'a, [u8]>, ParseError> {
     let CompressedView { buffer, byte_offset: offset, byte_length: length, .. } = *compressed;
-    let Some(bytes) = buffers.bytes.get(buffer) else {
-        return Err(missing("buffer", buffer, buffers.bytes.len()));
-    };
-    let end = offset.checked_add(length);
-    end.and_then(|end| bytes.get(offset..end)).ok_or_else(|| {
-        let reason = format!(
-            "the compressed range of {length} bytes at {offset} exceeds its {} bytes",
-            bytes.len()
-        );
+    let found = buffers.part(buffer)?.length();
+    buffers.range(buffer, offset, length)?.ok_or_else(|| {
+        let reason =
+            format!("the compressed range of {length} bytes at {offset} exceeds its {found} bytes");
         ParseError::part(format!("buffer {buffer}"), reason)
     })
 }

@@ -19,6 +19,7 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use crate::error::ParseError;
+use crate::gltf::document::buffers::{BufferPart, Buffers};
 use crate::gltf::document::extensions::check_head;
 use crate::gltf::document::facts::FileFacts;
 use crate::gltf::document::source::{Contents, SourceDocument};
@@ -29,6 +30,7 @@ use crate::options::{Resolve, Weld};
 use crate::remarks;
 use crate::scene::{Scene, SceneMesh};
 use images::read_images;
+use tiles::Tile;
 
 /// Parses a glTF or GLB file, or a b3dm tile around a GLB, recognised by its first bytes; `resolve`
 /// loads its buffers and images.
@@ -56,18 +58,11 @@ use images::read_images;
 pub fn read(bytes: &[u8], resolve: Resolve<'_>, weld: Weld) -> Result<Scene, ParseError> {
     let tile = tiles::unwrap(bytes)?;
     let (text, chunk) = container::split(tile.gltf)?;
-    let mut json: Value = serde_json::from_slice(text)
-        .map_err(|error| ParseError::part("JSON", error.to_string()))?;
-    check_head(&json)?;
-    let mut buffers = buffers::load(&json, chunk, resolve)?;
-    let facts = FileFacts::of(&json);
-    meshopt_views::decompress(&mut json, &mut buffers)?;
-    let decoded = draco::decompress(&mut json, &mut buffers)?;
-    let mut scene = Scene::default();
-    scene.notes.extend((decoded.count > 0).then_some(decoded));
-    scene.notes.extend(mended::part_roots_from_children(&mut json).into_iter().flatten());
-    scene.notes.extend(tile.apply_to(&mut json)?);
-    scene.notes.extend(mended::drop_vertex_names(&mut json));
+    let json = parse(text)?;
+    let chunk = chunk.map(|chunk| BufferPart::Held(chunk.to_vec()));
+    let buffers = buffers::load(&json, chunk, &mut |name| resolve(name).map(BufferPart::Held))?;
+    let Prepared { mut json, buffers, facts, notes } = prepare(json, buffers, &tile)?;
+    let mut scene = Scene { notes, ..Scene::default() };
     let document = Document::new(&json, &buffers)?;
     scene.images = read_images(&document, resolve)?;
     scene.materials = materials::materials(&json, scene.images.len())?;
@@ -86,21 +81,64 @@ pub fn read(bytes: &[u8], resolve: Resolve<'_>, weld: Weld) -> Result<Scene, Par
     Ok(scene)
 }
 
+/// Parses the JSON of a document that can be read.
+pub(crate) fn parse(text: &[u8]) -> Result<Value, ParseError> {
+    let json: Value = serde_json::from_slice(text)
+        .map_err(|error| ParseError::part("JSON", error.to_string()))?;
+    check_head(&json)?;
+    Ok(json)
+}
+
+/// Document that is decompressed and mended, and the notes on that.
+pub(crate) struct Prepared {
+    pub json: Value,
+    pub buffers: Buffers,
+    /// Facts of the file before.
+    pub facts: FileFacts,
+    pub notes: Vec<Note>,
+}
+
+/// Decompresses and mends a document.
+pub(crate) fn prepare(
+    mut json: Value,
+    mut buffers: Buffers,
+    tile: &Tile<'_>,
+) -> Result<Prepared, ParseError> {
+    let facts = FileFacts::of(&json);
+    meshopt_views::decompress(&mut json, &mut buffers)?;
+    let decoded = draco::decompress(&mut json, &mut buffers)?;
+    let mut notes = Vec::new();
+    notes.extend((decoded.count > 0).then_some(decoded));
+    notes.extend(mended::part_roots_from_children(&mut json).into_iter().flatten());
+    notes.extend(tile.apply_to(&mut json)?);
+    notes.extend(mended::drop_vertex_names(&mut json));
+    Ok(Prepared { json, buffers, facts, notes })
+}
+
 fn scene_mesh(
     document: &Document<'_>,
     index: usize,
     weld: Weld,
     scene: &Scene,
 ) -> Result<(SceneMesh, mesh::Replaced), ParseError> {
-    let read = &document.meshes[index];
-    let materials: Vec<Option<usize>> = read.primitives.iter().map(|p| p.material).collect();
-    let count = scene.materials.len();
-    if let Some(&material) = materials.iter().flatten().find(|&&material| material >= count) {
-        return Err(missing("material", material, count));
-    }
-    let name = read.name.clone().unwrap_or_default();
+    let materials = materials_of(document, index, scene.materials.len())?;
+    let name = document.meshes[index].name.clone().unwrap_or_default();
     let (mesh, replaced) = mesh::read(document, index, weld)?;
     Ok((SceneMesh { name, mesh, materials }, replaced))
+}
+
+/// Returns the materials of the primitives of a mesh, which must be below `count`.
+pub(crate) fn materials_of(
+    document: &Document<'_>,
+    mesh: usize,
+    count: usize,
+) -> Result<Vec<Option<usize>>, ParseError> {
+    let primitives = document.meshes[mesh].primitives.iter();
+    let materials: Vec<Option<usize>> = primitives.map(|p| p.material).collect();
+    match materials.iter().flatten().find(|&&material| material >= count) {
+        Some(&material) => Err(missing("material", material, count)),
+        None => Ok(materials),
+    }
 }
 
 /// Removes the URIs of the loaded buffers, often most of the document.

@@ -19,7 +19,7 @@ const HEADER: usize = 28;
 
 /// A GLB, with what a batched model has around it.
 #[derive(Debug, PartialEq)]
-pub(super) struct Tile<'b> {
+pub(crate) struct Tile<'b> {
     pub(super) gltf: &'b [u8],
     /// Position of its origin, with z up.
     center: Option<[f64; 3]>,
@@ -40,7 +40,7 @@ pub(super) fn unwrap(bytes: &[u8]) -> Result<Tile<'_>, ParseError> {
         Some(b"i3dm") => other("i3dm (instances)"),
         Some(b"pnts") => other("pnts (points)"),
         Some(b"cmpt") => other("cmpt (several tiles)"),
-        _ => Ok(Tile { gltf: bytes, center: None, has_batches: false }),
+        _ => Ok(Tile::plain(bytes)),
     }
 }
 
@@ -75,7 +75,12 @@ fn batched(bytes: &[u8]) -> Result<Tile<'_>, ParseError> {
 /// Reason why a centre is refused.
 const THREE: &str = "must be three finite numbers";
 
-impl Tile<'_> {
+impl<'b> Tile<'b> {
+    /// Takes a file that is no tile.
+    pub(crate) fn plain(gltf: &'b [u8]) -> Self {
+        Self { gltf, center: None, has_batches: false }
+    }
+
     /// Moves the nodes of its document to their centre, and notes what is left out.
     ///
     /// # Errors

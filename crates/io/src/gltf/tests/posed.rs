@@ -199,7 +199,7 @@ fn morph_targets_move_vertices_as_far_as_they_did() {
     let scene = super::carried::rich();
     let mut json = scene.source.as_ref().unwrap().0.json.clone();
     json["meshes"][0]["primitives"].as_array_mut().unwrap().remove(0);
-    let buffer = &scene.source.as_ref().unwrap().0.buffers.bytes[0];
+    let buffer = &scene.source.as_ref().unwrap().0.buffers.held(0);
     let scene = read_parts(&json, buffer).unwrap();
     let (glb, report) = write_compressed_glb(&scene, &[], &BITS).unwrap();
     assert_eq!(report.kept, [""; 0]);

@@ -43,6 +43,7 @@ use method::Proven;
 use result::{write_archive, write_folder};
 use room::{Room, check_room};
 
+pub use hold::{PlanFolder, TileRun};
 pub use model::{TileFileError, TileFiles, TileModel};
 pub use opened::TilePlan;
 pub use output::{check_tiles_folder, tile_plan_folder};
@@ -82,7 +83,7 @@ pub fn tiles(
     check_tiles_folder(out)?;
     let folder = Folder::new(tile_plan_folder(out));
     refuse_foreign(&folder)?;
-    let _hold = Hold::new_plan(&folder)?;
+    let _hold = Hold::new_plan(PlanFolder::new(folder.path()))?;
     let threads = request.threads(rayon::current_num_threads());
     let room = Room::OfRun { threads };
     if let Err(error) = plan_in_hold(input, &folder, (&options, room), watch) {
@@ -111,14 +112,14 @@ pub fn tiles(
 /// As [`tiles`].
 pub fn plan_tiles(
     input: TileInput<'_>,
-    folder: &Path,
+    place: PlanFolder<'_>,
     request: &TilesRequest,
     watch: &dyn Watch,
 ) -> Result<usize, JobError> {
-    let folder = Folder::new(folder);
+    let folder = Folder::new(place.path);
     let options = request.options()?;
     refuse_foreign(&folder)?;
-    let _hold = Hold::new_plan(&folder)?;
+    let _hold = Hold::new_plan(place)?;
     let planned = plan_in_hold(input, &folder, (&options, Room::OfSteps), watch);
     if planned.is_err() {
         folder.remove();
@@ -202,26 +203,26 @@ pub fn run_tile_task(folder: &Path, task: usize) -> Result<(), JobError> {
 pub fn finish_tiles(folder: &Path, out: &Path, watch: &dyn Watch) -> Result<TilesReport, JobError> {
     check_tiles_folder(out)?;
     let folder = Folder::new(folder);
-    let _hold = Hold::alone(&folder)?;
+    let _hold = Hold::alone(PlanFolder::new(folder.path()))?;
     let report = assemble_in_hold(&TilePlan::open(folder.path())?, out, watch)?;
     folder.remove();
     Ok(report)
 }
 
 /// Does what [`finish_tiles`] does, but keeps the plan: a call that was ended, by whatever, may be
-/// repeated until [`remove_tile_plan`].
+/// repeated until [`TileRun::remove`] or [`remove_tile_plan`].
 ///
 /// # Errors
 /// A task that is not done, tiles that do not meet, files that are not as they were written, a folder
 /// that holds other files, errors of the system, and a plan that another process is working on.
 pub fn assemble_tiles(
-    folder: &Path,
+    place: PlanFolder<'_>,
     out: &Path,
     watch: &dyn Watch,
 ) -> Result<TilesReport, JobError> {
     check_tiles_folder(out)?;
-    let _hold = Hold::alone(&Folder::new(folder))?;
-    assemble_in_hold(&TilePlan::open(folder)?, out, watch)
+    let _hold = Hold::alone(place)?;
+    assemble_in_hold(&TilePlan::open(place.path)?, out, watch)
 }
 
 /// Makes the tileset of a plan that no other process works on.
@@ -251,7 +252,7 @@ fn assemble_in_hold(
 /// working on it.
 pub fn remove_tile_plan(folder: &Path) {
     let folder = Folder::new(folder);
-    if let Ok(_hold) = Hold::alone(&folder) {
+    if let Ok(_hold) = Hold::alone(PlanFolder::new(folder.path())) {
         folder.remove();
     }
 }
@@ -313,7 +314,7 @@ impl Work<'_> {
             return Err(JobError::Cancelled);
         }
         // Parts of what stands may be damaged, too.
-        let stands = self.plan.stands(task, is_part);
+        let stands = self.plan.stands(task, is_part)?;
         let make = |&part: &usize| self.make(part, !stands);
         self.plan.parts(task).par_iter().with_max_len(1).try_for_each(make)?;
         if !stands {

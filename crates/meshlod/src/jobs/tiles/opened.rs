@@ -69,18 +69,21 @@ impl TilePlan {
     }
 
     /// Returns true for a task that is done, whose content is as it was written.
-    pub fn is_done(&self, task: usize) -> bool {
+    ///
+    /// # Errors
+    /// A file that is there and cannot be read.
+    pub fn is_done(&self, task: usize) -> Result<bool, JobError> {
         self.stands(task, false)
     }
 
     /// Returns true if the files of a tile are as they were written; its mesh need be there only for
     /// a part, which another one is still to be made from.
-    pub(super) fn stands(&self, task: usize, is_part: bool) -> bool {
+    pub(super) fn stands(&self, task: usize, is_part: bool) -> Result<bool, JobError> {
         let found = match is_part {
             true => self.folder.done(&self.plan, task),
             false => self.folder.shown(&self.plan, task),
         };
-        found.is_some()
+        Ok(found.map_err(failure)?.is_some())
     }
 
     /// Does a task, unless it is done. Parts whose files were lost or damaged are made anew.
@@ -112,7 +115,7 @@ impl TilePlan {
             let Err(TilesError::DamagedTile { task: needs, .. }) = done else {
                 return done.map(drop);
             };
-            if self.is_done(task) {
+            if self.folder.shown(&self.plan, task)?.is_some() {
                 // Somebody else did it meanwhile, and removed what it is made of.
                 return Ok(());
             }

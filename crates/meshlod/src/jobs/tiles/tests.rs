@@ -32,7 +32,7 @@ fn tasks_one_by_one_make_the_same_files() {
     assert_eq!((found.tiles, &found.findings[..]), (report.tiles, &[][..]));
 
     let plan = other.path().join("plan");
-    let tasks = plan_tiles(input, &plan, &request, &()).unwrap();
+    let tasks = plan_tiles(input, PlanFolder::new(&plan), &request, &()).unwrap();
     assert_eq!(tasks, report.tiles);
     let early = run_tile_task(&plan, tasks - 1).unwrap_err();
     assert!(early.to_string().contains("is not done"), "{early}");
@@ -53,11 +53,11 @@ fn steps_that_were_ended_or_spoilt_go_on() {
     let [plan, whole, out] = ["plan", "whole", "out"].map(|name| folder.path().join(name));
     let expected = tiles(input, &whole, &request, &()).unwrap();
 
-    plan_tiles(input, &plan, &request, &()).unwrap();
+    plan_tiles(input, PlanFolder::new(&plan), &request, &()).unwrap();
     let opened = TilePlan::open(&plan).unwrap();
     let root = opened.tasks() - 1;
     (0..root).for_each(|task| opened.run(task).unwrap());
-    assert!(opened.is_done(root - 1) && !opened.is_done(root));
+    assert!(opened.is_done(root - 1).unwrap() && !opened.is_done(root).unwrap());
     // Meshes that the root needs: one is cut off, another and its parts are gone.
     let meshes = opened.parts(root);
     let mesh =
@@ -72,7 +72,7 @@ fn steps_that_were_ended_or_spoilt_go_on() {
     // What a process that was killed leaves does not get into the tileset.
     fs::write(plan.join("content/.0-0-0-0.glb.1-0"), "half").unwrap();
     for _ in 0..2 {
-        assert_eq!(assemble_tiles(&plan, &out, &()).unwrap(), expected);
+        assert_eq!(assemble_tiles(PlanFolder::new(&plan), &out, &()).unwrap(), expected);
         assert_eq!(files(&out), files(&whole));
     }
     remove_tile_plan(&plan);
@@ -91,7 +91,8 @@ fn planning_ends_where_it_is_cancelled() {
     let (source, look) = (knot(), Look::default());
     let input = TileInput { source: &source, look: &look, key: "knot" };
     let plan = folder.path().join("plan");
-    let ended = plan_tiles(input, &plan, &TilesRequest::default(), &Impatient).unwrap_err();
+    let ended = plan_tiles(input, PlanFolder::new(&plan), &TilesRequest::default(), &Impatient)
+        .unwrap_err();
     assert!(matches!(ended, JobError::Cancelled), "{ended}");
     assert!(!plan.exists());
 }
@@ -169,7 +170,7 @@ fn files_that_were_changed_are_named() {
     let input = TileInput { source: &source, look: &look, key: "knot" };
     let request = TilesRequest { tile_faces: 2_000, ..TilesRequest::default() };
     let plan = folder.path().join("plan");
-    let tasks = plan_tiles(input, &plan, &request, &()).unwrap();
+    let tasks = plan_tiles(input, PlanFolder::new(&plan), &request, &()).unwrap();
     (0..tasks).for_each(|task| run_tile_task(&plan, task).unwrap());
     let out = folder.path().join("out");
     let root = tasks - 1;
@@ -229,14 +230,15 @@ fn a_plan_is_changed_by_one_process_at_a_time() {
     let input = TileInput { source: &source, look: &look, key: "knot" };
     let request = TilesRequest { tile_faces: 2_000, ..TilesRequest::default() };
     let [plan, out, whole] = ["plan", "out", "whole"].map(|name| folder.path().join(name));
-    let tasks = plan_tiles(input, &plan, &request, &()).unwrap();
+    let tasks = plan_tiles(input, PlanFolder::new(&plan), &request, &()).unwrap();
     let busy = |done: Result<(), JobError>| {
         done.unwrap_err().to_string().contains("another process is making tiles here")
     };
-    let replan = || plan_tiles(input, &plan, &request, &()).map(drop);
+    let replan = || plan_tiles(input, PlanFolder::new(&plan), &request, &()).map(drop);
     let finish = || finish_tiles(&plan, &out, &()).map(drop);
     let held = Folder::new(&plan);
-    let hold = Hold::alone(&held).unwrap();
+    let alone = PlanFolder::new(&plan);
+    let hold = Hold::alone(alone).unwrap();
     assert!(busy(replan()) && busy(finish()) && busy(run_tile_task(&plan, 0)));
     drop(hold);
     let hold = Hold::shared(&held).unwrap();
@@ -255,6 +257,80 @@ fn a_plan_is_changed_by_one_process_at_a_time() {
 }
 
 #[test]
+fn a_run_has_its_folder_between_its_steps() {
+    let folder = tempfile::tempdir().unwrap();
+    let (source, look) = (knot(), Look::default());
+    let input = TileInput { source: &source, look: &look, key: "knot" };
+    let request = TilesRequest { tile_faces: 4_000, ..TilesRequest::default() };
+    let [plan, out] = ["plan", "out"].map(|name| folder.path().join(name));
+    let run = TileRun::begin(&plan).unwrap();
+    let key = run.key().to_owned();
+    let own = PlanFolder::of_run(&plan, &key);
+    let refused = || {
+        let plan_it = |place| plan_tiles(input, place, &request, &()).map(drop);
+        let all = [
+            TileRun::begin(&plan).map(drop),
+            plan_it(PlanFolder::new(&plan)),
+            plan_it(PlanFolder::of_run(&plan, "another")),
+            finish_tiles(&plan, &out, &()).map(drop),
+        ];
+        let busy = "another process is making tiles here";
+        all.into_iter().all(|done| done.is_err_and(|error| error.to_string().contains(busy)))
+    };
+    assert!(refused());
+    let tasks = plan_tiles(input, own, &request, &()).unwrap();
+    remove_tile_plan(&plan);
+    assert!(refused());
+    (0..tasks).for_each(|task| run_tile_task(&plan, task).unwrap());
+    assemble_tiles(own, &out, &()).unwrap();
+    assert!(refused());
+    run.remove();
+    assert!(!plan.exists() && check_tileset(&out, &()).unwrap().findings.is_empty());
+
+    // Without a plan nothing is left of a run, and with one the next may go on.
+    drop(TileRun::begin(&plan).unwrap());
+    assert!(!plan.exists());
+    let run = TileRun::begin(&plan).unwrap();
+    plan_tiles(input, PlanFolder::of_run(&plan, run.key()), &request, &()).unwrap();
+    drop(run);
+    assert!(TilePlan::open(&plan).is_ok());
+    finish_tiles(&plan, &out, &()).unwrap_err();
+    plan_tiles(input, PlanFolder::new(&plan), &request, &()).unwrap();
+}
+
+#[test]
+fn files_that_cannot_be_read_are_errors() {
+    let folder = tempfile::tempdir().unwrap();
+    let (source, look) = (knot(), Look::default());
+    let input = TileInput { source: &source, look: &look, key: "knot" };
+    let request = TilesRequest { tile_faces: 4_000, ..TilesRequest::default() };
+    let plan = folder.path().join("plan");
+    plan_tiles(input, PlanFolder::new(&plan), &request, &()).unwrap();
+    run_tile_task(&plan, 0).unwrap();
+    let opened = TilePlan::open(&plan).unwrap();
+    for inner in ["tiles", "content"] {
+        // A folder in place of a file is there and cannot be read.
+        let is_read = |path: &Path| path.extension().is_some_and(|kind| kind != "mesh");
+        let mut entries =
+            fs::read_dir(plan.join(inner)).unwrap().map(|entry| entry.unwrap().path());
+        let path = entries.find(|path| is_read(path)).unwrap();
+        let bytes = fs::read(&path).unwrap();
+        fs::remove_file(&path).unwrap();
+        assert!(!opened.is_done(0).unwrap());
+        if inner == "tiles" {
+            fs::create_dir(&path).unwrap();
+            let name = format!("{}: ", path.display());
+            let error = opened.is_done(0).unwrap_err().to_string();
+            assert!(error.starts_with(&name), "{error}");
+            assert_eq!(run_tile_task(&plan, 0).unwrap_err().to_string(), error);
+            fs::remove_dir(&path).unwrap();
+        }
+        fs::write(&path, bytes).unwrap();
+        assert!(opened.is_done(0).unwrap());
+    }
+}
+
+#[test]
 fn a_plan_on_another_disk_is_finished() {
     let memory = Path::new("/dev/shm");
     let folder = tempfile::tempdir().unwrap();
@@ -268,7 +344,7 @@ fn a_plan_on_another_disk_is_finished() {
     let input = TileInput { source: &source, look: &look, key: "knot" };
     let request = TilesRequest { tile_faces: 4_000, ..TilesRequest::default() };
     let (plan, out) = (other.path().join("plan"), folder.path().join("out"));
-    let tasks = plan_tiles(input, &plan, &request, &()).unwrap();
+    let tasks = plan_tiles(input, PlanFolder::new(&plan), &request, &()).unwrap();
     (0..tasks).for_each(|task| run_tile_task(&plan, task).unwrap());
     finish_tiles(&plan, &out, &()).unwrap();
     assert!(!plan.exists());
@@ -329,7 +405,8 @@ fn files_of_others_inside_are_told_before_the_work() {
         let plan = folder.path().join(inner);
         fs::create_dir_all(plan.join(inner)).unwrap();
         fs::write(plan.join(inner).join("wall.png"), "png").unwrap();
-        let error = plan_tiles(input, &plan, &request, &()).unwrap_err().to_string();
+        let error =
+            plan_tiles(input, PlanFolder::new(&plan), &request, &()).unwrap_err().to_string();
         assert!(error.contains("holds other files"), "{error}");
         assert_eq!(files(&plan).len(), 1);
     }

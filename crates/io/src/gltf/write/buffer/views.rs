@@ -36,7 +36,7 @@ pub(crate) fn copy_views(
             }
         };
         if end > run_range.end {
-            bytes.extend_from_slice(&document.buffers[buffer][run_range.end..end]);
+            bytes.extend_from_slice(&document.buffers.held(buffer)[run_range.end..end]);
             run_range.end = end;
         }
         views[view]["buffer"] = number.into();
