@@ -11,6 +11,9 @@ web_files() {
     $meshlod build "$folder/fish.obj" "$folder/fish.mlod"
     $meshlod sample terrain "$folder/terrain.ply" --faces 4000
     $meshlod build "$folder/terrain.ply" "$folder/field.mlod" --model right-triangles
+    # One with many chunks, of which some may be missing between others.
+    $meshlod sample gyroid "$folder/pieces.ply" --faces 60000
+    $meshlod build "$folder/pieces.ply" "$folder/pieces.mlod" --estimates
     for pair in textured:duck.glb skinned:fox.glb scene:cesium-milk-truck.glb; do
         while read -r file; do $meshlod build "$file" "$folder/${pair%%:*}.mlod"; done < <(mesh "${pair#*:}")
     done

@@ -181,8 +181,9 @@ export class Session {
     private async step(): Promise<void> {
         await Promise.resolve();
         this.isStepping = false;
-        const { cut, geometry } = this;
+        const { cut, geometry, levels } = this;
         if (!cut || !geometry || this.abort.signal.aborted) return;
+        levels?.noteGaps(this.query);
         const { done } = cut.update(this.query, { time: this.limits.slice });
         // A cut that starts anew takes the place of the one before once it is as fine.
         const isBehind = geometry.isNew && this.isShown && !done;
