@@ -3,7 +3,7 @@
 # web_files FOLDER MESHLOD WEB_CONFORMANCE: fills a folder with small files of every kind, and what Rust
 # says of them.
 web_files() {
-    local folder="$1" meshlod="$2" conformance="$3" pair name file
+    local folder="$1" meshlod="$2" conformance="$3" pair name file queries
     mkdir -p "$folder"
     $meshlod sample torus "$folder/torus.ply" --faces 8000
     $meshlod build "$folder/torus.ply" "$folder/bare.mlod" --lossless
@@ -19,7 +19,8 @@ web_files() {
     done
     for file in "$folder"/*.mlod; do
         name="$(basename "$file" .mlod)"
-        $conformance "$file" "$folder/$name.json" 300
+        if [ "$name" = pieces ]; then queries=30; else queries=300; fi
+        $conformance "$file" "$folder/$name.json" "$queries"
     done
     web_packed "$folder" "$meshlod"
 }

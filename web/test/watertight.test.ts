@@ -21,7 +21,6 @@ import { borderOf, openEdges, placeOf } from "./edges.js";
 import { UploadedBuffers } from "./fake_gl.ts";
 import { conformanceFile, conformanceNames } from "./files.ts";
 
-const TURNS = 12;
 const MOMENTS = 12;
 
 /** Numbers below 1 that are the same in each run. */
@@ -170,8 +169,10 @@ for (const name of conformanceNames().filter((name) => name !== "field")) {
         finest.update({ focus: null, tolerance: 0 });
         const border = borderOf(finest.model, finest.triangles);
         const random = randomNumbers(1);
+        // With few chunks none is missing between others.
+        const turns = header.chunks.length > 3 ? 10 : 3;
         let checked = 0;
-        for (let turn = 0; turn < TURNS; turn++) {
+        for (let turn = 0; turn < turns; turn++) {
             const show = new Show(file, header);
             let query = randomQuery(header, random);
             for (let moment = 0; moment < MOMENTS; moment++) {
