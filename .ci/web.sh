@@ -3,7 +3,7 @@
 # web_files FOLDER MESHLOD WEB_CONFORMANCE: fills a folder with small files of every kind, and what Rust
 # says of them.
 web_files() {
-    local folder="$1" meshlod="$2" conformance="$3" pair name file
+    local folder="$1" meshlod="$2" conformance="$3" pair name file queries
     mkdir -p "$folder"
     $meshlod sample torus "$folder/torus.ply" --faces 8000
     $meshlod build "$folder/torus.ply" "$folder/bare.mlod" --lossless
@@ -11,12 +11,16 @@ web_files() {
     $meshlod build "$folder/fish.obj" "$folder/fish.mlod"
     $meshlod sample terrain "$folder/terrain.ply" --faces 4000
     $meshlod build "$folder/terrain.ply" "$folder/field.mlod" --model right-triangles
+    # One with many chunks, of which some may be missing between others.
+    $meshlod sample gyroid "$folder/pieces.ply" --faces 60000
+    $meshlod build "$folder/pieces.ply" "$folder/pieces.mlod" --estimates
     for pair in textured:duck.glb skinned:fox.glb scene:cesium-milk-truck.glb; do
         while read -r file; do $meshlod build "$file" "$folder/${pair%%:*}.mlod"; done < <(mesh "${pair#*:}")
     done
     for file in "$folder"/*.mlod; do
         name="$(basename "$file" .mlod)"
-        $conformance "$file" "$folder/$name.json" 300
+        if [ "$name" = pieces ]; then queries=30; else queries=300; fi
+        $conformance "$file" "$folder/$name.json" "$queries"
     done
     web_packed "$folder" "$meshlod"
 }

@@ -1,5 +1,7 @@
 """Meshes: views, measures, and what is done to them."""
 
+from base64 import b64encode
+
 import meshlod
 import numpy as np
 import pytest
@@ -213,14 +215,18 @@ def test_notebooks_get_a_live_view_a_picture_and_text(tmp_path, monkeypatch):
     assert set(bundle) == {"text/plain", "image/png", "text/html"}
     assert bundle["text/plain"] == repr(mesh) and bundle["image/png"] == mesh._repr_png_()
     view = bundle["text/html"]
-    assert view.startswith("<iframe srcdoc=") and view.count("<") == 2
+    assert view.startswith("<div") and view.count("<") == 5
+    picture = b64encode(bundle["image/png"]).decode()
+    assert 0 < view.index(f'<img src="data:image/png;base64,{picture}"') < view.index("<iframe")
     assert 'sandbox="allow-scripts"' in view
     assert "data-name=&quot;mesh.mlod&quot;" in view
     assert set(meshlod.Mesh([], [])._repr_mimebundle_()) == {"text/plain"}
     model = mesh.build(tmp_path / "torus.mlod")
-    assert "torus.mlod – meshlod" in model._repr_mimebundle_()["text/html"]
+    bundle = model._repr_mimebundle_()
+    assert "torus.mlod – meshlod" in bundle["text/html"]
+    assert bundle["image/png"].startswith(b"\x89PNG")
     monkeypatch.setattr("meshlod._view.MOST_BYTES", 10)
-    assert set(model._repr_mimebundle_()) == {"text/plain"}
+    assert set(model._repr_mimebundle_()) == {"text/plain", "image/png"}
     assert set(mesh._repr_mimebundle_()) == {"text/plain", "image/png"}
 
 

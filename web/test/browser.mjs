@@ -1,4 +1,5 @@
-// In Chromium: a file that streams from a server is shown, without a crack, and disposed of.
+// In Chromium: a file that streams from a server is shown, without a crack, and disposed of; then with
+// the package and the file at another origin.
 // Usage: node test/browser.mjs FILE.mlod [CHROMIUM]; after `npm run build`.
 
 import assert from "node:assert/strict";
@@ -19,8 +20,8 @@ const PAGE = `<!doctype html><script type="importmap">{"imports": {
 
 /** Answers with ranges, and counts what is sent of the file. */
 let sent = 0;
-const server = createServer((request, response) => {
-    const path = normalize(decodeURIComponent(request.url ?? "/"));
+const answer = (request, response) => {
+    const path = normalize(decodeURIComponent(new URL(request.url, "http://a").pathname));
     if (path === "/") return response.writeHead(200, { "Content-Type": "text/html" }).end(PAGE);
     if (path === "/favicon.ico") return response.writeHead(204).end();
     let body;
@@ -32,6 +33,8 @@ const server = createServer((request, response) => {
     const type = {
         "Content-Type": TYPES[extname(path)] ?? "application/octet-stream",
         ETag: '"1"',
+        "Access-Control-Allow-Origin": "*",
+        "Access-Control-Expose-Headers": "Content-Range, ETag",
     };
     const range = /bytes=(\d+)-(\d+)/.exec(request.headers.range ?? "");
     if (!range) return response.writeHead(200, type).end(body);
@@ -39,28 +42,38 @@ const server = createServer((request, response) => {
     sent += end - at;
     const head = { ...type, "Content-Range": `bytes ${at}-${end - 1}/${body.length}` };
     return response.writeHead(206, head).end(body.subarray(at, end));
-});
-await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
+};
+const servers = [createServer(answer), createServer(answer)];
+for (const server of servers)
+    await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
+const [home, other] = servers.map((server) => `http://127.0.0.1:${server.address().port}`);
 
 const browser = await puppeteer.launch({
     executablePath: chromium,
     args: ["--no-sandbox", "--enable-unsafe-swiftshader"],
 });
-try {
+async function show(query) {
+    sent = 0;
     const page = await browser.newPage();
     const errors = [];
     page.on("pageerror", (error) => errors.push(String(error)));
     page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
-    await page.goto(`http://127.0.0.1:${server.address().port}/`);
+    await page.goto(`${home}/${query}`);
     await page.waitForFunction("window.result !== undefined", { timeout: 60_000 });
     const result = await page.evaluate("window.result");
+    await page.close();
     console.log(JSON.stringify({ ...result, sent }));
     assert.deepEqual(errors, []);
     assert.equal(result.error, null);
     assert.ok(result.faces[1] > result.faces[0], "closer is finer");
     assert.ok(result.covered > 0.02 && result.hit, "the mesh is drawn, and rays hit it");
     assert.deepEqual(result.holes, [0, 0, 0], "pixels of the background inside the silhouette");
+}
+
+try {
+    await show("");
+    await show(`?from=${encodeURIComponent(other)}`);
 } finally {
     await browser.close();
-    server.close();
+    servers.forEach((server) => server.close());
 }

@@ -1,10 +1,11 @@
 // The page of `browser.mjs`: shows a model from far away and from near, and looks at the pixels.
 import * as THREE from "three";
-import { MlodLoader } from "/dist/three/index.js";
 import { look } from "./look.js";
 
 const SIZE = 256;
 const BACKGROUND = 0xff00ff;
+/** Where the package and the model are: here, or at another origin. */
+const from = new URLSearchParams(location.search).get("from") ?? "";
 
 async function run() {
     const renderer = new THREE.WebGLRenderer({ preserveDrawingBuffer: true });
@@ -14,7 +15,8 @@ async function run() {
     scene.background = new THREE.Color(BACKGROUND);
     scene.add(new THREE.HemisphereLight(0xffffff, 0x888888, 3));
     const camera = new THREE.PerspectiveCamera(45, 1, 0.001, 1e6);
-    const mesh = await new MlodLoader().loadAsync("/model.mlod");
+    const { MlodLoader } = await import(`${from}/dist/three/index.js`);
+    const mesh = await new MlodLoader().loadAsync(`${from}/model.mlod`);
     scene.add(mesh);
     const { center, diagonal } = mesh.info;
     const faces = [];
@@ -30,8 +32,7 @@ async function run() {
         mesh.pixels = pixels;
         const isDone = () => mesh.progress?.done && mesh.progress.missing === 0;
         for (let frame = 0, still = 0; frame < 600 && still < 10; frame++) {
-            mesh.update(camera, renderer);
-            // A face that is seen from behind is no crack.
+            mesh.update(camera, renderer); // A face that is seen from behind is no crack.
             for (const material of mesh.material) material.side = THREE.DoubleSide;
             renderer.render(scene, camera);
             await new Promise((resolve) => setTimeout(resolve, 16));

@@ -21,7 +21,7 @@ await build({
     logLevel: "warning",
 });
 const files = tests.map((name) => join(out, name.replace(/\.ts$/, ".mjs")));
-const { status } = spawnSync(process.execPath, ["--test", "--test-timeout=60000", ...files], {
+const { status } = spawnSync(process.execPath, ["--test", "--test-timeout=300000", ...files], {
     stdio: "inherit",
 });
 process.exit(status ?? 1);

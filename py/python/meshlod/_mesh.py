@@ -400,7 +400,8 @@ class Mesh(Immutable):
     ) -> dict[str, object]:
         from . import _view
 
-        return _view.bundle(_view.of_mesh(self), self._repr_png_(), repr(self))
+        picture = self._repr_png_()
+        return _view.bundle(_view.of_mesh(self, picture), picture, repr(self))
 
     def __repr__(self) -> str:
         parts = [f"{len(self.vertices)} vertices", f"{len(self.faces)} faces", *self.attributes]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 from . import _native
@@ -70,12 +71,21 @@ class Model:
             warn(f"{self.path}: {text}")
         return Cut._of(native, self._native.diagonal())
 
+    def _repr_png_(self) -> bytes | None:
+        from . import _view
+
+        # Nobody has asked for a level, so nothing can be missed.
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return self.extract(faces=_view.MOST_FACES, verify=False)._repr_png_()
+
     def _repr_mimebundle_(
         self, include: object = None, exclude: object = None
     ) -> dict[str, object]:
         from . import _view
 
-        return _view.bundle(_view.of_file(self.path), None, repr(self))
+        picture = self._repr_png_()
+        return _view.bundle(_view.of_file(self.path, picture), picture, repr(self))
 
     def __repr__(self) -> str:
         return f"Model({self.path!r})"

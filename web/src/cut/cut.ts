@@ -2,6 +2,7 @@
  * A cut that follows a sequence of queries, refined and coarsened only where the query has moved.
  */
 
+import type { ChunkEntry } from "../file/header.ts";
 import { ERRORS, RADII } from "../file/lengths.ts";
 import { NONE, grown } from "../model.ts";
 import type { Model } from "../model.ts";
@@ -31,6 +32,11 @@ export class Cut {
     private refine!: Criterion;
     /** A tighter criterion, which applied updates have to fail before they are undone. */
     private keep: Criterion | null = null;
+    /**
+     * Chunks that the query wants and that are missing before others that are there. What may depend
+     * on them is not split.
+     */
+    gaps: readonly ChunkEntry[] = [];
 
     /**
      * Creates a cut that is the base mesh.
@@ -199,6 +205,8 @@ export class Cut {
             const update = toSplit.pop() as number;
             // It may have been forced already, or merged with its surroundings.
             if (front.state(model.parents[update]) !== State.Active) continue;
+            // With the missing chunk everything is inspected again.
+            if (this.gaps.length > 0 && this.mayLackDependencies(update)) continue;
             stack.push(update);
             while (stack.length > 0) {
                 if (!meter.mayChangeMore()) {
@@ -208,6 +216,22 @@ export class Cut {
                 this.advance(stack[stack.length - 1], stack, meter);
             }
         }
+    }
+
+    /**
+     * Returns false only if all dependencies of an update that the query requires are there: the area
+     * of a chunk holds what depends on it, and no error of that is greater.
+     */
+    private mayLackDependencies(update: number): boolean {
+        const { positions, parents, errors } = this.model;
+        const at = 3 * parents[update];
+        const error = ERRORS[errors[update]];
+        return this.gaps.some(
+            (gap) =>
+                error <= gap.error &&
+                gap.min.every((least, k) => least <= positions[at + k]) &&
+                gap.max.every((most, k) => positions[at + k] <= most),
+        );
     }
 
     /** Applies the last update of a chain, or appends those that come first. */

@@ -47,6 +47,16 @@ export class Levels {
         return this.fitting(query).filter((number) => !this.loaded.has(number));
     }
 
+    /** Tells the cut what the next query wants that is missing between chunks that are there. */
+    noteGaps(query: Query): void {
+        const { chunks, frame } = this.header;
+        const hasGaps = this.count < this.reached;
+        const criterion = new Criterion(query, frame);
+        const isGap = (chunk: ChunkEntry, number: number) =>
+            number < this.last && !this.loaded.has(number) && criterion.mayRequire(chunk);
+        this.cut.gaps = hasGaps ? chunks.filter(isGap) : [];
+    }
+
     /** Returns the numbers of the chunks that a query needs; of too many, the coarse ones. */
     private fitting(query: Query): number[] {
         const criterion = new Criterion(query, this.header.frame);

@@ -15,7 +15,7 @@ import type { Slots } from "./geometry.ts";
 import { Levels } from "./levels.ts";
 import type { Event, Origin, Request, StreamLimits } from "./messages.ts";
 import { HttpSource, MemorySource } from "./source.ts";
-import type { Source } from "./source.ts";
+import type { Hear, Source } from "./source.ts";
 import { fieldVerticesOf, layersOf, verticesOf } from "./vertices.ts";
 
 const FIRST_BYTES = 64 << 10;
@@ -28,6 +28,9 @@ function mustFit(section: string, length: number): void {
     if (length > MOST_BYTES)
         throw new MlodError(section, `its ${length} bytes are more than ${MOST_BYTES}`);
 }
+
+/** Part of the decoded bytes that must have come before more are decoded, but for the last. */
+const LEAST_GROWTH = 0.25;
 
 /** A cut of either kind. */
 interface AnyCut {
@@ -51,6 +54,8 @@ export class Session {
     /** Number of bytes fetched in all, and of those fetched to open the file. */
     private bytes = 0;
     private opened = 0;
+    /** Number of bytes of chunks that have been decoded. */
+    private decoded = 0;
     private isShown = false;
     private isStepping = false;
     private isFetching = false;
@@ -181,8 +186,9 @@ export class Session {
     private async step(): Promise<void> {
         await Promise.resolve();
         this.isStepping = false;
-        const { cut, geometry } = this;
+        const { cut, geometry, levels } = this;
         if (!cut || !geometry || this.abort.signal.aborted) return;
+        levels?.noteGaps(this.query);
         const { done } = cut.update(this.query, { time: this.limits.slice });
         // A cut that starts anew takes the place of the one before once it is as fine.
         const isBehind = geometry.isNew && this.isShown && !done;
@@ -239,16 +245,33 @@ export class Session {
         const sections = run.map((number) => header.chunks[number]);
         const [first, last] = [sections[0], sections[sections.length - 1]];
         mustFit(first.name, first.length);
-        const bytes = await this.readBytes(first.at, last.at + last.length - first.at);
-        const part = (section: Section) =>
-            bytes.slice(section.at - first.at, section.at - first.at + section.length);
-        const isNew = levels.add(
-            run.map((number, i) => [number, part(sections[i])] as const),
-            this.query,
-        );
+        let taken = 0;
+        const take = (bytes: Uint8Array, least: number) => {
+            let [end, count] = [taken, 0];
+            for (; end < run.length; count += sections[end++].length)
+                if (sections[end].at + sections[end].length > first.at + bytes.length) break;
+            if (end === taken || count < least) return;
+            const part = (section: Section) =>
+                bytes.slice(section.at - first.at, section.at - first.at + section.length);
+            const chunks = run.slice(taken, end);
+            this.add(
+                levels,
+                chunks.map((number, i) => [number, part(sections[taken + i])] as const),
+            );
+            taken = end;
+            this.decoded += count;
+        };
+        // What comes in between is not decoded by pieces, as each would decode all anew.
+        const isBehind = run[0] >= levels.reached;
+        const hear = (bytes: Uint8Array) => isBehind && take(bytes, this.decoded * LEAST_GROWTH);
+        take(await this.readBytes(first.at, last.at + last.length - first.at, hear), 0);
+        return true;
+    }
+
+    private add(levels: Levels, chunks: (readonly [number, Uint8Array])[]): void {
+        const isNew = levels.add(chunks, this.query);
         if (isNew) this.show(levels.cut, new Geometry(verticesOf(levels.cut.model)));
         else this.startStepping();
-        return true;
     }
 
     /** Returns the first chunks that lie close together, as far as one request goes. */
@@ -292,8 +315,8 @@ export class Session {
         return bytes;
     }
 
-    private async readBytes(at: number, length: number): Promise<Uint8Array> {
-        const bytes = await this.source.read(at, length);
+    private async readBytes(at: number, length: number, hear?: Hear): Promise<Uint8Array> {
+        const bytes = await this.source.read(at, length, hear);
         this.bytes += Math.max(0, Math.min(length, at + length - this.opened));
         return bytes;
     }

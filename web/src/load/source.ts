@@ -6,9 +6,15 @@ import { MlodError } from "../error.ts";
 export interface Source {
     /** Returns some of the first bytes: at least as many as asked for, or the whole file. */
     start(count: number): Promise<Uint8Array>;
-    /** Returns a part of the file. */
-    read(at: number, length: number): Promise<Uint8Array>;
+    /**
+     * Returns a part of the file. `hear` is told what has come so far, but for all, from the start
+     * of the part on; after another try it is told less than before.
+     */
+    read(at: number, length: number, hear?: Hear): Promise<Uint8Array>;
 }
+
+/** Hears the first bytes of a part; what it throws ends the reading. */
+export type Hear = (bytes: Uint8Array) => void;
 
 /** What a server may ask for before it sends a file. */
 export interface Access {
@@ -97,34 +103,37 @@ export class HttpSource implements Source {
         }
         const { at, total } = rangeOf(response);
         this.length = total;
-        const bytes = await bodyOf(response, Math.min(count, total));
-        if (at !== 0 || !bytes) throw lied(this.url);
+        const bytes = new Uint8Array(Math.min(count, total));
+        const isWhole = await readBody(response, bytes, () => undefined);
+        if (at !== 0 || !isWhole) throw lied(this.url);
         this.first = bytes;
         return bytes;
     }
 
-    async read(at: number, length: number): Promise<Uint8Array> {
+    async read(at: number, length: number, hear?: Hear): Promise<Uint8Array> {
         if (this.whole) return this.whole.part(at, length);
         if (at + length > this.length) throw endsBefore(at + length, this.length);
         const known = this.first.subarray(at, at + length);
         if (known.length === length) return known;
-        const rest = await this.patiently(() =>
-            this.fetch(at + known.length, length - known.length),
-        );
-        return known.length > 0 ? joined([known, rest]) : rest;
+        const all = new Uint8Array(length);
+        all.set(known);
+        const tell = (count: number) => hear?.(all.subarray(0, known.length + count));
+        tell(0);
+        await this.patiently(() => this.fetch(at + known.length, all.subarray(known.length), tell));
+        return all;
     }
 
-    private async fetch(at: number, length: number): Promise<Uint8Array<ArrayBuffer>> {
+    private async fetch(at: number, to: Uint8Array, tell: (count: number) => void): Promise<void> {
+        const { length } = to;
         const response = await this.request(at, length);
         const isSame = validatorOf(response) === this.validator;
         if (response.status === 200 || !isSame) {
             await response.body?.cancel();
             throw new MlodError("the file", `it has changed on the server: ${this.url}`);
         }
-        const range = rangeOf(response);
-        const bytes = await bodyOf(response, length);
-        if (range.at !== at || range.total !== this.length || !bytes) throw lied(this.url);
-        return bytes;
+        const { at: from, total } = rangeOf(response);
+        const isWhole = await readBody(response, to, tell);
+        if (from !== at || total !== this.length || !isWhole) throw lied(this.url);
     }
 
     /** Tries again what failed by the network alone, a few times. */
@@ -207,19 +216,26 @@ function rangeOf({ headers, url }: Response): { at: number; total: number } {
     return { at: Number(match[1]), total: Number(match[2]) };
 }
 
-/** Returns a body of the given length, or null if it has another; no more than that is read. */
-async function bodyOf({ body }: Response, length: number): Promise<Uint8Array<ArrayBuffer> | null> {
+/** Reads a body; returns false if it has another length, of which no more is read. */
+async function readBody(
+    { body }: Response,
+    to: Uint8Array,
+    tell: (count: number) => void,
+): Promise<boolean> {
     const reader = body?.getReader();
-    const parts: Uint8Array[] = [];
     let count = 0;
-    for (let read; reader && !(read = await reader.read()).done;) {
-        parts.push(read.value);
-        count += read.value.length;
-        if (count <= length) continue;
-        await reader.cancel();
-        return null;
+    try {
+        for (let read; reader && !(read = await reader.read()).done;) {
+            const { value } = read;
+            if (count + value.length > to.length) return false;
+            to.set(value, count);
+            count += value.length;
+            if (count < to.length) tell(count);
+        }
+    } finally {
+        await reader?.cancel();
     }
-    return count === length ? joined(parts) : null;
+    return count === to.length;
 }
 
 /** A response body, of which parts can be read as they come. */

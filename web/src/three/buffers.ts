@@ -109,8 +109,12 @@ function markRanges(attribute: BufferAttribute, elements: Uint32Array, width: nu
     for (const [from, to] of ranges.length > MOST_RANGES ? all : ranges) {
         attribute.addUpdateRange(from * width, (to - from) * width);
     }
-    // What is not drawn for long is uploaded as a whole.
-    if (attribute.updateRanges.length > MOST_WAITING) attribute.clearUpdateRanges();
+    // What is not drawn for long is uploaded as a whole. No ranges would say so, too, but not once
+    // the next patch has added its own.
+    if (attribute.updateRanges.length > MOST_WAITING) {
+        attribute.clearUpdateRanges();
+        attribute.addUpdateRange(0, attribute.array.length);
+    }
     attribute.needsUpdate = true;
 }
 

@@ -17,7 +17,7 @@ const TYPES = {
 
 /** Serves `/model/…` slowly from a folder, and all else at once from others. */
 export async function serve(model, roots, pictures) {
-    const state = { sent: 0, busy_ms: 0, requests: 0, last: 0, free: 0, pictures: 0 };
+    const state = { sent: 0, busy_ms: 0, requests: 0, open: 0, last: 0, free: 0, pictures: 0 };
     const server = createServer((request, response) => {
         answer(request, response, { model, roots, pictures, state }).catch(() =>
             response.destroy(),
@@ -29,7 +29,10 @@ export async function serve(model, roots, pictures) {
 
 async function answer(request, response, site) {
     const path = normalize(decodeURIComponent(new URL(request.url, "http://a").pathname));
-    if (path === "/sent") return response.end(JSON.stringify(site.state));
+    if (path === "/sent") {
+        const quiet_ms = performance.now() - site.state.last;
+        return response.end(JSON.stringify({ ...site.state, quiet_ms }));
+    }
     if (path === "/picture") return keep(request, response, site);
     if (path === "/favicon.ico") return response.writeHead(204).end();
     if (path.startsWith("/model/"))
@@ -66,6 +69,8 @@ async function sendSlowly(path, request, response, state) {
         return response.writeHead(404).end();
     }
     state.requests++;
+    state.open++;
+    response.once("close", () => state.open--);
     const arrival = performance.now();
     const range = /bytes=(\d+)-(\d+)?/.exec(request.headers.range ?? "");
     const at = range ? Number(range[1]) : 0;

@@ -32,8 +32,9 @@ const SECTIONS: [(&str, Section); 17] = [
     ("Reading and measuring", reading::section),
 ];
 
-/// Section that `py/bench.py` makes, as it needs other packages of Python. It is kept as it is.
-const OF_PYTHON: &str = "\n## Python\n\n";
+/// Sections that others make, as they need packages of Python and a browser: `py/bench.py` and
+/// `web/test/figures`. They are kept as they are.
+const OF_OTHERS: [&str; 2] = ["\n## Python\n\n", "\n## In a browser\n\n"];
 
 /// Makes all tables of measurements, and writes docs/RESULTS.md, whose history has earlier ones.
 ///
@@ -47,7 +48,8 @@ pub fn run(names: &[String]) -> Result<()> {
     let machine = machine::describe();
     let results = root().join("docs/RESULTS.md");
     let all = std::fs::read_to_string(&results);
-    let of_python = all.as_ref().map_or("", |all| section_of(all, OF_PYTHON)).to_owned();
+    let page_before = all.as_ref().map_or("", String::as_str);
+    let of_others = OF_OTHERS.map(|heading| section_of(page_before, heading)).concat();
     let old = if names.is_empty() { String::new() } else { all? };
     let mut page = match old.split_once("\n## ") {
         Some((head, _)) => head.to_owned(),
@@ -71,7 +73,7 @@ pub fn run(names: &[String]) -> Result<()> {
         }
         page.push_str(&section()?);
     }
-    page.push_str(&of_python);
+    page.push_str(&of_others);
     std::fs::write(&results, &page).with_context(|| results.display().to_string())?;
     print!("{page}");
     Ok(())

@@ -12,6 +12,7 @@ use meshlod_simplify::Method;
 
 use super::write::{diagonal, lattice};
 use super::*;
+use crate::implicit::Order;
 use crate::tests::walks::{Dice, each_by, forest, query, topology};
 use crate::{Cut, Forest, Implicit, Level, Model, Query, UpdateLimits};
 
@@ -49,13 +50,9 @@ fn in_order<C: Ord>(faces: impl Iterator<Item = [C; 3]>) -> Vec<[C; 3]> {
 #[test]
 fn a_file_gives_back_the_model() {
     each(|what, mesh, forest| {
-        let rounded = Implicit::new(
-            &forest
-                .quantized(lattice(forest, &small(), diagonal(forest)), StoredErrors::AsRecorded)
-                .unwrap()
-                .forest,
-        )
-        .unwrap();
+        let lattice = lattice(forest, &small(), diagonal(forest));
+        let rounded = forest.quantized(lattice, StoredErrors::AsRecorded).unwrap().forest;
+        let rounded = Implicit::in_order(&rounded, &Order::for_file(&rounded)).unwrap();
         let (read, certificate) = Archive::open(bytes(forest)).unwrap().read().unwrap();
         assert_eq!(certificate, rounded.certify().unwrap(), "{what}");
         assert_eq!(read.bytes(), rounded.bytes(), "{what}");

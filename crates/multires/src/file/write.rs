@@ -85,7 +85,7 @@ pub(super) fn write(
     }
     let lattice = lattice(forest, storage, diagonal);
     let Quantized { forest, max_displacement } = forest.quantized(lattice, storage.errors)?;
-    let order = Order::new(&forest);
+    let order = Order::for_file(&forest);
     let mt = Implicit::in_order(&forest, &order)?;
     let (certificate, sections) = rayon::join(
         || mt.certify(),

@@ -61,27 +61,13 @@ impl Implicit {
             exact: forest.exact.select(order.nodes.iter().copied()),
             positions: StoredPositions::Float(positions.collect()),
             splits: Splits::Full(splits),
-            base: base(forest, order),
+            base: order.base_faces(forest).iter().map(|face| face.nodes).collect(),
             stages: PackedTable::list(&stages),
             wedges: wedges.map(Arc::new),
             non_fan_splits: non_fans,
             full_faces: forest.faces.len(),
         })
     }
-}
-
-/// Returns the faces that no update creates.
-fn base(forest: &Forest, order: &Order) -> Vec<[u32; 3]> {
-    // Bottom up, so that an update comes after those of its children.
-    let mut root: Vec<u32> = (0..forest.positions.len() as u32).collect();
-    for (u, update) in forest.updates.iter().enumerate().rev() {
-        let above = root[forest.node(u)];
-        update.children.iter().for_each(|&child| root[child as usize] = above);
-    }
-    let faces = forest.faces.iter().zip(&forest.created_by).filter(|(_, by)| **by == NONE);
-    faces
-        .map(|(face, _)| face.map(|leaf| order.index_of_node[root[leaf as usize] as usize]))
-        .collect()
 }
 
 /// Returns the rank of a wing among the ring nodes that a face follows.

@@ -90,9 +90,9 @@ fn base(forest: &Forest, all: &ForestWedges, order: &Order) -> Vec<[u32; 3]> {
     let mut number = vec![NONE; all.len()];
     let packed = order.nodes.iter().flat_map(|&node| all.of(node));
     (0..).zip(packed).for_each(|(at, wedge)| number[wedge as usize] = at);
-    let corners = all.corners.iter().zip(&forest.created_by).filter(|(_, by)| **by == NONE);
     let root = |wedge: u32| number[roots[wedge as usize] as usize];
-    corners.map(|(face, _)| face.map(root)).collect()
+    let faces = order.base_faces(forest);
+    faces.iter().map(|face| face.corners(&all.corners).map(root)).collect()
 }
 
 /// An update whose record is converted to local numbers.
