@@ -114,26 +114,23 @@ impl<'m> ConditionedMesh<'m> {
         &self,
         vanish_below: Option<f64>,
     ) -> Result<Simplifier<'_>, SimplifyError> {
-        let first = self.start(vanish_below)?;
         let Some(borders) = self.borders.filter(|_| self.split.get().is_none()) else {
-            return Ok(first);
+            return Simplifier::new(self.whole().mesh, &self.own_options(vanish_below));
         };
-        if first.non_manifold_vertices() == 0 {
-            return Ok(first);
+        if let Some(manifold) =
+            Simplifier::of_manifold(self.whole().mesh, &self.own_options(vanish_below))?
+        {
+            return Ok(manifold);
         }
-        match self.split.get_or_init(|| self.unsplit().condition(borders, Search::All)) {
-            Some(_) => self.start(vanish_below),
-            None => Ok(first),
-        }
+        self.split.get_or_init(|| self.unsplit().condition(borders, Search::All));
+        Simplifier::new(self.whole().mesh, &self.own_options(vanish_below))
     }
 
-    fn start(&self, vanish_below: Option<f64>) -> Result<Simplifier<'_>, SimplifyError> {
-        let Held { mesh, locks, lock_boundary } = self.whole();
+    /// Returns the options for the mesh as it is simplified.
+    fn own_options(&self, vanish_below: Option<f64>) -> Options {
+        let Held { locks, lock_boundary, .. } = self.whole();
         let locks = locks.clone();
-        Simplifier::new(
-            mesh,
-            &Options { vanish_below, locks, lock_boundary, ..self.options.clone() },
-        )
+        Options { vanish_below, locks, lock_boundary, ..self.options.clone() }
     }
 
     /// Returns the current level in terms of the input, and notes in `loss` what it was repaid.

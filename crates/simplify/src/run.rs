@@ -76,3 +76,12 @@ pub(crate) struct InputSummary {
 
 /// A running engine, and the summary of the mesh it works on.
 pub(crate) type Started<'m> = (Box<dyn Run + 'm>, InputSummary);
+
+/// Kind of mesh that an engine is started for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    /// Any mesh.
+    All,
+    /// A mesh without non-manifold vertices.
+    Manifold,
+}

@@ -16,7 +16,7 @@ use crate::kernel::{self, PlaneDistance, SweptVolume};
 use crate::method::Method;
 use crate::methods;
 use crate::options::{Options, Report, SimplifyError, Target, Topology};
-use crate::run::{InputSummary, Run, Started, Tally};
+use crate::run::{InputSummary, Run, Started, Tally, Wanted};
 use crate::surface::Surface;
 use crate::surface::rims::Rims;
 
@@ -49,6 +49,18 @@ impl<'m> Simplifier<'m> {
         Ok(Self { mesh, engine, options: options.clone(), input })
     }
 
+    /// Builds what [`new`](Self::new) does, or returns `None` if the mesh has a non-manifold vertex,
+    /// which a caller may want to [split](meshlod_mesh::condition) first.
+    ///
+    /// Cost: a small part of that of [`new`](Self::new) where it returns `None`.
+    /// # Errors
+    /// As for [`new`](Self::new).
+    pub fn of_manifold(mesh: &'m Mesh, options: &Options) -> Result<Option<Self>, SimplifyError> {
+        let bounds = validate(mesh, options)?;
+        let started = start_wanted(mesh, &bounds, (options, Wanted::Manifold))?;
+        Ok(started.map(|(engine, input)| Self { mesh, engine, options: options.clone(), input }))
+    }
+
     /// Prepares any method to run on the policy engine. Tests use it to compare the kernel with
     /// general versions of its two methods.
     ///
@@ -59,7 +71,8 @@ impl<'m> Simplifier<'m> {
     pub fn on_policy_engine(mesh: &'m Mesh, options: &Options) -> Result<Self, SimplifyError> {
         validate(mesh, options)?;
         let method = options.method;
-        let (engine, input) = by_policies(mesh, method, options)?;
+        let started = by_policies(mesh, method, (options, Wanted::All))?;
+        let (engine, input) = started.expect("any mesh is wanted");
         Ok(Self { mesh, engine, options: options.clone(), input })
     }
 
@@ -258,19 +271,29 @@ fn start<'m>(
     bounds: &Bounds,
     options: &Options,
 ) -> Result<Started<'m>, SimplifyError> {
-    match options.method {
-        Method::LindstromTurk => kernel::start(SweptVolume, mesh, bounds, options),
-        Method::Qem => kernel::start(PlaneDistance, mesh, bounds, options),
-        method => by_policies(mesh, method, options),
+    let started = start_wanted(mesh, bounds, (options, Wanted::All))?;
+    Ok(started.expect("any mesh is wanted"))
+}
+
+/// Starts the engine of the method on a valid mesh, if it is wanted.
+fn start_wanted<'m>(
+    mesh: &'m Mesh,
+    bounds: &Bounds,
+    of: (&Options, Wanted),
+) -> Result<Option<Started<'m>>, SimplifyError> {
+    match of.0.method {
+        Method::LindstromTurk => kernel::start(SweptVolume, mesh, bounds, of),
+        Method::Qem => kernel::start(PlaneDistance, mesh, bounds, of),
+        method => by_policies(mesh, method, of),
     }
 }
 
-/// Starts the policy engine on a valid mesh.
+/// Starts the policy engine on a valid mesh, if it is wanted.
 fn by_policies<'m>(
     mesh: &'m Mesh,
     method: Method,
-    options: &Options,
-) -> Result<Started<'m>, SimplifyError> {
+    (options, wanted): (&Options, Wanted),
+) -> Result<Option<Started<'m>>, SimplifyError> {
     let (connectivity, duplicate_faces) = clean::connect(mesh);
     let degenerate_faces = connectivity.degenerate_faces() - duplicate_faces;
     if connectivity.edge_count() == 0 {
@@ -279,6 +302,9 @@ fn by_policies<'m>(
     let non_manifold_vertices = (0..mesh.positions.len())
         .filter(|&v| connectivity.marks(VertexId::new(v)).non_manifold())
         .count();
+    if wanted == Wanted::Manifold && non_manifold_vertices > 0 {
+        return Ok(None);
+    }
     let mut surface = Surface::new(mesh, &connectivity);
     surface.rims = Rims::new(mesh, &connectivity);
     let held = locks::apply(options, &connectivity, &mut surface);
@@ -287,5 +313,5 @@ fn by_policies<'m>(
     let vanishing = Vanishing::new(&surface, method, below);
     let engine =
         methods::start(method, options, PreparedSurface { surface, connectivity, vanishing });
-    Ok((engine, input))
+    Ok(Some((engine, input)))
 }

@@ -22,7 +22,7 @@ const MAX_COSTED_DEPTH: usize = 40;
 /// Bound on the depth: beyond `MAX_COSTED_DEPTH` each level halves at most 2^32 faces.
 pub(crate) const MAX_DEPTH: usize = MAX_COSTED_DEPTH + 32;
 
-/// A face and its box, rounded outwards.
+/// A face, or what else has a box, and its box, rounded outwards.
 #[derive(Clone, Copy)]
 struct Item {
     bounds: Box3,
@@ -37,34 +37,38 @@ struct Run<'a> {
     bounds: Box3,
 }
 
-/// Builds the nodes, root first, and returns them with the faces in leaf order.
+/// Builds the nodes over triangles, root first, and returns them with the faces in leaf order.
 pub(crate) fn build(
     count: usize,
     triangle: impl Fn(FaceId) -> Triangle + Sync,
 ) -> (Vec<Node>, Vec<FaceId>) {
-    let mut items: Vec<Item> = (0..count)
-        .into_par_iter()
-        .map(|i| {
-            let face = FaceId::new(i);
-            Item { bounds: Box3::around(&triangle(face)), face }
-        })
-        .collect();
+    build_over::<LEAF>(count, |face| Box3::around(&triangle(face)))
+}
+
+/// Builds the nodes over boxes, root first, with at most `LEAF` of them in a leaf, and returns them
+/// with the numbers of the boxes in leaf order.
+pub(crate) fn build_over<const LEAF: usize>(
+    count: usize,
+    bounds: impl Fn(FaceId) -> Box3 + Sync,
+) -> (Vec<Node>, Vec<FaceId>) {
+    let item = |i: usize| Item { bounds: bounds(FaceId::new(i)), face: FaceId::new(i) };
+    let mut items: Vec<Item> = (0..count).into_par_iter().map(item).collect();
     let bounds = union(&items);
-    let nodes = build_nodes(Run { items: &mut items, first: 0, bounds }, 0);
+    let nodes = build_nodes::<LEAF>(Run { items: &mut items, first: 0, bounds }, 0);
     (nodes, items.iter().map(|item| item.face).collect())
 }
 
 /// Builds the nodes of a run, its root first; indices of inner children are relative to it.
-fn build_nodes(run: Run<'_>, depth: usize) -> Vec<Node> {
+fn build_nodes<const LEAF: usize>(run: Run<'_>, depth: usize) -> Vec<Node> {
     let parallel = run.items.len() >= GRAIN;
-    let runs = split_in_four(run, depth);
-    let mut nodes = vec![Node::of(&runs)];
+    let runs = split_in_four::<LEAF>(run, depth);
+    let mut nodes = vec![Node::of::<LEAF>(&runs)];
     let inner: Vec<(usize, Run<'_>)> =
         runs.into_iter().enumerate().filter(|(_, run)| run.items.len() > LEAF).collect();
     if parallel {
         let built: Vec<(usize, Vec<Node>)> = inner
             .into_par_iter()
-            .map(|(child, run)| (child, build_nodes(run, depth + 1)))
+            .map(|(child, run)| (child, build_nodes::<LEAF>(run, depth + 1)))
             .collect();
         for (child, subtree) in built {
             let base = nodes.len() as u32;
@@ -74,27 +78,27 @@ fn build_nodes(run: Run<'_>, depth: usize) -> Vec<Node> {
     } else {
         for (child, run) in inner {
             nodes[0].first[child] = nodes.len() as u32;
-            append_nodes(&mut nodes, run, depth + 1);
+            append_nodes::<LEAF>(&mut nodes, run, depth + 1);
         }
     }
     nodes
 }
 
 /// Appends the nodes of a run, its root first; indices of inner children are absolute.
-fn append_nodes(nodes: &mut Vec<Node>, run: Run<'_>, depth: usize) {
+fn append_nodes<const LEAF: usize>(nodes: &mut Vec<Node>, run: Run<'_>, depth: usize) {
     let top = nodes.len();
-    let runs = split_in_four(run, depth);
-    nodes.push(Node::of(&runs));
+    let runs = split_in_four::<LEAF>(run, depth);
+    nodes.push(Node::of::<LEAF>(&runs));
     for (child, run) in runs.into_iter().enumerate() {
         if run.items.len() > LEAF {
             nodes[top].first[child] = nodes.len() as u32;
-            append_nodes(nodes, run, depth + 1);
+            append_nodes::<LEAF>(nodes, run, depth + 1);
         }
     }
 }
 
 /// Splits a run, then the part of largest area, until there are four parts or only leaves.
-fn split_in_four(run: Run<'_>, depth: usize) -> Vec<Run<'_>> {
+fn split_in_four<const LEAF: usize>(run: Run<'_>, depth: usize) -> Vec<Run<'_>> {
     let mut runs = Vec::with_capacity(4);
     runs.push(run);
     while runs.len() < 4 {
@@ -237,7 +241,7 @@ fn union(items: &[Item]) -> Box3 {
 
 impl Node {
     /// Returns the node over up to four runs, the small ones being leaves.
-    fn of(runs: &[Run<'_>]) -> Self {
+    fn of<const LEAF: usize>(runs: &[Run<'_>]) -> Self {
         // A missing child is an empty leaf, infinitely far away.
         let mut lo = [Vec4::INFINITY; 3];
         let mut hi = [Vec4::NEG_INFINITY; 3];

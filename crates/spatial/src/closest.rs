@@ -28,10 +28,6 @@ pub struct ClosestPoint {
 const SLACK_RELATIVE: f64 = 1.0 + 1.0 / (1 << 20) as f64;
 const SLACK: f64 = 1e-23;
 
-/// Squared distance in local coordinates below which a point touches a face. Where many faces meet
-/// at a point, the search for a closer one would visit them all.
-pub(crate) const TOUCHING: f64 = 1e-16;
-
 /// Size of the stack: three children of every node on the path may be waiting.
 const STACK: usize = 3 * MAX_DEPTH + 4;
 
@@ -46,7 +42,7 @@ impl Bvh {
     pub fn closest(&self, point: [f64; 3], hint: Option<FaceId>) -> ClosestPoint {
         let p = self.frame.local(point);
         let mut best = self.first(p, hint);
-        self.descend::<false>(p, &mut best, [0.0; 2], &All);
+        self.descend::<false>(p, &mut best, [0.0; 2]);
         self.in_model(&best)
     }
 
@@ -74,19 +70,9 @@ impl Bvh {
         let (enough, most) = (squared(enough.min(most)), squared(most));
         let mut best = self.first(p, hint);
         if best.distance_squared > enough {
-            self.descend::<true>(p, &mut best, [enough, most], &All);
+            self.descend::<true>(p, &mut best, [enough, most]);
         }
         (best.distance_squared <= most).then(|| self.in_model(&best))
-    }
-
-    /// Returns the squared distance, in square model units, of `point` from the closest selected
-    /// face, or any as near as [`TOUCHING`]; infinite if no face is selected.
-    pub(crate) fn closest_selected(&self, point: [f64; 3], selection: &impl Selection) -> f64 {
-        let p = self.frame.local(point);
-        let (face, distance_squared) = (FaceId(u32::MAX), f64::INFINITY);
-        let mut best = Candidate { point: p, face, distance_squared };
-        self.descend::<true>(p, &mut best, [TOUCHING, f64::INFINITY], selection);
-        self.frame.model_squared(best.distance_squared)
     }
 
     fn first(&self, p: DVec3, hint: Option<FaceId>) -> Candidate {
@@ -111,13 +97,12 @@ impl Bvh {
     /// best so far.
     ///
     /// If `LIMITED`, stops once `best` is within `enough` and visits no box beyond `most`; both are
-    /// squared. Only selected faces count.
+    /// squared.
     fn descend<const LIMITED: bool>(
         &self,
         p: DVec3,
         best: &mut Candidate,
         [enough, most]: [f64; 2],
-        selection: &impl Selection,
     ) {
         let query = Query::new(p);
         let reach_of = |squared: f64| reach(if LIMITED { squared.min(most) } else { squared });
@@ -135,9 +120,6 @@ impl Bvh {
             let bottom = waiting;
             for child in within(distances, reach) {
                 let distance_squared = distances[child];
-                if !selection.has_child(index as usize, child) {
-                    continue;
-                }
                 if node.count[child] == INNER {
                     let mut i = waiting;
                     // Farthest at the bottom, so that the nearest is popped first.
@@ -150,8 +132,7 @@ impl Bvh {
                 } else if distance_squared <= reach {
                     let first = node.first[child] as usize;
                     for slot in first..first + usize::from(node.count[child]) {
-                        let is_selected = selection.has_face(self.faces[slot]);
-                        if is_selected && best.improve(self.candidate(p, slot)) {
+                        if best.improve(self.candidate(p, slot)) {
                             if LIMITED && best.distance_squared <= enough {
                                 return;
                             }
@@ -161,30 +142,6 @@ impl Bvh {
                 }
             }
         }
-    }
-}
-
-/// Selection of faces that count in a query.
-pub(crate) trait Selection {
-    /// Returns false if the child of a node has no selected face.
-    fn has_child(&self, node: usize, child: usize) -> bool;
-
-    /// Returns true if a face is selected.
-    fn has_face(&self, face: FaceId) -> bool;
-}
-
-/// Selection of all faces.
-struct All;
-
-impl Selection for All {
-    #[inline]
-    fn has_child(&self, _: usize, _: usize) -> bool {
-        true
-    }
-
-    #[inline]
-    fn has_face(&self, _: FaceId) -> bool {
-        true
     }
 }
 

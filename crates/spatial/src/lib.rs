@@ -8,7 +8,8 @@
 //! | files, in reading order | hold |
 //! |---|---|
 //! | `triangle`, `box3`, `sum` | geometry |
-//! | `bvh`, `build`, `closest`, `within_box`, `labelled` | the hierarchy and its queries |
+//! | `bvh`, `build`, `closest`, `within_box` | the hierarchy and its queries |
+//! | `parts` | a hierarchy over parts that go one by one |
 //! | `mates`, `sheet` | faces over a triangle |
 //! | `octree`, `curve` | other orders |
 //!
@@ -31,9 +32,9 @@ mod build;
 mod bvh;
 mod closest;
 mod curve;
-mod labelled;
 mod mates;
 mod octree;
+mod parts;
 mod sheet;
 mod sum;
 #[cfg(test)]
@@ -44,9 +45,9 @@ mod within_box;
 pub use bvh::{Bvh, BvhError};
 pub use closest::ClosestPoint;
 pub use curve::curve_order;
-pub use labelled::LabelledBvh;
 pub use mates::Mates;
 pub use octree::{Octree, OctreeLeaf};
+pub use parts::{NearestPart, PartBvh, PartBvhBuilder, PartSearch, Within};
 pub use sheet::{Cover, Sheet};
 pub use sum::CompensatedSum;
 pub use triangle::{Triangle, closest_point};

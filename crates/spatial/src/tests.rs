@@ -1,23 +1,12 @@
 //! The hierarchy against the naive search.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use meshlod_mesh::{FaceId, Mesh, MeshError, VertexId};
 use proptest::prelude::*;
 
 use crate::bvh::INNER;
-use crate::closest::TOUCHING;
 use crate::triangle::closest_point;
-use crate::{Bvh, BvhError, ClosestPoint, LabelledBvh};
-
-/// Returns the squared distance from the selected faces, tested one by one.
-fn naive_within(bvh: &Bvh, point: [f64; 3], is_selected: impl Fn(usize) -> bool) -> f64 {
-    let p = bvh.frame.local(point);
-    let squared = |face: usize| {
-        p.distance_squared(closest_point(p, &bvh.triangles[bvh.slots[face] as usize]))
-    };
-    let selected = (0..bvh.faces.len()).filter(|&face| is_selected(face));
-    bvh.frame.model_squared(selected.map(squared).fold(f64::INFINITY, f64::min))
-}
+use crate::{Bvh, BvhError, ClosestPoint, PartBvhBuilder, PartSearch, Within};
 
 /// Tests every face, lowest id first.
 fn naive(bvh: &Bvh, point: [f64; 3]) -> (FaceId, f64) {
@@ -101,32 +90,49 @@ proptest! {
     }
 
     #[test]
-    fn what_is_left_without_a_label_is_as_far_as_the_naive_search_says(
+    fn what_is_left_without_a_part_is_as_far_as_the_naive_search_says(
         mesh in soup(),
-        labels in prop::collection::vec(0u32..4, 150),
-        runs in 1usize..40,
+        lengths in prop::collection::vec(1usize..20, 150),
         removed in prop::collection::vec(any::<u8>(), 60),
-        queries in prop::collection::vec(prop::array::uniform3(-3.0..3.0f64), 6),
+        queries in prop::collection::vec(prop::array::uniform3(-3.0..3.0f32), 6),
     ) {
-        // Neighbours in the order of the hierarchy have one label, so that whole children have.
-        let (bvh, count) = (Bvh::new(&mesh).unwrap(), mesh.faces.len());
-        let mut of_face = vec![0; count];
-        for (i, face) in bvh.faces_in_leaf_order().iter().enumerate() {
-            of_face[face.index()] = labels[i / runs];
+        let corner = |v: VertexId| Vec3::from_array(mesh.positions[v.index()].map(|x| x as f32));
+        let triangles: Vec<[Vec3; 3]> = mesh.faces.iter().map(|face| face.map(corner)).collect();
+        let (mut rest, mut parts) = (&triangles[..], Vec::new());
+        let mut builder = PartBvhBuilder::default();
+        for len in lengths.into_iter().take_while(|_| !rest.is_empty()) {
+            let (part, others) = rest.split_at(len.min(rest.len()));
+            builder.add(part.iter().copied());
+            parts.push(part);
+            rest = others;
         }
-        let mut labelled = LabelledBvh::new(&mesh, of_face.clone()).unwrap();
-        let mut is_left = vec![true; count];
+        let mut bvh = builder.build();
+        let mut is_left = vec![true; parts.len()];
+        let corners: Vec<Vec3> = triangles.iter().flatten().copied().collect();
         for removed in removed.chunks(12) {
-            for (point, label) in queries.iter().chain(&mesh.positions).zip((0..5).cycle()) {
-                let is_selected = |face: usize| is_left[face] && of_face[face] != label;
-                let least = naive_within(&bvh, *point, is_selected);
-                let found = labelled.squared_distance(*point, label);
-                let touches = found.max(least) <= bvh.frame.model_squared(TOUCHING);
-                prop_assert!(found == least || touches, "{found:e} instead of {least:e}");
+            let mut search = PartSearch::default();
+            let points = queries.iter().map(|&p| p.into()).chain(corners.clone());
+            for (point, except) in points.zip((0..5).cycle()) {
+                let p = DVec3::from(point);
+                let squared = |triangle: &[Vec3; 3]| {
+                    p.distance_squared(closest_point(p, &triangle.map(DVec3::from)))
+                };
+                let others = (0..parts.len()).filter(|&i| is_left[i] && i != except as usize);
+                let of_part = |i: usize| parts[i].iter().map(squared).fold(f64::INFINITY, f64::min);
+                let least = others.map(of_part).fold(f64::INFINITY, f64::min);
+                let found = bvh.nearest(point, except, Within::ANY, &mut search);
+                prop_assert_eq!(found.part == u32::MAX, least == f64::INFINITY);
+                if found.part != u32::MAX {
+                    let [found_at, least] = [f64::from(found.distance_squared), least].map(f64::sqrt);
+                    prop_assert!((found_at - least).abs() < 2e-6, "{found_at:e} instead of {least:e}");
+                    let own = of_part(found.part as usize).sqrt();
+                    prop_assert!((own - least).abs() < 2e-6, "part {} is {own:e} away", found.part);
+                    prop_assert!(is_left[found.part as usize] && found.part != except);
+                }
             }
-            for face in removed.iter().map(|&face| usize::from(face) % count) {
-                labelled.remove(FaceId::new(face));
-                is_left[face] = false;
+            for part in removed.iter().map(|&part| usize::from(part) % parts.len()) {
+                bvh.remove(part as u32);
+                is_left[part] = false;
             }
         }
     }

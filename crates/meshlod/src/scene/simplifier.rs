@@ -1,5 +1,8 @@
 //! Simplification of a scene: all its meshes share one target number of faces or error bound.
 
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
 use meshlod_io::Scene;
 use meshlod_mesh::Mesh;
 use meshlod_simplify::{
@@ -179,7 +182,8 @@ impl<'s> SceneSimplifier<'s> {
     /// the run's report, to what its instances have been repaid in world space.
     pub fn settled_level(&self, loss: &mut VolumeLoss) -> Vec<Mesh> {
         loss.repaid = 0.0;
-        let instances = self.scene.instances();
+        let mut instances = self.scene.instances();
+        instances.sort_by_key(|place| place.mesh);
         let mut parts = self.parts.iter().peekable();
         let meshes = self.scene.meshes.iter().enumerate();
         let settled = meshes.map(|(index, mesh)| {
@@ -189,7 +193,8 @@ impl<'s> SceneSimplifier<'s> {
             let mut own = VolumeLoss::default();
             let level = self.conditioned.meshes[index].settled_level(&part.simplifier, &mut own);
             if own.repaid != 0.0 {
-                let placed = instances.iter().filter(|place| place.mesh == index);
+                let first = instances.partition_point(|place| place.mesh < index);
+                let placed = instances[first..].iter().take_while(|place| place.mesh == index);
                 placed.for_each(|place| loss.add(&own, &place.transform));
             }
             level
@@ -231,11 +236,14 @@ impl<'s> SceneSimplifier<'s> {
 
     /// Contracts in the mesh with the cheapest next contraction until `budget` faces are shown.
     fn share(&mut self, budget: usize, observer: &mut dyn Observe) {
-        let mut costs: Vec<Option<f64>> = self.parts.iter_mut().map(Part::next_cost).collect();
+        let next = |(i, part): (usize, &mut Part<'_>)| Some(Next::new(part.next_cost()?, i));
+        let mut queue: BinaryHeap<Next> =
+            self.parts.iter_mut().enumerate().filter_map(next).collect();
         let mut faces = self.live_faces();
         while faces > budget {
-            let Some((cheapest, most)) = cheapest(&costs) else { return };
-            let part = &mut self.parts[cheapest];
+            let Some(cheapest) = queue.pop() else { return };
+            let most = queue.peek().map_or(f64::INFINITY, |&other| cheapest.up_to(other));
+            let part = &mut self.parts[cheapest.part()];
             let most_cost = part.cost_up_to(most);
             while faces > budget {
                 let before = part.simplifier.live_faces();
@@ -244,7 +252,7 @@ impl<'s> SceneSimplifier<'s> {
                 }
                 faces -= part.copies * (before - part.simplifier.live_faces());
             }
-            costs[cheapest] = part.next_cost();
+            queue.extend(part.next_cost().map(|cost| Next::new(cost, cheapest.part())));
         }
     }
 
@@ -319,14 +327,33 @@ impl Part<'_> {
     }
 }
 
-/// Returns the index of the lowest cost, the first of equal ones, and how far it may rise before
-/// another is lower: an interrupted run then continues as if it had not been interrupted.
-fn cheapest(costs: &[Option<f64>]) -> Option<(usize, f64)> {
-    let known = || costs.iter().enumerate().filter_map(|(i, cost)| Some((i, (*cost)?)));
-    let (first, _) = known().min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let up_to = |(i, cost): (usize, f64)| if i < first { cost.next_down() } else { cost };
-    let others = known().filter(|&(i, _)| i != first);
-    Some((first, others.map(up_to).fold(f64::INFINITY, f64::min)))
+/// The cost of the next contraction of a mesh, in an order as `f64::total_cmp` has it, and the
+/// number of the mesh. The greatest is the cheapest, and of equal ones that of the first mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Next(Reverse<(i64, usize)>);
+
+impl Next {
+    fn new(cost: f64, part: usize) -> Self {
+        Self(Reverse((in_order(cost.to_bits() as i64), part)))
+    }
+
+    fn part(self) -> usize {
+        let Self(Reverse((_, part))) = self;
+        part
+    }
+
+    /// Returns how far the cost may rise before the other is cheaper: an interrupted run then
+    /// continues as if it had not been interrupted.
+    fn up_to(self, other: Self) -> f64 {
+        let Self(Reverse((order, part))) = other;
+        let cost = f64::from_bits(in_order(order) as u64);
+        if part < self.part() { cost.next_down() } else { cost }
+    }
+}
+
+/// Turns the bits of a number into an integer that compares as `f64::total_cmp` does, and back.
+fn in_order(bits: i64) -> i64 {
+    bits ^ (((bits >> 63) as u64) >> 1) as i64
 }
 
 fn in_brackets(name: &str) -> String {

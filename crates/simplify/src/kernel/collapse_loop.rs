@@ -501,8 +501,12 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     fn apply(&mut self, collapse: &Collapse, quadric: &EdgeQuadricF64, moved: f32, front: u16) {
         let Ends { v0, v1, .. } = collapse.ends;
         let Self { vertices, model, edge_ring, queue, .. } = self;
-        self.live_faces -=
+        let gone =
             [0, edge_ring.of_v0].iter().filter(|&&wing| edge_ring.ghost != Some(wing)).count();
+        self.live_faces -= gone;
+        if let Some(components) = &mut self.components {
+            components.lose(v0, gone);
+        }
         let constraints = model.apply(vertices, edge_ring, collapse);
         let mut merged = A::Metric::merged_quadric(vertices, edge_ring, quadric, collapse);
         merged.star.add(&constraints);

@@ -1,32 +1,27 @@
 //! The connected components of the input, each of which may vanish as a whole.
 
-use std::borrow::Cow;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::ops::Range;
 
 use glam::Vec3;
-use meshlod_mesh::{Bounds, FaceId, Mesh, VertexId, face_components};
-use meshlod_spatial::LabelledBvh;
-use rayon::prelude::*;
+use meshlod_mesh::UnionFind;
+use meshlod_spatial::{PartBvh, PartBvhBuilder};
 
+use crate::kernel::apart::{Apart, Samples};
+use crate::kernel::handles::PER_CUT;
 use crate::kernel::mesh::local_frame::Frame;
-use crate::kernel::mesh::one_ring::Vertices;
+use crate::kernel::mesh::one_ring::{GHOST, Vertices};
 use crate::kernel::mesh::vertex::VertexFlags;
 use crate::kernel::metric::Metric;
 use crate::kernel::schedule::bucket_queue::{bucket, last_bucket};
-use crate::kernel::setup::vertex_order::is_face;
-
-/// Largest number of faces of a component that are sampled.
-const SAMPLED_FACES: usize = 24;
+use crate::kernel::setup::vertex_order::{Order, is_face};
 
 /// Components that may vanish take part from the start if they have more than one face in this many.
 const EARLY_SHARE: usize = 32;
 
-/// Weights of a face's centre and of each of its corners in the mean square distance. For a
-/// quadratic function they give the exact mean.
-const AT_CENTRE: f32 = 0.75;
-const AT_CORNER: f32 = 1.0 / 12.0;
+/// Component of vertices without faces.
+const NO_COMPONENT: u32 = u32::MAX;
 
 /// A connected component of the input.
 #[derive(Clone, Debug)]
@@ -39,23 +34,9 @@ pub(crate) struct Component {
     protection: f32,
     /// True if a lock or a tie holds a vertex of it.
     is_held: bool,
-    faces: Range<usize>,
+    /// Number of faces at first.
+    faces: u32,
     vertices: Range<usize>,
-    samples: Range<usize>,
-}
-
-/// Sample point on the surface of a component, and its weight.
-#[derive(Clone, Copy, Debug)]
-struct WeightedPoint {
-    place: Vec3,
-    weight: f32,
-}
-
-/// Square distances of a component from what remains without it, in the frame's units.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Apart {
-    pub(crate) mean: f32,
-    pub(crate) greatest: f32,
 }
 
 /// Connected components that may be removed as a whole, and those that have been.
@@ -63,12 +44,15 @@ pub(crate) struct Components {
     all: Vec<Component>,
     /// Vertices of all components, one component after the other.
     vertices: Vec<u32>,
-    samples: Vec<WeightedPoint>,
-    /// Faces of all components, one component after the other.
-    faces: Vec<u32>,
-    frame: Frame,
-    /// The faces of the input that have not vanished, labelled by component.
-    input: LabelledBvh,
+    /// Component of each vertex.
+    of_vertex: Vec<u32>,
+    /// Number of faces left of each component, if they are [counted](Self::are_counted).
+    faces_left: Vec<u32>,
+    /// True if the numbers of faces are those of the surface, which they are while it is one part.
+    are_counted: bool,
+    samples: Samples,
+    /// The faces of the input that have not vanished, by component.
+    input: PartBvh,
     /// Components that may vanish, by a lower bound of the bucket of their cost.
     waiting: BinaryHeap<Reverse<(u16, u32)>>,
     /// Components that have been refused.
@@ -78,11 +62,19 @@ pub(crate) struct Components {
 
 /// Arguments of [`Components::new`].
 pub(crate) struct Pieces<'a, 'v> {
-    pub(crate) mesh: &'a Mesh,
     pub(crate) frame: &'a Frame,
+    pub(crate) order: &'a Order,
     pub(crate) vertices: &'a Vertices<'v>,
     /// True for each vertex of the input that a lock or a tie holds.
     pub(crate) is_held: &'a [bool],
+}
+
+/// Cost of removing a component.
+pub(crate) enum VanishingCost {
+    /// It lies at least in this bucket.
+    AtLeast(u16),
+    /// It lies in this bucket, and this is how far the component is apart.
+    Exactly(u16, Apart),
 }
 
 impl Components {
@@ -90,27 +82,19 @@ impl Components {
     /// box has a diagonal below `below`, in model units, and which no lock or tie holds. Returns
     /// `None` if there are no such components.
     ///
-    /// `faces` are those of the mesh in the kernel's vertices. Cost: O(n log n), n = faces.
-    pub(crate) fn new<M: Metric>(
+    /// `faces` are those of the input in the kernel's vertices; copies of a vertex are in one
+    /// component. Cost: O(n), n = faces, and O(c log c), c = components.
+    pub(crate) fn new(
         pieces: &Pieces<'_, '_>,
         faces: impl Iterator<Item = [u32; 3]> + Clone,
         below: f64,
     ) -> Option<Self> {
-        let mesh = pieces.mesh;
-        let mut corners = Cow::Borrowed(&mesh.faces);
-        if !faces.clone().all(is_face) {
-            // Faces that are left out join nothing.
-            let joined = |(now, face): ([u32; 3], &[VertexId; 3])| match is_face(now) {
-                true => *face,
-                false => [face[0]; 3],
-            };
-            corners = Cow::Owned(faces.clone().zip(&mesh.faces).map(joined).collect());
-        }
-        let (of_face, count) = face_components(&corners, mesh.positions.len());
+        let joined = join(pieces.vertices, faces.clone());
+        let (of_vertex, count) = number(pieces.vertices, faces, joined);
         if count < 2 {
             return None;
         }
-        let mut components = Self::survey(pieces, faces, of_face, count);
+        let mut components = Self::survey(pieces, of_vertex, count);
         let all = &components.all;
         let by_area = |a: &usize, b: &usize| all[*a].area.total_cmp(&all[*b].area).then(b.cmp(a));
         let largest = (0..count).max_by(by_area);
@@ -119,116 +103,59 @@ impl Components {
             let Component { size, area, is_held, .. } = all[i];
             Some(i) != largest && size < below && area > 0.0 && !is_held
         };
-        let found: Vec<usize> = (0..count).filter(may_vanish).collect();
-        let entry = |&i: &usize| {
-            let apart = components.apart(i as u32);
-            Reverse((components.bucket::<M>(i as u32, &apart, all[i].faces.len()), i as u32))
-        };
-        let waiting: Vec<_> = found.par_iter().map(entry).collect();
-        components.waiting = waiting.into();
+        components.waiting =
+            (0..count).filter(may_vanish).map(|i| Reverse((0, i as u32))).collect();
         (!components.waiting.is_empty()).then_some(components)
     }
 
     /// Measures and samples all components.
-    fn survey(
-        pieces: &Pieces<'_, '_>,
-        faces: impl Iterator<Item = [u32; 3]>,
-        mut of_face: Vec<u32>,
-        count: usize,
-    ) -> Self {
-        let mut lists = vec![Vec::new(); count];
-        let mut vertices = vec![Vec::new(); count];
-        for (i, face) in faces.enumerate() {
-            let component = &mut of_face[i];
-            if is_face(face) {
-                lists[*component as usize].push(i);
-                vertices[*component as usize].extend(face);
-            } else {
-                *component = count as u32;
-            }
+    fn survey(pieces: &Pieces<'_, '_>, of_vertex: Vec<u32>, count: usize) -> Self {
+        let (vertices, ends) = by_component(&of_vertex, count);
+        let mut builder = PartBvhBuilder::default();
+        let mut samples = Samples::default();
+        let mut slots = vec![u32::MAX; of_vertex.len()];
+        let mut all = Vec::with_capacity(count);
+        let mut faces = Vec::new();
+        let mut start = 0;
+        for end in ends {
+            let own = &vertices[start..end];
+            faces.clear();
+            own.iter().for_each(|&v| faces_at(pieces.vertices, v, &mut faces));
+            let place = |v: u32| pieces.vertices.get(v).place();
+            // `map` over an array is not inlined.
+            builder.add(faces.iter().map(|&[a, b, c]: &[u32; 3]| [place(a), place(b), place(c)]));
+            samples.add(&faces, place, &mut slots);
+            all.push(Component::new(pieces, own, &faces, start..end));
+            start = end;
         }
-        let left_out: Vec<usize> =
-            (0..of_face.len()).filter(|&i| of_face[i] == count as u32).collect();
-        let mut input = LabelledBvh::new(pieces.mesh, of_face).expect("the mesh was found valid");
-        left_out.into_iter().for_each(|i| input.remove(FaceId::new(i)));
-        let mut components = Self {
-            all: Vec::with_capacity(count),
-            vertices: Vec::new(),
-            samples: Vec::new(),
-            faces: Vec::new(),
-            frame: *pieces.frame,
-            input,
+        Self {
+            faces_left: all.iter().map(|component| component.faces).collect(),
+            all,
+            vertices,
+            of_vertex,
+            are_counted: true,
+            samples,
+            input: builder.build(),
             waiting: BinaryHeap::new(),
             refused: Vec::new(),
             vanished: Vec::new(),
-        };
-        for (faces, vertices) in lists.into_iter().zip(vertices) {
-            components.add(pieces, &faces, vertices);
-        }
-        components
-    }
-
-    /// Measures and samples a component, given its faces and the vertices at their corners.
-    fn add(&mut self, pieces: &Pieces<'_, '_>, faces: &[usize], mut own: Vec<u32>) {
-        let &Pieces { mesh, frame, vertices, is_held } = pieces;
-        own.sort_unstable();
-        own.dedup();
-        let (mut bounds, mut held) = (Bounds::EMPTY, false);
-        for v in faces.iter().flat_map(|&i| mesh.faces[i]) {
-            bounds.add(mesh.positions[v.index()]);
-            held |= is_held[v.index()];
-        }
-        let is_protected = |v: &u32| vertices.get(*v).flags.any(VertexFlags::PROTECTED);
-        let protection = if own.iter().any(is_protected) { vertices.protection } else { 1.0 };
-        let places = |i: usize| mesh.faces[i].map(|v| frame.to_local(mesh.positions[v.index()]));
-        let triangles: Vec<[Vec3; 3]> = faces.iter().map(|&i| places(i)).collect();
-        let (first, start) = (self.vertices.len(), self.samples.len());
-        self.sample(&triangles);
-        self.vertices.extend(own);
-        self.all.push(Component {
-            size: (bounds.diagonal() / frame.unit) as f32,
-            area: triangles.iter().map(area).sum(),
-            protection,
-            is_held: held,
-            faces: self.faces.len()..self.faces.len() + faces.len(),
-            vertices: first..self.vertices.len(),
-            samples: start..self.samples.len(),
-        });
-        self.faces.extend(faces.iter().map(|&i| i as u32));
-    }
-
-    /// Samples a component at the centres and corners of some of its faces.
-    fn sample(&mut self, triangles: &[[Vec3; 3]]) {
-        for triangle in triangles.iter().step_by(triangles.len().div_ceil(SAMPLED_FACES).max(1)) {
-            let area = area(triangle);
-            let centre = triangle.iter().sum::<Vec3>() / 3.0;
-            self.samples.push(WeightedPoint { place: centre, weight: AT_CENTRE * area });
-            let corner = |&place: &Vec3| WeightedPoint { place, weight: AT_CORNER * area };
-            self.samples.extend(triangle.iter().map(corner));
         }
     }
 
-    /// Measures how far a component is from the input without it and without what has vanished.
-    pub(crate) fn apart(&self, component: u32) -> Apart {
-        let to_frame = self.frame.unit.powi(-2);
-        let (mut sum, mut weights, mut greatest) = (0.0, f32::MIN_POSITIVE, 0.0f32);
-        for &WeightedPoint { place, weight } in
-            &self.samples[self.all[component as usize].samples.clone()]
-        {
-            let squared = self.input.squared_distance(self.frame.to_model(place), component);
-            let squared = (squared * to_frame) as f32;
-            sum += weight * squared;
-            weights += weight;
-            greatest = greatest.max(squared);
-        }
-        Apart { mean: sum / weights, greatest }
-    }
-
-    /// Returns the bucket of the cost of removing a component that has `faces` faces left.
-    pub(crate) fn bucket<M: Metric>(&self, component: u32, apart: &Apart, faces: usize) -> u16 {
+    /// Returns the cost of removing a component, measured as far as is needed to tell whether it is
+    /// beyond the bucket `last`.
+    pub(crate) fn cost<M: Metric>(&mut self, component: u32, last: u16) -> VanishingCost {
         let Component { area, protection, .. } = self.all[component as usize];
-        let cost = M::vanishing_cost(area, faces as f32, apart.mean) * protection;
-        bucket(cost).min(last_bucket())
+        let faces = self.faces_left[component as usize] as f32;
+        let bucket_of = |mean_square: f32| {
+            let cost = M::vanishing_cost(area, faces, mean_square) * protection;
+            bucket(cost).min(last_bucket())
+        };
+        let is_beyond = |mean_square: f32| bucket_of(mean_square) > last;
+        match self.samples.measure(component, &self.input, is_beyond) {
+            Ok(apart) => VanishingCost::Exactly(bucket_of(apart.mean), apart),
+            Err(least) => VanishingCost::AtLeast(bucket_of(least)),
+        }
     }
 
     /// Returns the squared distance that counts when a component vanishes: its distance from the
@@ -240,13 +167,70 @@ impl Components {
     /// Returns true if components that may vanish have a good part of this many faces: then they
     /// must take part from the start.
     pub(crate) fn are_many(&self, faces: usize) -> bool {
-        let faces_of = |entry: &Reverse<(u16, u32)>| self.all[entry.0.1 as usize].faces.len();
+        let faces_of = |entry: &Reverse<(u16, u32)>| self.all[entry.0.1 as usize].faces as usize;
         self.waiting.iter().map(faces_of).sum::<usize>() > faces / EARLY_SHARE
     }
 
     /// Returns the number of components of the input.
-    pub(crate) fn count(&self) -> usize {
+    pub(crate) fn number(&self) -> usize {
         self.all.len()
+    }
+
+    /// Returns true if a vertex belongs to a component.
+    pub(crate) fn has(&self, component: u32, v: u32) -> bool {
+        self.of_vertex.get(v as usize) == Some(&component)
+    }
+
+    /// Adds the copies of vertices at a cut, and the faces that close it for a moment.
+    pub(crate) fn cut(&mut self, copies: [[u32; 2]; PER_CUT], faces: u32) {
+        for [v, copy] in copies {
+            let of = self.of_vertex[v as usize];
+            self.of_vertex.resize(copy as usize + 1, NO_COMPONENT);
+            self.of_vertex[copy as usize] = of;
+        }
+        let of_cut = self.of_vertex[copies[0][0] as usize];
+        if let Some(left) = self.faces_left.get_mut(of_cut as usize) {
+            *left += faces;
+        }
+    }
+
+    /// Counts the faces left of all components, unless they are known, as they are while the
+    /// surface is one part.
+    pub(crate) fn count(&mut self, vertices: &mut Vertices<'_>) {
+        if std::mem::replace(&mut self.are_counted, true) {
+            return;
+        }
+        let mut corners = vec![0_u32; self.all.len()];
+        for v in vertices.ids() {
+            if vertices.get(v).flags.any(VertexFlags::DEAD) {
+                continue;
+            }
+            vertices.refresh(v);
+            // Vertices for cuts to come belong to none.
+            let Some(&of) = self.of_vertex.get(v as usize) else { continue };
+            if let Some(count) = corners.get_mut(of as usize) {
+                *count += faces_around(vertices, v);
+            }
+        }
+        self.faces_left = corners.into_iter().map(|corners| corners / 3).collect();
+    }
+
+    /// Says that contractions go uncounted while the surface is in several parts.
+    pub(crate) fn lose_count(&mut self) {
+        self.are_counted = false;
+    }
+
+    /// Counts faces that are lost at a vertex.
+    #[inline(always)]
+    pub(crate) fn lose(&mut self, v: u32, faces: usize) {
+        if let Some(left) = self.faces_left.get_mut(self.of_vertex[v as usize] as usize) {
+            *left = left.saturating_sub(faces as u32);
+        }
+    }
+
+    /// Returns the number of faces left of a component.
+    pub(crate) fn faces_left(&self, component: u32) -> usize {
+        self.faces_left[component as usize] as usize
     }
 
     /// Returns the vertices of a component.
@@ -278,9 +262,8 @@ impl Components {
 
     /// Removes a component for good.
     pub(crate) fn remove(&mut self, component: u32) {
-        for &face in &self.faces[self.all[component as usize].faces.clone()] {
-            self.input.remove(FaceId(face));
-        }
+        self.input.remove(component);
+        self.faces_left[component as usize] = 0;
         self.vanished.push(component);
     }
 
@@ -297,6 +280,116 @@ impl Components {
     }
 }
 
-fn area([a, b, c]: &[Vec3; 3]) -> f32 {
+impl Component {
+    /// Measures a component, given its vertices and faces.
+    fn new(
+        pieces: &Pieces<'_, '_>,
+        own: &[u32],
+        faces: &[[u32; 3]],
+        vertices: Range<usize>,
+    ) -> Self {
+        let &Pieces { vertices: all, order, is_held, .. } = pieces;
+        let (mut lo, mut hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        let (mut held, mut protected) = (false, false);
+        for &v in own {
+            let vertex = all.get(v);
+            (lo, hi) = (lo.min(vertex.place()), hi.max(vertex.place()));
+            held |= is_held[order.input(all.origin(v)) as usize];
+            protected |= vertex.flags.any(VertexFlags::PROTECTED);
+        }
+        let place = |v: u32| all.get(v).place();
+        Self {
+            size: (hi - lo).length(),
+            area: faces.iter().map(|&[a, b, c]| area([place(a), place(b), place(c)])).sum(),
+            protection: if protected { all.protection } else { 1.0 },
+            is_held: held,
+            faces: faces.len() as u32,
+            vertices,
+        }
+    }
+}
+
+/// Joins the corners of faces, and copies with their vertices.
+fn join(vertices: &Vertices<'_>, faces: impl Iterator<Item = [u32; 3]>) -> UnionFind {
+    let mut joined = UnionFind::new(vertices.all.len());
+    for face @ [a, b, c] in faces {
+        if is_face(face) {
+            joined.union(a, b);
+            joined.union(a, c);
+        }
+    }
+    for v in vertices.first_copy.min(vertices.all.len() as u32)..vertices.all.len() as u32 {
+        joined.union(v, vertices.origin(v));
+    }
+    joined
+}
+
+/// Numbers the components in the order of their first faces. Returns the component of each vertex,
+/// and their number.
+fn number(
+    vertices: &Vertices<'_>,
+    faces: impl Iterator<Item = [u32; 3]>,
+    mut joined: UnionFind,
+) -> (Vec<u32>, usize) {
+    let mut of_set = vec![NO_COMPONENT; vertices.all.len()];
+    let mut count = 0;
+    for face in faces.filter(|&face| is_face(face)) {
+        let number = &mut of_set[joined.find(face[0]) as usize];
+        if *number == NO_COMPONENT {
+            *number = count;
+            count += 1;
+        }
+    }
+    let of = |v: u32| of_set[joined.find(v) as usize];
+    (vertices.ids().map(of).collect(), count as usize)
+}
+
+/// Returns the vertices of all components, one component after the other, and where each ends.
+fn by_component(of_vertex: &[u32], count: usize) -> (Vec<u32>, Vec<usize>) {
+    let mut ends = vec![0; count];
+    let of = of_vertex.iter().map(|&component| component as usize);
+    of.clone().for_each(|component| ends.get_mut(component).into_iter().for_each(|n| *n += 1));
+    let mut sum = 0;
+    for end in &mut ends {
+        sum += std::mem::replace(end, sum);
+    }
+    let mut vertices = vec![0; sum];
+    for (v, component) in (0..).zip(of) {
+        if let Some(end) = ends.get_mut(component) {
+            vertices[*end] = v;
+            *end += 1;
+        }
+    }
+    (vertices, ends)
+}
+
+/// Appends the faces around a vertex whose other corners have greater ids.
+pub(crate) fn faces_at(vertices: &Vertices<'_>, v: u32, faces: &mut Vec<[u32; 3]>) {
+    let ring = vertices.neighbours(v);
+    let Some(&last) = ring.last() else { return };
+    let mut a = last;
+    for &b in ring {
+        if v < a && v < b && a != GHOST && b != GHOST {
+            faces.push([v, a, b]);
+        }
+        a = b;
+    }
+}
+
+/// Returns the number of faces around a vertex.
+fn faces_around(vertices: &Vertices<'_>, v: u32) -> u32 {
+    let ring = vertices.neighbours(v);
+    let Some(&last) = ring.last() else { return 0 };
+    let mut a = last;
+    let mut count = 0;
+    for &b in ring {
+        count += u32::from(a != GHOST && b != GHOST);
+        a = b;
+    }
+    count
+}
+
+/// Returns the area of a triangle.
+pub(crate) fn area([a, b, c]: [Vec3; 3]) -> f32 {
     0.5 * (b - a).cross(c - a).length()
 }

@@ -19,7 +19,8 @@
 //! | `schedule` | edge costs, the bucket queue, deferral |
 //! | `collapse_loop` | the loop: start reading here; `tied` and `vanish` are its rarer steps |
 //! | `retrace` | contractions taken back where the bound was not held |
-//! | `components`, `volume` | the components that may vanish, and the volume lost and owed |
+//! | `components`, `apart` | the components that may vanish, and how far they are apart |
+//! | `volume` | the volume lost and owed |
 //! | `partition` | parts that coarsen side by side |
 //! | `run`, `level`, `contraction_log` | the face to `Simplifier`: runs, levels, observers |
 //!
@@ -29,6 +30,7 @@
 // Lanes are indexed by number, across several rows at once.
 #![allow(clippy::needless_range_loop)]
 
+mod apart;
 mod attributes;
 mod bound;
 mod collapse;
@@ -56,12 +58,14 @@ use meshlod_mesh::{Bounds, Mesh};
 use crate::kernel::metric::Metric;
 use crate::kernel::prepare::Prepared;
 use crate::options::{Options, SimplifyError};
-use crate::run::Started;
+use crate::run::{Started, Wanted};
 
 pub(crate) use crate::kernel::metric::plane_distance::PlaneDistance;
 pub(crate) use crate::kernel::metric::swept_volume::SweptVolume;
 
 /// Prepares the kernel for a valid mesh. Also returns what was found in the input.
+///
+/// Returns `None` if only a manifold mesh is wanted and this one has a non-manifold vertex.
 ///
 /// # Errors
 /// If no face has three different vertices.
@@ -69,12 +73,14 @@ pub(crate) fn start<'m, M: Metric + 'm>(
     metric: M,
     mesh: &'m Mesh,
     bounds: &Bounds,
-    options: &Options,
-) -> Result<Started<'m>, SimplifyError> {
-    let prepared = Prepared::new(metric, mesh, bounds, options);
+    (options, wanted): (&Options, Wanted),
+) -> Result<Option<Started<'m>>, SimplifyError> {
+    let Some(prepared) = Prepared::new(metric, mesh, bounds, (options, wanted)) else {
+        return Ok(None);
+    };
     if prepared.live_faces() == 0 {
         return Err(SimplifyError::AllDegenerate(mesh.faces.len()));
     }
     let input = prepared.input();
-    Ok((prepared.start(options), input))
+    Ok(Some((prepared.start(options), input)))
 }

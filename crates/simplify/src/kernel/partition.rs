@@ -118,7 +118,11 @@ impl<A: AttributeModel> Partition<A> {
     pub(crate) fn new(store: VertexStore, model: A, live_faces: usize, whole: Whole) -> Self {
         let are_many = whole.components.as_ref().is_some_and(|all| all.are_many(live_faces));
         let part = if whole.ties.is_some() || are_many { usize::MAX } else { MAX_PART };
-        Self { whole, ..Self::of_at_most(part, store, model, live_faces) }
+        let mut this = Self { whole, ..Self::of_at_most(part, store, model, live_faces) };
+        if this.parts.len() > 1 {
+            this.whole.components.iter_mut().for_each(Components::lose_count);
+        }
+        this
     }
 
     /// Splits the surface into parts of at most `part` vertices.

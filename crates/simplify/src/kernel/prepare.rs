@@ -23,7 +23,7 @@ use crate::kernel::setup::build_rings::Fans;
 use crate::kernel::setup::split_non_manifold;
 use crate::kernel::setup::vertex_order::{Order, numbers};
 use crate::options::{Options, Topology};
-use crate::run::{InputSummary, Run};
+use crate::run::{InputSummary, Run, Wanted};
 use crate::surface::MOST_FACES;
 use crate::surface::ties::{MOST_MEMBERS, Ties};
 
@@ -53,14 +53,22 @@ pub(crate) struct Prepared<'m, M> {
 
 impl<'m, M: Metric + 'm> Prepared<'m, M> {
     /// Prepares a mesh. Non-manifold vertices are split into copies that stay where they are, until
-    /// each copy has one fan of faces.
-    pub(crate) fn new(metric: M, mesh: &'m Mesh, bounds: &Bounds, options: &Options) -> Self {
+    /// each copy has one fan of faces, or returns `None` if only a manifold mesh is wanted.
+    pub(crate) fn new(
+        metric: M,
+        mesh: &'m Mesh,
+        bounds: &Bounds,
+        (options, wanted): (&Options, Wanted),
+    ) -> Option<Self> {
         let frame = Frame::new(mesh, bounds);
         let (order, mut places) = Order::new(mesh, &frame);
         let count = mesh.faces.len();
         let face = |i: usize| order.face(&mesh.faces[i]);
         let weight = options.boundary_weight.map_or(M::BOUNDARY_WEIGHT, boundary_weight);
         let mut fans = Fans::new::<M>((&places, Vec::new()), count, face, weight);
+        if wanted == Wanted::Manifold && !fans.irregular.is_empty() {
+            return None;
+        }
         let degenerate_faces = count - fans.faces;
         let (mut faces, mut duplicate_faces) = (None, 0);
         if !fans.irregular.is_empty() {
@@ -96,7 +104,7 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
             let below = options.vanish_below.unwrap_or(f64::INFINITY);
             prepared.find_components(is_held, options, below);
         }
-        prepared
+        Some(prepared)
     }
 
     /// Pins all copies of vertices. If the copies of a vertex have too many faces together, nothing
@@ -151,12 +159,12 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
         }
         let faces = numbers(self.mesh, &self.order, self.faces.as_deref());
         let pieces = Pieces {
-            mesh: self.mesh,
             frame: &self.frame,
+            order: &self.order,
             vertices: &self.fans.store.whole(),
             is_held: &is_held,
         };
-        self.whole.components = Components::new::<M>(&pieces, faces, below);
+        self.whole.components = Components::new(&pieces, faces, below);
     }
 
     /// Counts the handles, and makes room for cutting them.
@@ -165,7 +173,7 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
         if !store.copied.is_empty() {
             return;
         }
-        let components = self.whole.components.as_ref().map_or(1, Components::count);
+        let components = self.whole.components.as_ref().map_or(1, Components::number);
         let genus = genus(&store.whole(), self.fans.faces, components);
         if genus > 0 {
             let faces = numbers(self.mesh, &self.order, self.faces.as_deref()).collect();

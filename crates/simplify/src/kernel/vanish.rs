@@ -4,6 +4,7 @@ use glam::{DVec3, Vec3};
 
 use crate::kernel::attributes::AttributeModel;
 use crate::kernel::collapse_loop::{CollapseLoop, is_out_of_proportion};
+use crate::kernel::components::{VanishingCost, faces_at};
 use crate::kernel::contraction_log::Logged;
 use crate::kernel::mesh::one_ring::GHOST;
 use crate::kernel::mesh::vertex::VertexFlags;
@@ -21,23 +22,36 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
     /// a lower bound, and is computed again when its turn comes.
     #[cold]
     pub(crate) fn vanish_up_to(&mut self, last: u16) {
+        if let Some(components) = &mut self.components {
+            components.count(&mut self.vertices);
+        }
         while let Some(component) = self.components.as_mut().and_then(|all| all.take_up_to(last)) {
-            let faces = self.faces_of(component);
-            if faces.is_empty() {
+            let Some(components) = &mut self.components else { return };
+            let left = components.faces_left(component);
+            if left == 0 {
                 continue;
             }
-            let Some(components) = &mut self.components else { return };
-            let apart = components.apart(component);
-            let cost = components.bucket::<A::Metric>(component, &apart, faces.len());
+            let (cost, apart) = match components.cost::<A::Metric>(component, last) {
+                VanishingCost::Exactly(bucket, apart) => (bucket, apart),
+                VanishingCost::AtLeast(bucket) => {
+                    components.put_back(component, bucket);
+                    continue;
+                }
+            };
             let loss = components.loss(component, &apart);
-            let bucket = self.deferral.delay(loss, cost).unwrap_or(cost);
+            if cost > last {
+                components.put_back(component, cost);
+                continue;
+            }
+            if let Some(later) = self.deferral.delay(loss, cost).filter(|&later| later > last) {
+                components.put_back(component, later);
+                continue;
+            }
             let max_error = self
                 .within
                 .as_ref()
                 .map_or(f32::INFINITY, |bound| bound.limit_at(components.vertices(component)));
-            if bucket > last {
-                components.put_back(component, bucket);
-            } else if faces.len() >= self.live_faces {
+            if left >= self.live_faces {
                 self.refusals.add(Refusal::LastFaces);
             } else if is_out_of_proportion(loss, self.error as f32, self.room) {
                 self.refusals.add(Refusal::Disproportion);
@@ -52,6 +66,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
             } else {
                 components.remove(component);
                 self.error = self.error.max(apart.greatest.into());
+                let faces = self.faces_of(component);
                 return self.vanish(component, &faces);
             }
         }
@@ -63,7 +78,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         let of_input = components.vertices(component);
         let is_live = |v: &u32| !self.vertices.get(*v).flags.any(VertexFlags::DEAD);
         let cuts = self.handles.iter().flat_map(|handles| handles.copies());
-        let of_cuts = cuts.filter(|(_, of)| of_input.binary_search(of).is_ok()).map(|(v, _)| v);
+        let of_cuts = cuts.filter(|&v| components.has(component, v));
         of_input.iter().copied().chain(of_cuts).filter(is_live).collect()
     }
 
@@ -72,12 +87,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         let mut faces = Vec::new();
         for v in self.left_of(component) {
             self.vertices.refresh(v);
-            let ring = self.vertices.neighbours(v);
-            for (&a, &b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
-                if v < a && v < b && a != GHOST && b != GHOST {
-                    faces.push([v, a, b]);
-                }
-            }
+            faces_at(&self.vertices, v, &mut faces);
         }
         faces
     }

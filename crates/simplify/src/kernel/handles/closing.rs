@@ -9,7 +9,7 @@ use crate::kernel::schedule::bucket_queue::{bucket, last_bucket, min_cost_in};
 use crate::refusal::Refusal;
 
 /// Faces that close a cut, and those that it takes away.
-const FACES: f32 = 2.0;
+const FACES: usize = 2;
 
 /// Mean square distance of a triangle from its edges, relative to the square of the radius of the
 /// inscribed circle.
@@ -84,7 +84,8 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         let radius = 2.0 * area / around.max(f32::MIN_POSITIVE);
         let far = self.place(first_copy, first_copy + 1, last_bucket())?;
         let near = self.place(v0, v1, last_bucket())?;
-        let lid = A::Metric::vanishing_cost(2.0 * area, FACES, MEAN_IN_TRIANGLE * radius * radius);
+        let lid =
+            A::Metric::vanishing_cost(2.0 * area, FACES as f32, MEAN_IN_TRIANGLE * radius * radius);
         let cost = [&near, &far].iter().map(|edge| min_cost_in(edge.bucket())).sum::<f32>() + lid;
         let now = near.now.max(far.now).max(radius * radius);
         let moved = near.moved(&self.vertices).max(far.moved(&self.vertices)).max(now);
@@ -104,7 +105,10 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         if let Some(handles) = &mut self.handles {
             handles.close(&mut self.vertices, neck, first_copy);
         }
-        self.live_faces += FACES as usize;
+        self.live_faces += FACES;
+        if let Some(components) = &mut self.components {
+            components.cut(neck.copies(first_copy), FACES as u32);
+        }
         let Closing { near, far, moved, .. } = closing;
         let later = front.max(closing.bucket);
         let kept = self.contract_placed(near, *moved, front);

@@ -22,6 +22,8 @@ mod faces;
 mod genus;
 mod neck;
 
+use std::ops::Range;
+
 use crate::kernel::handles::faces::HandleFaces;
 use crate::kernel::handles::neck::Neck;
 use crate::kernel::mesh::one_ring::Vertices;
@@ -35,8 +37,7 @@ pub(crate) struct Handles {
     /// Number of handles of the input.
     genus: usize,
     first_spare: u32,
-    /// For each vertex of a cut, the vertex of the input that it is a copy of.
-    copied: Vec<u32>,
+    closed: usize,
     faces: HandleFaces,
 }
 
@@ -44,7 +45,7 @@ impl Handles {
     /// Prepares for closing up to `genus` handles. `faces` are those of the input in the kernel's
     /// vertices; vertices from `first_spare` on are for cuts.
     pub(crate) fn new(genus: usize, faces: Vec<[u32; 3]>, first_spare: u32) -> Self {
-        Self { genus, first_spare, copied: Vec::new(), faces: HandleFaces::new(faces) }
+        Self { genus, first_spare, closed: 0, faces: HandleFaces::new(faces) }
     }
 
     /// Returns the faces of the input, with the vertices of the cuts at their corners.
@@ -54,30 +55,25 @@ impl Handles {
 
     /// Returns the first of three vertices for a cut, if a handle is left.
     fn spare(&self) -> Option<u32> {
-        (self.closed() < self.genus).then_some(self.first_spare + self.copied.len() as u32)
+        (self.closed < self.genus).then_some(self.copies().end)
     }
 
-    fn closed(&self) -> usize {
-        self.copied.len() / PER_CUT
-    }
-
-    /// Returns the vertices of cuts, each with the vertex of the input that it is a copy of.
-    pub(crate) fn copies(&self) -> impl Iterator<Item = (u32, u32)> {
-        (self.first_spare..).zip(self.copied.iter().copied())
+    /// Returns the vertices of the cuts so far.
+    pub(crate) fn copies(&self) -> Range<u32> {
+        self.first_spare..self.first_spare + (PER_CUT * self.closed) as u32
     }
 
     /// Notes that a handle has been cut along a neck, whose copies are from `first_copy` on.
     fn close(&mut self, vertices: &mut Vertices<'_>, neck: &Neck, first_copy: u32) {
         for (k, (copy, v)) in (first_copy..).zip(neck.vertices).enumerate() {
             self.faces.part(vertices, [v, copy], |follows| neck.is_far(k, follows, first_copy));
-            let of_cut = v.checked_sub(self.first_spare);
-            self.copied.push(of_cut.map_or(v, |cut| self.copied[cut as usize]));
         }
+        self.closed += 1;
     }
 
     /// Returns the numbers of handles of the input and of those that have closed.
     pub(crate) fn counts(&self) -> HandleCounts {
-        HandleCounts { before: self.genus, closed: self.closed() }
+        HandleCounts { before: self.genus, closed: self.closed }
     }
 
     /// Notes that a vertex has been contracted into another.
