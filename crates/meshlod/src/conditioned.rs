@@ -16,6 +16,23 @@ use crate::bounded::run_within;
 /// and lines in any direction by less.
 const FLAT: f64 = 1.0 / (1 << 20) as f64;
 
+/// What became of the flats of a mesh, or of the meshes of a scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FlatFaces {
+    /// Number of faces that went, since what is flat can do without them.
+    pub gone: usize,
+    /// Number of faces that the shape needs: the fewest with the same corners of flats.
+    pub needed: usize,
+}
+
+impl FlatFaces {
+    /// Returns the figures without the faces that a run has left out: no shape needs them.
+    pub(crate) fn without(self, report: &Report) -> Self {
+        let left_out = report.degenerate_faces + report.duplicate_faces;
+        Self { needed: self.needed.saturating_sub(left_out), ..self }
+    }
+}
+
 /// A mesh ready to be simplified, with the options for it.
 pub(crate) struct ConditionedMesh<'m> {
     input: &'m Mesh,
@@ -71,11 +88,28 @@ impl<'m> ConditionedMesh<'m> {
         if !has_valid_locks(self.input, &self.options.locks) || self.input.validate().is_err() {
             return;
         }
-        let bounds = self.input.bounds();
-        let most = bounds.min.into_iter().chain(bounds.max).map(f64::abs).fold(0.0, f64::max);
         let Held { mesh, locks, lock_boundary } = self.unsplit();
-        let tolerance = error.min(FLAT * most);
-        self.flat = flatten(mesh, &FlatOptions { locks, lock_boundary, tolerance });
+        let tolerance = error.min(FLAT * self.largest_coordinate());
+        self.flat = Some(flatten(mesh, &FlatOptions { locks, lock_boundary, tolerance }));
+    }
+
+    /// Returns the largest coordinate: one that the mesh has, or would have if the origin were in its
+    /// middle, since nothing has been rounded to 32 bits if its coordinates have more.
+    fn largest_coordinate(&self) -> f64 {
+        let bounds = self.input.bounds();
+        let is_rounded = |&x: &f64| x == f64::from(x as f32);
+        if !self.input.positions.as_flattened().iter().all(is_rounded) {
+            return bounds.diagonal() / 2.0;
+        }
+        bounds.min.into_iter().chain(bounds.max).map(f64::abs).fold(0.0, f64::max)
+    }
+
+    /// Returns what became of the flats of the mesh; `None` if that has not been asked for.
+    pub(crate) fn flats(&self) -> Option<FlatFaces> {
+        let Flattened { mesh, needed_faces, .. } = self.flat.as_ref()?;
+        let before = self.sewn.as_ref().map_or(self.input, |sewn| &sewn.mesh).faces.len();
+        let left = mesh.as_ref().map_or(before, |mesh| mesh.faces.len());
+        Some(FlatFaces { gone: before - left, needed: *needed_faces })
     }
 
     /// Returns how far the surface has moved before it is simplified.
@@ -88,7 +122,8 @@ impl<'m> ConditionedMesh<'m> {
         let Options { locks, lock_boundary, .. } = &self.options;
         let input = Held { mesh: self.input, locks, lock_boundary: *lock_boundary };
         let sewn = self.sewn.as_ref().map_or(input, Held::of);
-        Held { mesh: self.flat.as_ref().map_or(sewn.mesh, |flat| &flat.mesh), ..sewn }
+        let flat = self.flat.as_ref().and_then(|flat| flat.mesh.as_ref());
+        Held { mesh: flat.unwrap_or(sewn.mesh), ..sewn }
     }
 
     /// Returns the mesh as it is simplified.

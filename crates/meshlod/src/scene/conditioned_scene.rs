@@ -4,7 +4,7 @@ use meshlod_io::Scene;
 use meshlod_mesh::{Borders, Conditioning, Mesh, NearBorders, near_borders};
 use meshlod_simplify::{Options, SimplifyError};
 
-use crate::conditioned::ConditionedMesh;
+use crate::conditioned::{ConditionedMesh, FlatFaces};
 use crate::scene::{locks, place};
 
 /// Smallest number of near boundary edges that is worth mentioning.
@@ -67,6 +67,19 @@ impl<'s> ConditionedScene<'s> {
         for (mesh, size) in self.meshes.iter_mut().zip(sizes).filter(|(_, size)| *size > 0.0) {
             mesh.flatten_within(error / size);
         }
+    }
+
+    /// Returns what became of the flats of the scene, counting every instance; `None` if nothing was
+    /// [flattened](Self::flatten_within).
+    pub fn flat_faces(&self) -> Option<FlatFaces> {
+        let shown = self.meshes.iter().zip(&self.copies).filter(|(_, copies)| **copies > 0);
+        let mut all: Option<FlatFaces> = None;
+        for (of_mesh, copies) in shown.filter_map(|(mesh, copies)| Some((mesh.flats()?, copies))) {
+            let FlatFaces { gone, needed } = all.get_or_insert_default();
+            *gone += copies * of_mesh.gone;
+            *needed += copies * of_mesh.needed;
+        }
+        all
     }
 
     /// Returns what has been changed so far in the meshes of the scene, counting every instance.

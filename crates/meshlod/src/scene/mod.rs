@@ -26,6 +26,7 @@ mod sizes;
 
 #[cfg(feature = "picture")]
 pub use appearance::{OwnedPaint, normals_of};
+pub use crate::conditioned::FlatFaces;
 pub use conditioned_scene::ConditionedScene;
 #[cfg(feature = "check")]
 pub use constraints::{Constraints, VertexLocking};

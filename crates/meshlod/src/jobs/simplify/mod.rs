@@ -27,8 +27,8 @@ pub use request::{Aim, SimplifyRequest};
 ///
 /// An error is proved of the scene [as it is written](SimplifyRequest::written_as): the run leaves
 /// room for the rounding of coordinates, and the report says what holds, in what precision. Within an
-/// error, [flats](ConditionedScene::flatten_within) go first. See [`ConditionedScene`] for what happens to the meshes before, and
-/// [`SceneSimplifier`](crate::scene::SceneSimplifier) for the run.
+/// error, [flats](ConditionedScene::flatten_within) go first. See [`ConditionedScene`] for what
+/// happens to the meshes before, and [`SceneSimplifier`](crate::scene::SceneSimplifier) for the run.
 ///
 /// Cost: O(n log n), n = faces, and several times that for an error.
 /// # Errors
@@ -125,6 +125,7 @@ impl Task<'_> {
         let report = SimplifyReport {
             measured,
             conditioning: ready.counts(),
+            flats: ready.flat_faces().map(|flats| flats.without(&report)),
             near_borders: request.near_borders.then(|| ready.near_borders()).flatten(),
             fused: None,
             error,
