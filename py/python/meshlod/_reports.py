@@ -47,9 +47,9 @@ class Report:
     error_rounds: int | None = None
     #: Largest distance by which the precision moves a point.
     error_of_rounding: float | None = None
-    #: Number of faces that went because what is flat can do without them, if an error was asked for.
+    #: Number of faces that went because what is flat can do without them, if those went first.
     flat_faces: int | None = None
-    #: Number of faces that the shape needs, the fewest with the corners of its flats, if one was.
+    #: Number of faces that the shape needs, the fewest with the corners of its flats, if those went first.
     needed_faces: int | None = None
     #: Number of pairs of boundary edges that were sewn together before.
     stitched_edges: int = 0

@@ -24,9 +24,9 @@ pub(crate) mod place;
 mod simplifier;
 mod sizes;
 
+pub use crate::conditioned::FlatFaces;
 #[cfg(feature = "picture")]
 pub use appearance::{OwnedPaint, normals_of};
-pub use crate::conditioned::FlatFaces;
 pub use conditioned_scene::ConditionedScene;
 #[cfg(feature = "check")]
 pub use constraints::{Constraints, VertexLocking};

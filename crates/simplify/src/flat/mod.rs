@@ -17,6 +17,7 @@
 //! | `outline` | the vertices of outlines that stay, and the sides between them |
 //! | `fill` | a region's outline, triangulated |
 //! | `apart` | new edges that are elsewhere already |
+//! | `sample` | an estimate of how much is flat |
 //! | `give_up` | regions that stay as they are, where they cannot be filled |
 
 mod apart;
@@ -25,6 +26,7 @@ mod give_up;
 mod linear;
 mod outline;
 mod regions;
+mod sample;
 
 use meshlod_mesh::{Attributes, Connectivity, Lock, Locks, Mesh, VertexId, WedgeId};
 use rayon::prelude::*;
@@ -34,6 +36,7 @@ use crate::flat::give_up::GivenUp;
 use crate::flat::linear::Linear;
 use crate::flat::outline::{OutlineSide, Outlines, least_faces};
 use crate::flat::regions::Regions;
+pub use crate::flat::sample::flat_part;
 
 /// Mesh whose flat regions have as few faces as their outlines need.
 #[derive(Clone, Debug)]
