@@ -3,6 +3,7 @@
 use meshlod::jobs::{ProvedError, SimplifyReport};
 use meshlod::measure::{Distance, OneSidedDistance};
 use meshlod::mesh::Conditioning;
+use meshlod::scene::FlatFaces;
 use meshlod::simplify::Refusal;
 use meshlod::{Report, Topology};
 use pyo3::prelude::*;
@@ -19,6 +20,10 @@ pub fn of_job<'py>(py: Python<'py>, report: &SimplifyReport) -> PyResult<Bound<'
         dict.set_item("error_proved", proved)?;
         dict.set_item("error_rounds", rounds)?;
         dict.set_item("error_of_rounding", rounding)?;
+    }
+    if let Some(FlatFaces { gone, needed }) = report.flats {
+        dict.set_item("flat_faces", gone)?;
+        dict.set_item("needed_faces", needed)?;
     }
     let Conditioning { stitched_edges, stitched_vertices, split_vertices, .. } =
         report.conditioning;

@@ -7,7 +7,7 @@ use meshlod_mesh::{
 };
 use meshlod_simplify::{
     FlatOptions, Flattened, Options, Report, Simplifier, SimplifyError, Target, Topology,
-    VolumeLoss, flatten,
+    VolumeLoss, flat_part, flatten,
 };
 
 use crate::bounded::run_within;
@@ -15,6 +15,42 @@ use crate::bounded::run_within;
 /// Part of the largest coordinate by which what is flat may be off: rounding to 32 bits moves planes
 /// and lines in any direction by less.
 const FLAT: f64 = 1.0 / (1 << 20) as f64;
+
+/// Faces that flats have lost and need, in a mesh or in all meshes of a scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FlatFaces {
+    /// Number of faces that went, since what is flat can do without them.
+    pub gone: usize,
+    /// Number of faces that the shape needs: the fewest with the same corners of flats.
+    pub needed: usize,
+}
+
+impl FlatFaces {
+    /// Returns the figures without the faces that a run has left out: no shape needs them.
+    pub(crate) fn without(self, report: &Report) -> Self {
+        let left_out = report.degenerate_faces + report.duplicate_faces;
+        Self { needed: self.needed.saturating_sub(left_out), ..self }
+    }
+
+    /// Returns true if flats should go before a run from `all` faces to some. A run to fewer than they
+    /// leave would start with their long thin faces, which makes some levels worse
+    /// (docs/notes/kernel.md).
+    pub(crate) fn are_worth(self, all: usize, target: usize) -> bool {
+        let left = all - self.gone;
+        WORTH * self.gone >= all && (left..AMPLE * left).contains(&target)
+    }
+}
+
+/// Part of the faces that must be flat, by a sample, for flats to go before a run to a number of
+/// faces.
+const FLAT_PART: f64 = 1.0 / 32.0;
+
+/// Part of the faces, one in this many, that have to go with the flats before such a run.
+const WORTH: usize = 16;
+
+/// Multiple of the faces that flats leave, from which on a run by itself moves nothing, either, and
+/// leaves as many as were asked for.
+const AMPLE: usize = 4;
 
 /// A mesh ready to be simplified, with the options for it.
 pub(crate) struct ConditionedMesh<'m> {
@@ -71,11 +107,46 @@ impl<'m> ConditionedMesh<'m> {
         if !has_valid_locks(self.input, &self.options.locks) || self.input.validate().is_err() {
             return;
         }
-        let bounds = self.input.bounds();
-        let most = bounds.min.into_iter().chain(bounds.max).map(f64::abs).fold(0.0, f64::max);
         let Held { mesh, locks, lock_boundary } = self.unsplit();
-        let tolerance = error.min(FLAT * most);
-        self.flat = flatten(mesh, &FlatOptions { locks, lock_boundary, tolerance });
+        let tolerance = error.min(FLAT * self.largest_coordinate());
+        self.flat = Some(flatten(mesh, &FlatOptions { locks, lock_boundary, tolerance }));
+    }
+
+    /// Gives the flats of the mesh as few faces as they need, without moving anything, if a sample
+    /// shows flats.
+    pub(crate) fn flatten_exactly(&mut self) {
+        if self.input.validate().is_ok() && flat_part(self.input) >= FLAT_PART {
+            self.flatten_within(0.0);
+        }
+    }
+
+    /// Returns the number of faces of the mesh with its flats as they were.
+    pub(crate) fn face_count(&self) -> usize {
+        self.sewn.as_ref().map_or(self.input, |sewn| &sewn.mesh).faces.len()
+    }
+
+    /// Undoes what has been done to flats.
+    pub(crate) fn keep_flats(&mut self) {
+        self.flat = None;
+    }
+
+    /// Returns the largest coordinate: one that the mesh has, or would have if the origin were in its
+    /// middle, since nothing has been rounded to 32 bits if its coordinates have more.
+    fn largest_coordinate(&self) -> f64 {
+        let bounds = self.input.bounds();
+        let is_rounded = |&x: &f64| x == f64::from(x as f32);
+        if !self.input.positions.as_flattened().iter().all(is_rounded) {
+            return bounds.diagonal() / 2.0;
+        }
+        bounds.min.into_iter().chain(bounds.max).map(f64::abs).fold(0.0, f64::max)
+    }
+
+    /// Returns what became of the flats of the mesh; `None` if that has not been asked for.
+    pub(crate) fn flats(&self) -> Option<FlatFaces> {
+        let Flattened { mesh, needed_faces, .. } = self.flat.as_ref()?;
+        let before = self.face_count();
+        let left = mesh.as_ref().map_or(before, |mesh| mesh.faces.len());
+        Some(FlatFaces { gone: before - left, needed: *needed_faces })
     }
 
     /// Returns how far the surface has moved before it is simplified.
@@ -88,7 +159,8 @@ impl<'m> ConditionedMesh<'m> {
         let Options { locks, lock_boundary, .. } = &self.options;
         let input = Held { mesh: self.input, locks, lock_boundary: *lock_boundary };
         let sewn = self.sewn.as_ref().map_or(input, Held::of);
-        Held { mesh: self.flat.as_ref().map_or(sewn.mesh, |flat| &flat.mesh), ..sewn }
+        let flat = self.flat.as_ref().and_then(|flat| flat.mesh.as_ref());
+        Held { mesh: flat.unwrap_or(sewn.mesh), ..sewn }
     }
 
     /// Returns the mesh as it is simplified.
@@ -162,8 +234,9 @@ impl ConditionedMesh<'_> {
 /// rules allow, and the report says so and counts the reasons.
 ///
 /// Within a [`Target::Error`] flats first get as few faces as their outlines need, see
-/// [`flatten`]. It is proved: no point of the result is farther from the mesh, and no point of
-/// the mesh farther from the result, in exact arithmetic on the positions in memory. Writing them
+/// [`flatten`]; so do flats that are exact, if that leaves the faces that are wanted or a few less.
+/// An error is proved: no point of the result is farther from the mesh, and no point of the mesh
+/// farther from the result, in exact arithmetic on the positions in memory. Writing them
 /// as 32-bit floats rounds them; `jobs::simplify` proves what is written. The [proof](Report::proof)
 /// in the report says so, or what holds instead where an error as small as the rounding of positions
 /// is out of reach.
@@ -180,8 +253,15 @@ pub fn simplify(
         Target::Ratio(_) => Target::Faces(target.faces_of(mesh.faces.len())),
         target => target,
     };
-    if let Target::Error(error) = own {
-        ready.flatten_within(error);
+    match own {
+        Target::Error(error) => ready.flatten_within(error),
+        target => {
+            ready.flatten_exactly();
+            let (all, faces) = (mesh.faces.len(), target.faces_of(mesh.faces.len()));
+            if ready.flats().is_some_and(|flats| !flats.are_worth(all, faces)) {
+                ready.keep_flats();
+            }
+        }
     }
     let mut simplifier = ready.simplifier(options.vanish_below)?;
     let report = match own {

@@ -17,6 +17,15 @@ const BOXES: usize = 200;
 /// Number of steps of `stairs`.
 const STEPS: i32 = 12;
 
+/// Squares from one tunnel of `tunnels` to the next.
+const TILE: i32 = 5;
+
+/// Largest width of a tunnel, in squares. At least one square is between it and the next.
+const WIDEST: i32 = 3;
+
+/// Thickness of the slab of `tunnels`, in squares.
+const THICKNESS: i32 = 2;
+
 /// Builds a cube of side 1, each of its sides divided into squares.
 ///
 /// Closed. The face count is 12 times a square number.
@@ -75,13 +84,44 @@ pub fn voxels(faces: usize, seed: u64) -> Mesh {
     placed(&surface([blocks; 3], SQUARES, solid), |at| at * unit - 1.0)
 }
 
+/// Builds a slab with tunnels through it, which are one to three squares wide and in a grid, though
+/// not exactly.
+///
+/// Closed, of genus k² for k × k tunnels. The face count is within a tenth of `faces` from 5,000 on.
+pub fn tunnels(faces: usize, seed: u64) -> Mesh {
+    // Both sides of a tile less those of a tunnel, 25 and 14 / 3 squares in the mean, and four walls.
+    let of_tile = 2.0 * (2.0 * (25.0 - 14.0 / 3.0) + 4.0 * 2.0 * f64::from(THICKNESS));
+    let count = (faces as f64 / of_tile).sqrt().round().max(1.0) as i32;
+    let side = TILE * count + 1;
+    let mut random = Random::new(seed);
+    let tunnels: Vec<[i32; 3]> = (0..count * count)
+        .map(|_| {
+            let width = random.whole(1, WIDEST as usize) as i32;
+            let [x, z] = [(); 2].map(|()| random.whole(0, (TILE - 1 - width) as usize) as i32);
+            [x, z, width]
+        })
+        .collect();
+    let is_solid = |[x, _, z]: [i32; 3]| {
+        let [column, row] = [x, z].map(|at| (at - 1).div_euclid(TILE));
+        if column < 0 || row < 0 {
+            return true;
+        }
+        let [left, top, width] = tunnels[(row * count + column) as usize];
+        let is_within = |at: i32, first: i32| (first..first + width).contains(&(at - 1));
+        !(is_within(x - TILE * column, left) && is_within(z - TILE * row, top))
+    };
+    let unit = 2.0 / f64::from(side);
+    let middle = DVec3::new(1.0, f64::from(THICKNESS) * unit / 2.0, 1.0);
+    placed(&surface([side, THICKNESS, side], 1, is_solid), |at| at * unit - middle)
+}
+
 /// Returns into how many squares a side is divided along an edge, for a number of faces.
 fn squares_of(faces: usize, sides: usize) -> i32 {
     (faces as f64 / (2 * sides) as f64).sqrt().round().max(1.0) as i32
 }
 
 /// Moves the vertices of a mesh.
-fn placed(mesh: &Mesh, place: impl Fn(DVec3) -> DVec3) -> Mesh {
+pub(crate) fn placed(mesh: &Mesh, place: impl Fn(DVec3) -> DVec3) -> Mesh {
     let positions = mesh.positions.iter().map(|&at| place(at.into()).into()).collect();
     Mesh { positions, ..mesh.clone() }
 }

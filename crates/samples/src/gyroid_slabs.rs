@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
 use glam::DVec3;
+use meshlod_mesh::{Mesh, VertexId};
 
 use crate::gyroid::LEVEL;
 use crate::tetrahedra::{FieldLattice, Slab, march};
@@ -42,6 +43,12 @@ impl GyroidSlabs {
         Self { periods: periods as usize, cells: cells as usize }
     }
 
+    /// Creates the gyroid of this many periods, each of at least eight `cells`: the fewer there are,
+    /// the fewer faces it has for the same tunnels.
+    pub fn with_periods(periods: usize, cells: usize) -> Self {
+        Self { periods: periods.max(1), cells: cells.max(8) }
+    }
+
     /// Counts the vertices and faces, which takes a pass over all cells.
     pub fn sizes(self) -> [u64; 2] {
         let mut sizes = [0, 0];
@@ -69,6 +76,22 @@ impl GyroidSlabs {
     /// Errors of `take`.
     pub fn faces<E>(self, mut take: impl FnMut(&[[u32; 3]]) -> Result<(), E>) -> Result<(), E> {
         result(self.march(false, |slab| control(take(&slab.faces))))
+    }
+
+    /// Builds the whole mesh.
+    pub fn mesh(self) -> Mesh {
+        let mut mesh = Mesh::default();
+        let places: Result<(), Infallible> = self.places(|some| {
+            mesh.positions.extend(some);
+            Ok(())
+        });
+        let faces: Result<(), Infallible> = self.faces(|some| {
+            mesh.faces.extend(some.iter().map(|face| face.map(VertexId)));
+            Ok(())
+        });
+        match (places, faces) {
+            (Ok(()), Ok(())) => mesh,
+        }
     }
 
     /// Goes through all slabs; their vertices have places if they are wanted.

@@ -11,7 +11,7 @@
 //! | files, in reading order | hold |
 //! |---|---|
 //! | `sphere`, `torus`, `knot`, `gyroid`, `gyroid_slabs`, `tetrahedra` | smooth shapes |
-//! | `plate`, `blocks`, `prism` | hard ones |
+//! | `plate`, `blocks`, `prism`, `parts` | hard ones |
 //! | `terrain`, `fish` | natural ones |
 //! | `grid`, `random` | what they share |
 //!
@@ -27,6 +27,7 @@ mod grid;
 mod gyroid;
 mod gyroid_slabs;
 mod knot;
+mod parts;
 mod plate;
 mod prism;
 mod random;
@@ -37,11 +38,12 @@ mod tests;
 mod tetrahedra;
 mod torus;
 
-pub use blocks::{boxes, cube, stairs, voxels};
+pub use blocks::{boxes, cube, stairs, tunnels, voxels};
 pub use fish::fish;
 pub use gyroid::gyroid;
 pub use gyroid_slabs::GyroidSlabs;
 pub use knot::knot;
+pub use parts::parts;
 pub use plate::plate;
 pub use prism::{plates, prism};
 pub use random::turned;
@@ -52,7 +54,7 @@ pub use torus::{faceted_torus, torus};
 use meshlod_mesh::Mesh;
 
 /// Names of all sample meshes, as accepted by [`by_name`].
-pub const NAMES: [&str; 14] = [
+pub const NAMES: [&str; 16] = [
     "sphere",
     "torus",
     "faceted-torus",
@@ -67,6 +69,8 @@ pub const NAMES: [&str; 14] = [
     "boxes",
     "stairs",
     "voxels",
+    "tunnels",
+    "parts",
 ];
 
 /// Maximum number of faces of a sample made by [`by_name`]; larger requests are clamped to it.
@@ -86,7 +90,8 @@ pub fn by_name(name: &str, faces: Option<usize>) -> Option<Mesh> {
     by_seed(name, faces, 0)
 }
 
-/// Builds a sample like [`by_name`], the random parts of `boxes` and `voxels` from a seed.
+/// Builds a sample like [`by_name`], the random parts of `boxes`, `voxels`, `tunnels` and
+/// `parts` from a seed.
 pub fn by_seed(name: &str, faces: Option<usize>, seed: u64) -> Option<Mesh> {
     let faces = |default: usize| faces.unwrap_or(default).min(MAX_FACES);
     Some(match name {
@@ -104,6 +109,8 @@ pub fn by_seed(name: &str, faces: Option<usize>, seed: u64) -> Option<Mesh> {
         "boxes" => boxes(faces(20_000), seed),
         "stairs" => stairs(faces(20_000)),
         "voxels" => voxels(faces(50_000), seed),
+        "tunnels" => tunnels(faces(40_000), seed),
+        "parts" => parts(faces(50_000), seed),
         _ => return None,
     })
 }

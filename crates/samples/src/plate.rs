@@ -23,6 +23,11 @@ pub fn plate(faces: usize) -> Mesh {
     let holes = ((faces as f64 / faces_per_tile(SIDES) as f64).sqrt().round() as usize).max(1);
     let wanted = (faces / (holes * holes)).saturating_sub(faces_per_tile(0)) / 4;
     let sides = ((wanted + 2) / 4 * 4).clamp(12, 4 * SIDES);
+    with_holes(holes, sides)
+}
+
+/// Builds a plate of `holes` by `holes` holes, each of `sides` sides, a multiple of four.
+pub(crate) fn with_holes(holes: usize, sides: usize) -> Mesh {
     let plate = Plate { holes, sides };
     Mesh { positions: plate.positions(), faces: plate.faces(), ..Mesh::default() }
 }

@@ -21,21 +21,34 @@ impl Random {
         bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         ((bits ^ (bits >> 31)) >> 11) as f64 / (1u64 << 53) as f64
     }
+
+    /// Returns a whole number from `least` to `most`.
+    pub(crate) fn whole(&mut self, least: usize, most: usize) -> usize {
+        least + (self.unit() * (most - least + 1) as f64) as usize
+    }
+
+    /// Returns a number from `least` to `most` whose logarithm is uniform.
+    pub(crate) fn scale(&mut self, least: f64, most: f64) -> f64 {
+        least * (most / least).powf(self.unit())
+    }
+
+    /// Returns a uniformly random rotation.
+    ///
+    /// # References
+    /// [Sho92], Uniform Random Rotations.
+    pub(crate) fn rotation(&mut self) -> DQuat {
+        let [part, first, second] = [(); 3].map(|()| self.unit());
+        let [(sine, cosine), (far_sine, far_cosine)] =
+            [first, second].map(|turn| (TAU * turn).sin_cos());
+        let [near, far] = [(1.0 - part).sqrt(), part.sqrt()];
+        DQuat::from_xyzw(near * sine, near * cosine, far * far_sine, far * far_cosine).normalize()
+    }
 }
 
 /// Returns a mesh rotated about the origin by a uniformly random rotation, so that no plane of it is
 /// at right angles to an axis any more.
-///
-/// # References
-/// [Sho92], Uniform Random Rotations.
 pub fn turned(mesh: &Mesh, seed: u64) -> Mesh {
-    let mut random = Random::new(seed ^ 0x7475_726e);
-    let [part, first, second] = [(); 3].map(|()| random.unit());
-    let [(sine, cosine), (far_sine, far_cosine)] =
-        [first, second].map(|turn| (TAU * turn).sin_cos());
-    let [near, far] = [(1.0 - part).sqrt(), part.sqrt()];
-    let turn =
-        DQuat::from_xyzw(near * sine, near * cosine, far * far_sine, far * far_cosine).normalize();
+    let turn = Random::new(seed ^ 0x7475_726e).rotation();
     let positions = mesh.positions.iter().map(|&at| (turn * DVec3::from(at)).into()).collect();
     Mesh { positions, ..mesh.clone() }
 }

@@ -5,7 +5,7 @@ use meshlod_mesh::{Connectivity, VertexId, face_components};
 
 use super::*;
 
-const CLOSED: [&str; 10] = [
+const CLOSED: [&str; 11] = [
     "sphere",
     "torus",
     "faceted-torus",
@@ -16,6 +16,7 @@ const CLOSED: [&str; 10] = [
     "cube",
     "prism",
     "stairs",
+    "tunnels",
 ];
 
 fn named(name: &str, faces: usize) -> Mesh {
@@ -105,6 +106,8 @@ fn face_counts_come_near_the_wish() {
         ("prism", 0.02),
         ("boxes", 0.25),
         ("stairs", 0.15),
+        ("tunnels", 0.1),
+        ("parts", 0.12),
     ];
     for (name, part) in within {
         for wish in [20_000, 33_333, 100_000] {
@@ -122,6 +125,44 @@ fn genus_is_what_the_shape_has() {
         assert_eq!(euler(&mesh), 0);
     }
     assert_eq!(euler(&plate(9 * 264)), 2 - 2 * 9);
+    for seed in 0..3 {
+        // 65 * 12 * 12 faces and the rim.
+        assert_eq!(euler(&tunnels(144 * 113, seed)), 2 - 2 * 144);
+    }
+    assert_ne!(tunnels(5_000, 1), tunnels(5_000, 2));
+}
+
+#[test]
+fn parts_are_closed_bodies_that_do_not_touch() {
+    for seed in 0..3 {
+        let mesh = parts(20_000, seed);
+        let (of_face, count) = face_components(&mesh.faces, mesh.positions.len());
+        let mut bodies = vec![Mesh::default(); count];
+        for (&face, &body) in mesh.faces.iter().zip(&of_face) {
+            bodies[body as usize].faces.push(face);
+        }
+        assert!((100..250).contains(&count), "{count} parts");
+        let cells = (count as f64).cbrt().ceil() as usize;
+        let half = 1.0 / cells as f64;
+        let mut genus = BTreeSet::new();
+        for (i, body) in bodies.iter_mut().enumerate() {
+            body.positions.clone_from(&mesh.positions);
+            body.compact();
+            let cell = [i % cells, i / cells % cells, i / cells / cells];
+            let middle = DVec3::from(cell.map(|at| half * (2 * at + 1) as f64 - 1.0));
+            for at in &body.positions {
+                let aside = (DVec3::from(*at) - middle).abs().max_element();
+                assert!(aside < half, "part {i} is in a cell of its own");
+            }
+            // Of size 1, as what is a degenerate face depends on the size.
+            let size = body.bounds().diagonal();
+            body.positions.iter_mut().flatten().for_each(|x| *x /= size);
+            assert_watertight("a part", body);
+            genus.insert((2 - euler(body)) / 2);
+        }
+        assert_eq!(genus.into_iter().collect::<Vec<_>>(), [0, 1, 4, 9]);
+    }
+    assert_ne!(parts(5_000, 1), parts(5_000, 2));
 }
 
 #[test]
@@ -246,16 +287,7 @@ fn colours_of_terrain_rise_from_water_to_snow() {
 fn gyroids_slab_by_slab_are_closed_and_connected() {
     for faces in [0, 200_000, 500_000] {
         let slabs = GyroidSlabs::new(faces);
-        let mut mesh = Mesh::default();
-        let places = slabs.places(|some| {
-            mesh.positions.extend(some);
-            Ok::<(), ()>(())
-        });
-        let of_faces = slabs.faces(|some| {
-            mesh.faces.extend(some.iter().map(|face| face.map(VertexId)));
-            Ok::<(), ()>(())
-        });
-        assert_eq!((places, of_faces), (Ok(()), Ok(())));
+        let mesh = slabs.mesh();
         let sizes = [mesh.positions.len(), mesh.faces.len()];
         assert_eq!(slabs.sizes(), sizes.map(|n| n as u64));
         let off = sizes[1].abs_diff(faces);
@@ -263,4 +295,11 @@ fn gyroids_slab_by_slab_are_closed_and_connected() {
         assert_eq!(face_components(&mesh.faces, sizes[0]).1, 1);
         assert_watertight("gyroid by slabs", &mesh);
     }
+}
+
+#[test]
+fn a_gyroid_of_few_cells_has_many_tunnels() {
+    let mesh = GyroidSlabs::with_periods(4, 8).mesh();
+    assert_watertight("foam", &mesh);
+    assert!(euler(&mesh) < -2 * 4 * 50, "{}", euler(&mesh));
 }

@@ -41,12 +41,18 @@ class Report:
     non_manifold_vertices: int = 0
     #: Volume of the components that were removed.
     vanished_volume: float = 0.0
+    #: Number of handles closed: tunnels filled, or arms of rings cut; ``None`` where none may close.
+    handles_closed: int | None = None
     #: Distance asked for, if one was.
     error_asked: float | None = None
     #: Number of times that contractions were taken back to hold it.
     error_rounds: int | None = None
     #: Largest distance by which the precision moves a point.
     error_of_rounding: float | None = None
+    #: Number of faces that went because what is flat can do without them, if those went first.
+    flat_faces: int | None = None
+    #: Number of faces that the shape needs, the fewest with the corners of its flats, if those went first.
+    needed_faces: int | None = None
     #: Number of pairs of boundary edges that were sewn together before.
     stitched_edges: int = 0
     #: Number of vertices that were merged by that.

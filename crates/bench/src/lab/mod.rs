@@ -8,6 +8,7 @@
 //! | `table`, `plot` | tables in Markdown, plots in SVG |
 //! | `command`, `folders`, `machine` | the program that is measured, where, and on what |
 //! | `accuracy`, `volume`, `constriction`, `textured`, `parts` | what levels are like |
+//! | `hard` | what is left of flats without an error, and of tunnels |
 //! | `bounds` | what levels within a proved error are like, and cost |
 //! | `speed`, `memory`, `reading` | what levels cost |
 //! | `check`, `contacts` | defects and contacts |
@@ -24,6 +25,7 @@ mod constriction;
 mod contacts;
 mod flock;
 mod folders;
+mod hard;
 mod levels;
 mod machine;
 mod memory;

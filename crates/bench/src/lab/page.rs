@@ -4,14 +4,14 @@ use anyhow::{Context, Result, bail};
 
 use crate::lab::folders::root;
 use crate::lab::{
-    accuracy, bounds, check, compression, constriction, contacts, flock, levels, machine, memory,
-    parts, reading, speed, strips, textured, tiles, volume,
+    accuracy, bounds, check, compression, constriction, contacts, flock, hard, levels, machine,
+    memory, parts, reading, speed, strips, textured, tiles, volume,
 };
 
 type Section = fn() -> Result<String>;
 
 /// Sections and their titles, in the order of the page.
-const SECTIONS: [(&str, Section); 17] = [
+const SECTIONS: [(&str, Section); 18] = [
     // First, while this process is still small: see the module.
     ("Memory and determinism", memory::section),
     ("Accuracy", accuracy::section),
@@ -20,6 +20,7 @@ const SECTIONS: [(&str, Section); 17] = [
     ("Face constriction", constriction::section),
     ("Textured", textured::section),
     ("Many parts", parts::section),
+    ("Hard surfaces", hard::section),
     ("Speed of simplification", speed::section),
     ("Bounds", bounds::section),
     ("Check", check::section),

@@ -3,12 +3,12 @@
 
 mod bare;
 mod cache;
-mod deviation;
+pub mod deviation;
 mod extent;
 mod hubs;
-mod inputs;
+pub mod inputs;
 mod maximum;
-mod peers;
+pub mod peers;
 mod scenes;
 mod textured;
 

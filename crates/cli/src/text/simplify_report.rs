@@ -2,7 +2,8 @@
 
 use std::time::Duration;
 
-use meshlod::jobs::LostVolume;
+use meshlod::jobs::{LostVolume, SimplifyReport};
+use meshlod::scene::FlatFaces;
 use meshlod::simplify::{HandleCounts, Refusal};
 use meshlod::{Report, Topology};
 
@@ -111,6 +112,21 @@ pub fn lost_volume(lost: &LostVolume) -> String {
         false => "more than --exact-volume can restore",
     };
     format!("volume: {sign}{}{vanished}; {advice}\n", part(lost.part.abs()))
+}
+
+/// Formats the line with the faces of flats that went, and those that the shape needs; empty if
+/// nothing is flat, unless nothing may move.
+pub fn flats(report: &SimplifyReport, flats: FlatFaces) -> String {
+    let is_exact = report.error.is_some_and(|error| error.asked == 0.0);
+    let needed = faces(flats.needed);
+    match (flats.gone, is_exact) {
+        (0, true) => format!("flats: none; the shape needs {needed}\n"),
+        (0, false) => String::new(),
+        (gone, true) => format!("flats: {} went; the shape needs {needed}\n", faces(gone)),
+        (gone, false) => {
+            format!("flats: {} went; without an error the shape needs {needed}\n", faces(gone))
+        }
+    }
 }
 
 /// Formats the line with the simplification time.

@@ -36,7 +36,7 @@ pub struct Sample {
     /// Approximate number of faces [default: enough to show the sample well]
     #[arg(short, long, value_name = "N", value_parser = faces, allow_negative_numbers = true)]
     faces: Option<usize>,
-    /// Seed of the random parts of boxes and voxels, and of --turned
+    /// Seed of what is random in boxes, voxels, tunnels and parts, and of --turned
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
     seed: u64,
     /// Colour the terrain by its height

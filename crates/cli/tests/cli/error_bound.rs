@@ -106,3 +106,25 @@ fn an_error_of_zero_is_proved_where_nothing_changes() {
     assert!(report["error_rounds"] == 0 && report["error_asked"] == 0.0, "{report}");
     assert!(report["error_proved"] == 0.0, "{report}");
 }
+
+#[test]
+fn faces_of_flats_are_counted() {
+    let run = Run::new();
+    run.sample("boxes", 20_000, "in.ply");
+    let exact = ["simplify", "in.ply", "out.ply", "--error", "0"];
+    let report = run.json(&exact);
+    let counts = ["input_faces", "output_faces", "flat_faces", "needed_faces"];
+    let counted = |report: &Value| counts.map(|count| report[count].as_u64());
+    assert_eq!(counted(&report), [21_600, 2_400, 19_200, 2_400].map(Some));
+    let done = run.run(&exact);
+    let line = "flats: 19,200 faces went; the shape needs 2,400 faces\n";
+    assert!(done.text().contains(line), "{}", done.text());
+    // Those of a number of faces near it, and no others.
+    let to = |faces| run.json(&["simplify", "in.ply", "out.ply", "--faces", faces]);
+    assert_eq!(counted(&to("3000")), [21_600, 2_400, 19_200, 2_400].map(Some));
+    assert_eq!(counted(&to("12000")), [Some(21_600), Some(12_000), None, None]);
+    // A sphere has none.
+    run.sample("sphere", 500, "in.ply");
+    let done = run.run(&exact);
+    assert!(done.text().contains("flats: none; the shape needs "), "{}", done.text());
+}

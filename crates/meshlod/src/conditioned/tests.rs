@@ -89,3 +89,39 @@ fn all_vertices_locked_or_no_faces_wanted_end_at_once() {
     let (_, report) = simplify(&mesh, Target::Faces(0), &Options::default()).unwrap();
     assert!(report.output_faces < 100);
 }
+
+#[test]
+fn a_number_of_faces_near_what_flats_leave_moves_nothing() {
+    let steps = samples::stairs(5_000);
+    let volume = meshlod_measure::volume(&steps);
+    let to = |faces| simplify(&steps, Target::Faces(faces), &Options::default()).unwrap();
+    for faces in [100, 130, 399] {
+        let (level, report) = to(faces);
+        assert!(report.reached && report.contractions.edges == 0, "{report:?}");
+        assert_eq!(level.faces.len(), 100);
+        assert!((meshlod_measure::volume(&level) - volume).abs() < 1e-12);
+    }
+    // Runs by themselves.
+    assert_eq!(to(400).0.faces.len(), 400);
+    let (level, report) = to(90);
+    assert!(level.faces.len() <= 90 && report.contractions.edges > 300);
+    let torus = samples::torus(1_000);
+    assert_eq!(
+        simplify(&torus, Target::Faces(300), &Options::default()).unwrap().0.faces.len(),
+        300
+    );
+}
+
+#[test]
+fn flats_far_from_the_origin_take_no_more_of_an_error_than_rounding() {
+    // A sheet that is slightly bent, by less than the error.
+    let mut sheet = grid(40);
+    for place in &mut sheet.positions {
+        let bend = 1e-4 * place[0] * place[0];
+        *place = [1e7 + 1e-3 * place[0], 1e7 + 1e-3 * place[1], 1e7 + 1e-3 * bend];
+    }
+    let mut ready = ConditionedMesh::new(&sheet, Options::default(), None);
+    let error = 1e-3;
+    ready.flatten_within(error);
+    assert!(ready.moved() <= FLAT * sheet.bounds().diagonal(), "{}", ready.moved());
+}

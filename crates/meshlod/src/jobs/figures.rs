@@ -202,6 +202,8 @@ pub(super) struct SimplifyFigures {
     input: InputFigures,
     #[serde(flatten)]
     conditioning: ConditioningFigures,
+    flat_faces: Option<usize>,
+    needed_faces: Option<usize>,
     fused: Option<FuseReport>,
     #[serde(flatten)]
     run: RunFigures,
@@ -226,6 +228,8 @@ impl From<SimplifyReport> for SimplifyFigures {
             volume_not_conserved: VolumeNotConserved::of(report.method, &report.volume),
             input: InputFigures::of(report, done.time.as_secs_f64()),
             conditioning: done.conditioning.into(),
+            flat_faces: done.flats.map(|flats| flats.gone),
+            needed_faces: done.flats.map(|flats| flats.needed),
             fused: done.fused,
             run: report.into(),
             error_asked: done.error.map(|error| error.asked),

@@ -2,9 +2,9 @@
 
 use meshlod_io::Scene;
 use meshlod_mesh::{Borders, Conditioning, Mesh, NearBorders, near_borders};
-use meshlod_simplify::{Options, SimplifyError};
+use meshlod_simplify::{Options, SimplifyError, Target};
 
-use crate::conditioned::ConditionedMesh;
+use crate::conditioned::{ConditionedMesh, FlatFaces};
 use crate::scene::{locks, place};
 
 /// Smallest number of near boundary edges that is worth mentioning.
@@ -60,13 +60,47 @@ impl<'s> ConditionedScene<'s> {
 
     /// Gives the flats of every mesh as few faces as they need, without moving anything by more than
     /// an error, in world units.
-    ///
-    /// Cost: O(n log n), n = faces.
-    pub fn flatten_within(&mut self, error: f64) {
+    fn flatten_within(&mut self, error: f64) {
         let sizes = place::sizes(self.scene);
         for (mesh, size) in self.meshes.iter_mut().zip(sizes).filter(|(_, size)| *size > 0.0) {
             mesh.flatten_within(error / size);
         }
+    }
+
+    /// Gives flats as few faces as they need before a run to a target: before an error those that are
+    /// within it, before a number of faces those that are exact, if as many are left as are wanted or
+    /// down to a quarter. From there on a run by itself moves nothing, either, and leaves as many as were
+    /// wanted.
+    ///
+    /// Cost: O(n log n), n = faces; before a number of faces only of meshes where a sample shows flats.
+    pub fn flatten_before(&mut self, target: Target) {
+        if let Target::Error(error) = target {
+            return self.flatten_within(error);
+        }
+        let counts = self.meshes.iter().zip(&self.copies);
+        let all = counts.map(|(mesh, copies)| copies * mesh.face_count()).sum();
+        let meshes = self.meshes.iter_mut().zip(&self.copies).filter(|(_, copies)| **copies > 0);
+        meshes.for_each(|(mesh, _)| mesh.flatten_exactly());
+        let is_worth = |flats: FlatFaces| flats.are_worth(all, target.faces_of(all));
+        if !self.flat_faces().is_some_and(is_worth) {
+            self.meshes.iter_mut().for_each(ConditionedMesh::keep_flats);
+        }
+    }
+
+    /// Returns what became of the flats of the scene, counting every instance; `None` if nothing was
+    /// [flattened](Self::flatten_before).
+    pub fn flat_faces(&self) -> Option<FlatFaces> {
+        if self.meshes.iter().all(|mesh| mesh.flats().is_none()) {
+            return None;
+        }
+        let mut all = FlatFaces::default();
+        for (mesh, copies) in self.meshes.iter().zip(&self.copies) {
+            let (gone, needed) =
+                mesh.flats().map_or((0, mesh.face_count()), |f| (f.gone, f.needed));
+            all.gone += copies * gone;
+            all.needed += copies * needed;
+        }
+        Some(all)
     }
 
     /// Returns what has been changed so far in the meshes of the scene, counting every instance.

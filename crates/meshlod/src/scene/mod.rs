@@ -24,6 +24,7 @@ pub(crate) mod place;
 mod simplifier;
 mod sizes;
 
+pub use crate::conditioned::FlatFaces;
 #[cfg(feature = "picture")]
 pub use appearance::{OwnedPaint, normals_of};
 pub use conditioned_scene::ConditionedScene;

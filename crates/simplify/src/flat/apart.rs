@@ -16,9 +16,14 @@ struct Faces<'m> {
     list: Vec<NewFace>,
     /// Region of each face.
     region: Vec<u32>,
-    /// Faces at each edge, whose ends are in order; empty while no edge has too many.
-    at: FxHashMap<[u32; 2], Vec<u32>>,
+    /// Number of faces at each edge, whose ends are in order; empty while no edge has too many.
+    count: FxHashMap<[u32; 2], u32>,
+    /// The faces of each region that was filled at each edge: two if it is inside the region.
+    at: FxHashMap<([u32; 2], u32), [u32; 2]>,
 }
+
+/// Stands for no face.
+const NONE: u32 = u32::MAX;
 
 /// Returns the faces of the mesh with its regions filled, region after region. An edge inside a
 /// region that would be in another place too is flipped.
@@ -28,11 +33,11 @@ struct Faces<'m> {
 pub(super) fn take_apart(
     mesh: &Mesh,
     regions: &Regions,
-    filled: Vec<Vec<NewFace>>,
+    filled: &[Option<Vec<NewFace>>],
 ) -> Result<Vec<NewFace>, Vec<usize>> {
     let mut faces = Faces::new(mesh, regions, filled);
     let mut together: Vec<usize> =
-        faces.crowded().into_iter().filter_map(|ends| faces.part(ends)).collect();
+        faces.crowded().into_iter().flat_map(|edge| faces.part(&edge)).collect();
     together.extend(faces.twice());
     together.sort_unstable();
     together.dedup();
@@ -40,7 +45,7 @@ pub(super) fn take_apart(
 }
 
 impl<'m> Faces<'m> {
-    fn new(mesh: &'m Mesh, regions: &'m Regions, filled: Vec<Vec<NewFace>>) -> Self {
+    fn new(mesh: &'m Mesh, regions: &'m Regions, filled: &[Option<Vec<NewFace>>]) -> Self {
         let (mut list, mut region) = (Vec::new(), Vec::new());
         for (r, (old, new)) in regions.list.iter().zip(filled).enumerate() {
             if old.is_kept {
@@ -50,27 +55,39 @@ impl<'m> Faces<'m> {
                     like: face,
                 }));
             } else {
-                list.extend(new);
+                list.extend(new.iter().flatten());
             }
             region.resize(list.len(), r as u32);
         }
-        Self { mesh, regions, list, region, at: FxHashMap::default() }
+        let (count, at) = Default::default();
+        Self { mesh, regions, list, region, count, at }
     }
 
     fn enter(&mut self, face: u32) {
+        let region = self.region[face as usize];
         for ends in edges(&self.list[face as usize]) {
-            self.at.entry(ends).or_default().push(face);
+            *self.count.entry(ends).or_default() += 1;
+            if self.is_filled(region) {
+                let of_region = self.at.entry((ends, region)).or_insert([NONE; 2]);
+                of_region[usize::from(of_region[0] != NONE)] = face;
+            }
         }
     }
 
     fn leave(&mut self, face: u32) {
+        let region = self.region[face as usize];
         for ends in edges(&self.list[face as usize]) {
-            self.at.entry(ends).or_default().retain(|&other| other != face);
+            *self.count.entry(ends).or_default() -= 1;
+            if let Some(of_region) = self.at.get_mut(&(ends, region)) {
+                let [a, b] = *of_region;
+                *of_region = [if a == face { b } else { a }, NONE];
+            }
         }
     }
 
-    /// Returns the edges of more than two faces, two of which are of a region that was filled.
-    fn crowded(&mut self) -> Vec<[u32; 2]> {
+    /// Returns the edges of more than two faces that are inside a region that was filled, each with all
+    /// such regions.
+    fn crowded(&mut self) -> Vec<([u32; 2], Vec<u32>)> {
         let mut count: FxHashMap<[u32; 2], u32> = FxHashMap::default();
         // Most meshes have few flats, so only their edges are counted.
         for is_filled in [true, false] {
@@ -85,42 +102,38 @@ impl<'m> Faces<'m> {
                 }
             }
         }
-        let is_crowded = |(ends, count): ([u32; 2], u32)| (count > 2).then_some(ends);
-        let mut crowded: Vec<[u32; 2]> = count.into_iter().filter_map(is_crowded).collect();
-        if !crowded.is_empty() {
-            (0..self.list.len() as u32).for_each(|face| self.enter(face));
+        if count.values().all(|&count| count <= 2) {
+            return Vec::new();
         }
-        crowded.retain(|&ends| self.inner(ends).is_some());
-        crowded.sort_unstable();
-        crowded
+        (0..self.list.len() as u32).for_each(|face| self.enter(face));
+        let is_crowded = |ends: &[u32; 2]| self.count[ends] > 2;
+        let inner =
+            self.at.iter().filter(|((ends, _), faces)| faces[1] != NONE && is_crowded(ends));
+        let mut inner: Vec<([u32; 2], u32)> = inner.map(|(&at, _)| at).collect();
+        inner.sort_unstable();
+        let of_edge = inner.chunk_by(|a, b| a.0 == b.0);
+        of_edge.map(|same| (same[0].0, same.iter().map(|&(_, r)| r).collect())).collect()
     }
 
     fn is_filled(&self, region: u32) -> bool {
         !self.regions.list[region as usize].is_kept
     }
 
-    /// Returns the two faces of a region that was filled at an edge, if there are any.
-    fn inner(&self, ends: [u32; 2]) -> Option<[u32; 2]> {
-        let faces = &self.at[&ends];
-        let is_filled = |face: &&u32| self.is_filled(self.region[**face as usize]);
-        faces.iter().filter(is_filled).find_map(|&a| {
-            let is_other =
-                |b: &&u32| **b != a && self.region[**b as usize] == self.region[a as usize];
-            faces.iter().find(is_other).map(|&b| [a, b])
-        })
-    }
-
-    /// Flips edges at two ends until no more than two faces are there. Returns a region in which that
-    /// is not possible.
-    fn part(&mut self, ends: [u32; 2]) -> Option<usize> {
-        while self.at[&ends].len() > 2
-            && let Some(pair) = self.inner(ends)
-        {
-            if !self.flip(ends, pair) {
-                return Some(self.region[pair[0] as usize] as usize);
+    /// Flips an edge inside regions until no more than two faces are there. Returns the regions in
+    /// which that is not possible.
+    fn part(&mut self, (ends, regions): &([u32; 2], Vec<u32>)) -> Vec<usize> {
+        let mut left = self.count[ends];
+        let mut failed = Vec::new();
+        for &region in regions {
+            let pair = self.at[&(*ends, region)];
+            if left > 2 && pair[1] != NONE {
+                if !self.flip(*ends, pair) {
+                    failed.push(region as usize);
+                }
+                left -= 2;
             }
         }
-        None
+        failed
     }
 
     /// Flips the edge between two faces if they are a convex quadrilateral, whose other diagonal is
@@ -129,7 +142,7 @@ impl<'m> Faces<'m> {
         let [first, second] = [a, b].map(|face| from_apex(self.list[face as usize], ends));
         let ([first_apex, from, to], [second_apex, ..]) = (first.vertices, second.vertices);
         let other = [first_apex.0.min(second_apex.0), first_apex.0.max(second_apex.0)];
-        let is_there = self.at.get(&other).is_some_and(|faces| !faces.is_empty());
+        let is_there = self.count.get(&other).is_some_and(|&count| count > 0);
         let corners = [first_apex, from, second_apex, to];
         let plane = Plane::new(self.regions.list[self.region[a as usize] as usize].normal);
         let places = corners.map(|v| plane.place(self.mesh.positions[v.index()].into()));
@@ -148,21 +161,18 @@ impl<'m> Faces<'m> {
         true
     }
 
-    /// Returns the regions that have new faces with the same corners as another face.
+    /// Returns the regions that have new faces with the same corners as another face; of several such
+    /// regions the first may have it.
     fn twice(&self) -> Vec<usize> {
-        let mut sorted: Vec<([u32; 3], u32)> = Vec::with_capacity(self.list.len());
+        let mut sorted: Vec<([u32; 3], bool, u32)> = Vec::with_capacity(self.list.len());
         for (face, &region) in self.list.iter().zip(&self.region) {
             let mut corners = face.vertices.map(|v| v.0);
             corners.sort_unstable();
-            sorted.push((corners, region));
+            sorted.push((corners, self.is_filled(region), region));
         }
         sorted.sort_unstable();
-        let same = sorted.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() > 1);
-        let last = |same: &[([u32; 3], u32)]| {
-            let found = same.iter().rfind(|(_, region)| self.is_filled(*region));
-            found.map(|&(_, region)| region as usize)
-        };
-        same.filter_map(last).collect()
+        let same = sorted.chunk_by(|a, b| a.0 == b.0).flat_map(|same| &same[1..]);
+        same.filter(|same| same.1).map(|&(.., region)| region as usize).collect()
     }
 }
 

@@ -1,9 +1,9 @@
 //! A region's outline, triangulated.
 
 use glam::DVec2;
-use meshlod_mesh::{Mesh, VertexId, WedgeId};
-use rustc_hash::{FxHashMap, FxHashSet};
-use spade::handles::{DirectedEdgeHandle, FixedFaceHandle, FixedVertexHandle, InnerTag};
+use meshlod_mesh::{Mesh, VertexId};
+use rustc_hash::FxHashMap;
+use spade::handles::{DirectedEdgeHandle, FixedFaceHandle, InnerTag};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 use crate::flat::NewFace;
@@ -15,8 +15,7 @@ type Delaunay = ConstrainedDelaunayTriangulation<Point2<f64>>;
 type MadeEdge<'d> = DirectedEdgeHandle<'d, Point2<f64>, (), spade::CdtEdge<()>, ()>;
 
 /// Outline of a region in its plane. Vertices at one place are one point.
-struct Outline<'s> {
-    sides: &'s [OutlineSide],
+struct Outline {
     points: Vec<Point2<f64>>,
     /// The side that runs from one point to another.
     side: FxHashMap<[usize; 2], usize>,
@@ -35,21 +34,24 @@ pub(super) fn fill(mesh: &Mesh, region: &Region, sides: &[OutlineSide]) -> Optio
     if is_crossed || made.num_vertices() != outline.points.len() {
         return None;
     }
-    let inside = outline.inside(&made)?;
+    let outer = outline.outer(&made)?;
+    let inside = outline.inside(&made, &outer)?;
+    let starts = starts(&made, &outer);
     let face = |face: FixedFaceHandle<InnerTag>| {
-        let corners = made.face(face).adjacent_edges().map(|edge| outline.corner(edge));
+        let edges = made.face(face).adjacent_edges();
+        let corners = edges.map(|edge| sides.get(starts[edge.fix().index()] as usize));
         let [a, b, c] = corners;
         let [a, b, c] = [a?, b?, c?];
-        let vertices = [a.0, b.0, c.0];
-        let is_whole = a.0 != b.0 && b.0 != c.0 && c.0 != a.0;
+        let vertices = [a.from, b.from, c.from];
+        let is_whole = a.from != b.from && b.from != c.from && c.from != a.from;
         let like = region.faces[0];
-        is_whole.then_some(NewFace { vertices, wedges: [a.1, b.1, c.1], like })
+        is_whole.then_some(NewFace { vertices, wedges: [a.wedge, b.wedge, c.wedge], like })
     };
     inside.into_iter().map(face).collect()
 }
 
-impl<'s> Outline<'s> {
-    fn new(mesh: &Mesh, plane: Plane, sides: &'s [OutlineSide]) -> Option<Self> {
+impl Outline {
+    fn new(mesh: &Mesh, plane: Plane, sides: &[OutlineSide]) -> Option<Self> {
         let mut points = Vec::new();
         let mut at: FxHashMap<[u64; 2], usize> = FxHashMap::default();
         let mut point = |v: VertexId| {
@@ -68,25 +70,33 @@ impl<'s> Outline<'s> {
                 return None;
             }
         }
-        Some(Self { sides, points, side })
+        Some(Self { points, side })
     }
 
-    /// Returns the faces on the left of the outline; `None` if it is no edges of the triangulation,
-    /// or faces are on both sides of it.
-    fn inside(&self, made: &Delaunay) -> Option<Vec<FixedFaceHandle<InnerTag>>> {
-        let edge = |&[a, b]: &[usize; 2]| {
-            let [a, b] = [a, b].map(FixedVertexHandle::from_index);
-            made.get_edge_from_neighbors(a, b).filter(|edge| edge.is_constraint_edge())
-        };
-        let mut ends: Vec<&[usize; 2]> = self.side.keys().collect();
-        ends.sort_unstable();
-        let outer = ends.into_iter().map(edge).collect::<Option<Vec<MadeEdge<'_>>>>()?;
-        let mut found = FxHashSet::default();
+    /// Returns the sides as edges of the triangulation, each with its number; `None` if one is not an
+    /// edge there.
+    fn outer<'d>(&self, made: &'d Delaunay) -> Option<Vec<(MadeEdge<'d>, usize)>> {
+        let outer = made.directed_edges().filter_map(|edge| {
+            let ends = [edge.from(), edge.to()].map(|vertex| vertex.index());
+            let side = edge.is_constraint_edge().then(|| self.side.get(&ends)).flatten();
+            side.map(|&side| (edge, side))
+        });
+        let outer: Vec<_> = outer.collect();
+        (outer.len() == self.side.len()).then_some(outer)
+    }
+
+    /// Returns the faces on the left of the outline; `None` if faces are on both sides of it.
+    fn inside(
+        &self,
+        made: &Delaunay,
+        outer: &[(MadeEdge<'_>, usize)],
+    ) -> Option<Vec<FixedFaceHandle<InnerTag>>> {
+        let mut is_found = vec![false; made.num_all_faces()];
         let mut inside = Vec::new();
-        for edge in &outer {
+        for (edge, _) in outer {
             let mut next = vec![edge.face().as_inner()?.fix()];
             while let Some(face) = next.pop() {
-                if !found.insert(face) {
+                if std::mem::replace(&mut is_found[face.index()], true) {
                     continue;
                 }
                 inside.push(face);
@@ -96,29 +106,29 @@ impl<'s> Outline<'s> {
                 }
             }
         }
-        let is_one_sided = outer.iter().all(|edge| {
+        let is_one_sided = outer.iter().all(|(edge, _)| {
             let [from, to] = [edge.from(), edge.to()].map(|vertex| vertex.index());
-            let is_beyond = edge.rev().face().as_inner().is_some_and(|f| found.contains(&f.fix()));
+            let is_beyond = is_found[edge.rev().face().index()];
             is_beyond == self.side.contains_key(&[to, from])
         });
         inside.sort_unstable_by_key(|face| face.index());
         is_one_sided.then_some(inside)
     }
+}
 
-    /// Returns the vertex and wedge at the start of an edge of a face: those of the next side of the
-    /// outline in clockwise order, since several vertices or wedges may be at one point.
-    fn corner(&self, start: MadeEdge<'_>) -> Option<(VertexId, WedgeId)> {
-        let mut edge = start;
+/// Returns for each edge of a face inside the side that has the vertex and the wedge at its start:
+/// the next one in clockwise order, since several vertices or wedges may be at one point.
+fn starts(made: &Delaunay, outer: &[(MadeEdge<'_>, usize)]) -> Vec<u32> {
+    let mut starts = vec![u32::MAX; made.num_directed_edges()];
+    for &(first, side) in outer {
+        let mut edge = first;
         loop {
-            let ends = [edge.from(), edge.to()].map(|vertex| vertex.index());
-            if let Some(&side) = self.side.get(&ends) {
-                let OutlineSide { from, wedge, .. } = self.sides[side];
-                return Some((from, wedge));
-            }
-            edge = edge.cw();
-            if edge == start {
-                return None;
+            starts[edge.fix().index()] = side as u32;
+            edge = edge.ccw();
+            if edge == first || edge.is_constraint_edge() {
+                break;
             }
         }
     }
+    starts
 }

@@ -17,29 +17,39 @@
 //! | `outline` | the vertices of outlines that stay, and the sides between them |
 //! | `fill` | a region's outline, triangulated |
 //! | `apart` | new edges that are elsewhere already |
+//! | `sample` | an estimate of how much is flat |
+//! | `give_up` | regions that stay as they are, where they cannot be filled |
 
 mod apart;
 mod fill;
+mod give_up;
 mod linear;
 mod outline;
 mod regions;
+mod sample;
 
 use meshlod_mesh::{Attributes, Connectivity, Lock, Locks, Mesh, VertexId, WedgeId};
 use rayon::prelude::*;
 
 use crate::flat::fill::fill;
+use crate::flat::give_up::GivenUp;
 use crate::flat::linear::Linear;
-use crate::flat::outline::Outlines;
+use crate::flat::outline::{OutlineSide, Outlines, least_faces};
 use crate::flat::regions::Regions;
+pub use crate::flat::sample::flat_part;
 
 /// Mesh whose flat regions have as few faces as their outlines need.
 #[derive(Clone, Debug)]
 pub struct Flattened {
-    /// The mesh. Vertices and wedges keep their ids, and those that went are unused.
-    pub mesh: Mesh,
+    /// The mesh; `None` if no face goes. Vertices and wedges keep their ids, and those that went are
+    /// unused.
+    pub mesh: Option<Mesh>,
     /// Upper bound of the distance between the mesh and its input, both ways, in model units: 0 if
     /// all that went was exactly flat.
     pub moved: f64,
+    /// Number of faces that the outlines of all regions need, given the constraints. The mesh has more
+    /// where a region had to stay as it is.
+    pub needed_faces: usize,
 }
 
 /// Constraints on what may go.
@@ -62,45 +72,88 @@ struct NewFace {
     like: u32,
 }
 
-/// Gives the flat regions of a mesh as few faces as their outlines need; `None` if no face goes.
+/// Gives the flat regions of a mesh as few faces as their outlines need.
 ///
 /// Borders, edges between materials, objects or values of faces, seams of attributes, and the volume
 /// stay as they are. Attributes that are not linear in the plane of a region, to half of
 /// [`AttributeBounds`](meshlod_mesh::AttributeBounds) by default, keep it as it is.
 ///
-/// Cost: O(n log n), n = faces, and again for each time that regions turn out to stay as they are.
+/// Cost: O(n log n), n = faces, and again for each time that regions turn out to stay as they are,
+/// O(log n) times at most.
 /// # Panics
 /// If the mesh is not valid, see [`Mesh::validate`].
-pub fn flatten(mesh: &Mesh, options: &FlatOptions<'_>) -> Option<Flattened> {
+pub fn flatten(mesh: &Mesh, options: &FlatOptions<'_>) -> Flattened {
     let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
     let linear = Linear::new(mesh);
     let mut regions = Regions::find(mesh, &connectivity, &linear, options.tolerance);
     let held = held(mesh, options.locks);
+    let mut given_up = GivenUp::default();
+    let mut needed = None;
+    let mut last = Tried::default();
     loop {
+        let as_it_is = |needed: Option<usize>| {
+            let needed_faces = needed.unwrap_or(mesh.faces.len());
+            Flattened { mesh: None, moved: 0.0, needed_faces }
+        };
         if regions.list.iter().all(|region| region.is_kept) {
-            return None;
+            return as_it_is(needed);
         }
         let outlines = Outlines::new(mesh, &connectivity, &linear, &regions, &held, options);
-        let filled: Vec<Option<Vec<NewFace>>> = (0..regions.list.len())
-            .into_par_iter()
-            .map(|r| match regions.list[r].is_kept {
-                true => Some(Vec::new()),
-                false => fill(mesh, &regions.list[r], &outlines.sides[r]),
-            })
-            .collect();
-        let mut failed: Vec<usize> = (0..filled.len()).filter(|&r| filled[r].is_none()).collect();
+        let tried = Tried::new(mesh, &regions, outlines.sides, &last);
+        let needed_faces = *needed.get_or_insert_with(|| {
+            let of_region = |(r, faces): (usize, &Option<Vec<NewFace>>)| {
+                let (region, sides) = (&regions.list[r], tried.sides[r].len());
+                match faces {
+                    _ if region.is_kept => region.faces.len(),
+                    Some(faces) => faces.len(),
+                    None => least_faces(mesh, &connectivity, &linear, (&regions, region), sides),
+                }
+            };
+            tried.faces.iter().enumerate().map(of_region).sum()
+        });
+        let mut failed: Vec<usize> = tried.failed();
         if failed.is_empty() {
-            let filled: Vec<Vec<NewFace>> = filled.into_iter().flatten().collect();
-            match apart::take_apart(mesh, &regions, filled) {
+            match apart::take_apart(mesh, &regions, &tried.faces) {
                 Ok(faces) if faces.len() < mesh.faces.len() => {
                     let moved = regions.moved(outlines.moved);
-                    return Some(Flattened { mesh: with_faces(mesh, &faces), moved });
+                    let mesh = Some(with_faces(mesh, &faces));
+                    return Flattened { mesh, moved, needed_faces };
                 }
-                Ok(_) => return None,
+                Ok(_) => return as_it_is(needed),
                 Err(together) => failed = together,
             }
         }
-        failed.into_iter().for_each(|r| regions.list[r].is_kept = true);
+        given_up.give_up(mesh, &mut regions, failed);
+        last = tried;
+    }
+}
+
+/// Outlines of regions, and the faces that they were filled with.
+#[derive(Default)]
+struct Tried {
+    sides: Vec<Vec<OutlineSide>>,
+    /// Faces of each region: none of one that is kept, `None` where that is impossible.
+    faces: Vec<Option<Vec<NewFace>>>,
+}
+
+impl Tried {
+    /// Fills regions, but those whose outlines are as before.
+    fn new(mesh: &Mesh, regions: &Regions, sides: Vec<Vec<OutlineSide>>, last: &Self) -> Self {
+        let faces = (0..regions.list.len()).into_par_iter().map(|r| {
+            let (region, sides) = (&regions.list[r], &sides[r]);
+            match last.sides.get(r) {
+                _ if region.is_kept => Some(Vec::new()),
+                Some(before) if before == sides => last.faces[r].clone(),
+                _ => fill(mesh, region, sides),
+            }
+        });
+        let faces = faces.collect();
+        Self { sides, faces }
+    }
+
+    /// Returns the regions that cannot be filled.
+    fn failed(&self) -> Vec<usize> {
+        (0..self.faces.len()).filter(|&r| self.faces[r].is_none()).collect()
     }
 }
 

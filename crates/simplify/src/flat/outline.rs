@@ -6,13 +6,17 @@ use robust::{Coord, orient2d};
 
 use crate::flat::FlatOptions;
 use crate::flat::linear::Linear;
-use crate::flat::regions::Regions;
+use crate::flat::regions::{Region, Regions};
 
 /// Part of the tolerance by which an outline may move in its plane.
 const ASIDE: f64 = 0.7;
 
+/// Number of times that chains are divided where they are farthest off. Those that are cut at an end
+/// each time would take the square of their vertices, so they are divided in the middle from there on.
+const DIVISIONS: usize = 32;
+
 /// Side of a region's new outline; the region is on its left.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct OutlineSide {
     pub(super) from: VertexId,
     pub(super) to: VertexId,
@@ -95,22 +99,53 @@ fn outer_sides(
         if regions.list[region as usize].is_kept {
             continue;
         }
-        for side in (0..3).map(|k| Side::new(FaceId::new(face), k)) {
-            let is_inner = match connectivity.twin(side) {
-                Twin::Side(twin) => {
-                    let [[a, b], [c, d]] = [side, twin].map(|side| side.ends(&mesh.faces));
-                    regions.of_face[twin.face().index()] == region
-                        && [a, b] == [d, c]
-                        && !linear.is_seam(side, twin)
-                }
-                _ => false,
-            };
-            if !is_inner {
-                outer.push((region, side));
+        let sides = (0..3).map(|k| Side::new(FaceId::new(face), k));
+        let is_outer = |&side: &Side| is_outer(mesh, connectivity, linear, regions, side);
+        outer.extend(sides.filter(is_outer).map(|side| (region, side)));
+    }
+    outer
+}
+
+/// Returns true if a side is not inside its region.
+fn is_outer(
+    mesh: &Mesh,
+    connectivity: &Connectivity,
+    linear: &Linear<'_>,
+    regions: &Regions,
+    side: Side,
+) -> bool {
+    let Twin::Side(twin) = connectivity.twin(side) else { return true };
+    let [[a, b], [c, d]] = [side, twin].map(|side| side.ends(&mesh.faces));
+    let [here, there] = [side, twin].map(|side| regions.of_face[side.face().index()]);
+    here != there || [a, b] != [d, c] || linear.is_seam(side, twin)
+}
+
+/// Returns how many faces a region has once what is spare is gone, given how many sides its outline
+/// has then: a vertex that goes from an outline takes one face, and one inside takes two.
+pub(super) fn least_faces(
+    mesh: &Mesh,
+    connectivity: &Connectivity,
+    linear: &Linear<'_>,
+    (regions, region): (&Regions, &Region),
+    sides: usize,
+) -> usize {
+    let (mut all, mut outer, mut before) = (Vec::new(), Vec::new(), 0);
+    for &face in &region.faces {
+        for side in (0..3).map(|k| Side::new(FaceId(face), k)) {
+            let ends = side.ends(&mesh.faces);
+            all.push(ends[0]);
+            if is_outer(mesh, connectivity, linear, regions, side) {
+                outer.extend(ends);
+                before += 1;
             }
         }
     }
-    outer
+    let [all, outer] = [all, outer].map(|mut vertices| {
+        vertices.sort_unstable();
+        vertices.dedup();
+        vertices.len()
+    });
+    region.faces.len().saturating_sub(before - sides.min(before) + 2 * (all - outer))
 }
 
 /// Holds all vertices of regions that stay as they are.
@@ -230,14 +265,15 @@ impl<'m> Graph<'m> {
     /// both parts, while one is too far [DP73].
     fn divide(&self, chain: &[u32], gone: &mut [bool], most: f64) -> f64 {
         let mut farthest = 0.0f64;
-        let mut parts = vec![[0, chain.len() - 1]];
-        while let Some([first, last]) = parts.pop() {
+        let mut parts = vec![([0, chain.len() - 1], 0)];
+        while let Some(([first, last], divisions)) = parts.pop() {
             let ends = [first, last].map(|i| self.place(chain[i]));
             let inner = (first + 1..last).map(|i| (beside(ends, self.place(chain[i])), i));
             let Some((distance, i)) = inner.max_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
             if distance > most {
+                let i = if divisions < DIVISIONS { i } else { first.midpoint(last) };
                 gone[chain[i] as usize] = false;
-                parts.extend([[first, i], [i, last]]);
+                parts.extend([([first, i], divisions + 1), ([i, last], divisions + 1)]);
             } else {
                 farthest = farthest.max(distance);
             }

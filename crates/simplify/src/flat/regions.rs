@@ -11,7 +11,7 @@ use crate::flat::linear::Linear;
 const HEIGHT: f64 = 0.7;
 
 /// Faces in one plane that continue each other.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Region {
     /// The faces in order.
     pub(super) faces: Vec<u32>,
@@ -94,12 +94,7 @@ impl Regions {
             let root = joined.find(face) as usize;
             if of_root[root] == u32::MAX {
                 of_root[root] = list.len() as u32;
-                list.push(Region {
-                    faces: Vec::new(),
-                    normal: DVec3::ZERO,
-                    height: 0.0,
-                    is_kept: false,
-                });
+                list.push(Region::default());
             }
             list[of_root[root] as usize].faces.push(face);
             of_root[root]

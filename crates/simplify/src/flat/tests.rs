@@ -4,29 +4,35 @@ use meshlod_samples as samples;
 
 use super::*;
 
-fn flat_within(mesh: &Mesh, tolerance: f64) -> Option<Flattened> {
+fn flattened(mesh: &Mesh, tolerance: f64) -> Flattened {
     let options = FlatOptions { locks: &Locks::default(), lock_boundary: false, tolerance };
     flatten(mesh, &options)
 }
 
+fn flat_within(mesh: &Mesh, tolerance: f64) -> Option<Mesh> {
+    flattened(mesh, tolerance).mesh
+}
+
 /// Flattens what is exactly flat, and checks that all else is as before.
 fn flat(mesh: &Mesh) -> Mesh {
-    let found = flat_within(mesh, 0.0).expect("there is something flat");
+    let found = flattened(mesh, 0.0);
     assert_eq!(found.moved, 0.0);
-    let mut level = found.mesh;
+    let mut level = found.mesh.expect("there is something flat");
+    assert!(found.needed_faces <= level.faces.len());
     level.validate().unwrap();
     level.compact();
     assert_eq!(topology(&level), topology(mesh));
     assert!((volume(&level) - volume(mesh)).abs() < 1e-12);
-    let area = |mesh: &Mesh| -> f64 {
-        let of = |&face: &[VertexId; 3]| {
-            let [a, b, c] = mesh.triangle(face);
-            (b - a).cross(c - a).length() / 2.0
-        };
-        mesh.faces.iter().map(of).sum()
-    };
     assert!((area(&level) / area(mesh) - 1.0).abs() < 1e-12);
     level
+}
+
+fn area(mesh: &Mesh) -> f64 {
+    let of = |&face: &[VertexId; 3]| {
+        let [a, b, c] = mesh.triangle(face);
+        (b - a).cross(c - a).length() / 2.0
+    };
+    mesh.faces.iter().map(of).sum()
 }
 
 #[test]
@@ -38,7 +44,7 @@ fn boxes_stairs_and_prisms_have_the_faces_of_their_corners() {
     // 2 (corners - 2).
     let steps = flat(&samples::stairs(5_000));
     assert_eq!(steps.faces.len(), 2 * (steps.positions.len() - 2));
-    assert_eq!(flat_within(&cube(), 0.0).map(|found| found.mesh.faces.len()), None);
+    assert_eq!(flattened(&cube(), 0.0).needed_faces, 12);
     assert!(flat_within(&samples::sphere(500), 0.0).is_none());
 }
 
@@ -65,7 +71,7 @@ fn a_border_keeps_only_its_corners_unless_it_is_locked() {
     let locks = Locks { of_vertex, ties: Vec::new() };
     let with = |locks: &Locks, lock_boundary| {
         let options = FlatOptions { locks, lock_boundary, tolerance: 0.0 };
-        flatten(&square, &options).unwrap().mesh
+        flatten(&square, &options).mesh.unwrap()
     };
     let level = with(&locks, false);
     assert!(level.faces.iter().flatten().any(|&v| v == corner));
@@ -133,9 +139,9 @@ fn turned_and_rounded_flats_go_within_a_tolerance() {
         let exact = samples::stairs(4_000);
         let floor = flat(&exact).faces.len();
         let tolerance = 1e-7 * mesh.bounds().diagonal();
-        let found = flat_within(&mesh, tolerance).unwrap();
+        let found = flattened(&mesh, tolerance);
         assert!(found.moved <= tolerance && found.moved > 0.0);
-        let faces = found.mesh.faces.len();
+        let faces = found.mesh.unwrap().faces.len();
         assert!(faces <= floor + floor / 10, "{faces} faces of {floor}");
     }
 }
@@ -154,7 +160,7 @@ fn faces_without_area_and_flats_over_themselves_are_no_trap() {
     ];
     let faces = [[0, 2, 4], [0, 4, 3], [0, 1, 2], [1, 0, 5], [1, 5, 6], [2, 1, 6]];
     let wall = mesh(&places, &faces);
-    let level = flat_within(&wall, 0.0).unwrap().mesh;
+    let level = flat_within(&wall, 0.0).unwrap();
     assert_eq!(level.faces.len(), 4);
     // A ribbon that lies on itself twice.
     let ring: Vec<[f64; 3]> = (0..24)
@@ -170,4 +176,113 @@ fn faces_without_area_and_flats_over_themselves_are_no_trap() {
         })
         .collect();
     assert!(flat_within(&mesh(&ring, &faces), 0.0).is_none());
+}
+
+#[test]
+fn coats_that_share_corners_go_in_few_rounds() {
+    // Many coats over one square, each with a vertex of its own in the middle.
+    let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let count = 500;
+    let middles = (0..count).map(|i| [0.4 + f64::from(i) / 4096.0, 0.5]);
+    let places: Vec<[f64; 3]> =
+        corners.into_iter().chain(middles).map(|[x, y]| [x, y, 0.0]).collect();
+    let fans = (0..count).flat_map(|i| (0..4).map(move |k| [k, (k + 1) % 4, 4 + i]));
+    let coats = mesh(&places, &fans.collect::<Vec<_>>());
+    // One has the first diagonal, one the other; the rest would be in the way of these.
+    let found = flattened(&coats, 0.0);
+    assert_eq!(found.needed_faces, 2 * 500);
+    assert_eq!(found.mesh.unwrap().faces.len(), 4 * 498 + 4);
+}
+
+#[test]
+fn sheets_on_each_other_each_have_their_own_faces() {
+    let square = grid(12);
+    let behind = square.faces.iter().map(|face| face.map(|v| VertexId(v.0 + 13 * 13)));
+    for is_turned in [false, true] {
+        let turned = |[a, b, c]: [VertexId; 3]| if is_turned { [a, c, b] } else { [a, b, c] };
+        let faces = square.faces.iter().copied().chain(behind.clone().map(turned)).collect();
+        let positions = square.positions.repeat(2);
+        assert_eq!(flat(&Mesh::new(positions, faces)).faces.len(), 4);
+    }
+    // On the same vertices: its edges would have three faces or more.
+    let faces = square.faces.repeat(2);
+    assert!(flat_within(&Mesh::new(square.positions, faces), 0.0).is_none());
+}
+
+#[test]
+fn far_from_the_origin_what_is_flat_goes() {
+    let mut square = grid(30);
+    for place in &mut square.positions {
+        *place = [1e7 + 1e-3 * place[0], 2e7 - 1e-3 * place[1], 1e7 + 2e-3 * place[1]];
+    }
+    // Of a plane that is on no axis nothing is exactly flat after rounding.
+    assert!(flattened(&square, 0.0).needed_faces > 2);
+    assert_eq!(flat_within(&square, 1e-7).unwrap().faces.len(), 2);
+    square.positions.iter_mut().for_each(|place| place[2] = 1e7);
+    assert_eq!(flat(&square).faces.len(), 2);
+}
+
+#[test]
+fn a_tunnel_without_a_width_stays() {
+    // A slab with a slit: its walls lie on each other.
+    let mut plate = grid(12);
+    let lower = plate.positions.len() as u32;
+    let (row, of_slit) = (6 * 13, 4..9);
+    let slit: Vec<u32> = of_slit.clone().map(|x| row + x).collect();
+    let copy = |v: u32| lower + (v - slit[0]);
+    plate
+        .positions
+        .extend(slit.clone().iter().map(|&v| plate.positions[v as usize]).collect::<Vec<_>>());
+    for face in &mut plate.faces {
+        let is_above = face.iter().any(|v| v.0 >= row + 13);
+        for v in face.iter_mut().filter(|v| is_above && slit[1..4].contains(&v.0)) {
+            *v = VertexId(copy(v.0));
+        }
+    }
+    plate.compact();
+    let level = flat(&plate);
+    assert_eq!(level.faces.len(), 6, "four corners, and the two ends of the slit");
+}
+
+#[test]
+fn random_faces_on_a_lattice_keep_their_shape() {
+    let mut state = 7u64;
+    let mut random = move |below: u64| {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) % below
+    };
+    let mut found = 0;
+    for round in 0..4_000 {
+        // A lattice with holes and steps, some of whose vertices are one, or torn apart.
+        let (side, heights) = (2 + random(4), 1 + random(3));
+        let mut square = grid(side as u32);
+        let count = square.positions.len() as u64;
+        for place in &mut square.positions {
+            *place = [place[0].round(), place[1].round(), 0.0];
+            if random(4) == 0 {
+                place[2] = random(heights) as f64;
+            }
+        }
+        for _ in 0..random(3) {
+            let [from, to] = [(); 2].map(|()| VertexId(random(count) as u32));
+            square.faces.iter_mut().flatten().filter(|v| **v == from).for_each(|v| *v = to);
+        }
+        square.faces.retain(|&[a, b, c]| random(8) > 0 && a != b && b != c && c != a);
+        for _ in 0..random(3) {
+            if let Some(face) = square.faces.get(random(30) as usize).copied() {
+                square.faces.push(if random(2) == 0 { face } else { [face[0], face[2], face[1]] });
+            }
+        }
+        let Some(level) = flat_within(&square, 0.0) else { continue };
+        found += 1;
+        level.validate().unwrap();
+        let [before, after] = [&square, &level].map(topology);
+        assert_eq!(after.euler, before.euler, "round {round}");
+        assert_eq!(after.components, before.components, "round {round}");
+        assert!(after.non_manifold_edges <= before.non_manifold_edges, "round {round}");
+        assert!((volume(&level) - volume(&square)).abs() < 1e-9, "round {round}");
+        assert!((area(&level) - area(&square)).abs() < 1e-9, "round {round}");
+    }
+    assert!(found > 1_000, "{found}");
 }

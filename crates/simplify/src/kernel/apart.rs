@@ -5,8 +5,6 @@ use std::ops::Range;
 use glam::Vec3;
 use meshlod_spatial::{NearestPart, PartBvh, PartSearch, Within};
 
-use crate::kernel::components::area;
-
 /// Largest number of faces of a component that are all sampled.
 const ALL_SAMPLED: usize = 24;
 
@@ -28,15 +26,15 @@ pub(crate) struct Apart {
     pub(crate) greatest: f32,
 }
 
-/// Sample points on components, and how far they are from the rest.
+/// ComponentSample points on components, and how far they are from the rest.
 ///
 /// Distances only grow, as components vanish, and that of a point changes only when the component
 /// nearest to it has vanished. So what was measured is a lower bound, and few points are measured
 /// again.
 #[derive(Default)]
-pub(crate) struct Samples {
+pub(crate) struct ComponentSamples {
     /// Points of all components, one component after the other.
-    points: Vec<Sample>,
+    points: Vec<ComponentSample>,
     /// End of the points of each component.
     ends: Vec<usize>,
     search: PartSearch,
@@ -44,7 +42,7 @@ pub(crate) struct Samples {
 
 /// A point on the surface of a component.
 #[derive(Clone, Copy, Debug)]
-struct Sample {
+struct ComponentSample {
     place: Vec3,
     weight: f32,
     /// Square of its distance when last measured; zero before.
@@ -53,8 +51,8 @@ struct Sample {
     nearest: u32,
 }
 
-impl Samples {
-    /// Samples the next component at the centres and corners of some of its faces. `slots` is
+impl ComponentSamples {
+    /// ComponentSamples the next component at the centres and corners of some of its faces. `slots` is
     /// memory for each vertex, at first [`u32::MAX`].
     pub(crate) fn add(
         &mut self,
@@ -67,7 +65,7 @@ impl Samples {
         // `map` over an array is not inlined.
         let corners = |&[a, b, c]: &[u32; 3]| [place(a), place(b), place(c)];
         let mut add = |place: Vec3, weight: f32| {
-            self.points.push(Sample { place, weight, squared: 0.0, nearest: UNKNOWN });
+            self.points.push(ComponentSample { place, weight, squared: 0.0, nearest: UNKNOWN });
         };
         for face in some.clone() {
             let corners @ [a, b, c] = corners(face);
@@ -82,7 +80,12 @@ impl Samples {
                     None => {
                         *slot = self.points.len() as u32;
                         let (squared, nearest) = (0.0, UNKNOWN);
-                        self.points.push(Sample { place: place(v), weight, squared, nearest });
+                        self.points.push(ComponentSample {
+                            place: place(v),
+                            weight,
+                            squared,
+                            nearest,
+                        });
                     }
                 }
             }
@@ -101,14 +104,14 @@ impl Samples {
         let own = self.of(component);
         let points = &mut self.points[own];
         let weights = points.iter().map(|point| point.weight).sum::<f32>().max(f32::MIN_POSITIVE);
-        let mean = |points: &[Sample]| {
+        let mean = |points: &[ComponentSample]| {
             points.iter().map(|point| point.weight * point.squared).sum::<f32>() / weights
         };
         let mut least = mean(points);
         // A point measured before, which has a part near it.
-        let mut known: Option<Sample> = None;
+        let mut known: Option<ComponentSample> = None;
         for i in 0..points.len() {
-            let Sample { place, weight, squared, nearest } = points[i];
+            let ComponentSample { place, weight, squared, nearest } = points[i];
             if nearest != UNKNOWN && surface.is_left(nearest) {
                 known = Some(points[i]);
                 continue;
@@ -143,13 +146,18 @@ impl Samples {
     }
 }
 
-impl Sample {
+impl ComponentSample {
     /// Returns the square of the most that a place can be from what is nearest to this point.
     fn most_at(&self, place: Vec3) -> f32 {
         // More than rounding.
         let most = (self.squared.sqrt() + self.place.distance(place)) * 1.0001;
         most * most + f32::MIN_POSITIVE
     }
+}
+
+/// Returns the area of a triangle.
+pub(crate) fn area([a, b, c]: [Vec3; 3]) -> f32 {
+    0.5 * (b - a).cross(c - a).length()
 }
 
 #[cfg(test)]
@@ -164,7 +172,7 @@ mod tests {
         let heights = [0.0, 1.0, -2.0, 5.0];
         let places: Vec<Vec3> =
             heights.iter().flat_map(|z| corners.map(|corner| corner + z * Vec3::Z)).collect();
-        let (mut builder, mut samples) = (PartBvhBuilder::default(), Samples::default());
+        let (mut builder, mut samples) = (PartBvhBuilder::default(), ComponentSamples::default());
         let mut slots = vec![u32::MAX; places.len()];
         for first in [0, 3, 6, 9] {
             let face = [first, first + 1, first + 2];

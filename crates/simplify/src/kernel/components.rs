@@ -8,7 +8,7 @@ use glam::Vec3;
 use meshlod_mesh::UnionFind;
 use meshlod_spatial::{PartBvh, PartBvhBuilder};
 
-use crate::kernel::apart::{Apart, Samples};
+use crate::kernel::apart::{Apart, ComponentSamples, area};
 use crate::kernel::handles::PER_CUT;
 use crate::kernel::mesh::local_frame::Frame;
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
@@ -50,7 +50,7 @@ pub(crate) struct Components {
     faces_left: Vec<u32>,
     /// True if the numbers of faces are those of the surface, which they are while it is one part.
     are_counted: bool,
-    samples: Samples,
+    samples: ComponentSamples,
     /// The faces of the input that have not vanished, by component.
     input: PartBvh,
     /// Components that may vanish, by a lower bound of the bucket of their cost.
@@ -112,7 +112,7 @@ impl Components {
     fn survey(pieces: &Pieces<'_, '_>, of_vertex: Vec<u32>, count: usize) -> Self {
         let (vertices, ends) = by_component(&of_vertex, count);
         let mut builder = PartBvhBuilder::default();
-        let mut samples = Samples::default();
+        let mut samples = ComponentSamples::default();
         let mut slots = vec![u32::MAX; of_vertex.len()];
         let mut all = Vec::with_capacity(count);
         let mut faces = Vec::new();
@@ -387,9 +387,4 @@ fn faces_around(vertices: &Vertices<'_>, v: u32) -> u32 {
         a = b;
     }
     count
-}
-
-/// Returns the area of a triangle.
-pub(crate) fn area([a, b, c]: [Vec3; 3]) -> f32 {
-    0.5 * (b - a).cross(c - a).length()
 }

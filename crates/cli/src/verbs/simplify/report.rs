@@ -39,6 +39,7 @@ impl Simplify {
             topology::to_text(&report.conditioning),
             simplify_report::mesh_notes(run),
         );
+        text += &report.flats.map_or(String::new(), |flats| simplify_report::flats(report, flats));
         text += &format!("error_estimate: {}\n", value(run.error_estimate));
         if let Some(distance) = &report.measured {
             text += &format!("error_measured:\n{}", distance::to_table(distance));

@@ -26,9 +26,9 @@ pub use request::{Aim, SimplifyRequest};
 /// Simplifies all meshes of a scene to one common target, and returns the scene with a report.
 ///
 /// An error is proved of the scene [as it is written](SimplifyRequest::written_as): the run leaves
-/// room for the rounding of coordinates, and the report says what holds, in what precision. Within an
-/// error, [flats](ConditionedScene::flatten_within) go first. See [`ConditionedScene`] for what happens to the meshes before, and
-/// [`SceneSimplifier`](crate::scene::SceneSimplifier) for the run.
+/// room for the rounding of coordinates, and the report says what holds, in what precision. Flats go
+/// first [where that helps](ConditionedScene::flatten_before). See [`ConditionedScene`] for what
+/// happens to the meshes before, and [`SceneSimplifier`](crate::scene::SceneSimplifier) for the run.
 ///
 /// Cost: O(n log n), n = faces, and several times that for an error.
 /// # Errors
@@ -105,11 +105,9 @@ impl Task<'_> {
         let Self { scene, request, watch, .. } = *self;
         let choice = request.choice();
         let (mut ready, mut time) = choice.condition(scene, watch)?;
-        if let Target::Error(error) = target {
-            let start = Instant::now();
-            ready.flatten_within(error);
-            time += start.elapsed();
-        }
+        let start = Instant::now();
+        ready.flatten_before(target);
+        time += start.elapsed();
         let mut run = SceneRun::start(&ready, time, watch)?;
         let mut report = run.simplify_to(target)?;
         let mut level = run.level(&mut report);
@@ -125,6 +123,7 @@ impl Task<'_> {
         let report = SimplifyReport {
             measured,
             conditioning: ready.counts(),
+            flats: ready.flat_faces().map(|flats| flats.without(&report)),
             near_borders: request.near_borders.then(|| ready.near_borders()).flatten(),
             fused: None,
             error,

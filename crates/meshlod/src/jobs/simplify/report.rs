@@ -8,7 +8,9 @@ use meshlod_mesh::{Conditioning, Mesh, NearBorders};
 use meshlod_simplify::{Digits, ExactVolumeError, Report, VolumeLoss};
 
 use crate::jobs::{ProvedError, WrittenAs};
-use crate::scene::{ConditionedScene, FuseReport, closed_volume, conserve_volumes, world_bounds};
+use crate::scene::{
+    ConditionedScene, FlatFaces, FuseReport, closed_volume, conserve_volumes, world_bounds,
+};
 
 /// Report of [`simplify`](super::simplify). Serde writes the keys that the command prints.
 #[derive(Clone, Debug)]
@@ -21,6 +23,9 @@ pub struct SimplifyReport {
     pub measured: Option<Distance>,
     /// Changes made by conditioning, before the run.
     pub conditioning: Conditioning,
+    /// Faces of flats that went before the run, and those that the shape needs; `None` if they did not
+    /// go first.
+    pub flats: Option<FlatFaces>,
     /// Boundary edges near each other, if they were looked for and are many.
     pub near_borders: Option<NearBorders>,
     /// Changes made by fusing, before the run, if it was asked for.
