@@ -26,12 +26,6 @@ pub struct FlatFaces {
 }
 
 impl FlatFaces {
-    /// Returns the figures without the faces that a run has left out: no shape needs them.
-    pub(crate) fn without(self, report: &Report) -> Self {
-        let left_out = report.degenerate_faces + report.duplicate_faces;
-        Self { needed: self.needed.saturating_sub(left_out), ..self }
-    }
-
     /// Returns true if flats should go before a run from `all` faces to some. A run to fewer than they
     /// leave would start with their long thin faces, which makes some levels worse
     /// (docs/notes/kernel.md).

@@ -91,6 +91,14 @@ fn can_restore(ready: &ConditionedScene<'_>, level: &[Mesh]) -> bool {
     restored.iter().all(|found| matches!(found, Ok(_) | Err(ExactVolumeError::OpenMesh)))
 }
 
+impl FlatFaces {
+    /// Returns the figures without the faces that a run has left out: no shape needs them.
+    pub(crate) fn without(self, report: &Report) -> Self {
+        let left_out = report.degenerate_faces + report.duplicate_faces;
+        Self { needed: self.needed.saturating_sub(left_out), ..self }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
