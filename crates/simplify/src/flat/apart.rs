@@ -3,10 +3,11 @@
 use glam::DVec2;
 use meshlod_mesh::Mesh;
 use robust::{Coord, orient2d};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::flat::NewFace;
 use crate::flat::linear::Plane;
+use crate::flat::outline::OutlineSide;
 use crate::flat::regions::Regions;
 
 /// Faces of all regions, with where each edge is.
@@ -33,12 +34,13 @@ const NONE: u32 = u32::MAX;
 pub(super) fn take_apart(
     mesh: &Mesh,
     regions: &Regions,
-    filled: &[Option<Vec<NewFace>>],
+    (filled, sides): (&[Option<Vec<NewFace>>], &[Vec<OutlineSide>]),
 ) -> Result<Vec<NewFace>, Vec<usize>> {
     let mut faces = Faces::new(mesh, regions, filled);
     let mut together: Vec<usize> =
-        faces.crowded().into_iter().flat_map(|edge| faces.part(&edge)).collect();
-    together.extend(faces.twice());
+        faces.crowded(sides).into_iter().flat_map(|edge| faces.part(&edge)).collect();
+    together.sort_unstable();
+    together.extend(faces.twice(&together));
     together.sort_unstable();
     together.dedup();
     if together.is_empty() { Ok(faces.list) } else { Err(together) }
@@ -85,9 +87,9 @@ impl<'m> Faces<'m> {
         }
     }
 
-    /// Returns the edges of more than two faces that are inside a region that was filled, each with all
-    /// such regions.
-    fn crowded(&mut self) -> Vec<([u32; 2], Vec<u32>)> {
+    /// Returns the edges of more than two faces that are inside a region that was filled, and not on its
+    /// outline, each with all such regions.
+    fn crowded(&mut self, sides: &[Vec<OutlineSide>]) -> Vec<([u32; 2], Vec<u32>)> {
         let mut count: FxHashMap<[u32; 2], u32> = FxHashMap::default();
         // Most meshes have few flats, so only their edges are counted.
         for is_filled in [true, false] {
@@ -111,6 +113,14 @@ impl<'m> Faces<'m> {
             self.at.iter().filter(|((ends, _), faces)| faces[1] != NONE && is_crowded(ends));
         let mut inner: Vec<([u32; 2], u32)> = inner.map(|(&at, _)| at).collect();
         inner.sort_unstable();
+        // Both sides of an outline that touches itself.
+        let mut checked: Vec<u32> = inner.iter().map(|&(_, region)| region).collect();
+        checked.sort_unstable();
+        checked.dedup();
+        let sides = checked.into_iter().flat_map(|r| sides[r as usize].iter().map(move |s| (s, r)));
+        let ends = |side: &OutlineSide| [side.from.min(side.to).0, side.from.max(side.to).0];
+        let outer: FxHashSet<([u32; 2], u32)> = sides.map(|(side, r)| (ends(side), r)).collect();
+        inner.retain(|at| !outer.contains(at));
         let of_edge = inner.chunk_by(|a, b| a.0 == b.0);
         of_edge.map(|same| (same[0].0, same.iter().map(|&(_, r)| r).collect())).collect()
     }
@@ -161,14 +171,16 @@ impl<'m> Faces<'m> {
         true
     }
 
-    /// Returns the regions that have new faces with the same corners as another face; of several such
-    /// regions the first may have it.
-    fn twice(&self) -> Vec<usize> {
+    /// Returns the regions that have new faces with the same corners as another face, but for those that
+    /// have failed; of several such regions the first may have it.
+    fn twice(&self, failed: &[usize]) -> Vec<usize> {
         let mut sorted: Vec<([u32; 3], bool, u32)> = Vec::with_capacity(self.list.len());
         for (face, &region) in self.list.iter().zip(&self.region) {
-            let mut corners = face.vertices.map(|v| v.0);
-            corners.sort_unstable();
-            sorted.push((corners, self.is_filled(region), region));
+            if failed.binary_search(&(region as usize)).is_err() {
+                let mut corners = face.vertices.map(|v| v.0);
+                corners.sort_unstable();
+                sorted.push((corners, self.is_filled(region), region));
+            }
         }
         sorted.sort_unstable();
         let same = sorted.chunk_by(|a, b| a.0 == b.0).flat_map(|same| &same[1..]);

@@ -34,7 +34,7 @@ use rayon::prelude::*;
 use crate::flat::fill::fill;
 use crate::flat::give_up::GivenUp;
 use crate::flat::linear::Linear;
-use crate::flat::outline::{OutlineSide, Outlines, least_faces};
+use crate::flat::outline::{OutlineSide, Outlines, least_faces, pinched};
 use crate::flat::regions::Regions;
 pub use crate::flat::sample::flat_part;
 
@@ -86,6 +86,9 @@ pub fn flatten(mesh: &Mesh, options: &FlatOptions<'_>) -> Flattened {
     let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
     let linear = Linear::new(mesh);
     let mut regions = Regions::find(mesh, &connectivity, &linear, options.tolerance);
+    for r in pinched(mesh, &connectivity, &linear, &regions) {
+        regions.list[r].is_kept = true;
+    }
     let held = held(mesh, options.locks);
     let mut given_up = GivenUp::default();
     let mut needed = None;
@@ -113,7 +116,7 @@ pub fn flatten(mesh: &Mesh, options: &FlatOptions<'_>) -> Flattened {
         });
         let mut failed: Vec<usize> = tried.failed();
         if failed.is_empty() {
-            match apart::take_apart(mesh, &regions, &tried.faces) {
+            match apart::take_apart(mesh, &regions, (&tried.faces, &tried.sides)) {
                 Ok(faces) if faces.len() < mesh.faces.len() => {
                     let moved = regions.moved(outlines.moved);
                     let mesh = Some(with_faces(mesh, &faces));

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId, WedgeId};
 use robust::{Coord, orient2d};
+use rustc_hash::FxHashSet;
 
 use crate::flat::FlatOptions;
 use crate::flat::linear::Linear;
@@ -74,11 +75,12 @@ impl Outlines {
         let gone = (0..stays.len() as u32).map(|v| !stays[v as usize] && graph.is_spare(v, most));
         let mut gone: Vec<bool> = gone.collect();
         let moved = if most > 0.0 { graph.straighten(&mut gone, most) } else { 0.0 };
+        keep_apart(&graph, &outer, regions, &mut gone);
         let mut sides = vec![Vec::new(); regions.list.len()];
         for &(region, side) in &outer {
             let [from, next] = side.ends(&mesh.faces);
             if !gone[from.index()] {
-                let to = graph.follow(from.0, next.0, &gone);
+                let [to, _] = graph.follow(from.0, next.0, &gone);
                 let wedge = mesh.corner_wedges(side.face().index())[side.corner()];
                 sides[region as usize].push(OutlineSide { from, to: VertexId(to), wedge });
             }
@@ -120,6 +122,46 @@ fn is_outer(
     here != there || [a, b] != [d, c] || linear.is_seam(side, twin)
 }
 
+/// Vertices of a region.
+struct Corners {
+    /// The vertex at each corner of its faces, in order.
+    all: Vec<VertexId>,
+    /// The vertices on its outline, in order.
+    outer: Vec<VertexId>,
+    /// Number of sides of its outline.
+    sides: usize,
+}
+
+impl Corners {
+    fn of(
+        mesh: &Mesh,
+        connectivity: &Connectivity,
+        linear: &Linear<'_>,
+        (regions, region): (&Regions, &Region),
+    ) -> Self {
+        let mut this = Self { all: Vec::new(), outer: Vec::new(), sides: 0 };
+        for &face in &region.faces {
+            this.all.extend(mesh.faces[face as usize]);
+            for side in (0..3).map(|k| Side::new(FaceId(face), k)) {
+                if is_outer(mesh, connectivity, linear, regions, side) {
+                    this.outer.extend(side.ends(&mesh.faces));
+                    this.sides += 1;
+                }
+            }
+        }
+        this.all.sort_unstable();
+        this.outer.sort_unstable();
+        this.outer.dedup();
+        this
+    }
+
+    /// Returns the vertices inside, each with its number of corners.
+    fn inner(&self) -> impl Iterator<Item = (VertexId, usize)> {
+        let each = self.all.chunk_by(|a, b| a == b).map(|same| (same[0], same.len()));
+        each.filter(|(v, _)| self.outer.binary_search(v).is_err())
+    }
+}
+
 /// Returns how many faces a region has once what is spare is gone, given how many sides its outline
 /// has then: a vertex that goes from an outline takes one face, and one inside takes two.
 pub(super) fn least_faces(
@@ -129,23 +171,27 @@ pub(super) fn least_faces(
     (regions, region): (&Regions, &Region),
     sides: usize,
 ) -> usize {
-    let (mut all, mut outer, mut before) = (Vec::new(), Vec::new(), 0);
-    for &face in &region.faces {
-        for side in (0..3).map(|k| Side::new(FaceId(face), k)) {
-            let ends = side.ends(&mesh.faces);
-            all.push(ends[0]);
-            if is_outer(mesh, connectivity, linear, regions, side) {
-                outer.extend(ends);
-                before += 1;
-            }
-        }
-    }
-    let [all, outer] = [all, outer].map(|mut vertices| {
-        vertices.sort_unstable();
-        vertices.dedup();
-        vertices.len()
-    });
-    region.faces.len().saturating_sub(before - sides.min(before) + 2 * (all - outer))
+    let corners = Corners::of(mesh, connectivity, linear, (regions, region));
+    let gone = corners.sides - sides.min(corners.sides) + 2 * corners.inner().count();
+    region.faces.len().saturating_sub(gone)
+}
+
+/// Returns the regions to be filled that have a vertex inside which other faces have, too: these
+/// would come apart.
+pub(super) fn pinched(
+    mesh: &Mesh,
+    connectivity: &Connectivity,
+    linear: &Linear<'_>,
+    regions: &Regions,
+) -> Vec<usize> {
+    let mut count = vec![0; mesh.positions.len()];
+    mesh.faces.iter().flatten().for_each(|v| count[v.index()] += 1);
+    let filled = regions.list.iter().enumerate().filter(|(_, region)| !region.is_kept);
+    let is_pinched = |region| {
+        let corners = Corners::of(mesh, connectivity, linear, (regions, region));
+        corners.inner().any(|(v, own)| own < count[v.index()])
+    };
+    filled.filter(|(_, region)| is_pinched(region)).map(|(r, _)| r).collect()
 }
 
 /// Holds all vertices of regions that stay as they are.
@@ -154,6 +200,36 @@ fn hold_kept(mesh: &Mesh, regions: &Regions, stays: &mut [bool]) {
         for v in region.faces.iter().flat_map(|&face| mesh.faces[face as usize]) {
             stays[v.index()] = true;
         }
+    }
+}
+
+/// Brings back a vertex of each straight part whose new side would be where another edge is, too: that
+/// would close a slit, or make an edge of more faces.
+fn keep_apart(graph: &Graph<'_>, outer: &[(u32, Side)], regions: &Regions, gone: &mut [bool]) {
+    let faces = &graph.mesh.faces;
+    // Ends in order, and the first vertex after the lower one, which is the other end of an edge.
+    let part = |&(_, side): &(u32, Side)| {
+        let [from, next] = side.ends(faces).map(|v| v.0);
+        let [to, last] =
+            if gone[from as usize] { return None } else { graph.follow(from, next, gone) };
+        Some(if from < to { ([from, to], next) } else { ([to, from], last) })
+    };
+    let mut parts: Vec<([u32; 2], u32)> = outer.iter().filter_map(part).collect();
+    let long = parts.iter().filter(|(ends, first)| *first != ends[1]);
+    let long: FxHashSet<[u32; 2]> = long.map(|&(ends, _)| ends).collect();
+    if long.is_empty() {
+        return;
+    }
+    let kept = regions.list.iter().filter(|region| region.is_kept);
+    for &[a, b, c] in kept.flat_map(|region| &region.faces).map(|&face| &faces[face as usize]) {
+        let edges = [[a, b], [b, c], [c, a]].map(|[a, b]| [a.0.min(b.0), a.0.max(b.0)]);
+        parts.extend(edges.into_iter().filter(|ends| long.contains(ends)).map(|e| (e, e[1])));
+    }
+    parts.sort_unstable();
+    parts.dedup();
+    // Both sides of a slit need a vertex, or one would lie across that of the other.
+    for &(_, first) in parts.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() > 1).flatten() {
+        gone[first as usize] = false;
     }
 }
 
@@ -212,14 +288,14 @@ impl<'m> Graph<'m> {
             && if most > 0.0 { beside([a, b], at) <= most } else { is_on_line([a, at, b]) }
     }
 
-    /// Returns the first vertex that stays on the way from one to the next.
-    fn follow(&self, from: u32, next: u32, gone: &[bool]) -> u32 {
+    /// Returns the first vertex that stays on the way from one to the next, and the one before it.
+    fn follow(&self, from: u32, next: u32, gone: &[bool]) -> [u32; 2] {
         let (mut last, mut at) = (from, next);
         while gone[at as usize] && at != from {
             let [a, b] = self.beside(at);
             (last, at) = (at, if a == last { b } else { a });
         }
-        at
+        [at, last]
     }
 
     /// Brings vertices back until none that is gone is more than `most` from the line that replaces
