@@ -123,7 +123,7 @@ fn is_outer(
 }
 
 /// Vertices of a region.
-struct Corners {
+struct OutlineCorners {
     /// The vertex at each corner of its faces, in order.
     all: Vec<VertexId>,
     /// The vertices on its outline, in order.
@@ -132,7 +132,7 @@ struct Corners {
     sides: usize,
 }
 
-impl Corners {
+impl OutlineCorners {
     fn of(
         mesh: &Mesh,
         connectivity: &Connectivity,
@@ -171,7 +171,7 @@ pub(super) fn least_faces(
     (regions, region): (&Regions, &Region),
     sides: usize,
 ) -> usize {
-    let corners = Corners::of(mesh, connectivity, linear, (regions, region));
+    let corners = OutlineCorners::of(mesh, connectivity, linear, (regions, region));
     let gone = corners.sides - sides.min(corners.sides) + 2 * corners.inner().count();
     region.faces.len().saturating_sub(gone)
 }
@@ -188,7 +188,7 @@ pub(super) fn pinched(
     mesh.faces.iter().flatten().for_each(|v| count[v.index()] += 1);
     let filled = regions.list.iter().enumerate().filter(|(_, region)| !region.is_kept);
     let is_pinched = |region| {
-        let corners = Corners::of(mesh, connectivity, linear, (regions, region));
+        let corners = OutlineCorners::of(mesh, connectivity, linear, (regions, region));
         corners.inner().any(|(v, own)| own < count[v.index()])
     };
     filled.filter(|(_, region)| is_pinched(region)).map(|(r, _)| r).collect()
