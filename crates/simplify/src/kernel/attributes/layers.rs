@@ -159,25 +159,24 @@ impl<'m> AttributeLayers<'m> {
 
     /// Copies the values that channels do not hold, except shading, from another slot.
     pub(crate) fn copy_uncosted(&mut self, slot: u32, other: u32) {
-        for layer in self.uncosted.iter_mut().filter(|layer| !is_shading(layer)) {
-            let from = other as usize * layer.width;
-            layer.values.copy_within(from..from + layer.width, slot as usize * layer.width);
-        }
+        self.copy_where(slot, other, |layer| !is_shading(layer));
     }
 
     /// Copies all values that channels do not hold from another slot.
     pub(crate) fn copy_all_uncosted(&mut self, slot: u32, other: u32) {
-        for layer in &mut self.uncosted {
-            let from = other as usize * layer.width;
-            layer.values.copy_within(from..from + layer.width, slot as usize * layer.width);
-        }
+        self.copy_where(slot, other, |_| true);
     }
 
     /// Copies joints and their weights from another slot: all wedges of a vertex move as one.
     pub(crate) fn copy_skin(&mut self, slot: u32, other: u32) {
-        let is_skin =
-            |layer: &&mut Layer| matches!(layer.kind, LayerKind::Joints(_) | LayerKind::Weights(_));
-        for layer in self.uncosted.iter_mut().filter(is_skin) {
+        self.copy_where(slot, other, |layer| {
+            matches!(layer.kind, LayerKind::Joints(_) | LayerKind::Weights(_))
+        });
+    }
+
+    /// Copies the values of some of the layers that channels do not hold from another slot.
+    fn copy_where(&mut self, slot: u32, other: u32, is_copied: impl Fn(&Layer) -> bool) {
+        for layer in self.uncosted.iter_mut().filter(|layer| is_copied(layer)) {
             let from = other as usize * layer.width;
             layer.values.copy_within(from..from + layer.width, slot as usize * layer.width);
         }
