@@ -34,8 +34,8 @@ pub struct TopologyArgs {
 enum TopologyArg {
     /// Components may vanish and handles close (tunnels are filled, rings cut) where that costs less
     /// than simplifying them, borders that lie on each other are sewn together, non-manifold places
-    /// may move and come apart, and charts and borders of materials give way where little else is
-    /// left. Handles stay within --error and in .mlod files
+    /// may move and come apart, and charts and borders of materials give way where that costs least.
+    /// Charts, borders and handles stay within --error, and handles in .mlod files
     Free,
     /// Closed stays closed, manifold stays manifold, no component vanishes and no handle closes, as
     /// printing and simulation need it

@@ -35,8 +35,8 @@ use crate::kernel::contraction_log::{Logged, LoggedContraction};
 use crate::kernel::handles::Handles;
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
 use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
+use crate::kernel::metric::Metric;
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
-use crate::kernel::metric::{Metric, seam_price};
 use crate::kernel::schedule::batch::Batch;
 use crate::kernel::schedule::bucket_queue::{
     BATCH_LEN, BOUNDED_BATCH_LEN, BucketQueue, NONE, bucket, last_bucket,
@@ -55,6 +55,10 @@ use crate::surface::ties::Ties;
 /// .00723, .0572, 849; 4 .00721, .0580; 6 .00720, .0578, 789; 8 .00723, .0586, 766; 10 .00727,
 /// .0583.
 const NEW_VERTEX_DELAY: u16 = 6;
+
+/// Square of the distance, in halves of the edge, by which a place may be worse than the best one and
+/// still be as good: what floats make of a corner of flat walls.
+const AS_GOOD: f64 = 1e-6;
 
 /// Number of buckets by which a contraction that flips a face in uv is deferred.
 ///
@@ -159,9 +163,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
             }
             match component {
                 Some(bucket) if self.live_faces > faces => {
-                    if !self.release_seams(bucket) {
-                        self.vanish_up_to(bucket);
-                    }
+                    self.vanish_up_to(bucket);
                 }
                 _ => return,
             }
@@ -204,14 +206,8 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
             return front <= last;
         }
         let len = if self.within.is_some() { BOUNDED_BATCH_LEN } else { BATCH_LEN };
-        loop {
-            let (is_taken, is_all) = (self.queue.take(last, len), last >= last_bucket());
-            let front = if is_taken { self.queue.next().1 } else { NONE };
-            match is_taken || is_all {
-                true if self.release_seams(front) => {}
-                true if is_taken => break,
-                _ => return false,
-            }
+        if !self.queue.take(last, len) {
+            return false;
         }
         self.prefetch();
         self.recost_batch();
@@ -352,10 +348,16 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         let aim = EdgeQuadricF64 { level: whole.level + owed, ..whole };
         let from_middle = match mobility {
             Mobility::Free => A::Metric::optimum(&aim, deferral.allowed()),
-            Mobility::AlongNormal if !edge_ring.is_open(vertices, v0) => {
-                A::Metric::optimum_along_normal(&aim, end0, deferral.allowed())
+            Mobility::Leaning => {
+                let best = A::Metric::optimum(&aim, deferral.allowed());
+                let as_good = AS_GOOD * whole.weight() * quadric.half.length_squared();
+                if whole.at(-quadric.half) > whole.at(best) + as_good {
+                    best
+                } else {
+                    -quadric.half
+                }
             }
-            _ => -quadric.half,
+            Mobility::Fixed => -quadric.half,
         };
         let attributes = if free { 0.0 } else { f64::from(model.cost_onto(vertices, &ends)) };
         let cost = whole.at(from_middle) + attributes;
@@ -365,9 +367,6 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         let short =
             f64::from(A::Metric::SHORT_FIRST) * whole.weight() * quadric.half.length_squared();
         let mut cost = (cost.max(0.0) + short) as f32;
-        if ends.cuts_seam {
-            cost *= seam_price::<A::Metric>();
-        }
         if VertexFlags(end0.flags.0 | end1.flags.0).any(VertexFlags::PROTECTED) {
             cost *= vertices.protection;
         }
@@ -395,19 +394,12 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         let is_far = from_middle.length_squared() > f64::from(edge_ring.reach());
         // The place as it is stored, so that the normals are those of the actual faces.
         let from = vertices.get(ends.v0).place();
-        let mut place = match ends.mobility {
+        let place = match ends.mobility {
             Mobility::Fixed => from,
-            Mobility::AlongNormal if is_far => from,
-            Mobility::Free if is_far => return Err(refused(Refusal::Volume)),
+            _ if is_far => return Err(refused(Refusal::Volume)),
             _ => within::<A::Metric>(*room, from.as_dvec3() + quadric.half + from_middle),
         };
-        if let Err(refusal) = edge_ring.try_place(place - from) {
-            if ends.mobility != Mobility::AlongNormal || place == from {
-                return Err(refused(refusal));
-            }
-            place = from;
-            edge_ring.try_place(Vec3::ZERO).map_err(refused)?;
-        }
+        edge_ring.try_place(place - from).map_err(refused)?;
         let from_middle = (place - from).as_dvec3() - quadric.half;
         // A mean square distance: attributes do not count.
         let mean_square =

@@ -224,10 +224,11 @@ impl<A: AttributeModel> Partition<A> {
         if let Some(bound) = bound {
             let lengths: Vec<usize> = loops.iter().map(|e| e.vertices.all.len()).collect();
             let all = bound.split(&lengths);
-            loops
-                .iter_mut()
-                .zip(all)
-                .for_each(|(collapse_loop, part)| collapse_loop.within = Some(part));
+            loops.iter_mut().zip(all).for_each(|(collapse_loop, part)| {
+                // An error of positions does not see what is lost where seams give way.
+                collapse_loop.hold_seams();
+                collapse_loop.within = Some(part);
+            });
         }
         while live > stop {
             let Some(step) = CostStep::new(&loops, live - stop, last) else { break };

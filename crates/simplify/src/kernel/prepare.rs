@@ -9,7 +9,6 @@ use crate::kernel::attributes::AttributeModel;
 use crate::kernel::attributes::bare::NoAttributes;
 use crate::kernel::attributes::corners::Corners;
 use crate::kernel::attributes::layers::AttributeLayers;
-use crate::kernel::attributes::seam_release::SeamRelease;
 use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
 use crate::kernel::components::{Components, Pieces};
 use crate::kernel::handles::{Handles, PER_CUT, genus};
@@ -254,13 +253,13 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
             return self.run(NoAttributes(metric));
         };
         let layers = AttributeLayers::new(self.mesh, &self.frame, &options.weights, MAX_CHANNELS);
-        let release = SeamRelease::new(options.topology);
+        let seams_hold = options.topology == Topology::Keep;
         match layers.channels() {
             // Code for fewer channels is worth its size only with the default method.
-            0..=2 if M::IS_MEMORYLESS => self.with_attributes::<2>(layers, corners, release),
-            3 if M::IS_MEMORYLESS => self.with_attributes::<3>(layers, corners, release),
-            0..=5 => self.with_attributes::<5>(layers, corners, release),
-            _ => self.with_attributes::<MAX_CHANNELS>(layers, corners, release),
+            0..=2 if M::IS_MEMORYLESS => self.with_attributes::<2>(layers, corners, seams_hold),
+            3 if M::IS_MEMORYLESS => self.with_attributes::<3>(layers, corners, seams_hold),
+            0..=5 => self.with_attributes::<5>(layers, corners, seams_hold),
+            _ => self.with_attributes::<MAX_CHANNELS>(layers, corners, seams_hold),
         }
     }
 
@@ -268,12 +267,12 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
         mut self,
         layers: AttributeLayers<'m>,
         corners: Corners<'m>,
-        release: SeamRelease,
+        seams_hold: bool,
     ) -> Box<dyn Run + 'm> {
         let faces = numbers(self.mesh, &self.order, self.faces.as_deref());
         let vertices = &mut self.fans.store.whole();
         let model = WedgeQuadrics::<M, K>::new(layers, corners, vertices, faces);
-        self.run(WedgeQuadrics { release, ..model })
+        self.run(WedgeQuadrics { seams_hold, ..model })
     }
 }
 

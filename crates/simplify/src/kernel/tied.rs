@@ -12,8 +12,8 @@ use crate::kernel::collapse_loop::{
 };
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
 use crate::kernel::mesh::vertex::VertexFlags;
+use crate::kernel::metric::Metric;
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
-use crate::kernel::metric::{Metric, seam_price};
 use crate::kernel::schedule::bucket_queue::{NONE, bucket, last_bucket};
 use crate::refusal::Refusal;
 use crate::surface::contracted::Freedom;
@@ -170,7 +170,6 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         let mut edges: Vec<TiedEdge> = Vec::with_capacity(ends.len());
         let mut joint: Option<EdgeQuadricF64> = None;
         let (mut onto, mut flags) = (0.0, VertexFlags::default());
-        let cuts_seam = ends.iter().any(|ends| ends.cuts_seam);
         for &ends in ends {
             let mut ring = Box::new(EdgeRing::new(edge_ring.boundary_weight));
             ring.gather(vertices, ends.v0, ends.v1).map_err(refused)?;
@@ -203,9 +202,6 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         let short =
             f64::from(A::Metric::SHORT_FIRST) * joint.weight() * joint.half.length_squared();
         let mut cost = (cost.max(0.0) + short) as f32;
-        if cuts_seam {
-            cost *= seam_price::<A::Metric>();
-        }
         if flags.any(VertexFlags::PROTECTED) {
             cost *= self.vertices.protection;
         }

@@ -49,13 +49,8 @@ impl<M: Metric, const K: usize> AttributeModel for WedgeQuadrics<'_, M, K> {
         self.costs_at_seams(vertices, us, vs)
     }
 
-    fn may_release_seams(&self) -> bool {
-        self.release.may_come()
-    }
-
-    #[inline(always)]
-    fn release_seams(&mut self, vertices: &Vertices, front: u16) -> bool {
-        self.release.is_asked(front) && self.give_way(vertices, front)
+    fn hold_seams(&mut self) -> bool {
+        !std::mem::replace(&mut self.seams_hold, true)
     }
 
     #[inline(always)]

@@ -9,7 +9,6 @@ use crate::kernel::attributes::attribute_quadric::AttributeQuadric;
 use crate::kernel::attributes::corners::Corners;
 use crate::kernel::attributes::layers::{AttributeLayers, SurvivingWedge};
 use crate::kernel::attributes::scratch::Scratch;
-use crate::kernel::attributes::seam_release::SeamRelease;
 use crate::kernel::attributes::seam_sectors::SeamSectors;
 use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
@@ -38,7 +37,7 @@ impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
             merged_into: vec![NO_VERTEX; quadrics.len()],
             quadrics,
             seams: SeamSectors::default(),
-            release: SeamRelease::Never,
+            seams_hold: true,
             charts: corners.charts(layers.textures().as_deref()),
             layers,
             corners,

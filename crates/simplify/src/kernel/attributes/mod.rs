@@ -8,7 +8,7 @@
 //! | `corners`, `import_export` | from the corners of the input to slots, and back |
 //! | `scratch`, `face_wedges`, `seam_sectors`, `wedge_pairs` | the slots around an edge, and which become one |
 //! | `new_values`, `update_smooth`, `update_at_seams` | a contraction: new values, then new quadrics |
-//! | `seam_costs`, `refused_edges`, `seam_release` | what seams cost, and when they give way |
+//! | `seam_costs` | what seams cost |
 //! | `uv_flips` | faces that would flip in texture space |
 //! | `uncosted_layers` | layers outside the metric |
 
@@ -20,10 +20,8 @@ pub(crate) mod face_wedges;
 pub(crate) mod import_export;
 pub(crate) mod layers;
 pub(crate) mod new_values;
-pub(crate) mod refused_edges;
 pub(crate) mod scratch;
 pub(crate) mod seam_costs;
-pub(crate) mod seam_release;
 pub(crate) mod seam_sectors;
 pub(crate) mod uncosted_layers;
 pub(crate) mod update_at_seams;
@@ -71,14 +69,8 @@ pub(crate) trait AttributeModel: Sized + Send + Sync {
     /// Decides which end of an edge is contracted into which.
     fn orient(&self, vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal>;
 
-    /// Returns true if seams hold, but may give way.
-    fn may_release_seams(&self) -> bool {
-        false
-    }
-
-    /// Lets seams give way if that costs no more than the front; with `front` at `NONE`, no other
-    /// edge is left. Returns true if they hold no longer.
-    fn release_seams(&mut self, _: &Vertices, _front: u16) -> bool {
+    /// Makes seams hold from now on. Returns true if they gave way before.
+    fn hold_seams(&mut self) -> bool {
         false
     }
 

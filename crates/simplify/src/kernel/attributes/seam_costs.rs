@@ -16,7 +16,7 @@ use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
 use crate::kernel::metric::edge_quadric::{
     Costs, EdgeQuadric, EdgeQuadrics, EdgeSide, SymmetricMatrix, VertexQuadrics, lane_of,
 };
-use crate::kernel::metric::{Metric, edges_between, least_costs, seam_price};
+use crate::kernel::metric::{Metric, edges_between, least_costs};
 use crate::kernel::simd::{LANES, Row, Row3, SimdTask, widest};
 
 impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
@@ -81,7 +81,7 @@ impl<M: Metric, const K: usize> SimdTask for CostsAtSeams<'_, '_, '_, M, K> {
 enum Motion {
     Not,
     Free,
-    /// The second end is contracted onto the first, which may then move along its normal.
+    /// The second end is contracted onto the first.
     Onto,
 }
 
@@ -90,8 +90,6 @@ struct SeamBatch {
     ends: [[u32; LANES]; 2],
     slots: [[u32; LANES]; 2],
     ways: [Motion; LANES],
-    /// True for edges over which a seam gives way.
-    cuts_seam: [bool; LANES],
     /// Edges that have unpaired slots.
     unpaired: [Option<Ends>; LANES],
     /// Second pairs: the lane of the edge, and the slots.
@@ -109,7 +107,6 @@ impl SeamBatch {
             ends: [[0; LANES]; 2],
             slots: [[NO_VERTEX; LANES]; 2],
             ways: [Motion::Not; LANES],
-            cuts_seam: [false; LANES],
             unpaired: [None; LANES],
             others: [(0, [NO_VERTEX; 2]); LANES],
             others_len: 0,
@@ -152,8 +149,7 @@ impl SeamBatch {
 
     #[inline(always)]
     fn put_ends(&mut self, lane: usize, ends: &Ends) {
-        let Ends { v0, v1, cuts_seam, wedge_pairs, .. } = ends;
-        self.cuts_seam[lane] = *cuts_seam;
+        let Ends { v0, v1, wedge_pairs, .. } = ends;
         self.put(
             lane,
             [*v0, *v1],
@@ -219,9 +215,6 @@ impl SeamBatch {
                 Motion::Free => costs[lane],
                 Motion::Onto => onto[lane],
             };
-            if self.cuts_seam[lane] {
-                costs[lane] *= seam_price::<M>();
-            }
         }
         costs
     }

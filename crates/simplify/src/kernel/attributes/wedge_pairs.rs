@@ -25,7 +25,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         if leaves || goes {
             return Ok(self.turned([v, target], wedge_pairs, [leaves, goes], moves));
         }
-        if !self.release.is_done() {
+        if self.seams_hold {
             return Err(Refusal::Seam);
         }
         self.ends_across_seams([v, target], wedge_pairs, moves)
@@ -56,12 +56,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         if !leaves && !goes {
             return Err(Refusal::Seam);
         }
-        let ends = self.turned(ends, wedge_pairs, [leaves, goes], moves);
-        let mobility = match ends.mobility {
-            Mobility::Free if parts != [false; 2] => Mobility::AlongNormal,
-            mobility => mobility,
-        };
-        Ok(Ends { mobility, cuts_seam: true, ..ends })
+        Ok(Ends { cuts_seam: true, ..self.turned(ends, wedge_pairs, [leaves, goes], moves) })
     }
 
     /// Turns an edge such that an end that may go is contracted into the other. At least one may.
@@ -84,7 +79,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         let wedge_pairs = self.one_each(wedge_pairs);
         let mobility = match moves[usize::from(turns)] {
             _ if leaves && goes => Mobility::Free,
-            true => Mobility::AlongNormal,
+            true => Mobility::Leaning,
             false => Mobility::Fixed,
         };
         Ends { v0, v1, mobility, cuts_seam: false, wedge_pairs }

@@ -14,7 +14,6 @@ use crate::kernel::attributes::attribute_quadric::AttributeQuadric;
 use crate::kernel::attributes::corners::Corners;
 use crate::kernel::attributes::layers::AttributeLayers;
 use crate::kernel::attributes::scratch::Scratch;
-use crate::kernel::attributes::seam_release::SeamRelease;
 use crate::kernel::attributes::seam_sectors::SeamSectors;
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
 use crate::kernel::metric::Metric;
@@ -29,8 +28,8 @@ pub(crate) struct WedgeQuadrics<'m, M, const K: usize> {
     /// those of the input.
     pub(crate) merged_into: Vec<u32>,
     pub(crate) seams: SeamSectors,
-    /// Whether seams give way.
-    pub(crate) release: SeamRelease,
+    /// Whether no seam gives way.
+    pub(crate) seams_hold: bool,
     /// Chart of each slot, see [`WedgeQuadrics::chart`]; empty if each slot is its own.
     pub(crate) charts: Vec<u32>,
     pub(crate) layers: AttributeLayers<'m>,

@@ -28,7 +28,7 @@ impl Ends {
     /// Returns true if the new vertex may be anywhere.
     #[inline(always)]
     pub(crate) fn is_free(&self) -> bool {
-        self.mobility == Mobility::Free
+        self.mobility != Mobility::Fixed
     }
 }
 
@@ -37,9 +37,9 @@ impl Ends {
 pub(crate) enum Mobility {
     /// Any position.
     Free,
-    /// Positions on the surface's normal at `v0`: a seam holds the vertex, and its texture must not
-    /// slide.
-    AlongNormal,
+    /// Any position, but that of `v0` where it is as good: charts or materials meet there that do
+    /// not meet at `v1`, so its place and its values say where they do.
+    Leaning,
     /// The position of `v0` alone: a pin or a tie holds the vertex.
     Fixed,
 }
@@ -64,8 +64,7 @@ impl Collapse {
         !self.ends.is_free() && self.displacement == Vec3::ZERO
     }
 
-    /// Returns true if the wedges of `v0` keep their values: it stays where it is, or moves along
-    /// the surface's normal only.
+    /// Returns true if the wedges of `v0` keep their values, because it stays where it is.
     #[inline(always)]
     pub(crate) fn keeps_values(&self) -> bool {
         self.displacement == Vec3::ZERO || !self.ends.is_free()

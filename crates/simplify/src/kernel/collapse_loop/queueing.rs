@@ -123,13 +123,10 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         }
     }
 
-    /// Lets seams give way once that is no dearer than the front, and queues the vertices on them.
-    /// Returns false if they hold, or have given way before. Within an error bound they never begin
-    /// to give way, as it does not see them.
-    #[inline(always)]
-    pub(super) fn release_seams(&mut self, front: u16) -> bool {
-        if self.within.is_some() || !self.model.release_seams(&self.vertices, front) {
-            return false;
+    /// Makes seams hold from now on, and queues the vertices on them.
+    pub(crate) fn hold_seams(&mut self) {
+        if !self.model.hold_seams() {
+            return;
         }
         self.queue.put_back();
         for v in self.vertices.ids() {
@@ -138,7 +135,6 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
                 self.put_first(v);
             }
         }
-        true
     }
 
     /// Queues a vertex that has waited for its neighbours to be in the same part.
@@ -166,9 +162,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
     /// Returns a lower bound on the bucket of the next step.
     pub(crate) fn lowest_bucket(&self) -> usize {
         let of_component = self.components.as_ref().and_then(|components| components.next_bucket());
-        let of_seams = self.within.is_none() && self.model.may_release_seams();
-        let of_seams = if of_seams { usize::from(last_bucket()) } else { usize::MAX };
-        self.queue.lowest().min(of_seams).min(of_component.map_or(usize::MAX, usize::from))
+        self.queue.lowest().min(of_component.map_or(usize::MAX, usize::from))
     }
 
     fn next_edge_bucket(&mut self, until: u16) -> Option<u16> {

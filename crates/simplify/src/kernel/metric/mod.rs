@@ -24,25 +24,6 @@ use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
 use crate::kernel::simd::{LANES, Row};
 use crate::method::Method;
 
-/// Factor on distances that decides how long seams hold.
-///
-/// FLIP as in `docs/notes/image-error.md`, at 256 pixels, with seams that may give way from the
-/// start on: the flight helmet at 10, 5 and 2 %, the milk truck at 5 %, the city at 75 and 50 %,
-/// pirate at 5 %. Measured when costs were squared volumes, so that the price was the factor's
-/// sixth power; now it is the fifth.
-///
-/// | | helmet | truck | city | pirate |
-/// |---|---|---|---|---|
-/// | 1 | .0293 .0587 .157 | .201 | .0229 .102 | .359 |
-/// | 2 | .0296 .0612 .179 | .274 | .0300 .125 | .334 |
-/// | 3 | .0303 .0627 .190 | .273 | .0329 .143 | .366 |
-/// | 4 | .0303 .0626 .193 | .260 | .0329 .159 | .371 |
-/// | 6 | .0303 .0627 .235 | .278 | .0329 .180 | .339 |
-/// | seams hold | .0303 .0627 .373 | .278 | .0329 .268 | .371 |
-///
-/// 3 is the smallest that leaves the helmet at 10 % as it is if seams hold.
-const SEAM_PRICE: f32 = 3.0;
-
 /// Error metric of a method.
 pub(crate) trait Metric: Copy + Send + Sync {
     /// True if a vertex has the quadrics of its current faces and lines, and nothing else.
@@ -117,12 +98,6 @@ pub(crate) trait Metric: Copy + Send + Sync {
     /// volume is preserved as far as that adds no more than `allowed` to the mean square distance.
     fn optimum(quadric: &EdgeQuadricF64, allowed: f64) -> DVec3;
 
-    /// Returns the best place on the line through the first end along the surface's normal,
-    /// relative to the middle of the edge: the first end itself unless the volume is preserved.
-    fn optimum_along_normal(quadric: &EdgeQuadricF64, _end0: &Vertex, _allowed: f64) -> DVec3 {
-        -quadric.half
-    }
-
     /// Returns the quadric of the new vertex, before any vertex is changed. Also updates the
     /// boundary edges that move with the new vertex.
     fn merged_quadric(
@@ -152,12 +127,6 @@ pub(crate) const VOLUME_SHARE: f64 = 0.5;
 /// city at 10 %, in % of the diagonal: 12 .199, 5.98, .161, 4.2; 3 .078, 2.3, .150, 3.0; 1 .091,
 /// 1.9, .169, 2.3; .3 .104, 1.4, .184, 2.4.
 pub(crate) const VANISHING: f32 = 3.0;
-
-/// Returns the factor on the cost of an edge over which a seam gives way, as if everything moved
-/// [`SEAM_PRICE`] times farther.
-pub(crate) fn seam_price<M: Metric>() -> f32 {
-    SEAM_PRICE.powi(M::METHOD.cost_power())
-}
 
 /// Returns the quadrics of eight edges from those of their ends.
 #[inline(always)]

@@ -6,14 +6,15 @@ use crate::kernel::attributes::AttributeModel;
 use crate::kernel::collapse::{Ends, Mobility};
 use crate::kernel::mesh::local_frame::Frame;
 use crate::kernel::mesh::one_ring::is_seam;
+use crate::kernel::mesh::vertex::VertexFlags;
+use crate::kernel::metric::Metric;
 use crate::kernel::metric::edge_quadric::EdgeSide;
 use crate::kernel::metric::swept_volume::SweptVolume;
-use crate::kernel::metric::{Metric, seam_price};
 use crate::kernel::partition::{Partition, Whole};
 use crate::kernel::schedule::edge_costs::costs;
 use crate::kernel::setup::build_rings::Fans;
 use crate::kernel::setup::vertex_order::Order;
-use crate::options::{AttributeWeights, Topology};
+use crate::options::AttributeWeights;
 
 /// A mesh with a texture cut in two across. Each half has its own wedges where they meet.
 pub(in crate::kernel) fn halved(mut mesh: Mesh) -> Mesh {
@@ -96,12 +97,12 @@ fn octants(mesh: Mesh) -> Mesh {
 
 /// Simplifies, and compares all quadrics with those built anew from the faces that are left.
 fn check_quadrics(mesh: &Mesh, faces: usize) {
-    check_quadrics_with(mesh, faces, SeamRelease::Never);
+    check_quadrics_with(mesh, faces, true);
 }
 
-fn check_quadrics_with(mesh: &Mesh, faces: usize, release: SeamRelease) {
+fn check_quadrics_with(mesh: &Mesh, faces: usize, seams_hold: bool) {
     let (order, fans, mut wedges) = start::<2>(mesh);
-    wedges.release = release;
+    wedges.seams_hold = seams_hold;
     let numbers = || mesh.faces.iter().map(|face| order.face(face));
     let mut partition = Partition::new(fans.store, wedges, fans.faces, Whole::default());
     partition.run(faces, u16::MAX, None, &mut |_| ());
@@ -119,7 +120,7 @@ fn check_quadrics_with(mesh: &Mesh, faces: usize, release: SeamRelease) {
             .collect(),
         merged_into: Vec::new(),
         seams: SeamSectors::default(),
-        release: SeamRelease::Never,
+        seams_hold: true,
         charts: Vec::new(),
         layers: AttributeLayers::new(
             mesh,
@@ -172,13 +173,12 @@ fn check_quadrics_with(mesh: &Mesh, faces: usize, release: SeamRelease) {
 fn cost_of(vertices: &Vertices, wedges: &WedgeQuadrics<'_, SweptVolume, 5>, u: u32, v: u32) -> f64 {
     let Ok(ends) = wedges.orient(vertices, u, v) else { return f64::INFINITY };
     let (end0, end1) = (vertices.get(ends.v0), vertices.get(ends.v1));
-    let price = if ends.cuts_seam { seam_price::<SweptVolume>() } else { 1.0 };
     if !ends.is_free() {
         let cost = SweptVolume::cost_onto(end0, end1) + wedges.cost_onto(vertices, &ends);
-        return (cost * price).into();
+        return cost.into();
     }
     let whole = wedges.with_attributes(&ends, SweptVolume::along(end0, end1));
-    whole.at(SweptVolume::optimum(&whole, f64::INFINITY)) * f64::from(price)
+    whole.at(SweptVolume::optimum(&whole, f64::INFINITY))
 }
 
 #[test]
@@ -188,9 +188,11 @@ fn eight_edges_at_seams_cost_the_same_as_one_by_one() {
     let charts = octants(samples::torus(400));
     for mesh in [halved(samples::knot(3000)), faceted(samples::torus(1000)), grid, charts] {
         let (_, mut fans, mut wedges) = start::<5>(&mesh);
-        wedges.release = SeamRelease::Done;
-        let vertices = fans.store.whole();
-        let is_cut = |v, w| wedges.orient(&vertices, v, w).is_ok_and(|ends| ends.cuts_seam);
+        wedges.seams_hold = false;
+        let mut vertices = fans.store.whole();
+        for v in vertices.ids().step_by(7) {
+            vertices.get_mut(v).flags.set(VertexFlags::PINNED);
+        }
         let mut all = Vec::new();
         for v in vertices.ids().filter(|&v| is_seam(&vertices, v)) {
             for &w in vertices.neighbours(v).iter().filter(|&&w| w != GHOST) {
@@ -204,7 +206,6 @@ fn eight_edges_at_seams_cost_the_same_as_one_by_one() {
                 // The pull to the middle is computed differently, and floats round.
                 let apart = (f64::from(found) - wanted).abs();
                 let weight = wedges.quadric(v).weight() + wedges.quadric(w).weight();
-                let weight = weight * if is_cut(v, w) { seam_price::<SweptVolume>() } else { 1.0 };
                 let is_near = apart < 1e-2 * wanted + f64::from(1e-3 * weight);
                 assert!(is_near || f64::from(found) == wanted, "{found} {wanted}");
                 all.push((v, w, found));
@@ -272,10 +273,10 @@ fn quadrics_and_sectors_match_the_faces_that_are_left() {
 
 #[test]
 fn quadrics_and_sectors_match_where_seams_give_way() {
-    for release in [SeamRelease::new(Topology::Free), SeamRelease::Done] {
-        check_quadrics_with(&octants(samples::torus(1000)), 80, release);
-        check_quadrics_with(&octants(samples::sphere(600)), 24, release);
-        check_quadrics_with(&octants(meshlod_fixtures::grid(20)), 8, release);
-        check_quadrics_with(&with_flat_normals(octants(samples::sphere(600))), 30, release);
+    for seams_hold in [true, false] {
+        check_quadrics_with(&octants(samples::torus(1000)), 80, seams_hold);
+        check_quadrics_with(&octants(samples::sphere(600)), 24, seams_hold);
+        check_quadrics_with(&octants(meshlod_fixtures::grid(20)), 8, seams_hold);
+        check_quadrics_with(&with_flat_normals(octants(samples::sphere(600))), 30, seams_hold);
     }
 }
