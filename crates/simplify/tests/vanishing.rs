@@ -10,8 +10,8 @@ use meshlod_fixtures::shape::volume;
 use meshlod_mesh::{Lock, Locks, Mesh, VertexId, face_components};
 use meshlod_samples as samples;
 use meshlod_simplify::{
-    History, Method, Options, Progressive, Report, Simplifier, SimplifyError, Target, Topology,
-    contract_to,
+    History, Method, Options, Progressive, Refusal, Report, Simplifier, SimplifyError, Target,
+    Topology, contract_to,
 };
 
 use crate::common::kernel_methods;
@@ -238,6 +238,31 @@ fn what_a_part_owes_is_repaid_by_that_part() {
         for (part, (before, after)) in before.iter().zip(&after).enumerate() {
             assert!((before - after).abs() < rounding, "{seed}, {part}: {before} to {after}");
         }
+    }
+}
+
+#[test]
+fn where_parts_are_at_their_floor_the_rest_does_not_pay_for_them() {
+    // A large cube, and a row of small ones beside it.
+    let place = |mesh: Mesh, size: f64, aside: f64| {
+        let mut mesh = mesh;
+        mesh.positions.iter_mut().for_each(|p| *p = p.map(|x| size * x + aside));
+        mesh
+    };
+    let mut mesh = place(fixtures::cube(), 10.0, 0.0);
+    let large = mesh.positions.clone();
+    for i in 0..30 {
+        let small = place(fixtures::cube(), 0.5, 12.0 + f64::from(i));
+        let start = mesh.positions.len() as u32;
+        mesh.positions.extend(small.positions);
+        mesh.faces.extend(small.faces.iter().map(|face| face.map(|v| VertexId(v.0 + start))));
+    }
+    for method in kernel_methods() {
+        let options = Options { method, topology: Topology::Keep, ..Options::default() };
+        let (level, report) = run(&mesh, &options, Target::Faces(125));
+        assert!(!report.reached && report.refusals.count(Refusal::Disproportion) > 0);
+        assert_eq!(level.faces.len(), 12 + 30 * 4, "{}", method.name());
+        assert!(large.iter().all(|corner| level.positions.contains(corner)));
     }
 }
 
