@@ -4,13 +4,14 @@ mod common;
 
 use std::collections::HashSet;
 
+use glam::DVec3;
 use meshlod_fixtures as fixtures;
 use meshlod_fixtures::shape::volume;
 use meshlod_mesh::{Lock, Locks, Mesh, VertexId, face_components};
 use meshlod_samples as samples;
 use meshlod_simplify::{
-    History, Method, Options, Progressive, Report, Simplifier, SimplifyError, Target, Topology,
-    contract_to,
+    History, Method, Options, Progressive, Refusal, Report, Simplifier, SimplifyError, Target,
+    Topology, contract_to,
 };
 
 use crate::common::kernel_methods;
@@ -205,7 +206,63 @@ fn the_report_counts_the_volume_that_vanished() {
         let lost = volume(&mesh) - volume(&level);
         // The kernel counts from positions in floats.
         let off = if method.runs_in_kernel() { 1e-6 } else { 1e-12 };
-        assert!((report.volume.running_sum - lost).abs() < off, "{}", method.name());
+        let counted = report.volume.running_sum + report.volume.vanished;
+        assert!((counted - lost).abs() < off, "{}", method.name());
+        assert!(report.volume.vanished > 0.0, "{}", method.name());
+    }
+}
+
+/// Six times the volume of each component, in the order of their first faces.
+fn volumes(mesh: &Mesh) -> Vec<f64> {
+    let (of_face, count) = face_components(&mesh.faces, mesh.positions.len());
+    let mut volumes = vec![0.0; count];
+    for (face, of) in mesh.faces.iter().zip(of_face) {
+        let [a, b, c] = face.map(|v| DVec3::from(mesh.positions[v.index()]));
+        volumes[of as usize] += a.cross(b).dot(c);
+    }
+    volumes
+}
+
+#[test]
+fn what_a_part_owes_is_repaid_by_that_part() {
+    for seed in 1..=5 {
+        let mesh = samples::parts(1000, seed);
+        let options = Options { topology: Topology::Keep, ..Options::default() };
+        let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
+        let mut loss = simplifier.run(Target::Ratio(0.1), &mut ()).unwrap().volume;
+        let level = simplifier.settled_level(&mut loss);
+        let (before, after) = (volumes(&mesh), volumes(&level));
+        let rounding = 3e-7 * before.iter().sum::<f64>();
+        assert!(loss.owed > 10.0 * rounding, "{seed}: a case without debts shows nothing");
+        assert_eq!(before.len(), after.len());
+        for (part, (before, after)) in before.iter().zip(&after).enumerate() {
+            assert!((before - after).abs() < rounding, "{seed}, {part}: {before} to {after}");
+        }
+    }
+}
+
+#[test]
+fn where_parts_are_at_their_floor_the_rest_does_not_pay_for_them() {
+    // A large cube, and a row of small ones beside it.
+    let place = |mesh: Mesh, size: f64, aside: f64| {
+        let mut mesh = mesh;
+        mesh.positions.iter_mut().for_each(|p| *p = p.map(|x| size * x + aside));
+        mesh
+    };
+    let mut mesh = place(fixtures::cube(), 10.0, 0.0);
+    let large = mesh.positions.clone();
+    for i in 0..30 {
+        let small = place(fixtures::cube(), 0.5, 12.0 + f64::from(i));
+        let start = mesh.positions.len() as u32;
+        mesh.positions.extend(small.positions);
+        mesh.faces.extend(small.faces.iter().map(|face| face.map(|v| VertexId(v.0 + start))));
+    }
+    for method in kernel_methods() {
+        let options = Options { method, topology: Topology::Keep, ..Options::default() };
+        let (level, report) = run(&mesh, &options, Target::Faces(125));
+        assert!(!report.reached && report.refusals.count(Refusal::Disproportion) > 0);
+        assert_eq!(level.faces.len(), 12 + 30 * 4, "{}", method.name());
+        assert!(large.iter().all(|corner| level.positions.contains(corner)));
     }
 }
 

@@ -102,16 +102,19 @@ pub fn mesh_notes(report: &Report) -> String {
 /// Formats the line with the volume that a run has lost, and what would restore it.
 pub fn lost_volume(lost: &LostVolume) -> String {
     let part = |relative: f64| percent(100.0 * relative);
-    let vanished = match lost.vanished {
-        gone if gone < UNSEEN => String::new(),
-        gone => format!(", {} in parts that vanished", part(gone)),
-    };
     let sign = if lost.part > 0.0 { "-" } else { "+" };
+    let of_level = format!("{sign}{}", part(lost.part.abs()));
+    let vanished = format!("{} in parts that vanished", part(lost.vanished));
+    let all = match (lost.part.abs() < UNSEEN, lost.vanished < UNSEEN) {
+        (true, false) => vanished,
+        (false, false) => format!("{of_level}, and {vanished}"),
+        _ => of_level,
+    };
     let advice = match lost.is_restorable {
         true => "--exact-volume restores it",
         false => "more than --exact-volume can restore",
     };
-    format!("volume: {sign}{}{vanished}; {advice}\n", part(lost.part.abs()))
+    format!("volume: {all}; {advice}\n")
 }
 
 /// Formats the line with the faces of flats that went, and those that the shape needs; empty if
@@ -145,7 +148,7 @@ mod tests {
         let stuck = LostVolume { is_restorable: false, ..lost };
         assert_eq!(lost_volume(&stuck), "volume: -1%; more than --exact-volume can restore\n");
         let vanished = LostVolume { vanished: 0.005, ..lost };
-        let expected = "volume: -1%, 0.5% in parts that vanished; --exact-volume restores it\n";
+        let expected = "volume: -1%, and 0.5% in parts that vanished; --exact-volume restores it\n";
         assert_eq!(lost_volume(&vanished), expected);
     }
 }

@@ -15,7 +15,7 @@ use crate::surface::{Flags, Placed, Surface};
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct VolumeLoss {
     /// Volume before minus volume after, summed over all contractions with a closed ring, in cubic
-    /// model units: table 2 of [LJ05].
+    /// model units: table 2 of [LJ05]. Components that vanish are not in it.
     pub running_sum: f64,
     /// Part of the sum still owed by [`Method::LindstromTurk`](crate::Method::LindstromTurk) when
     /// contractions end, in cubic model units: a place that conserves the volume would have spoiled
@@ -36,7 +36,7 @@ pub struct VolumeLoss {
     /// leaves them out.
     pub at_boundaries: Unconserved,
     /// Contractions forced to one position by a lock, a tie or a seam, and closed components that
-    /// were removed as a whole, each counted once. The sum includes them. At a seam, methods that
+    /// were removed as a whole, each counted once. The sum includes the contractions. At a seam, methods that
     /// conserve the volume move the vertex along the surface's normal, and are forced only where
     /// that would fold the surface.
     pub held: Unconserved,
@@ -53,8 +53,8 @@ pub struct Unconserved {
 }
 
 impl VolumeLoss {
-    /// Returns the volume that the level has lost, in cubic model units: the sum without what the
-    /// level has been repaid.
+    /// Returns the volume that the parts in the level have lost, in cubic model units: the sum
+    /// without what the level has been repaid.
     pub fn lost(&self) -> f64 {
         self.running_sum - self.repaid
     }
@@ -132,9 +132,7 @@ impl Observe for VolumeLoss {
                     let [a, b, c] = corners(face).map(|corner| corner - origin);
                     a.cross(b).dot(c)
                 };
-                let volume = faces.iter().map(sixfold).sum::<f64>() / 6.0;
-                self.running_sum += volume;
-                self.vanished += volume.abs();
+                self.vanished += (faces.iter().map(sixfold).sum::<f64>() / 6.0).abs();
                 &mut self.held
             }
         };

@@ -73,6 +73,9 @@ const RUIN: f32 = 1.0 / 3.0;
 /// Multiple of the largest distance so far by which a single step may always move the surface.
 const LEAP: f32 = 3.0;
 
+/// Fraction of the diagonal by which a single step may move the surface at any price.
+const SEEN: f32 = 0.02;
+
 /// A part of the surface being simplified, with its queue and its attributes.
 pub(crate) struct CollapseLoop<'v, A> {
     pub(crate) vertices: Vertices<'v>,
@@ -414,15 +417,15 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         let placed = self.place(v, target, front)?;
         let mut moved = placed.moved(&self.vertices);
         let PlacedEdge { priced: PricedEdge { ends, ref quadric, bucket, .. }, now, .. } = placed;
-        let Self { vertices, model, edge_ring, deferral, room, .. } = self;
         let refused = |refusal| Rejection::Refused(refusal, bucket);
-        if let Some(bucket) = deferral.wait(now, moved, front) {
+        if let Some(bucket) = self.deferral.wait(now, moved, front) {
             return Err(Rejection::Deferred(bucket));
         }
         let collapse = placed.collapse();
-        if is_out_of_proportion(now, self.error as f32, *room) {
+        if is_seen(now, self.room) && self.is_ruin(now, front) {
             return Err(refused(Refusal::Disproportion));
         }
+        let Self { vertices, model, edge_ring, .. } = self;
         let flips = model.preview(vertices, edge_ring, &collapse);
         let later = bucket.saturating_add(UV_FLIP_DELAY).min(last_bucket());
         if flips && front < later {
@@ -434,6 +437,32 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         }
         self.commit(&collapse, quadric, moved, front);
         Ok(ends.v0)
+    }
+
+    /// Returns true if a step would ruin the shape: it is out of proportion, or while most of the
+    /// surface can go no further, the rest would pay for it at any price.
+    ///
+    /// Where components may still vanish, nothing is stuck, and within an error bound that decides.
+    #[cold]
+    fn is_ruin(&mut self, now: f32, front: u16) -> bool {
+        if is_out_of_proportion(now, self.error as f32, self.room) {
+            return true;
+        }
+        if self.within.is_some() || self.next_component().is_some() {
+            return false;
+        }
+        let Self { vertices, deferral, live_faces, .. } = self;
+        let is_stuck = || {
+            let (mut live, mut stuck) = (0, 0);
+            for vertex in vertices.all.iter() {
+                if vertex.len > 0 && !vertex.flags.any(VertexFlags::DEAD) {
+                    live += 1;
+                    stuck += usize::from(vertex.bucket == NONE);
+                }
+            }
+            2 * stuck > live
+        };
+        deferral.is_beyond_price((front, *live_faces), is_stuck)
     }
 
     /// Contracts an edge that has been placed and checked before, and has still the same ring.
@@ -468,6 +497,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         let lost = quadric.level - quadric.normal.dot(displacement.as_dvec3() - quadric.half);
         let is_open = self.edge_ring.is_open(&self.vertices, v0);
         self.volume.add(place, lost, is_open, collapse.is_held());
+        self.deferral.pay(front);
         let Self { vertices, edge_ring, debts, .. } = self;
         let around = edge_ring.ids().iter().copied().chain([v0, v1]);
         let owed = debts.take(around.map(|v| vertices.slot(v)));
@@ -551,6 +581,13 @@ pub(crate) fn within<M: Metric>(room: Vec3, place: DVec3) -> Vec3 {
 #[inline(always)]
 pub(crate) fn is_out_of_proportion(now: f32, largest: f32, room: Vec3) -> bool {
     now > RUIN * RUIN * 4.0 * room.length_squared() && now > LEAP * LEAP * largest
+}
+
+/// Returns true if a step that moves the surface by this squared distance changes the shape as a
+/// whole.
+#[inline(always)]
+fn is_seen(now: f32, room: Vec3) -> bool {
+    now > SEEN * SEEN * 4.0 * room.length_squared()
 }
 
 /// SIMD task of [`CollapseLoop::run`].

@@ -20,7 +20,7 @@ use crate::kernel::mesh::one_ring::VertexStore;
 use crate::kernel::mesh::vertex::{NO_VERTEX, Vertex, VertexFlags};
 use crate::kernel::metric::Metric;
 use crate::kernel::partition::Partition;
-use crate::kernel::repay::{Debt, repay};
+use crate::kernel::repay::{Debt, Means, repay};
 use crate::kernel::retrace::{FarFace, Retrace};
 use crate::kernel::schedule::bucket_queue::{NONE, bucket, min_cost_in};
 use crate::kernel::setup::vertex_order::{Order, numbers};
@@ -89,6 +89,18 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
         let of_input = self.source.mesh.positions.len() as u32;
         let flags = |v: u32| self.partition.store.all[order.id(VertexId(v)) as usize].flags;
         used.map(|(v, _)| v < of_input && flags(v).any(VertexFlags::HELD)).collect()
+    }
+
+    /// Returns for each of `count` vertices of a level how far contractions have moved the surface
+    /// there, in model units, given the ids of the input vertices.
+    fn moved(&self, ids: &[u32], count: usize) -> Vec<f64> {
+        let (names, mut moved) = (self.names(), vec![0.0_f64; count]);
+        for (v, vertex) in (0..).zip(&self.partition.store.all) {
+            if let Some(of_level) = moved.get_mut(ids[names.input(v).index()] as usize) {
+                *of_level = of_level.max(f64::from(vertex.moved).sqrt() * names.frame.unit);
+            }
+        }
+        moved
     }
 
     /// Returns the factor from the kernel's costs to model units.
@@ -246,7 +258,12 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
             sixfold: sixfold * unit,
         };
         let debts: Vec<Debt> = self.partition.debts().into_iter().map(debt).collect();
-        let sixfold = repay(&mut level, &debts, &self.held(&ids));
+        if debts.is_empty() {
+            return (level, 0.0);
+        }
+        let means =
+            Means { held: &self.held(&ids), moved: &self.moved(&ids, level.positions.len()) };
+        let sixfold = repay(&mut level, &debts, &means);
         (level, sixfold / 6.0)
     }
 

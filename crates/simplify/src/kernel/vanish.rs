@@ -95,10 +95,9 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
     /// Merges all vertices of a component into one without faces.
     pub(crate) fn vanish(&mut self, component: u32, faces: &[[u32; 3]]) {
         let left = self.left_of(component);
-        self.count_volume(&left, faces);
+        let owed = self.debts.take(left.iter().map(|&v| self.vertices.slot(v)));
+        self.count_volume(&left, faces, owed);
         self.live_faces -= faces.len();
-        // What has vanished owes nothing.
-        self.debts.take(left.iter().map(|&v| self.vertices.slot(v)));
         for &v in &left {
             let vertex = self.vertices.get_mut(v);
             vertex.bucket = NONE;
@@ -116,7 +115,8 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         }
     }
 
-    fn count_volume(&mut self, left: &[u32], faces: &[[u32; 3]]) {
+    /// Counts the volume of a component that vanishes. What it owes is no loss of those that stay.
+    fn count_volume(&mut self, left: &[u32], faces: &[[u32; 3]], owed: f64) {
         let place = |v: u32| self.vertices.get(v).place();
         let is_open = left.iter().any(|&v| self.vertices.neighbours(v).contains(&GHOST));
         let origin: DVec3 = left.first().map_or(Vec3::ZERO, |&v| place(v)).into();
@@ -124,8 +124,8 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
             let [a, b, c] = face.map(|v| place(v).as_dvec3() - origin);
             a.cross(b).dot(c)
         };
-        let sixfold = faces.iter().map(sixfold).sum();
+        let sixfold = faces.iter().map(sixfold).sum::<f64>();
         let places: Vec<Vec3> = left.iter().map(|&v| place(v)).collect();
-        self.volume.add_component(&places, sixfold, is_open);
+        self.volume.add_component(&places, [sixfold, owed], is_open);
     }
 }

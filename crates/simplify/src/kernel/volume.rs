@@ -110,16 +110,22 @@ impl VolumeTally {
         }
     }
 
-    /// Counts a vanished component with these vertices and a sixth of `sixfold` as its volume.
-    pub(crate) fn add_component(&mut self, places: &[Vec3], sixfold: f64, is_open: bool) {
+    /// Counts a vanished component with these vertices and a sixth of `sixfold` as its volume,
+    /// beside a sixth of what it owes.
+    pub(crate) fn add_component(
+        &mut self,
+        places: &[Vec3],
+        [sixfold, owed]: [f64; 2],
+        is_open: bool,
+    ) {
         let kind = if is_open { &mut self.open } else { &mut self.held };
         kind.contractions += 1;
         for &place in places {
             (kind.min, kind.max) = (kind.min.min(place), kind.max.max(place));
         }
+        self.sixfold -= owed;
         if !is_open {
-            self.sixfold += sixfold;
-            self.vanished += sixfold.abs();
+            self.vanished += (sixfold + owed).abs();
         }
     }
 

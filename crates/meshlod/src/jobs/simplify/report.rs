@@ -45,7 +45,7 @@ pub struct SimplifyReport {
 /// Volume that a method which conserves it has lost in closed parts, as parts of that of the input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LostVolume {
-    /// Lost part; negative if the volume has grown.
+    /// What the components in the level have lost; negative if their volume has grown.
     pub part: f64,
     /// Part that was in components that vanished.
     pub vanished: f64,
@@ -63,7 +63,7 @@ impl LostVolume {
         input: &Scene,
         (ready, level): (&ConditionedScene<'_>, &[Mesh]),
     ) -> Option<Self> {
-        let lost = report.volume.lost().abs();
+        let lost = report.volume.lost().abs() + report.volume.vanished;
         // Most runs lose next to nothing, and need no volume of the input.
         if !report.method.conserves_volume()
             || lost < 1e-12 * world_bounds(input).diagonal().powi(3)
@@ -80,7 +80,7 @@ impl LostVolume {
     ) -> Option<Self> {
         let [part, vanished] = [loss.lost(), loss.vanished].map(|lost| lost / volume);
         // Without a closed part there is nothing to compare with.
-        let is_seen = part.is_finite() && part.abs() >= UNSEEN;
+        let is_seen = part.is_finite() && part.abs().max(vanished) >= UNSEEN;
         is_seen.then(|| Self { part, vanished, is_restorable: can_restore() })
     }
 }
@@ -112,5 +112,8 @@ mod tests {
         assert!((stuck.part - 0.01).abs() < 1e-12 && !stuck.is_restorable, "{stuck:?}");
         let repaid = VolumeLoss { repaid: 0.03, ..loss };
         assert_eq!(LostVolume::relative(&repaid, 2.0, || true), None);
+        let gone = VolumeLoss { vanished: 0.5, ..repaid };
+        let gone = LostVolume::relative(&gone, 2.0, || true).unwrap();
+        assert_eq!((gone.part, gone.vanished), (0.0, 0.25), "what vanished is counted apart");
     }
 }

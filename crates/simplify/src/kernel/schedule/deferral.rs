@@ -25,12 +25,24 @@ const NEGLIGIBLE: f32 = 1e-5;
 /// Minimum delay in buckets: one octave.
 const MIN_DELAY: u16 = 4;
 
+/// Largest rise of the front after most of the surface could go no further, in buckets.
+const LAST_RISE: u16 = 16;
+
+/// Part of the faces that may go before it is counted again what can go no further.
+const RECOUNT: usize = 64;
+
 /// Usual squared distance at the front, in the frame's units.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Deferral {
     usual: f32,
     /// Highest front so far. Edges that are retried come before it.
     front: u16,
+    /// Highest front of a contraction that was made.
+    paid: u16,
+    /// What `paid` was when most of the surface was first found to go no further.
+    stuck: Option<u16>,
+    /// Number of faces when that was last looked at; 0 before.
+    looked_at: usize,
 }
 
 impl Deferral {
@@ -65,10 +77,34 @@ impl Deferral {
         if excess > 1.0 { later(self.front.max(bucket), excess) } else { None }
     }
 
+    /// Notes that a contraction has been made at a front.
+    #[inline(always)]
+    pub(crate) fn pay(&mut self, front: u16) {
+        self.paid = self.paid.max(front);
+    }
+
+    /// Returns true if most of the surface can go no further, as `is_stuck` finds out, and what can
+    /// costs so much more since that it would pay for all of it.
+    #[cold]
+    pub(crate) fn is_beyond_price(
+        &mut self,
+        (front, faces): (u16, usize),
+        is_stuck: impl FnOnce() -> bool,
+    ) -> bool {
+        if self.looked_at == 0 || faces + self.looked_at / RECOUNT < self.looked_at {
+            self.looked_at = faces;
+            self.stuck = is_stuck().then(|| self.stuck.unwrap_or(self.paid));
+        }
+        self.stuck.is_some_and(|stuck| front > stuck.saturating_add(LAST_RISE))
+    }
+
     /// Continues from the farther of two states.
     pub(crate) fn merge(&mut self, other: &Self) {
         self.usual = self.usual.max(other.usual);
         self.front = self.front.max(other.front);
+        self.paid = self.paid.max(other.paid);
+        // The whole is looked at anew.
+        (self.stuck, self.looked_at) = (None, 0);
     }
 }
 
