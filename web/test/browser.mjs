@@ -1,5 +1,5 @@
 // In Chromium: a file that streams from a server is shown, without a crack, and disposed of; then with
-// the package and the file at another origin.
+// the package and the file at another origin, and with vertices that move.
 // Usage: node test/browser.mjs FILE.mlod [CHROMIUM]; after `npm run build`.
 
 import assert from "node:assert/strict";
@@ -68,11 +68,16 @@ async function show(query) {
     assert.ok(result.faces[1] > result.faces[0], "closer is finer");
     assert.ok(result.covered > 0.02 && result.hit, "the mesh is drawn, and rays hit it");
     assert.deepEqual(result.holes, [0, 0, 0], "pixels of the background inside the silhouette");
+    const [holes, moments] = result.moments;
+    assert.ok(holes <= moments, "no more than tunnels before the level is there");
+    return result;
 }
 
 try {
     await show("");
     await show(`?from=${encodeURIComponent(other)}`);
+    const { moments, kind } = await show("?morph=500");
+    assert.ok(moments[1] > 3 || kind === "height field", "pictures of vertices on their way");
 } finally {
     await browser.close();
     servers.forEach((server) => server.close());

@@ -17,6 +17,11 @@ export interface StreamLimits {
     request?: number;
     /** Milliseconds of work between two looks at what is asked; 8 by default. */
     slice?: number;
+    /**
+     * Milliseconds for which vertices move where the level changes; 0 by default: changes are seen
+     * at once. Height fields do not move.
+     */
+    morph?: number;
 }
 
 /** To the worker. */
