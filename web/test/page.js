@@ -53,7 +53,7 @@ async function run() {
         const isDone = () => mesh.progress?.done && mesh.progress.missing === 0;
         for (let frame = 0, still = 0; frame < 600 && still < 10; frame++) {
             mesh.update(camera, renderer); // A face that is seen from behind is no crack.
-            for (const material of mesh.material) material.side = THREE.DoubleSide;
+            mesh.material.forEach((material) => (material.side = THREE.DoubleSide));
             renderer.render(scene, camera);
             if (!isDone() && frame % 4 === 3) {
                 moments[0] += look(renderer.getContext(), SIZE, SIZE).holes;
@@ -66,7 +66,6 @@ async function run() {
         looks.push(look(renderer.getContext(), SIZE, SIZE));
     }
     const hits = hitsOf(mesh, camera);
-    const holes = looks.map((look) => look.holes);
     const covered = looks[1].covered / SIZE ** 2;
     const materials = mesh.material.map(({ type, map }) => (map ? `${type} map` : type));
     const copy = mesh.clone();
@@ -78,7 +77,7 @@ async function run() {
         faces,
         bytes: mesh.progress.bytes,
         covered,
-        holes,
+        holes: looks.map((look) => look.holes),
         moments,
         hit: hits > 0,
         materials,

@@ -32,6 +32,7 @@ function infoOf({ header }: Model, layers: FileInfo["layers"]): FileInfo {
         diagonal,
         length,
         chunks: chunks.length,
+        hasScene: false,
         layers,
         materials: null,
     };

@@ -3,7 +3,7 @@
 import type { Query } from "../cut/query.ts";
 import type { LayerKind } from "../wedges/layer.ts";
 import type { GeometryPatch } from "./geometry.ts";
-import type { ScenePart, Slot } from "../scene/head.ts";
+import type { SceneHead, ScenePart } from "../scene/head.ts";
 import type { Access } from "./source.ts";
 
 /** A file to open: its address, or its bytes. */
@@ -47,18 +47,15 @@ export interface FileInfo {
     /** Length of the file, and its number of chunks or parts. */
     length: number;
     chunks: number;
+    /** True if there are nodes, materials or images. */
+    hasScene: boolean;
     layers: LayerInfo[];
     /** Names of material labels, by which patches have their parts. */
     materials: readonly string[] | null;
 }
 
 /** The scene of a file, if it has one. */
-export interface SceneInfo {
-    isGltf: boolean;
-    document: string;
-    slots: Slot[];
-    images: number;
-}
+export type SceneInfo = SceneHead;
 
 /** How far a stream has come. */
 export interface Progress {

@@ -136,6 +136,7 @@ export class Session {
                 diagonal: header.diagonal,
                 length: header.length,
                 chunks: header.chunks.length,
+                hasScene: header.resources.length > 0,
                 layers: layersOf(model),
                 materials: model.wedges?.materials ?? null,
             },
@@ -159,6 +160,7 @@ export class Session {
                 diagonal: model.frame.unit,
                 length,
                 chunks: first.allParts,
+                hasScene: false,
                 layers: [],
                 materials: null,
             },
@@ -329,8 +331,7 @@ export class Session {
         const number = this.nextResource++;
         if (number === 0) {
             this.head = readHead(bytes);
-            const { isGltf, document, slots, images } = this.head;
-            this.post({ kind: "scene", scene: { isGltf, document, slots, images } });
+            this.post({ kind: "scene", scene: this.head });
         } else {
             const part = this.head?.parts[number - 1];
             if (part) this.post({ kind: "part", part, bytes });
