@@ -301,9 +301,14 @@ export class Session {
     }
 
     private add(levels: Levels, chunks: (readonly [number, Uint8Array])[]): void {
-        const isNew = levels.add(chunks, this.query);
-        if (isNew) this.show(levels.cut, this.geometryOf(levels.cut.model));
-        else this.startStepping();
+        try {
+            levels.add(chunks, this.query);
+        } finally {
+            // The levels before are another cut, too, if a chunk has been damaged.
+            const { cut } = levels;
+            if (cut !== this.cut) this.show(cut, this.geometryOf(cut.model));
+            else this.startStepping();
+        }
     }
 
     /** Returns the first chunks that lie close together, as far as one request goes. */
