@@ -4,7 +4,14 @@
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { copyFileSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import {
+    copyFileSync,
+    mkdtempSync,
+    readFileSync,
+    readdirSync,
+    rmSync,
+    writeFileSync,
+} from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 
@@ -23,7 +30,13 @@ try {
     });
     const [{ filename, files }] = JSON.parse(packed.slice(packed.lastIndexOf("\n[") + 1));
     const names = files.map(({ path }) => path);
-    for (const name of ["LICENSE-APACHE", "LICENSE-MIT", "README.md", "dist/three/index.d.ts", "examples/view.js"])
+    for (const name of [
+        "LICENSE-APACHE",
+        "LICENSE-MIT",
+        "README.md",
+        "dist/three/index.d.ts",
+        "examples/view.js",
+    ])
         assert.ok(names.includes(name), `${name} is in the package`);
     const manifest = { private: true, type: "module" };
     writeFileSync(join(folder, "package.json"), JSON.stringify(manifest));

@@ -26,7 +26,7 @@ try {
         assert.deepEqual(errors, []);
         assert.equal(result.error, null);
         assert.ok(result.covered > 4000, "something is drawn");
-        assert.ok(result.other < 0.03 * result.covered, `${path} looks like ${paths[0]}`);
+        assert.ok(result.other < 0.01 * result.covered, `${path} looks like ${paths[0]}`);
     }
 } finally {
     await browser.close();
