@@ -6,8 +6,13 @@ import { MlodLoader } from "meshlod/three";
 
 function Model({ url, pixels = 1, ...props }) {
     const mesh = useLoader(MlodLoader, url); // suspends until the coarsest level is there
+    const { center, diagonal } = mesh.info;
     useFrame(({ camera, gl }) => mesh.update(camera, gl));
-    return <primitive object={mesh} pixels={pixels} {...props} />;
+    return (
+        <group scale={2 / diagonal} {...props}>
+            <primitive object={mesh} pixels={pixels} position={center.map((x) => -x)} />
+        </group>
+    );
 }
 
 createRoot(document.getElementById("root")).render(

@@ -10,6 +10,9 @@ import type { Drawn } from "./renderer.ts";
 import { Surface } from "./surface.ts";
 import { Textures } from "./textures.ts";
 
+/** Milliseconds in which vertices move to another level. */
+const MORPH = 200;
+
 /** Figures of what is shown. */
 export interface Figures {
     /** Bytes read so far, and of the whole file. */
@@ -67,6 +70,7 @@ export async function openLevels(
         else early.push(run);
     };
     const options: StreamOptions = {
+        morph: MORPH,
         signal: watcher.signal,
         onScene: (scene) => then(({ drawn }) => wear(drawn, scene)),
         onPart: ({ kind, image }, bytes) =>

@@ -120,6 +120,14 @@ export class Model {
         return NONE;
     }
 
+    /** Returns the number in the file of a node here. */
+    nodeInFile(here: number): number {
+        if (here < this.roots) return here;
+        const update = this.creator(here);
+        const run = this.runs.find((run) => update < run.here + run.count);
+        return run ? here + 2 * (run.inFile - run.here) : NONE;
+    }
+
     /** Returns the update that created a node that is no root. */
     creator(node: number): number {
         return (node - this.roots) >>> 1;

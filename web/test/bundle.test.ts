@@ -14,11 +14,11 @@ const built = join(process.cwd(), "dist/worker.min.js");
 /** As much of a worker as its script needs. */
 interface Scope {
     onmessage?: (message: { data: Request }) => void;
-    postMessage?: (event: Event) => void;
+    postMessage?: (event: Event, transfer: Transferable[]) => void;
 }
 
 /** Asks for all of a file; returns what is told until it is there, but for progress. */
-function eventsOf(file: Uint8Array, start: (hear: (event: Event) => void) => Send) {
+function eventsOf(file: Uint8Array, start: (hear: (event: Event) => void) => Send, morph = 0) {
     return new Promise<Event[]>((resolve) => {
         const events: Event[] = [];
         const send = start((event) => {
@@ -29,7 +29,7 @@ function eventsOf(file: Uint8Array, start: (hear: (event: Event) => void) => Sen
         });
         let isAsked = false;
         // One slice for all, so that patches do not depend on the clock.
-        send({ kind: "open", origin: { bytes: file }, limits: { slice: 1e9 } });
+        send({ kind: "open", origin: { bytes: file }, limits: { slice: 1e9, morph } });
         send({ kind: "query", query: { focus: null, tolerance: 0 } });
         isAsked = true;
     });
@@ -37,11 +37,21 @@ function eventsOf(file: Uint8Array, start: (hear: (event: Event) => void) => Sen
 
 type Send = (request: Request) => void;
 
+/** Loads the script anew, as a worker has one session. */
+async function startBundled(number: number): Promise<(hear: (event: Event) => void) => Send> {
+    const scope = globalThis as unknown as Scope;
+    await import(`${pathToFileURL(built).href}?${number}`);
+    return (hear) => {
+        // As a worker does, which gives away what it transfers.
+        scope.postMessage = (event, transfer) => hear(structuredClone(event, { transfer }));
+        return (data) => scope.onmessage?.({ data });
+    };
+}
+
 test(
     "the bundled worker tells what its sources tell",
     { skip: !existsSync(built) && "it has not been built" },
     async () => {
-        const scope = globalThis as unknown as Scope;
         const damaged = vectorFile();
         damaged[300] ^= 1;
         const names = conformanceNames().filter((name) => name !== "pieces");
@@ -51,14 +61,14 @@ test(
                 const session = new Session(hear);
                 return (request) => session.receive(request);
             });
-            // A worker has one session.
-            await import(`${pathToFileURL(built).href}?${number}`);
-            const bundled = await eventsOf(file, (hear) => {
-                scope.postMessage = hear;
-                return (data) => scope.onmessage?.({ data });
-            });
+            const bundled = await eventsOf(file, await startBundled(number));
+            const moving = await eventsOf(file, await startBundled(number + 0.5), 20);
             assert.ok(own.length > 1);
             assert.deepEqual(bundled, own);
+            // Only the clock says how many pictures of vertices there are on their way.
+            const failures = (events: Event[]) => events.filter(({ kind }) => kind === "failed");
+            assert.deepEqual(failures(moving), failures(own));
+            assert.ok(moving.length >= own.length);
         }
     },
 );

@@ -5,73 +5,11 @@ import type { Query } from "../src/cut/query.ts";
 import { decode } from "../src/decode.ts";
 import { readHeader } from "../src/file/header.ts";
 import { Geometry } from "../src/load/geometry.ts";
-import type { GeometryPatch } from "../src/load/geometry.ts";
 import { Levels } from "../src/load/levels.ts";
 import { Session } from "../src/load/session.ts";
 import { verticesOf } from "../src/load/vertices.ts";
-import { NONE, grown } from "../src/model.ts";
+import { Buffers, assertSame, trianglesOf } from "./buffers.ts";
 import { conformanceFile, conformanceNames, rewriteChecksums, vectorFile } from "./files.ts";
-
-/** Buffers as a renderer keeps them. */
-class Buffers {
-    private values = new Float32Array(0);
-    private index = new Uint32Array(0);
-    private parts: GeometryPatch["parts"] = [];
-
-    constructor(private readonly width: number) {}
-
-    apply(patch: GeometryPatch): void {
-        this.values = grown(this.values, patch.capacity * this.width);
-        this.index = grown(this.index, 3 * patch.triangles);
-        patch.vertices.forEach((vertex, i) => {
-            const values = patch.values.subarray(i * this.width, (i + 1) * this.width);
-            this.values.set(values, vertex * this.width);
-        });
-        patch.places.forEach((place, i) =>
-            this.index.set(patch.index.subarray(3 * i, 3 * i + 3), 3 * place),
-        );
-        this.parts = patch.parts;
-    }
-
-    /** Returns the triangles as sorted texts: the part, and all values of each corner. */
-    triangles(): string[] {
-        const corner = (vertex: number) =>
-            this.values.subarray(vertex * this.width, (vertex + 1) * this.width).join(",");
-        const all = this.parts.flatMap(({ start, count }, part) =>
-            Array.from({ length: count }, (_, i) => {
-                const at = 3 * (start + i);
-                return `${part}: ${[0, 1, 2].map((k) => corner(this.index[at + k])).join(" ")}`;
-            }),
-        );
-        return all.sort();
-    }
-}
-
-/** Returns the triangles of a cut in the same form. */
-function trianglesOf(cut: Cut): string[] {
-    const vertices = verticesOf(cut.model);
-    const { nodes, wedges, slots } = cut.triangles;
-    const row = new Float32Array(vertices.width);
-    const all: string[] = [];
-    for (let at = 0; at < 3 * slots; at += 3) {
-        if (nodes[at] === NONE) continue;
-        const corners = [at, at + 1, at + 2].map((corner) => {
-            vertices.write(nodes[corner], (wedges ?? nodes)[corner], row, 0);
-            return row.join(",");
-        });
-        all.push(`${vertices.partOf((wedges ?? nodes)[at])}: ${corners.join(" ")}`);
-    }
-    return all.sort();
-}
-
-/** A list of differences would take minutes. */
-function assertSame(is: string[], wanted: string[], what: string): void {
-    const at = wanted.findIndex((triangle, i) => triangle !== is[i]);
-    assert.ok(
-        is.length === wanted.length && at < 0,
-        `${what}: ${is.length} of ${wanted.length}, ${at}`,
-    );
-}
 
 const everywhere = (tolerance: number): Query => ({ focus: null, tolerance });
 

@@ -5,7 +5,23 @@ import { look } from "./look.js";
 const SIZE = 256;
 const BACKGROUND = 0xff00ff;
 /** Where the package and the model are: here, or at another origin. */
-const from = new URLSearchParams(location.search).get("from") ?? "";
+const parameters = new URLSearchParams(location.search);
+const from = parameters.get("from") ?? "";
+/** Milliseconds for which vertices move. */
+const morph = Number(parameters.get("morph") ?? 0);
+
+/** Returns how many faces are hit by rays through the middle of the picture. */
+function hitsOf(mesh, camera) {
+    const ray = new THREE.Raycaster();
+    let hits = 0;
+    for (let x = -0.5; x <= 0.5; x += 0.1) {
+        for (let y = -0.5; y <= 0.5; y += 0.1) {
+            ray.setFromCamera(new THREE.Vector2(x, y), camera);
+            hits += ray.intersectObject(mesh).length;
+        }
+    }
+    return hits;
+}
 
 async function run() {
     const renderer = new THREE.WebGLRenderer({ preserveDrawingBuffer: true });
@@ -16,11 +32,15 @@ async function run() {
     scene.add(new THREE.HemisphereLight(0xffffff, 0x888888, 3));
     const camera = new THREE.PerspectiveCamera(45, 1, 0.001, 1e6);
     const { MlodLoader } = await import(`${from}/dist/three/index.js`);
-    const mesh = await new MlodLoader().loadAsync(`${from}/model.mlod`);
+    const loader = new MlodLoader();
+    loader.limits = { morph };
+    const mesh = await loader.loadAsync(`${from}/model.mlod`);
     scene.add(mesh);
     const { center, diagonal } = mesh.info;
     const faces = [];
     const looks = [];
+    // Pixels of holes in pictures before the level is there, and how many such pictures.
+    const moments = [0, 0];
     // From far away, from near, and from near at the finest level.
     for (const [distance, pixels] of [
         [20, 1],
@@ -33,36 +53,32 @@ async function run() {
         const isDone = () => mesh.progress?.done && mesh.progress.missing === 0;
         for (let frame = 0, still = 0; frame < 600 && still < 10; frame++) {
             mesh.update(camera, renderer); // A face that is seen from behind is no crack.
-            for (const material of mesh.material) material.side = THREE.DoubleSide;
+            mesh.material.forEach((material) => (material.side = THREE.DoubleSide));
             renderer.render(scene, camera);
+            if (!isDone() && frame % 4 === 3) {
+                moments[0] += look(renderer.getContext(), SIZE, SIZE).holes;
+                moments[1]++;
+            }
             await new Promise((resolve) => setTimeout(resolve, 16));
             still = isDone() ? still + 1 : 0;
         }
         faces.push(mesh.progress.faces);
         looks.push(look(renderer.getContext(), SIZE, SIZE));
     }
-    const ray = new THREE.Raycaster();
-    let hits = 0;
-    for (let x = -0.5; x <= 0.5; x += 0.1) {
-        for (let y = -0.5; y <= 0.5; y += 0.1) {
-            ray.setFromCamera(new THREE.Vector2(x, y), camera);
-            hits += ray.intersectObject(mesh).length;
-        }
-    }
-    const holes = looks.map((look) => look.holes);
+    const hits = hitsOf(mesh, camera);
     const covered = looks[1].covered / SIZE ** 2;
-    const materials = mesh.material.map(
-        (material) => `${material.type}${material.map ? " map" : ""}`,
-    );
+    const materials = mesh.material.map(({ type, map }) => (map ? `${type} map` : type));
     const copy = mesh.clone();
     mesh.dispose();
     copy.dispose();
     return {
         error: null,
+        kind: mesh.info.kind,
         faces,
         bytes: mesh.progress.bytes,
         covered,
-        holes,
+        holes: looks.map((look) => look.holes),
+        moments,
         hit: hits > 0,
         materials,
     };

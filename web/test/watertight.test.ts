@@ -20,17 +20,9 @@ import { StreamGeometry } from "../src/three/buffers.ts";
 import { borderOf, openEdges, placeOf } from "./edges.js";
 import { UploadedBuffers } from "./fake_gl.ts";
 import { conformanceFile, conformanceNames } from "./files.ts";
+import { randomNumbers } from "./random.ts";
 
 const MOMENTS = 12;
-
-/** Numbers below 1 that are the same in each run. */
-function randomNumbers(seed: number): () => number {
-    let state = seed;
-    return () => {
-        state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
-        return state / 2 ** 32;
-    };
-}
 
 function infoOf({ header }: Model, layers: FileInfo["layers"]): FileInfo {
     const { frame, diagonal, length, chunks } = header;
@@ -40,6 +32,7 @@ function infoOf({ header }: Model, layers: FileInfo["layers"]): FileInfo {
         diagonal,
         length,
         chunks: chunks.length,
+        hasScene: false,
         layers,
         materials: null,
     };

@@ -80,9 +80,11 @@ export class Cut {
      * vertex
      * is inspected as well.
      *
+     * @param refined hears once the cut has been refined and before it is coarsened: triangles that
+     *     the former touched are not among those that are touched in the end
      * @throws RangeError if the query is invalid; the cut is unchanged
      */
-    update(query: Query, limits: Limits = {}): CutChange {
+    update(query: Query, limits: Limits = {}, refined?: () => void): CutChange {
         const { frame } = this.model;
         const refine = new Criterion(query, frame);
         this.keep =
@@ -97,6 +99,10 @@ export class Cut {
         }
         this.inspectPending(meter);
         this.split(meter);
+        if (refined) {
+            refined();
+            this.front.triangles.begin();
+        }
         this.merge(meter);
         const waiting = this.toSplit.length + this.toMerge.length + this.schedule.due.length;
         meter.change.done = waiting === 0 && this.nextUninspected === this.uninspected.length;

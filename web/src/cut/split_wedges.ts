@@ -1,5 +1,6 @@
 /** Wedges of the faces around a vertex that is split or merged. */
 
+import { NONE } from "../model.ts";
 import type { Model } from "../model.ts";
 import { LOST } from "../wedges/split_record.ts";
 import type { SplitRecord } from "../wedges/split_record.ts";
@@ -119,9 +120,22 @@ export class SplitWedges {
 
     /** Returns the wedge of the split node that one of a child becomes when they are merged. */
     merged(child: number, wedge: number): number {
-        const { record, wedges, node } = this;
-        if (record === undefined) return wedges.first[node];
-        const local = record.parent(this.before(child) + wedge - wedges.first[child]);
-        return local === LOST ? wedges.first[node] : wedges.at(node, local);
+        const parent = parentOf(this.model, this.wedges, child, wedge);
+        return parent === NONE ? this.wedges.first[this.node] : parent;
     }
+}
+
+/**
+ * Returns the wedge of the split node that one of a child continues; `NONE` if all its faces are
+ * gone there.
+ */
+export function parentOf(model: Model, wedges: Wedges, child: number, wedge: number): number {
+    const update = model.creator(child);
+    const node = model.parents[update];
+    const first = model.firstChild(update);
+    const record = wedges.records.get(update);
+    if (record === undefined) return wedges.first[node];
+    const before = child === first ? 0 : wedges.countOf(first);
+    const local = record.parent(before + wedge - wedges.first[child]);
+    return local === LOST ? NONE : wedges.at(node, local);
 }

@@ -58,9 +58,9 @@ class Part {
 /** Keeps buffers that show a cut. */
 export class Geometry {
     /** Vertex of each wedge or node, and how many corners use each vertex. */
-    private vertexOf = new Uint32Array(0);
+    protected vertexOf = new Uint32Array(0);
     private uses = new Uint32Array(0);
-    private keys = new Uint32Array(0);
+    protected keys = new Uint32Array(0);
     private readonly unused: number[] = [];
     private vertexCount = 0;
     /** Three vertices of each slot of the cut, its part and its place there. */
@@ -71,16 +71,27 @@ export class Geometry {
     /** True until the first patch. */
     isNew = true;
     /** Vertices and slots that the next patch writes. */
-    private readonly newVertices: [number, number, number][] = [];
+    protected readonly newVertices: [number, number, number][] = [];
     private readonly changed = new Set<number>();
 
-    constructor(private readonly vertices: Vertices) {}
+    constructor(protected readonly vertices: Vertices) {}
 
     /**
      * Takes in what the last update of a cut has written; returns the patch, or null if nothing
      * changed.
      */
     follow(cut: Slots): GeometryPatch | null {
+        const old = this.take(cut);
+        if (!old) return null;
+        this.drop(old);
+        return this.patch(cut.slots);
+    }
+
+    /**
+     * Shows what has been written; returns the vertices that it took the place of, corner by corner,
+     * or null if nothing changed.
+     */
+    protected take(cut: Slots): number[] | null {
         const touched = this.isNew
             ? Array.from({ length: cut.slots }, (_, slot) => slot)
             : cut.touched;
@@ -89,11 +100,15 @@ export class Geometry {
         this.partOf = grown(this.partOf, cut.slots, NONE);
         this.placeIn = grown(this.placeIn, cut.slots);
         // New ones first, so that vertices which go on are not written again.
-        const old = touched.map((slot) => this.corners.slice(3 * slot, 3 * slot + 3));
+        const old: number[] = [];
+        for (const slot of touched) old.push(...this.corners.subarray(3 * slot, 3 * slot + 3));
         for (const slot of touched) this.show(slot, cut);
-        for (const corners of old)
-            for (const vertex of corners) if (vertex !== NONE) this.release(vertex);
-        return this.patch(cut.slots);
+        return old;
+    }
+
+    /** Releases corners; returns the vertices that nothing uses any more. */
+    protected drop(corners: readonly number[]): number[] {
+        return corners.filter((vertex) => vertex !== NONE && this.release(vertex));
     }
 
     /** Shows what is in a slot of the cut now. */
@@ -125,10 +140,11 @@ export class Geometry {
         return vertex;
     }
 
-    private release(vertex: number): void {
-        if (--this.uses[vertex] > 0) return;
+    private release(vertex: number): boolean {
+        if (--this.uses[vertex] > 0) return false;
         this.vertexOf[this.keys[vertex]] = NONE;
         this.unused.push(vertex);
+        return true;
     }
 
     /** Moves a slot to a part, or out of all. */
@@ -150,7 +166,7 @@ export class Geometry {
         this.placeIn[slot] = this.parts[to].slots.push(slot) - 1;
     }
 
-    private patch(slots: number): GeometryPatch {
+    protected patch(slots: number): GeometryPatch {
         const { newVertices, changed, parts } = this;
         if (parts.some((part) => part.slots.length > part.capacity)) {
             this.layOut();

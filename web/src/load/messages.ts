@@ -3,7 +3,7 @@
 import type { Query } from "../cut/query.ts";
 import type { LayerKind } from "../wedges/layer.ts";
 import type { GeometryPatch } from "./geometry.ts";
-import type { ScenePart, Slot } from "../scene/head.ts";
+import type { SceneHead, ScenePart } from "../scene/head.ts";
 import type { Access } from "./source.ts";
 
 /** A file to open: its address, or its bytes. */
@@ -17,6 +17,11 @@ export interface StreamLimits {
     request?: number;
     /** Milliseconds of work between two looks at what is asked; 8 by default. */
     slice?: number;
+    /**
+     * Milliseconds for which vertices move where the level changes; 0 by default: changes are seen
+     * at once. Height fields do not move.
+     */
+    morph?: number;
 }
 
 /** To the worker. */
@@ -42,18 +47,15 @@ export interface FileInfo {
     /** Length of the file, and its number of chunks or parts. */
     length: number;
     chunks: number;
+    /** True if there are nodes, materials or images. */
+    hasScene: boolean;
     layers: LayerInfo[];
     /** Names of material labels, by which patches have their parts. */
     materials: readonly string[] | null;
 }
 
 /** The scene of a file, if it has one. */
-export interface SceneInfo {
-    isGltf: boolean;
-    document: string;
-    slots: Slot[];
-    images: number;
-}
+export type SceneInfo = SceneHead;
 
 /** How far a stream has come. */
 export interface Progress {

@@ -11,11 +11,13 @@ import type { Header, Section } from "../file/header.ts";
 import { readHead, unpackResource } from "../scene/head.ts";
 import type { SceneHead } from "../scene/head.ts";
 import { Geometry } from "./geometry.ts";
-import type { Slots } from "./geometry.ts";
+import type { GeometryPatch, Slots } from "./geometry.ts";
 import { Levels } from "./levels.ts";
 import type { Event, Origin, Request, StreamLimits } from "./messages.ts";
+import { FRAME, MovingGeometry } from "./morph.ts";
 import { HttpSource, MemorySource } from "./source.ts";
 import type { Hear, Source } from "./source.ts";
+import type { Model } from "../model.ts";
 import { fieldVerticesOf, layersOf, verticesOf } from "./vertices.ts";
 
 const FIRST_BYTES = 64 << 10;
@@ -36,14 +38,19 @@ const LEAST_GROWTH = 0.25;
 interface AnyCut {
     readonly triangles: Slots & { readonly count: number };
     readonly vertices: number;
-    update(query: Query, limits: Limits): CutChange;
+    update(query: Query, limits: Limits, refined?: () => void): CutChange;
 }
 
 /** Answers the requests of one stream; `post` takes its events. */
 export class Session {
     private readonly abort = new AbortController();
     private source!: Source;
-    private limits: Required<StreamLimits> = { memory: 512 << 20, request: 256 << 10, slice: 8 };
+    private limits: Required<StreamLimits> = {
+        memory: 512 << 20,
+        request: 256 << 10,
+        slice: 8,
+        morph: 0,
+    };
     private query: Query = { focus: null, tolerance: Infinity };
     private header: Header | null = null;
     private levels: Levels | null = null;
@@ -56,7 +63,8 @@ export class Session {
     private opened = 0;
     /** Number of bytes of chunks that have been decoded. */
     private decoded = 0;
-    private isShown = false;
+    /** What the last patch was of. */
+    private shown: Geometry | null = null;
     private isStepping = false;
     private isFetching = false;
     private isAsked = false;
@@ -128,13 +136,14 @@ export class Session {
                 diagonal: header.diagonal,
                 length: header.length,
                 chunks: header.chunks.length,
+                hasScene: header.resources.length > 0,
                 layers: layersOf(model),
                 materials: model.wedges?.materials ?? null,
             },
         });
         this.header = header;
         this.levels = levels;
-        this.show(levels.cut, new Geometry(verticesOf(model)));
+        this.show(levels.cut, this.geometryOf(model));
         void this.guard(this.fetch());
     }
 
@@ -151,6 +160,7 @@ export class Session {
                 diagonal: model.frame.unit,
                 length,
                 chunks: first.allParts,
+                hasScene: false,
                 layers: [],
                 materials: null,
             },
@@ -162,6 +172,11 @@ export class Session {
         this.bytes = all.length;
         const whole = new FieldModel(decodeField(all));
         this.show(new FieldCut(whole), new Geometry(fieldVerticesOf(whole)));
+    }
+
+    private geometryOf(model: Model): Geometry {
+        const { morph } = this.limits;
+        return morph > 0 ? new MovingGeometry(model, morph) : new Geometry(verticesOf(model));
     }
 
     private show(cut: AnyCut, geometry: Geometry): void {
@@ -176,10 +191,10 @@ export class Session {
         if (this.levels) void this.guard(this.fetch());
     }
 
-    private startStepping(): void {
+    private startStepping(wait = 0): void {
         if (this.isStepping || this.abort.signal.aborted) return;
         this.isStepping = true;
-        setTimeout(() => void this.guard(this.step()), 0);
+        setTimeout(() => void this.guard(this.step()), wait);
     }
 
     /** Changes the cut for a slice of time, and comes back if that was too little. */
@@ -188,17 +203,34 @@ export class Session {
         this.isStepping = false;
         const { cut, geometry, levels } = this;
         if (!cut || !geometry || this.abort.signal.aborted) return;
+        const shown = this.shown instanceof MovingGeometry ? this.shown : null;
+        shown?.tick(performance.now()).forEach((patch) => this.send(patch));
+        if (shown?.isHeld) return this.startStepping(FRAME);
         levels?.noteGaps(this.query);
-        const { done } = cut.update(this.query, { time: this.limits.slice });
+        const done = this.change(cut, geometry, shown);
+        const isMoving = this.shown instanceof MovingGeometry && this.shown.isMoving;
+        this.tell(done && !isMoving);
+        if (!done || isMoving) this.startStepping(done ? FRAME : 0);
+    }
+
+    /** Changes the cut for a slice of time, and sends what has changed; returns true if it is done. */
+    private change(cut: AnyCut, geometry: Geometry, shown: MovingGeometry | null): boolean {
+        const moving = geometry instanceof MovingGeometry ? geometry : null;
+        const isStarted = !geometry.isNew;
+        const refined =
+            moving && isStarted ? () => this.send(moving.refine(cut.triangles)) : undefined;
+        const { done } = cut.update(this.query, { time: this.limits.slice }, refined);
         // A cut that starts anew takes the place of the one before once it is as fine.
-        const isBehind = geometry.isNew && this.isShown && !done;
-        const patch = isBehind ? null : geometry.follow(cut.triangles);
-        if (patch) {
-            this.isShown = true;
-            this.post({ kind: "patch", patch });
-        }
-        this.tell(done);
-        if (!done) this.startStepping();
+        if (!isStarted && this.shown && !done) return false;
+        if (!moving) this.send(geometry.follow(cut.triangles));
+        else if (isStarted) this.send(moving.coarsen(cut.triangles));
+        else this.send(moving.refine(cut.triangles, shown));
+        this.shown = geometry;
+        return done;
+    }
+
+    private send(patch: GeometryPatch | null): void {
+        if (patch) this.post({ kind: "patch", patch });
     }
 
     private tell(done: boolean): void {
@@ -269,9 +301,14 @@ export class Session {
     }
 
     private add(levels: Levels, chunks: (readonly [number, Uint8Array])[]): void {
-        const isNew = levels.add(chunks, this.query);
-        if (isNew) this.show(levels.cut, new Geometry(verticesOf(levels.cut.model)));
-        else this.startStepping();
+        try {
+            levels.add(chunks, this.query);
+        } finally {
+            // The levels before are another cut, too, if a chunk has been damaged.
+            const { cut } = levels;
+            if (cut !== this.cut) this.show(cut, this.geometryOf(cut.model));
+            else this.startStepping();
+        }
     }
 
     /** Returns the first chunks that lie close together, as far as one request goes. */
@@ -299,8 +336,7 @@ export class Session {
         const number = this.nextResource++;
         if (number === 0) {
             this.head = readHead(bytes);
-            const { isGltf, document, slots, images } = this.head;
-            this.post({ kind: "scene", scene: { isGltf, document, slots, images } });
+            this.post({ kind: "scene", scene: this.head });
         } else {
             const part = this.head?.parts[number - 1];
             if (part) this.post({ kind: "part", part, bytes });

@@ -60,8 +60,8 @@ export function open(
     file: string | URL | ArrayBuffer | Uint8Array,
     options: StreamOptions = {},
 ): Promise<MlodStream> {
-    const { signal, worker, memory, request, slice } = options;
-    const limits = withoutMissing({ memory, request, slice });
+    const { signal, worker, memory, request, slice, morph } = options;
+    const limits = withoutMissing({ memory, request, slice, morph });
     return new Promise((resolve, reject) => {
         if (signal?.aborted) return void reject(signal.reason as Error);
         const port = worker ? workerPort(worker()) : localPort();

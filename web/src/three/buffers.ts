@@ -69,7 +69,11 @@ export class StreamGeometry extends BufferGeometry {
         const { array } = attribute;
         vertices.forEach((vertex, i) => {
             const from = i * this.width + start;
-            for (let k = 0; k < width; k++) array[vertex * width + k] = values[from + k];
+            let sum = 0;
+            for (let k = 0; k < width; k++) sum += values[from + k];
+            // Skins need weights that add up to 1, and those of files may not.
+            const scale = name === "skinWeight" && sum > 0 ? 1 / sum : 1;
+            for (let k = 0; k < width; k++) array[vertex * width + k] = values[from + k] * scale;
             if (isUv) array[vertex * width + 1] = 1 - values[from + 1];
         });
         markRanges(attribute, vertices, width);

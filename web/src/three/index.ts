@@ -2,5 +2,6 @@
 
 export { MlodLoader } from "./mlod_loader.ts";
 export { MlodMesh } from "./mlod_mesh.ts";
+export type { MlodNodes } from "./nodes.ts";
 export type { PictureSize } from "./mlod_mesh.ts";
 export { MlqLoader, MlzLoader } from "./packed_loaders.ts";

@@ -1,7 +1,6 @@
 /** What all copies of one file share: its stream, its geometry and its materials. */
 
-import { Material, Mesh, MeshStandardMaterial } from "three";
-import type { LoadingManager } from "three";
+import type { LoadingManager, Material, Mesh } from "three";
 import type { MlodError, MlodStream, Progress, Query, SceneInfo } from "../index.ts";
 import { StreamGeometry } from "./buffers.ts";
 import { disposeMaterials, makeMaterials, plainMaterial } from "./materials.ts";
@@ -22,7 +21,13 @@ export class SharedLevels {
     materials: Material[];
     progress: Progress | null = null;
     private readonly copies = new Map<Mesh, Asked | null>();
-    private scene: SceneInfo | null = null;
+    scene: SceneInfo | null = null;
+    /** Key frames of animations. */
+    frames: Uint8Array | null = null;
+    /** True if nothing more comes. */
+    hasEnded = false;
+    /** Meshes that show this otherwise than copies do. */
+    private readonly dressed: Mesh[] = [];
     private readonly images = new Map<number, Uint8Array>();
     private timer: ReturnType<typeof setTimeout> | undefined;
     private readonly pictures = new Pictures();
@@ -41,10 +46,7 @@ export class SharedLevels {
         private readonly onError: (error: Error) => void,
     ) {
         this.geometry = new StreamGeometry(stream.info);
-        const plain = plainMaterial() as MeshStandardMaterial;
-        plain.flatShading = !this.geometry.hasAttribute("normal");
-        plain.vertexColors = this.geometry.hasAttribute("color");
-        this.materials = [plain];
+        this.materials = [plainMaterial(this.geometry)];
         this.repeatMaterial();
     }
 
@@ -57,6 +59,11 @@ export class SharedLevels {
     /** Adds a copy, which shares everything. */
     add(copy: Mesh): void {
         this.copies.set(copy, null);
+    }
+
+    /** Keeps the materials of a mesh up to date. */
+    dress(mesh: Mesh): void {
+        this.dressed.push(mesh);
     }
 
     /** Asks for what one copy needs; of several the one nearest to its camera decides. */
@@ -113,7 +120,7 @@ export class SharedLevels {
         const made = await makeMaterials(scene, images, geometry, manager, pictures);
         const old = this.isDisposed ? made.materials : this.materials;
         if (!this.isDisposed) this.materials = made.materials;
-        for (const copy of this.copies.keys())
+        for (const copy of [...this.copies.keys(), ...this.dressed])
             if (copy.material === old) copy.material = made.materials;
         disposeMaterials(old);
         closeTextures(made.replaced);
@@ -124,7 +131,7 @@ export class SharedLevels {
     remove(copy: Mesh): void {
         this.copies.delete(copy);
         if (this.copies.size > 0 || this.isDisposed) return;
-        this.isDisposed = true;
+        this.isDisposed = this.hasEnded = true;
         clearTimeout(this.timer);
         this.stream.dispose();
         this.geometry.dispose();
@@ -139,6 +146,7 @@ export class SharedLevels {
 
     /** Tells what went wrong; what is shown stays. */
     fail(error: MlodError): void {
+        this.hasEnded = true;
         this.onError(error);
     }
 }

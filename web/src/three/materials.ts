@@ -33,7 +33,7 @@ export async function makeMaterials(
     const make = async (material: number | null): Promise<Material> => {
         const own =
             material === null
-                ? plainMaterial()
+                ? plainMaterial(geometry)
                 : ((await parser.getDependency("material", material)) as Material);
         const mesh = new Mesh(geometry, own);
         parser.assignFinalMaterial(mesh);
@@ -44,9 +44,14 @@ export async function makeMaterials(
     return { materials, replaced: await pictures.keep(parser, images) };
 }
 
-/** Returns the material of faces that have none. */
-export function plainMaterial(): Material {
-    return new MeshStandardMaterial({ color: 0xffffff, metalness: 0, roughness: 1 });
+/** Returns the material of faces that have none, for what a geometry has. */
+export function plainMaterial(geometry: BufferGeometry): Material {
+    return new MeshStandardMaterial({
+        metalness: 0,
+        roughness: 1,
+        flatShading: !geometry.hasAttribute("normal"),
+        vertexColors: geometry.hasAttribute("color"),
+    });
 }
 
 /** Frees materials with their textures. */

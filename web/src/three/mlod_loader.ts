@@ -56,7 +56,10 @@ export class MlodLoader extends Loader<MlodMesh> {
             ...this.limits,
             onScene: (scene) => later((levels) => levels.setScene(scene)),
             onPart: ({ kind, image }, bytes) =>
-                later((levels) => kind !== "animations" && levels.setImage(image, bytes)),
+                later((levels) => {
+                    if (kind === "animations") levels.frames = bytes;
+                    else levels.setImage(image, bytes);
+                }),
             onPatch: (patch: GeometryPatch) => later((levels) => levels.geometry.apply(patch)),
             onError: (error) => {
                 later((levels) => levels.fail(error));

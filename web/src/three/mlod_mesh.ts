@@ -10,6 +10,7 @@ import type {
 } from "three";
 import type { FileInfo, Progress, Query, Vector } from "../index.ts";
 import type { SharedLevels } from "./levels.ts";
+import type { MlodNodes } from "./nodes.ts";
 
 /** What tells the size of a picture; every renderer of three.js does. */
 export interface PictureSize {
@@ -97,6 +98,14 @@ export class MlodMesh extends Mesh<BufferGeometry, Material[]> {
         if (typeof tolerance === "number") return 1 / tolerance;
         const { center } = this.levels.info;
         return 1 / (this.pixels * this.eye.distanceTo(new Vector3(...center)));
+    }
+
+    /**
+     * Returns the nodes of the file, which its animations move, with this mesh at its place; once
+     * they have come. Of files with several meshes it is an error.
+     */
+    async nodes(): Promise<MlodNodes> {
+        return (await import("./nodes.ts")).nodesOf(this, this.levels);
     }
 
     /** Returns a copy that shares geometry and materials, and counts when the level is chosen. */

@@ -1,8 +1,10 @@
 /** Loaders of `.mlz` and `.mlq` files for three.js, which fetch their decoders with the first file. */
 
 import { FileLoader, Loader } from "three";
-import type { BufferGeometry } from "three";
+import type { BufferGeometry, Material, Mesh } from "three";
 import type { PackedMesh } from "../packed/mesh.ts";
+import { makeMaterials, plainMaterial } from "./materials.ts";
+import { Pictures } from "./pictures.ts";
 
 /** Loads a whole file, and decodes it as a geometry. */
 abstract class PackedLoader extends Loader<BufferGeometry> {
@@ -15,30 +17,63 @@ abstract class PackedLoader extends Loader<BufferGeometry> {
         onProgress?: (event: ProgressEvent) => void,
         onError?: (error: unknown) => void,
     ): void {
-        const report = onError ?? ((error) => console.error(error));
+        this.read(url, (file) => this.parse(file), onProgress)
+            .then(onLoad)
+            .catch(onError ?? ((error: unknown) => console.error(error)));
+    }
+
+    /** Loads a file as a mesh, with the materials and images that it holds. */
+    loadMesh(
+        url: string,
+        onProgress?: (event: ProgressEvent) => void,
+    ): Promise<Mesh<BufferGeometry, Material[]>> {
+        return this.read(url, (file) => this.parseMesh(file), onProgress);
+    }
+
+    private async read<T>(
+        url: string,
+        parse: (file: ArrayBuffer) => Promise<T>,
+        onProgress?: (event: ProgressEvent) => void,
+    ): Promise<T> {
         const files = new FileLoader(this.manager);
         files.setPath(this.path);
         files.setResponseType("arraybuffer");
         files.setRequestHeader(this.requestHeader);
         files.setWithCredentials(this.withCredentials);
-        const parse = (file: string | ArrayBuffer) => {
-            this.parse(file as ArrayBuffer)
-                .then(onLoad)
-                .catch((error: unknown) => {
-                    report(error);
-                    this.manager.itemError(url);
-                });
-        };
-        files.load(url, parse, onProgress, report);
+        const file = (await files.loadAsync(url, onProgress)) as ArrayBuffer;
+        try {
+            return await parse(file);
+        } catch (error) {
+            this.manager.itemError(url);
+            throw error;
+        }
     }
 
     /** Decodes a file in memory. */
     async parse(file: ArrayBuffer): Promise<BufferGeometry> {
-        const [decode, { geometryOf }] = await Promise.all([
-            this.decoder(),
+        const [mesh, { geometryOf }] = await Promise.all([
+            this.decode(file),
             import("./packed_geometry.ts"),
         ]);
-        return geometryOf(decode(new Uint8Array(file)));
+        return geometryOf(mesh);
+    }
+
+    /** Decodes a file in memory as a mesh with its materials. */
+    async parseMesh(file: ArrayBuffer): Promise<Mesh<BufferGeometry, Material[]>> {
+        const [mesh, { meshOf }] = await Promise.all([
+            this.decode(file),
+            import("./packed_mesh.ts"),
+        ]);
+        return meshOf(mesh, {
+            make: makeMaterials,
+            plain: plainMaterial,
+            pictures: new Pictures(),
+            manager: this.manager,
+        });
+    }
+
+    private async decode(file: ArrayBuffer): Promise<PackedMesh> {
+        return (await this.decoder())(new Uint8Array(file));
     }
 }
 

@@ -73,8 +73,9 @@ fn text(head: &Head, text: &str, packed: &[u8], media_type: &str) -> Response {
 fn sent(head: &Head, open: OpenFile) -> Response {
     let OpenFile { mut file, length, modified, tag, media_type } = open;
     let date = httpdate::fmt_http_date(modified);
-    let same =
-        |tags: &str| tags.split(',').map(str::trim).any(|known| known == tag || known == "*");
+    // A cache on the way may have made the tag weak.
+    let is_tag = |known: &str| known.trim_start_matches("W/") == tag || known == "*";
+    let same = |tags: &str| tags.split(',').map(str::trim).any(is_tag);
     let facts = |answer: Response| {
         answer
             .with("ETag", &tag)
@@ -85,9 +86,11 @@ fn sent(head: &Head, open: OpenFile) -> Response {
     if head.if_none_match.as_deref().is_some_and(same) {
         return facts(Response::new(304, Body::Bytes(Vec::new())));
     }
-    // A part goes only with parts of the same file.
+    // A part goes only with parts of the same file, and a range means nothing to HEAD.
+    let has_part = head.method == "GET";
     let is_same = head.if_range.as_ref().is_none_or(|known| *known == tag || *known == date);
-    let (status, range) = match part(head.range.as_deref().filter(|_| is_same), length) {
+    let (status, range) = match part(head.range.as_deref().filter(|_| has_part && is_same), length)
+    {
         SentPart::Whole => (200, 0..length),
         SentPart::Some(range) => (206, range),
         SentPart::Nothing => {

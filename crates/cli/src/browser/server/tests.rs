@@ -97,6 +97,15 @@ fn files_are_sent_whole_and_in_parts() {
     assert_eq!((status(&part), body(&part)), ("206", "ABC"));
     assert_eq!(header(&part, "Content-Range"), "bytes 65-67/256");
     assert_eq!(header(&part, "Content-Length"), "3");
+    for several in ["bytes=0-1,5-6", "bytes=0-0,0-0,0-0", "bytes=5-2"] {
+        let whole = served.get("/notes.txt", &format!("Range: {several}\r\n"));
+        assert_eq!((status(&whole), body(&whole)), ("200", "text"), "{several}");
+    }
+    let huge = served.get("/notes.txt", "Range: bytes=1-99999999999999999999\r\n");
+    assert_eq!((status(&huge), body(&huge)), ("206", "ext"));
+    let head =
+        served.raw(b"HEAD /notes.txt HTTP/1.1\r\nConnection: close\r\nRange: bytes=1-2\r\n\r\n");
+    assert_eq!((status(&head), header(&head, "Content-Length"), body(&head)), ("200", "4", ""));
     let last = served.get("/notes.txt", "Range: bytes=-2\r\n");
     assert_eq!((status(&last), body(&last)), ("206", "xt"));
     let beyond = served.get("/a.mlod", "Range: bytes=256-\r\n");
@@ -111,6 +120,11 @@ fn parts_are_of_one_file() {
     let same = format!("Range: bytes=1-2\r\nIf-Range: {tag}\r\n");
     assert_eq!(body(&served.get("/notes.txt", &same)), "ex");
     assert_eq!(status(&served.get("/notes.txt", &format!("If-None-Match: {tag}\r\n"))), "304");
+    let weak = format!("If-None-Match: \"other\", W/{tag}\r\n");
+    assert_eq!(status(&served.get("/notes.txt", &weak)), "304");
+    // Parts need the bytes, of which a weak tag says nothing.
+    let unsure = format!("Range: bytes=1-2\r\nIf-Range: W/{tag}\r\n");
+    assert_eq!(status(&served.get("/notes.txt", &unsure)), "200");
     fs::write(served.folder.path().join("served/notes.txt"), b"another text").unwrap();
     let other = served.get("/notes.txt", &same);
     assert_eq!((status(&other), body(&other)), ("200", "another text"));
