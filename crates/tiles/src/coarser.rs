@@ -5,10 +5,9 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::cell::Cell;
 use crate::chords::{divide_chords, divide_edges};
-use crate::curves::{SimplerBorder, simplify_border};
+use crate::curves::{Flap, SimplerBorder, simplify_border};
 use crate::lattice::Point;
 use crate::octree::TileTree;
-use crate::samples::Samples;
 use crate::tile::TileMesh;
 
 /// Part of the error of a level within which its border curves are simplified.
@@ -73,13 +72,13 @@ pub fn coarser<C: Coarsen>(
     let (mesh, distance) = method.coarsen(&tile.mesh, locks, error)?;
     let found = with_border(mesh, &edges);
     let is_unchanged = found.is_none();
-    let samples = std::mem::take(&mut tile.samples);
+    let (samples, seams) = (std::mem::take(&mut tile.samples), std::mem::take(&mut tile.seams));
     let (mut tile, distance) = match found {
         // Vertices move to whole steps.
         Some(tile) => (tile, distance + 0.75f64.sqrt()),
         None => (tile, 0.0),
     };
-    tile.samples = samples;
+    (tile.samples, tile.seams) = (samples, seams);
     divide_chords(&mut tile, cell);
     Ok(Coarser { tile, distance: distance + moved, is_unchanged })
 }
@@ -90,26 +89,40 @@ fn take_border(tile: &mut TileMesh, border: SimplerBorder) {
     let new = border.edges.iter().filter(|edge| !old.contains(*edge));
     let new: FxHashSet<_> = new.map(|&[a, b]| if a < b { [a, b] } else { [b, a] }).collect();
     divide_edges(&mut tile.mesh, &new);
-    let is_border = tile.border_vertices();
-    // A face and a corner of it at each vertex of the old border.
-    let mut beside: FxHashMap<VertexId, (usize, usize)> = FxHashMap::default();
-    for (face, corners) in tile.mesh.faces.iter().enumerate() {
-        for (corner, v) in corners.iter().enumerate().filter(|(_, v)| is_border[v.index()]) {
-            beside.entry(*v).or_insert((face, corner));
-        }
-    }
-    for flap in border.flaps {
-        let at = flap.map(|v| beside[&v]);
+    let beside = faces_at(&tile.mesh, &old);
+    for Flap { corners, edges } in border.flaps {
+        let is_at = |v: VertexId| tile.mesh.faces.iter().position(|face| face.contains(&v));
+        let faces = [0, 1, 2].map(|i| {
+            // An edge that a new one lies on has been divided.
+            let face = beside.get(&edges[i]).copied().or_else(|| is_at(corners[i]));
+            face.expect("vertices of the border have faces")
+        });
         if let Some(attributes) = &mut tile.mesh.attributes {
-            let wedges: [WedgeId; 3] = at.map(|(face, corner)| attributes.corners[face][corner]);
+            let wedges: [WedgeId; 3] = [0, 1, 2].map(|i| {
+                let own = tile.mesh.faces[faces[i]].iter().position(|&v| v == corners[i]);
+                attributes.corners[faces[i]][own.expect("a corner is an end of its edge")]
+            });
             attributes.corners.push(wedges);
         }
         if let Some(labels) = &mut tile.mesh.materials {
-            labels.of_face.push(labels.of_face[at[2].0]);
+            labels.of_face.push(labels.of_face[faces[2]]);
         }
-        tile.mesh.faces.push(flap);
+        tile.mesh.faces.push(corners);
     }
     tile.border = border.edges;
+}
+
+/// Returns the first face at each of some directed edges.
+fn faces_at(mesh: &Mesh, edges: &FxHashSet<[VertexId; 2]>) -> FxHashMap<[VertexId; 2], usize> {
+    let mut faces = FxHashMap::default();
+    for (face, &[a, b, c]) in mesh.faces.iter().enumerate() {
+        for edge in [[a, b], [b, c], [c, a]] {
+            if edges.contains(&edge) {
+                faces.entry(edge).or_insert(face);
+            }
+        }
+    }
+    faces
 }
 
 /// Returns a simplified mesh with the border that it must have, and whole coordinates; `None` if an
@@ -139,6 +152,6 @@ fn with_border(mut mesh: Mesh, edges: &[[Point; 2]]) -> Option<TileMesh> {
     for position in &mut mesh.positions {
         *position = position.map(f64::round);
     }
-    let samples = Samples::default();
-    (border.len() == edges.len()).then_some(TileMesh { mesh, border, samples })
+    let tile = TileMesh { mesh, border, ..TileMesh::default() };
+    (tile.border.len() == edges.len()).then_some(tile)
 }

@@ -1,9 +1,10 @@
 //! Curves along which tiles meet, simplified by a rule that sees the curve alone.
 //!
 //! A curve is what a surface leaves in a side of a cell: two neighbours have it alike, edge by edge,
-//! in opposite directions. It is divided where it meets another side, branches or ends. Between
-//! these points the algorithm of Douglas and Peucker [DP73] keeps what is farther away than a tolerance. So both neighbours keep
-//! the same points, without hearing of each other.
+//! in opposite directions. It is divided where it meets another side, branches or ends, and where it
+//! crosses a seam. Between these points the algorithm of Douglas and Peucker [DP73] keeps what is
+//! farther away than a tolerance. So both neighbours keep the same points, without hearing of each
+//! other.
 
 use meshlod_mesh::VertexId;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -20,9 +21,18 @@ pub struct SimplerBorder {
     pub edges: Vec<[VertexId; 2]>,
     /// Triangles between the old edges and the new ones: with them as faces, the new edges are the
     /// border.
-    pub flaps: Vec<[VertexId; 3]>,
+    pub flaps: Vec<Flap>,
     /// Greatest distance between an old vertex and the new edges, in steps.
     pub distance: f64,
+}
+
+/// Triangle between old edges of a border and a new one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flap {
+    /// Its corners.
+    pub corners: [VertexId; 3],
+    /// Old edge at each corner, whose face has the attributes of the flap there.
+    pub edges: [[VertexId; 2]; 3],
 }
 
 /// Simplifies the border of a tile of an octree within a tolerance, in steps. Sides on which a leaf
@@ -44,7 +54,8 @@ pub fn simplify_border(
             result.edges.extend(edges);
             continue;
         }
-        let mut side = Side { cell, points: &points, tolerance, result: &mut result };
+        let seams = &tile.seams;
+        let mut side = Side { cell, points: &points, seams, tolerance, result: &mut result };
         side.simplify(&edges);
     }
     result
@@ -67,6 +78,7 @@ fn meets_leaf(tree: &TileTree, cell: Cell, side: usize) -> bool {
 struct Side<'a> {
     cell: Cell,
     points: &'a [Point],
+    seams: &'a [Point],
     tolerance: f64,
     result: &'a mut SimplerBorder,
 }
@@ -150,6 +162,7 @@ impl Side<'_> {
             chains.push(vertices);
         }
         let chains = chains.into_iter().flat_map(|vertices| self.halves(vertices));
+        let chains = chains.flat_map(|vertices| self.between_seams(vertices));
         chains.map(|vertices| Chain { vertices, kept: Vec::new() }).collect()
     }
 
@@ -160,6 +173,16 @@ impl Side<'_> {
         }
         let (farthest, _) = self.farthest_from(vertices[0], &vertices[1..vertices.len() - 1]);
         vec![vertices[..=farthest + 1].to_vec(), vertices[farthest + 1..].to_vec()]
+    }
+
+    /// Divides a chain where it crosses seams.
+    fn between_seams(&self, vertices: Vec<VertexId>) -> Vec<Vec<VertexId>> {
+        let last = vertices.len() - 1;
+        let is_seam = |&i: &usize| self.seams.binary_search(&self.at(vertices[i])).is_ok();
+        let mut ends: Vec<usize> = (1..last).filter(is_seam).collect();
+        ends.insert(0, 0);
+        ends.push(last);
+        ends.windows(2).map(|ends| vertices[ends[0]..=ends[1]].to_vec()).collect()
     }
 
     /// Returns the place in a list of the vertex that is farthest from another, and its distance.
@@ -173,7 +196,11 @@ impl Side<'_> {
     /// Closes a small loop by triangles around its first vertex.
     fn close(&mut self, vertices: &[VertexId]) {
         let around = vertices[1..].windows(2);
-        self.result.flaps.extend(around.map(|pair| [vertices[0], pair[1], pair[0]]));
+        let first = [vertices[0], vertices[1]];
+        self.result.flaps.extend(around.map(|pair| {
+            let edge = [pair[0], pair[1]];
+            Flap { corners: [vertices[0], pair[1], pair[0]], edges: [first, edge, edge] }
+        }));
         self.result.distance =
             self.result.distance.max(self.farthest_from(vertices[0], vertices).1);
     }
@@ -238,7 +265,9 @@ impl Side<'_> {
             while let Some([first, last]) = spans.pop() {
                 if let Some((middle, _)) = self.farthest_between(&chain.vertices, [first, last]) {
                     let corners = [first, last, middle].map(|i| chain.vertices[i]);
-                    self.result.flaps.push(corners);
+                    let edge = |i: usize| [chain.vertices[i], chain.vertices[i + 1]];
+                    let edges = [edge(first), edge(last - 1), edge(middle)];
+                    self.result.flaps.push(Flap { corners, edges });
                     spans.extend([[first, middle], [middle, last]]);
                 }
             }

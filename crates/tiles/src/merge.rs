@@ -10,7 +10,7 @@ use crate::tile::{TileMesh, point_of};
 
 /// Greatest difference between values of two wedges that are one where tiles meet. Half a step of
 /// eight bits.
-const SAME: f32 = 0.002;
+pub(crate) const SAME: f32 = 0.002;
 
 /// Mesh of several tiles.
 #[derive(Debug)]
@@ -24,9 +24,10 @@ pub struct Merged {
 /// Joins the tiles of parts of a cell at the curves along which they meet.
 pub fn merge(parts: Vec<TileMesh>, cell: Cell) -> Merged {
     let mut joined = Joined::default();
-    let mut samples = Vec::new();
+    let (mut samples, mut seams) = (Vec::new(), Vec::new());
     for mut part in parts {
         samples.push(std::mem::take(&mut part.samples));
+        seams.append(&mut part.seams);
         joined.add(part);
     }
     let Joined { mesh, border, .. } = joined;
@@ -34,7 +35,10 @@ pub fn merge(parts: Vec<TileMesh>, cell: Cell) -> Merged {
     let (border, inner): (Vec<_>, Vec<_>) =
         border.into_iter().partition(|&[a, b]| sides(a) & sides(b) != 0);
     let samples = Samples::of_parts(&samples);
-    Merged { tile: TileMesh { mesh, border, samples }, open: unmatched(&inner) }
+    seams.retain(|&point| cell.sides_of(point) != 0);
+    seams.sort_unstable();
+    seams.dedup();
+    Merged { tile: TileMesh { mesh, border, seams, samples }, open: unmatched(&inner) }
 }
 
 /// Returns the number of directed edges that are not there in the other direction.

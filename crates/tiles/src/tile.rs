@@ -1,10 +1,11 @@
 //! Mesh of a tile, with the curves along which it meets its neighbours.
 
-use meshlod_mesh::{Attributes, Labels, Mesh, VertexId, WedgeId};
+use meshlod_mesh::{Attributes, Labels, LayerKind, Mesh, VertexId, WedgeId};
 use rustc_hash::FxHashMap;
 
 use crate::cell::Cell;
 use crate::lattice::Point;
+use crate::merge::SAME;
 use crate::samples::Samples;
 
 /// Mesh of a tile.
@@ -15,6 +16,9 @@ pub struct TileMesh {
     /// Edges in the sides of the cell, in the direction that their faces have. Their ends have whole
     /// coordinates.
     pub border: Vec<[VertexId; 2]>,
+    /// Points of the border where texture coordinates or materials change from one edge in a side
+    /// to the next; sorted.
+    pub seams: Vec<Point>,
     /// Points of the model that it shows.
     pub samples: Samples,
 }
@@ -118,8 +122,62 @@ impl TileBuilder {
         let edges = mesh.faces.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
         let is_border = |[a, b]: &[VertexId; 2]| sides[a.index()] & sides[b.index()] != 0;
         let border = edges.filter(is_border).collect();
+        let seams = seams(&mesh, &sides);
         let samples = Samples::of_leaf(&mesh);
-        TileMesh { mesh, border, samples }
+        TileMesh { mesh, border, seams, samples }
+    }
+}
+
+/// Returns the points on one side of a cell where the edges in it have faces of several materials
+/// or charts. It follows from the edges and their faces alone, which the neighbour has alike, in
+/// whatever order.
+fn seams(mesh: &Mesh, sides: &[u8]) -> Vec<Point> {
+    let uvs = mesh.attributes.as_ref().and_then(|own| own.layer(LayerKind::Uv(0)));
+    let mut at: FxHashMap<VertexId, SeenAt> = FxHashMap::default();
+    for (face, corners) in mesh.faces.iter().enumerate() {
+        for i in 0..3 {
+            let ends = [i, (i + 1) % 3];
+            let [a, b] = ends.map(|i| sides[corners[i].index()]);
+            let is_on_one = |&i: &usize| sides[corners[i].index()].is_power_of_two();
+            for i in ends.into_iter().filter(|_| a & b != 0).filter(is_on_one) {
+                let uv = uvs.map_or(&[][..], |uvs| uvs.of(mesh.corner_wedges(face)[i]));
+                let label = mesh.materials.as_ref().map_or(0, |labels| labels.of(face));
+                at.entry(corners[i]).or_default().see(uv, label);
+            }
+        }
+    }
+    let seams = at.into_iter().filter(|(_, seen)| seen.is_seam());
+    let mut seams: Vec<Point> = seams.map(|(v, _)| point_of(mesh, v)).collect();
+    seams.sort_unstable();
+    seams
+}
+
+/// Range of the texture coordinates and labels that edges of a side have at a vertex.
+struct SeenAt {
+    uvs: [[f32; 2]; 2],
+    labels: [u32; 2],
+}
+
+impl Default for SeenAt {
+    fn default() -> Self {
+        let uvs = [[f32::INFINITY; 2], [f32::NEG_INFINITY; 2]];
+        Self { uvs, labels: [u32::MAX, 0] }
+    }
+}
+
+impl SeenAt {
+    fn see(&mut self, uv: &[f32], label: u32) {
+        for (axis, &x) in uv.iter().enumerate().take(2) {
+            let [least, most] = self.uvs.map(|uv| uv[axis]);
+            (self.uvs[0][axis], self.uvs[1][axis]) = (least.min(x), most.max(x));
+        }
+        let [least, most] = self.labels;
+        self.labels = [least.min(label), most.max(label)];
+    }
+
+    fn is_seam(&self) -> bool {
+        let [least, most] = self.uvs;
+        self.labels[0] != self.labels[1] || (0..2).any(|axis| most[axis] - least[axis] > SAME)
     }
 }
 

@@ -52,8 +52,8 @@ fn image() -> Image {
     Image { name: "waves.png".into(), bytes }
 }
 
-/// Grid of squares, a little curved, in two charts.
-fn grid(scale: f64) -> Mesh {
+/// Grid of squares, a little curved, in two charts, `left` columns of squares in the first.
+fn grid(scale: f64, left: u32) -> Mesh {
     let part = |i: u32| f64::from(i) / f64::from(SQUARES);
     let row = SQUARES + 1;
     let height = |x: f64, y: f64| 0.02 * (x * (1.0 - x) + y * y);
@@ -64,7 +64,7 @@ fn grid(scale: f64) -> Mesh {
     for (i, j) in (0..SQUARES).flat_map(|j| (0..SQUARES).map(move |i| (i, j))) {
         let [a, b] = [j * row + i, (j + 1) * row + i];
         let own: [[u32; 3]; 2] = [[a, a + 1, b + 1], [a, b + 1, b]];
-        let first = if i < SQUARES / 2 { 0 } else { row * row };
+        let first = if i < left { 0 } else { row * row };
         faces.extend(own.map(|face| face.map(VertexId)));
         corners.extend(own.map(|face| face.map(|v| WedgeId(first + v))));
     }
@@ -176,9 +176,10 @@ fn difference(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 /// Checks the colours in the middle of all faces of all tiles, given how large the image is by
-/// texture coordinates.
-fn check_colors(scale: f64) {
-    let (plan, contents) = contents(textured(grid(scale), image()), 200, 2);
+/// texture coordinates, and where the seam is.
+fn check_colors(scale: f64, left: u32) {
+    let seam = f64::from(left) / f64::from(SQUARES);
+    let (plan, contents) = contents(textured(grid(scale, left), image()), 200, 2);
     assert!(plan.tree.depth() >= 2);
     for (cell, glb) in &contents {
         let scene = read(glb);
@@ -194,7 +195,7 @@ fn check_colors(scale: f64) {
         for face in 0..surface.faces.len() {
             let [x, y] = middle(&plan, *cell, &surface, face);
             // A sliver at the seam may be of either chart.
-            let is_near = |is_right: &bool| (x > 0.5) == *is_right || (x - 0.5).abs() < 1e-4;
+            let is_near = |is_right: &bool| (x > seam) == *is_right || (x - seam).abs() < 1e-4;
             let found = sampler.at(middle_uv(&surface, face));
             let expected = |is_right| color(uv([x, y], is_right).map(|x| scale * x));
             let sides = [false, true].into_iter().filter(is_near);
@@ -214,18 +215,25 @@ fn middle(plan: &Plan, cell: Cell, surface: &Mesh, face: usize) -> [f64; 2] {
 
 #[test]
 fn places_of_all_tiles_have_their_colours() {
-    check_colors(1.0);
+    check_colors(1.0, SQUARES / 2);
 }
 
 #[test]
 fn they_have_them_where_the_image_repeats() {
-    check_colors(3.0);
+    check_colors(3.0, SQUARES / 2);
+}
+
+#[test]
+fn they_have_them_where_a_seam_crosses_the_sides_of_tiles() {
+    for left in [3, 10, SQUARES / 4, SQUARES - 1] {
+        check_colors(1.0, left);
+    }
 }
 
 #[test]
 fn tiles_are_the_same_for_any_number_of_threads() {
     for scale in [1.0, 3.0] {
-        let of = |threads| contents(textured(grid(scale), image()), 100, threads).1;
+        let of = |threads| contents(textured(grid(scale, SQUARES / 2), image()), 100, threads).1;
         assert!(of(1) == of(4));
     }
 }
@@ -233,7 +241,7 @@ fn tiles_are_the_same_for_any_number_of_threads() {
 #[test]
 fn an_image_that_is_damaged_is_left_out() {
     let (_, contents) =
-        contents(textured(grid(1.0), Image { bytes: vec![1; 9], ..image() }), 2000, 1);
+        contents(textured(grid(1.0, SQUARES / 2), Image { bytes: vec![1; 9], ..image() }), 2000, 1);
     for (_, glb) in contents {
         let scene = read(&glb);
         assert!(scene.images.is_empty());

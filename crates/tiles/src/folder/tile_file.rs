@@ -6,7 +6,7 @@ use crate::layout::Layout;
 use crate::samples::Samples;
 use crate::tile::{TileBuilder, TileMesh};
 
-/// Encodes a tile: counts, positions, faces, border, samples, wedges and materials;
+/// Encodes a tile: counts, positions, faces, border, seams, samples, wedges and materials;
 /// little-endian. Its checksum is in the record of the tile.
 pub fn encode(tile: &TileMesh, layout: &Layout) -> Vec<u8> {
     let mesh = &tile.mesh;
@@ -14,13 +14,15 @@ pub fn encode(tile: &TileMesh, layout: &Layout) -> Vec<u8> {
     let mut bytes = Vec::new();
     let samples = &tile.samples;
     let [vertices, faces] = [mesh.positions.len(), mesh.faces.len()];
-    let counts = [vertices, faces, tile.border.len(), samples.points.len(), wedges];
+    let [border, seams] = [tile.border.len(), tile.seams.len()];
+    let counts = [vertices, faces, border, seams, samples.points.len(), wedges];
     let mut put = |word: u32| bytes.extend(word.to_le_bytes());
     counts.into_iter().for_each(|count| put(count as u32));
     put(u32::from(mesh.materials.is_some()));
     mesh.positions.iter().flatten().for_each(|&x| put(x as i32 as u32));
     mesh.faces.iter().flatten().for_each(|v| put(v.0));
     tile.border.iter().flatten().for_each(|v| put(v.0));
+    tile.seams.iter().flatten().for_each(|&x| put(x as u32));
     put(samples.area.to_bits());
     samples.points.iter().flatten().for_each(|x| put(x.to_bits()));
     if let Some(attributes) = &mesh.attributes {
@@ -45,8 +47,9 @@ pub fn encode(tile: &TileMesh, layout: &Layout) -> Vec<u8> {
 /// Decodes a tile; `None` if it is damaged.
 pub fn decode(bytes: &[u8], layout: &Layout, labels: &[String]) -> Option<TileMesh> {
     let mut words = Words { bytes };
-    let counts = words.take(6)?;
-    let [vertices, faces, border, samples, wedges] = [0, 1, 2, 3, 4].map(|i| counts[i] as usize);
+    let counts = words.take(7)?;
+    let [vertices, faces, border, seams, samples, wedges] =
+        [0, 1, 2, 3, 4, 5].map(|i| counts[i] as usize);
     let mut tile = TileMesh::default();
     let mut mesh = TileBuilder::new(layout.attributes(), labels).into_mesh();
     let triples = |words: Vec<u32>| words.as_chunks().0.to_vec();
@@ -55,6 +58,8 @@ pub fn decode(bytes: &[u8], layout: &Layout, labels: &[String]) -> Option<TileMe
     mesh.faces = triples(words.take(3 * faces)?).iter().map(|face| face.map(VertexId)).collect();
     let edges = words.take(2 * border)?;
     tile.border = edges.as_chunks().0.iter().map(|edge| edge.map(VertexId)).collect();
+    let seams = triples(words.take(seams.checked_mul(3)?)?);
+    tile.seams = seams.iter().map(|point| point.map(|x| x as i32)).collect();
     let area = f32::from_bits(words.take(1)?[0]);
     let points = triples(words.take(samples.checked_mul(3)?)?);
     let points = points.iter().map(|point| point.map(f32::from_bits)).collect();
@@ -64,7 +69,7 @@ pub fn decode(bytes: &[u8], layout: &Layout, labels: &[String]) -> Option<TileMe
         attributes.corners = corners.iter().map(|face| face.map(meshlod_mesh::WedgeId)).collect();
         attributes.wedge_count = wedges;
     }
-    if counts[5] == 1 {
+    if counts[6] == 1 {
         mesh.materials.as_mut()?.of_face = words.take(faces)?;
     }
     if let Some(attributes) = &mut mesh.attributes {
