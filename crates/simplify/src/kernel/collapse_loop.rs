@@ -360,7 +360,10 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
                     -quadric.half
                 }
             }
-            Mobility::Fixed => -quadric.half,
+            Mobility::AlongNormal if !edge_ring.is_open(vertices, v0) => {
+                A::Metric::optimum_along_normal(&aim, end0, deferral.allowed())
+            }
+            _ => -quadric.half,
         };
         let attributes = if free { 0.0 } else { f64::from(model.cost_onto(vertices, &ends)) };
         let cost = whole.at(from_middle) + attributes;
@@ -397,12 +400,19 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         let is_far = from_middle.length_squared() > f64::from(edge_ring.reach());
         // The place as it is stored, so that the normals are those of the actual faces.
         let from = vertices.get(ends.v0).place();
-        let place = match ends.mobility {
+        let mut place = match ends.mobility {
             Mobility::Fixed => from,
-            _ if is_far => return Err(refused(Refusal::Volume)),
+            Mobility::AlongNormal | Mobility::Leaning if is_far => from,
+            Mobility::Free if is_far => return Err(refused(Refusal::Volume)),
             _ => within::<A::Metric>(*room, from.as_dvec3() + quadric.half + from_middle),
         };
-        edge_ring.try_place(place - from).map_err(refused)?;
+        if let Err(refusal) = edge_ring.try_place(place - from) {
+            if ends.mobility == Mobility::Free || place == from {
+                return Err(refused(refusal));
+            }
+            place = from;
+            edge_ring.try_place(Vec3::ZERO).map_err(refused)?;
+        }
         let from_middle = (place - from).as_dvec3() - quadric.half;
         // A mean square distance: attributes do not count.
         let mean_square =

@@ -25,8 +25,9 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
 
     /// Computes the new attribute values at all slots of both ends of an edge.
     ///
-    /// If `v0` stays where it is, its values stay. But if unpaired slots of `v1` join it, all are
-    /// written again, because a value converted to channels and back may differ in its last digit.
+    /// If `v0` stays where it is or moves along its normal, its values stay. But if unpaired slots of
+    /// `v1` join it, all are written again, because a value converted to channels and back may differ
+    /// in its last digit.
     pub(crate) fn find_values(&mut self, collapse: &Collapse) {
         let mut renewed = std::mem::take(&mut self.scratch.renewed);
         renewed.clear();

@@ -79,6 +79,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         let wedge_pairs = self.one_each(wedge_pairs);
         let mobility = match moves[usize::from(turns)] {
             _ if leaves && goes => Mobility::Free,
+            true if self.seams_hold => Mobility::AlongNormal,
             true => Mobility::Leaning,
             false => Mobility::Fixed,
         };

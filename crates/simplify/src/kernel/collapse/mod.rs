@@ -28,7 +28,7 @@ impl Ends {
     /// Returns true if the new vertex may be anywhere.
     #[inline(always)]
     pub(crate) fn is_free(&self) -> bool {
-        self.mobility != Mobility::Fixed
+        matches!(self.mobility, Mobility::Free | Mobility::Leaning)
     }
 }
 
@@ -40,6 +40,9 @@ pub(crate) enum Mobility {
     /// Any position, but that of `v0` where it is as good: charts or materials meet there that do
     /// not meet at `v1`, so its place and its values say where they do.
     Leaning,
+    /// Positions on the surface's normal at `v0`: a seam holds the vertex, and its texture must not
+    /// slide.
+    AlongNormal,
     /// The position of `v0` alone: a pin or a tie holds the vertex.
     Fixed,
 }
@@ -64,7 +67,8 @@ impl Collapse {
         !self.ends.is_free() && self.displacement == Vec3::ZERO
     }
 
-    /// Returns true if the wedges of `v0` keep their values, because it stays where it is.
+    /// Returns true if the wedges of `v0` keep their values: it stays where it is, or moves along
+    /// the surface's normal only.
     #[inline(always)]
     pub(crate) fn keeps_values(&self) -> bool {
         self.displacement == Vec3::ZERO || !self.ends.is_free()

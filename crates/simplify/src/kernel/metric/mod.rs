@@ -98,6 +98,12 @@ pub(crate) trait Metric: Copy + Send + Sync {
     /// volume is preserved as far as that adds no more than `allowed` to the mean square distance.
     fn optimum(quadric: &EdgeQuadricF64, allowed: f64) -> DVec3;
 
+    /// Returns the best place on the line through the first end along the surface's normal,
+    /// relative to the middle of the edge: the first end itself unless the volume is preserved.
+    fn optimum_along_normal(quadric: &EdgeQuadricF64, _end0: &Vertex, _allowed: f64) -> DVec3 {
+        -quadric.half
+    }
+
     /// Returns the quadric of the new vertex, before any vertex is changed. Also updates the
     /// boundary edges that move with the new vertex.
     fn merged_quadric(
