@@ -20,8 +20,11 @@
 
 mod placed_edge;
 mod queueing;
+mod ruin;
 
 pub(crate) use crate::kernel::collapse_loop::placed_edge::PlacedEdge;
+pub(crate) use crate::kernel::collapse_loop::ruin::is_out_of_proportion;
+use crate::kernel::collapse_loop::ruin::{are_parts_stuck, is_seen};
 
 use glam::{DVec3, Vec3};
 
@@ -66,15 +69,6 @@ const AS_GOOD: f64 = 1e-6;
 /// faces left to remove: 0 95, 111, .314; 4 44, 51, .324; 8 21, 41, .348; 16 .348; refused for good
 /// 9, 20, .393. FLIP is the same elsewhere.
 pub(crate) const UV_FLIP_DELAY: u16 = 8;
-
-/// Fraction of the diagonal by which a single step may always move the surface.
-const RUIN: f32 = 1.0 / 3.0;
-
-/// Multiple of the largest distance so far by which a single step may always move the surface.
-const LEAP: f32 = 3.0;
-
-/// Fraction of the diagonal by which a single step may move the surface at any price.
-const SEEN: f32 = 0.02;
 
 /// A part of the surface being simplified, with its queue and its attributes.
 pub(crate) struct CollapseLoop<'v, A> {
@@ -449,8 +443,8 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         Ok(ends.v0)
     }
 
-    /// Returns true if a step would ruin the shape: it is out of proportion, or while most of the
-    /// surface can go no further, the rest would pay for it at any price.
+    /// Returns true if a step would ruin the shape: it is out of proportion, or while most parts can
+    /// go no further, the rest would pay for them at any price.
     ///
     /// Where components may still vanish, nothing is stuck, and within an error bound that decides.
     #[cold]
@@ -462,17 +456,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
             return false;
         }
         let Self { vertices, deferral, live_faces, .. } = self;
-        let is_stuck = || {
-            let (mut live, mut stuck) = (0, 0);
-            for vertex in vertices.all.iter() {
-                if vertex.len > 0 && !vertex.flags.any(VertexFlags::DEAD) {
-                    live += 1;
-                    stuck += usize::from(vertex.bucket == NONE);
-                }
-            }
-            2 * stuck > live
-        };
-        deferral.is_beyond_price((front, *live_faces), is_stuck)
+        deferral.is_beyond_price((front, *live_faces), || are_parts_stuck(vertices))
     }
 
     /// Contracts an edge that has been placed and checked before, and has still the same ring.
@@ -584,20 +568,6 @@ pub(crate) fn within<M: Metric>(room: Vec3, place: DVec3) -> Vec3 {
         true => place.as_vec3().clamp(-room, room),
         false => place.as_vec3(),
     }
-}
-
-/// Returns true if a step would ruin the model: it moves the surface by this squared distance, and
-/// the largest so far is `largest`. Half the model's box has the size `room`.
-#[inline(always)]
-pub(crate) fn is_out_of_proportion(now: f32, largest: f32, room: Vec3) -> bool {
-    now > RUIN * RUIN * 4.0 * room.length_squared() && now > LEAP * LEAP * largest
-}
-
-/// Returns true if a step that moves the surface by this squared distance changes the shape as a
-/// whole.
-#[inline(always)]
-fn is_seen(now: f32, room: Vec3) -> bool {
-    now > SEEN * SEEN * 4.0 * room.length_squared()
 }
 
 /// SIMD task of [`CollapseLoop::run`].

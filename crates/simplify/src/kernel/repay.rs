@@ -46,7 +46,7 @@ pub(crate) struct Debt {
     pub(crate) sixfold: f64,
 }
 
-/// What a level may do to repay debts.
+/// Limits on the displacements that repay debts.
 pub(crate) struct Means<'a> {
     /// True for each vertex that stays.
     pub(crate) held: &'a [bool],

@@ -45,7 +45,7 @@ pub struct SimplifyReport {
 /// Volume that a method which conserves it has lost in closed parts, as parts of that of the input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LostVolume {
-    /// What the components in the level have lost; negative if their volume has grown.
+    /// Part lost by the components in the level; negative if their volume has grown.
     pub part: f64,
     /// Part that was in components that vanished.
     pub vanished: f64,

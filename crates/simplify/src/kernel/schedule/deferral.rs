@@ -39,7 +39,7 @@ pub(crate) struct Deferral {
     front: u16,
     /// Highest front of a contraction that was made.
     paid: u16,
-    /// What `paid` was when most of the surface was first found to go no further.
+    /// Value of `paid` when most of the surface was first found to go no further.
     stuck: Option<u16>,
     /// Number of faces when that was last looked at; 0 before.
     looked_at: usize,
