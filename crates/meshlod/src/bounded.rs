@@ -19,9 +19,26 @@ use meshlod_simplify::{
 use crate::bounded::comparison::{Comparison, Outcome};
 use crate::conditioned::ConditionedMesh;
 
-/// Part of the error that a run goes up to. Without this room, each place where it is a thousandth
-/// beyond would have to be mended: docs/notes/kernel.md has figures.
-const RUN: f64 = 0.99;
+/// How closely a run keeps to its error: docs/notes/kernel.md and tiles.md have figures.
+#[derive(Clone, Copy)]
+pub(crate) struct Tightness {
+    /// Part of the error that a run goes up to. Without this room, each place where it is a
+    /// thousandth beyond would have to be mended.
+    run: f64,
+    /// Relative slack of comparisons: faces are compared with a limit lowered by this much, so that
+    /// none exceeds the error itself. A smaller slack saves more faces and makes the proof more
+    /// expensive.
+    slack: f64,
+}
+
+impl Tightness {
+    /// As few faces as the error allows.
+    pub(crate) const FULL: Self = Self { run: 0.99, slack: 0.002 };
+
+    /// Little to mend: the faces that a run leaves are a twentieth within the error, and few are
+    /// that much farther away.
+    pub(crate) const LOOSE: Self = Self { run: 0.943, slack: 0.019 };
+}
 
 /// Largest number of times that contractions are taken back before the whole run is repeated. Of 64
 /// parts of robots within .1 % of the diagonal none took more than 11.
@@ -56,7 +73,7 @@ const FACTOR: [f64; 2] = [0.5, 0.93];
 pub(crate) fn run_within<'m>(
     again: Option<(&'m ConditionedMesh<'_>, Option<f64>)>,
     simplifier: &mut Simplifier<'m>,
-    [error, moved]: [f64; 2],
+    ([error, moved], tightness): ([f64; 2], Tightness),
     observer: &mut dyn Observe,
 ) -> Result<Report, SimplifyError> {
     let left = error - moved;
@@ -64,7 +81,7 @@ pub(crate) fn run_within<'m>(
         return simplifier.run(Target::Error(left), observer);
     }
     let report = match left > 0.0 {
-        true => run_and_prove(again, simplifier, left, observer)?,
+        true => run_and_prove(again, simplifier, (left, tightness), observer)?,
         // Nothing may move.
         false => {
             let report = simplifier.run(Target::Faces(simplifier.live_faces()), observer)?;
@@ -82,10 +99,10 @@ pub(crate) fn run_within<'m>(
 fn run_and_prove<'m>(
     again: Option<(&'m ConditionedMesh<'_>, Option<f64>)>,
     simplifier: &mut Simplifier<'m>,
-    error: f64,
+    (error, tightness): (f64, Tightness),
     observer: &mut dyn Observe,
 ) -> Result<Report, SimplifyError> {
-    let mut bound = RUN * error;
+    let mut bound = tightness.run * error;
     let mut report = simplifier.run_to_compare(bound, observer)?;
     let whole = simplifier.input();
     let input = match simplifier.hierarchy() {
@@ -94,7 +111,7 @@ fn run_and_prove<'m>(
     };
     let Ok(input) = input else { return Ok(report) };
     let (mut rounds, mut runs, mut mends) = (0, 1, 0);
-    let mut comparison = Comparison::new(whole, &input, error);
+    let mut comparison = Comparison::new(whole, &input, [error, tightness.slack]);
     if error < least_provable(&input) {
         let level = simplifier.level();
         let proved = match comparison.is_input(&level) {

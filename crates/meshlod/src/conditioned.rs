@@ -10,7 +10,7 @@ use meshlod_simplify::{
     VolumeLoss, flat_part, flatten,
 };
 
-use crate::bounded::run_within;
+use crate::bounded::{Tightness, run_within};
 
 /// Part of the largest coordinate by which what is flat may be off: rounding to 32 bits moves planes
 /// and lines in any direction by less.
@@ -242,6 +242,16 @@ pub fn simplify(
     target: Target,
     options: &Options,
 ) -> Result<(Mesh, Report), SimplifyError> {
+    simplify_by(mesh, target, options, Tightness::FULL)
+}
+
+/// Simplifies as [`simplify`], but keeps to an error as closely as is asked for.
+pub(crate) fn simplify_by(
+    mesh: &Mesh,
+    target: Target,
+    options: &Options,
+    tightness: Tightness,
+) -> Result<(Mesh, Report), SimplifyError> {
     let mut ready = ConditionedMesh::new(mesh, options.clone(), Some(Borders::Stitch));
     let own = match target.valid()? {
         Target::Ratio(_) => Target::Faces(target.faces_of(mesh.faces.len())),
@@ -261,7 +271,7 @@ pub fn simplify(
     let report = match own {
         Target::Error(error) => {
             let again = Some((&ready, options.vanish_below));
-            run_within(again, &mut simplifier, [error, ready.moved()], &mut ())?
+            run_within(again, &mut simplifier, ([error, ready.moved()], tightness), &mut ())?
         }
         own => simplifier.run(own, &mut ())?,
     };

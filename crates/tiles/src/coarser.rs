@@ -18,7 +18,7 @@ pub trait Coarsen {
     /// Reason why a mesh cannot be simplified.
     type Error: std::fmt::Display + Send;
 
-    /// Simplifies a mesh within an error, with locks for its vertices, and then further to a number
+    /// Simplifies a mesh to about an error, with locks for its vertices, and then further to a number
     /// of faces if it still has more. Returns the mesh, and a distance that no point of either is
     /// farther from the other.
     ///

@@ -6,11 +6,7 @@ use rustc_hash::FxHashMap;
 use crate::cell::Cell;
 use crate::lattice::Point;
 use crate::samples::Samples;
-use crate::tile::{TileMesh, point_of};
-
-/// Greatest difference between values of two wedges that are one where tiles meet. Half a step of
-/// eight bits.
-pub(crate) const SAME: f32 = 0.002;
+use crate::tile::{SAME, TileMesh, point_of};
 
 /// Mesh of several tiles.
 #[derive(Debug)]

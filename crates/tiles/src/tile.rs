@@ -5,8 +5,11 @@ use rustc_hash::FxHashMap;
 
 use crate::cell::Cell;
 use crate::lattice::Point;
-use crate::merge::SAME;
 use crate::samples::Samples;
+
+/// Greatest difference between values of two wedges that are one where tiles meet. Half a step of
+/// eight bits.
+pub(crate) const SAME: f32 = 0.002;
 
 /// Mesh of a tile.
 #[derive(Clone, Debug, Default, PartialEq)]

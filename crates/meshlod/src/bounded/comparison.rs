@@ -6,10 +6,6 @@ use meshlod_mesh::{FaceId, Mesh, VertexId};
 use meshlod_simplify::{Excess, ExcessFace};
 use rustc_hash::FxHashSet;
 
-/// Relative slack: faces are compared with a limit lowered by this much, so that none exceeds the
-/// error itself. A smaller slack saves more faces and makes the proof more expensive.
-const SLACK: f64 = 0.002;
-
 /// Limit on the divisions of faces in each direction. Where errors are far below a thousandth of a
 /// percent of the diagonal and large flats are divided into other faces, more would be needed.
 const MOST_SPLITS: usize = 32_000_000;
@@ -42,6 +38,8 @@ pub(super) struct Comparison<'i, 'm> {
     mesh: &'m Mesh,
     /// Largest distance allowed, in model units.
     error: f64,
+    /// Relative slack of what is allowed.
+    slack: f64,
     /// Number of divisions that are left.
     left: usize,
     last: Option<Compared>,
@@ -61,10 +59,14 @@ struct Compared {
 type Corners = [[u64; 3]; 3];
 
 impl<'i, 'm> Comparison<'i, 'm> {
-    pub(super) fn new(mesh: &'m Mesh, input: &'i PreparedSurface<'m>, error: f64) -> Self {
+    pub(super) fn new(
+        mesh: &'m Mesh,
+        input: &'i PreparedSurface<'m>,
+        [error, slack]: [f64; 2],
+    ) -> Self {
         let [least, most] = SPLITS;
         let left = mesh.faces.len().saturating_mul(SPLITS_PER_FACE).clamp(least, most);
-        Self { input, mesh, error, left, last: None }
+        Self { input, mesh, error, slack, left, last: None }
     }
 
     /// Forgets what was proved of the last level.
@@ -88,11 +90,11 @@ impl<'i, 'm> Comparison<'i, 'm> {
             None => self.faces_of_one_only(&corners),
             Some(last) => [Some(last.new_faces(&corners)), Some(self.doubtful(last, &corners))],
         };
-        let limit = self.error / (1.0 + SLACK);
+        let (limit, slack) = (self.error / (1.0 + self.slack), self.slack);
         let left = &mut self.left;
         let mut far = |from, to, faces: Option<Vec<FaceId>>| {
             let most_splits = MOST_SPLITS.min(*left);
-            let options = BeyondOptions { slack: SLACK, most_splits, faces: faces.as_deref() };
+            let options = BeyondOptions { slack, most_splits, faces: faces.as_deref() };
             let found = faces_beyond(from, to, &|_| limit, &options);
             *left -= found.splits;
             found.faces
@@ -170,6 +172,8 @@ mod tests {
 
     use super::*;
 
+    const SLACK: f64 = 0.002;
+
     /// Faces that are too far away, by surface and number.
     fn far(outcome: Outcome) -> Vec<(bool, FaceId)> {
         let Outcome::Far(found) = outcome else { return Vec::new() };
@@ -195,14 +199,14 @@ mod tests {
             simplifier.level()
         });
         for back in [false, true] {
-            let mut comparison = Comparison::new(&mesh, &input, error);
+            let mut comparison = Comparison::new(&mesh, &input, [error, SLACK]);
             for level in &levels {
-                let alone = far(Comparison::new(&mesh, &input, error).with(level));
+                let alone = far(Comparison::new(&mesh, &input, [error, SLACK]).with(level));
                 assert_eq!(far(comparison.with(level)), alone, "{back}");
             }
             levels.reverse();
         }
-        let coarsest = far(Comparison::new(&mesh, &input, error).with(&levels[3]));
+        let coarsest = far(Comparison::new(&mesh, &input, [error, SLACK]).with(&levels[3]));
         assert!(coarsest.len() > 10 && coarsest.len() < mesh.faces.len(), "{}", coarsest.len());
     }
 
@@ -210,8 +214,11 @@ mod tests {
     fn a_surface_is_near_itself_at_no_distance() {
         let mesh = samples::sphere(300);
         let input = PreparedSurface::new(&mesh).unwrap();
-        assert!(matches!(Comparison::new(&mesh, &input, 0.0).with(&mesh), Outcome::Near));
+        assert!(matches!(Comparison::new(&mesh, &input, [0.0, SLACK]).with(&mesh), Outcome::Near));
         let flat = Mesh { positions: vec![[0.0; 3]; mesh.positions.len()], ..mesh.clone() };
-        assert!(matches!(Comparison::new(&mesh, &input, 1.0).with(&flat), Outcome::NoArea));
+        assert!(matches!(
+            Comparison::new(&mesh, &input, [1.0, SLACK]).with(&flat),
+            Outcome::NoArea
+        ));
     }
 }

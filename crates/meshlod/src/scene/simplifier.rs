@@ -11,7 +11,7 @@ use meshlod_simplify::{
 };
 use thiserror::Error;
 
-use crate::bounded::run_within;
+use crate::bounded::{Tightness, run_within};
 use crate::scene::ConditionedScene;
 use crate::scene::place;
 
@@ -214,7 +214,8 @@ impl<'s> SceneSimplifier<'s> {
             let mesh = &self.conditioned.meshes[part.mesh];
             let again = part.is_bounded.then_some((mesh, part.vanish_below));
             let errors = [own, mesh.moved()];
-            let report = run_within(again, &mut part.simplifier, errors, observer)?;
+            let report =
+                run_within(again, &mut part.simplifier, (errors, Tightness::FULL), observer)?;
             part.proof = report.proof;
         }
         let report = self.report()?;

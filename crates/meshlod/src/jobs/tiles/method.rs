@@ -11,12 +11,18 @@ use meshlod_simplify::{Options, SimplifyError, Target};
 use meshlod_tiles::coarser::Coarsen;
 use meshlod_tiles::plan::Plan;
 
+use crate::bounded::Tightness;
+use crate::conditioned::simplify_by;
 use crate::simplify;
 
 /// Number of faces of a tile, as a multiple of what a leaf may have, from which it is simplified
 /// further than its error allows: surfaces that do not get simpler, such as leaves of trees, would
 /// be whole in the root.
 const MOST: usize = 3;
+
+/// Error that is proved of a tile, as a multiple of that which its level may lose: so much is left to
+/// places that would cost more to mend than they are worth.
+const ROOM: f64 = 1.05;
 
 /// Samples by which leaves are measured that errors are chosen from.
 const SAMPLES: usize = 20_000;
@@ -59,7 +65,8 @@ impl Coarsen for Proven {
     ) -> Result<(Mesh, f64), TileFailure> {
         let locks = Locks { of_vertex: locks, ties: Vec::new() };
         let options = Options { locks, ..Options::default() };
-        let (level, report) = match simplify(mesh, Target::Error(error), &options) {
+        let target = Target::Error(ROOM * error);
+        let (level, report) = match simplify_by(mesh, target, &options, Tightness::LOOSE) {
             Err(SimplifyError::NoFaces) => return Ok((mesh.clone(), 0.0)),
             done => done.map_err(TileFailure::Simplify)?,
         };
