@@ -74,7 +74,7 @@ fn sent(head: &Head, open: OpenFile) -> Response {
     let OpenFile { mut file, length, modified, tag, media_type } = open;
     let date = httpdate::fmt_http_date(modified);
     // A cache on the way may have made the tag weak.
-    let is_tag = |known: &str| known.trim_start_matches("W/") == tag || known == "*";
+    let is_tag = |known: &str| known.strip_prefix("W/").unwrap_or(known) == tag || known == "*";
     let same = |tags: &str| tags.split(',').map(str::trim).any(is_tag);
     let facts = |answer: Response| {
         answer
