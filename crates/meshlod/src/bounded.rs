@@ -24,20 +24,16 @@ use crate::conditioned::ConditionedMesh;
 pub(crate) struct Tightness {
     /// Part of the error that a run goes up to. Without this room, each place where it is a
     /// thousandth beyond would have to be mended.
-    run: f64,
+    pub(crate) run: f64,
     /// Relative slack of comparisons: faces are compared with a limit lowered by this much, so that
     /// none exceeds the error itself. A smaller slack saves more faces and makes the proof more
     /// expensive.
-    slack: f64,
+    pub(crate) slack: f64,
 }
 
 impl Tightness {
     /// As few faces as the error allows.
     pub(crate) const FULL: Self = Self { run: 0.99, slack: 0.002 };
-
-    /// Little to mend: the faces that a run leaves are a twentieth within the error, and few are
-    /// that much farther away.
-    pub(crate) const LOOSE: Self = Self { run: 0.943, slack: 0.019 };
 }
 
 /// Largest number of times that contractions are taken back before the whole run is repeated. Of 64
