@@ -80,8 +80,8 @@ pub enum Topology {
     /// Connected components may vanish, and handles close, where that costs less than contracting
     /// further: tunnels are filled, and arms of rings cut. Handles stay within a [`Target::Error`],
     /// where an observer sees contractions, and at seams. Seams of textures and borders of materials
-    /// give way where that costs least, so charts may vanish too; within a [`Target::Error`] they
-    /// stay. Non-manifold vertices move only where
+    /// give way where that costs least, so charts may vanish too; within a [`Target::Error`], and in
+    /// all runs after one, they stay. Non-manifold vertices move only where
     /// [`meshlod_mesh::condition`] has split them before.
     #[default]
     Free,

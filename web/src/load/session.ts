@@ -176,7 +176,7 @@ export class Session {
 
     private geometryOf(model: Model): Geometry {
         const { morph } = this.limits;
-        return morph > 0 ? new MovingGeometry(model, morph) : new Geometry(verticesOf(model));
+        return morph > 0 && morph < Infinity ? new MovingGeometry(model, morph) : new Geometry(verticesOf(model));
     }
 
     private show(cut: AnyCut, geometry: Geometry): void {

@@ -35,7 +35,7 @@ enum TopologyArg {
     /// Components may vanish and handles close (tunnels are filled, rings cut) where that costs less
     /// than simplifying them, borders that lie on each other are sewn together, non-manifold places
     /// may move and come apart, and charts and borders of materials give way where that costs least.
-    /// Charts, borders and handles stay within --error, and handles in .mlod files
+    /// With --error, charts, borders of materials and handles stay; in .mlod files, handles do
     Free,
     /// Closed stays closed, manifold stays manifold, no component vanishes and no handle closes, as
     /// printing and simulation need it

@@ -106,8 +106,8 @@ pub fn lost_volume(lost: &LostVolume) -> String {
     let of_level = format!("{sign}{}", part(lost.part.abs()));
     let vanished = format!("{} in parts that vanished", part(lost.vanished));
     let all = match (lost.part.abs() < UNSEEN, lost.vanished < UNSEEN) {
-        (true, false) => vanished,
-        (false, false) => format!("{of_level}, and {vanished}"),
+        (true, false) => format!("-{vanished}"),
+        (false, false) => format!("{of_level}, and another {vanished}"),
         _ => of_level,
     };
     let advice = match lost.is_restorable {
@@ -148,7 +148,8 @@ mod tests {
         let stuck = LostVolume { is_restorable: false, ..lost };
         assert_eq!(lost_volume(&stuck), "volume: -1%; more than --exact-volume can restore\n");
         let vanished = LostVolume { vanished: 0.005, ..lost };
-        let expected = "volume: -1%, and 0.5% in parts that vanished; --exact-volume restores it\n";
+        let expected =
+            "volume: -1%, and another 0.5% in parts that vanished; --exact-volume restores it\n";
         assert_eq!(lost_volume(&vanished), expected);
     }
 }

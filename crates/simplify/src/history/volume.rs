@@ -36,9 +36,9 @@ pub struct VolumeLoss {
     /// leaves them out.
     pub at_boundaries: Unconserved,
     /// Contractions forced to one position by a lock, a tie or a seam, and closed components that
-    /// were removed as a whole, each counted once. The sum includes the contractions. At a seam, methods that
-    /// conserve the volume move the vertex along the surface's normal, and are forced only where
-    /// that would fold the surface.
+    /// were removed as a whole, each counted once. The sum includes the contractions. At a seam that
+    /// holds, methods that conserve the volume move the vertex along the surface's normal, and are
+    /// forced only where that would fold the surface.
     pub held: Unconserved,
 }
 

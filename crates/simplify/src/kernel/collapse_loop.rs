@@ -347,12 +347,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
             Mobility::Free => A::Metric::optimum(&aim, deferral.allowed()),
             Mobility::Leaning => {
                 let best = A::Metric::optimum(&aim, deferral.allowed());
-                let as_good = AS_GOOD * whole.weight() * quadric.half.length_squared();
-                if whole.at(-quadric.half) > whole.at(best) + as_good {
-                    best
-                } else {
-                    -quadric.half
-                }
+                if is_as_good(&aim, -quadric.half, best) { -quadric.half } else { best }
             }
             Mobility::AlongNormal if !edge_ring.is_open(vertices, v0) => {
                 A::Metric::optimum_along_normal(&aim, end0, deferral.allowed())
@@ -568,6 +563,15 @@ pub(crate) fn within<M: Metric>(room: Vec3, place: DVec3) -> Vec3 {
         true => place.as_vec3().clamp(-room, room),
         false => place.as_vec3(),
     }
+}
+
+/// Returns true if a place is as near to the surface as the best one, and to the plane of equal
+/// volume.
+fn is_as_good(aim: &EdgeQuadricF64, place: DVec3, best: DVec3) -> bool {
+    let &EdgeQuadricF64 { half, normal, level, .. } = aim;
+    let off = level - normal.dot(place);
+    aim.at(place) <= aim.at(best) + AS_GOOD * aim.weight() * half.length_squared()
+        && off * off <= AS_GOOD * normal.length_squared() * half.length_squared()
 }
 
 /// SIMD task of [`CollapseLoop::run`].

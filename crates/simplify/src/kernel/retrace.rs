@@ -123,6 +123,8 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
     /// Repeats the steps of another run on the unchanged surface, which must be one part, without
     /// those that are taken back. Then only vertices whose rings differ from that run are queued.
     pub(crate) fn retrace(&mut self, Retrace { steps, back, .. }: &Retrace) {
+        // The run that is repeated was one within an error.
+        self.hold_seams();
         let mut differs = vec![false; self.vertices.all.len()];
         let mut back = back.iter().copied().peekable();
         for (number, step) in (0..).zip(steps) {

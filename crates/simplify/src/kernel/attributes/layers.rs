@@ -235,12 +235,11 @@ impl<'m> AttributeLayers<'m> {
 /// Returns the smallest and largest of the first `width` values of all wedges, as channels.
 fn range(layer: &Layer, width: usize, scale: f64) -> [f32; 2] {
     let costed = layer.values.chunks_exact(layer.width).flat_map(|values| &values[..width]);
-    let finite = costed.copied().filter(|x| x.is_finite());
-    let [low, high] =
-        finite.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
     // NaN and infinity count as zero.
-    let [low, high] = [low.min(0.0), high.max(0.0)].map(|x| (f64::from(x) * scale) as f32);
-    [low, high]
+    let counted = costed.map(|&x| if x.is_finite() { x } else { 0.0 });
+    let widest = counted
+        .fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+    widest.map(|x| if x.is_finite() { (f64::from(x) * scale) as f32 } else { 0.0 })
 }
 
 /// Returns the length of a unit of uv on the surface: the square root of the area on the surface

@@ -81,7 +81,7 @@ impl<M: Metric, const K: usize> SimdTask for CostsAtSeams<'_, '_, '_, M, K> {
 enum Motion {
     Not,
     Free,
-    /// The second end is contracted onto the first, which may then move along its normal.
+    /// The second end is contracted onto the first, which may move along its normal where seams hold.
     Onto,
 }
 

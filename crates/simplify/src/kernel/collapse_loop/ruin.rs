@@ -44,9 +44,9 @@ pub(super) fn are_parts_stuck(vertices: &mut Vertices<'_>) -> bool {
         stuck += usize::from(vertex.bucket == NONE);
         vertices.refresh(v);
         for &w in vertices.neighbours(v) {
-            let slots = [v, w].map(|v| v.wrapping_sub(vertices.base));
-            let is_here = w != GHOST && (slots[1] as usize) < vertices.all.len();
-            joins += usize::from(is_here && joined.union(slots[0], slots[1]));
+            let slots = [v, w].map(|v| vertices.slot(v));
+            let is_here = w != GHOST && slots[1] < vertices.all.len();
+            joins += usize::from(is_here && joined.union(slots[0] as u32, slots[1] as u32));
         }
     }
     live > joins + 1 && 2 * stuck > live
