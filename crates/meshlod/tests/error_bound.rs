@@ -139,7 +139,7 @@ fn corners(mesh: &Mesh, face: usize) -> [([f64; 3], Vec<f32>); 3] {
     let uvs = mesh.attributes.as_ref().map(|all| (all, &all.layers[0]));
     [0, 1, 2].map(|k| {
         let uv = uvs.map_or(Vec::new(), |(all, uvs)| uvs.of(all.corners[face][k]).to_vec());
-        (mesh.positions[mesh.faces[face][k].index()].into(), uv)
+        (mesh.positions[mesh.faces[face][k].index()], uv)
     })
 }
 
