@@ -20,7 +20,7 @@ pub struct Text {
 }
 
 /// Folders without hand-written files.
-const GENERATED: [&str; 5] = ["target", "corpus", "artifacts", "out", "v"];
+const GENERATED: [&str; 6] = ["target", "node_modules", "corpus", "artifacts", "out", "v"];
 
 /// Returns a call of the cargo that runs this program, in the project's root.
 pub fn cargo(project: &Project) -> Command {
