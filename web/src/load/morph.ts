@@ -45,7 +45,8 @@ export class MovingGeometry extends Geometry {
         super(verticesOf(model));
         this.isBlended = [true, true, true];
         for (const { kind, width } of model.wedges?.layers ?? [])
-            for (let k = 0; k < width; k++) this.isBlended.push(BLENDED.includes(kind) && (kind !== "tangent" || k < 3));
+            for (let k = 0; k < width; k++)
+                this.isBlended.push(BLENDED.includes(kind) && (kind !== "tangent" || k < 3));
     }
 
     /** True while vertices move. */

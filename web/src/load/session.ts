@@ -176,7 +176,9 @@ export class Session {
 
     private geometryOf(model: Model): Geometry {
         const { morph } = this.limits;
-        return morph > 0 && morph < Infinity ? new MovingGeometry(model, morph) : new Geometry(verticesOf(model));
+        return morph > 0 && morph < Infinity
+            ? new MovingGeometry(model, morph)
+            : new Geometry(verticesOf(model));
     }
 
     private show(cut: AnyCut, geometry: Geometry): void {
