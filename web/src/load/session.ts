@@ -176,9 +176,8 @@ export class Session {
 
     private geometryOf(model: Model): Geometry {
         const { morph } = this.limits;
-        return morph > 0 && morph < Infinity
-            ? new MovingGeometry(model, morph)
-            : new Geometry(verticesOf(model));
+        const moves = morph > 0 && morph < Infinity;
+        return moves ? new MovingGeometry(model, morph) : new Geometry(verticesOf(model));
     }
 
     private show(cut: AnyCut, geometry: Geometry): void {
