@@ -37,12 +37,6 @@ impl TileLattice {
         // Room for a margin of two steps on both sides.
         let step = (longest / f64::from(END - 8)).log2().ceil().exp2();
         let origin = bounds.min.map(|least| ((least / step).floor() - 2.0) * step);
-        // A box that is a power of two long and begins at a step fills all of a finer lattice. With
-        // the margin it would take half of this one and two steps, so slivers of the divided cells.
-        let snug = step / 2.0;
-        let low = bounds.min.map(|least| (least / snug).floor() * snug);
-        let is_snug = (0..3).all(|axis| bounds.max[axis] - low[axis] <= f64::from(END) * snug);
-        let (step, origin) = if is_snug { (snug, low) } else { (step, origin) };
         (step.is_normal() && origin.iter().all(|x| x.is_finite())).then_some(Self { origin, step })
     }
 
@@ -88,27 +82,6 @@ mod tests {
             let off: f64 = (0..3).map(|axis| (back[axis] - place[axis]).powi(2)).sum();
             assert!(off.sqrt() <= lattice.rounding());
         }
-    }
-
-    #[test]
-    fn a_box_of_a_power_of_two_fills_the_lattice() {
-        let sizes = [(-1.0, 1.0), (0.0, 1024.0), (0.25, 0.5), (-3.0, 5.0), (4096.0, 8192.0)];
-        for (min, max) in sizes {
-            let bounds = Bounds { min: [min, min, 0.0], max: [max, max, 0.0] };
-            let lattice = TileLattice::over(&bounds).unwrap();
-            assert_eq!(lattice.step * f64::from(END), max - min);
-            let points = [bounds.min, bounds.max].map(|place| lattice.point(place));
-            assert_eq!((points[0][0], points[1][0]), (1, END - 1));
-            for (place, point) in [bounds.min, bounds.max].into_iter().zip(points) {
-                let back = lattice.place(point.map(f64::from));
-                let off: f64 = (0..3).map(|axis| (back[axis] - place[axis]).powi(2)).sum();
-                assert!(off.sqrt() <= lattice.rounding());
-            }
-        }
-        // One that begins between two steps needs the next lattice.
-        let bounds = Bounds { min: [0.1; 3], max: [0.1 + 1.0; 3] };
-        let lattice = TileLattice::over(&bounds).unwrap();
-        assert_eq!(lattice.step * f64::from(END), 2.0);
     }
 
     #[test]
