@@ -171,8 +171,9 @@ mod tests {
     use meshlod_simplify::{Options, Simplifier, Target};
 
     use super::*;
+    use crate::bounded::Tightness;
 
-    const SLACK: f64 = 0.002;
+    const SLACK: f64 = Tightness::FULL.slack;
 
     /// Faces that are too far away, by surface and number.
     fn far(outcome: Outcome) -> Vec<(bool, FaceId)> {
