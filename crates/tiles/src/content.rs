@@ -71,6 +71,8 @@ pub fn content(
 /// and the greatest distance that one was moved.
 fn on_grid(plan: &Plan, cell: Cell, tile: &TileMesh) -> (Mesh, f64) {
     let is_border = tile.border_vertices();
+    // All planes between cells are multiples of this.
+    let plane = Cell { depth: plan.tree.depth(), at: [0; 3] }.width();
     let mut mesh = tile.mesh.clone();
     let mut on_side = Vec::with_capacity(is_border.len());
     for (i, is_border) in is_border.into_iter().enumerate() {
@@ -80,7 +82,10 @@ fn on_grid(plan: &Plan, cell: Cell, tile: &TileMesh) -> (Mesh, f64) {
             false => cell.depth,
         };
         let step = grid_step(depth);
-        let near = point.map(|x| (x + step / 2) & !(step - 1));
+        let near = match is_border {
+            true => point.map(|x| off_planes(x, step, plane)),
+            false => point.map(|x| nearest(x, step)),
+        };
         on_side.push(!is_border && cell.sides_of(near) != 0);
         mesh.positions[i] = near.map(f64::from);
     }
@@ -92,6 +97,21 @@ fn on_grid(plan: &Plan, cell: Cell, tile: &TileMesh) -> (Mesh, f64) {
     let moved = pairs.map(|(a, b)| (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum());
     let moved = moved.fold(0.0, f64::max);
     (mesh, moved.sqrt())
+}
+
+/// Returns the closest number of a grid.
+fn nearest(x: i32, step: i32) -> i32 {
+    (x + step / 2) & !(step - 1)
+}
+
+/// Returns the closest number of a grid that is on a plane between cells only where `x` is. An open
+/// edge has both ends on sides of its tile where it crosses two of them, and must not get into a
+/// third.
+fn off_planes(x: i32, step: i32, plane: i32) -> i32 {
+    match nearest(x, step) {
+        near if near % plane == 0 && plane > step => near + step * (x - near).signum(),
+        near => near,
+    }
 }
 
 /// Returns those of some vertices that are ends of open edges.

@@ -98,6 +98,19 @@ fn planning_ends_where_it_is_cancelled() {
 }
 
 #[test]
+fn open_edges_across_the_corners_of_tiles_are_not_cracks() {
+    // Its sides are on those of the whole, and it crosses planes of two axes in almost one place.
+    let mut mesh = samples::terrain(8_000);
+    mesh.positions.iter_mut().for_each(|at| at[2] = 1.001 * at[1]);
+    let source = SceneSource::new(Scene::from_mesh("plane", mesh));
+    let (folder, look) = (tempfile::tempdir().unwrap(), Look::default());
+    let input = TileInput { source: &source, look: &look, key: "plane" };
+    let request = TilesRequest { tile_faces: 200, ..TilesRequest::default() };
+    tiles(input, folder.path(), &request, &()).unwrap();
+    assert_eq!(check_tileset(folder.path(), &()).unwrap().findings, [""; 0]);
+}
+
+#[test]
 fn a_tile_that_was_changed_is_found() {
     let folder = tempfile::tempdir().unwrap();
     let (source, look) = (knot(), Look::default());
