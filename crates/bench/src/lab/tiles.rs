@@ -144,7 +144,8 @@ const ABOUT_LEVELS: &str = "Each level by itself, its tiles joined as they decod
      *`simplify`*: faces of the level by those of `simplify --error` on the whole model, at most at \
      the same measured distance. *open*, *non-manifold*: edges beyond those of the input. *FLIP*: mean \
      over twelve views of 1024 by 1024, over the pixels that show either; the camera is where the \
-     level's error is one pixel at the nearest point of the surface, in the middle of the picture.\n\n";
+     level's error is one pixel at the nearest point of the surface, in the middle of the picture. *FLIP \
+     of `simplify`*: that of the level which `simplify` made, seen alike.\n\n";
 
 /// Returns the file of a model; `None` if the shared meshes are not there.
 fn input(program: &Program, model: &TileModel, folder: &TempDir) -> Result<Option<PathBuf>> {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use meshlod::Scene;
 use meshlod::measure::{DistanceOptions, PreparedSurface, surface_distance};
 use meshlod::mesh::{Connectivity, Mesh};
@@ -20,8 +20,18 @@ const FIELD: f64 = 0.8;
 /// Runs of `simplify` that look for one whose measured distance is that of a level.
 const RUNS: usize = 4;
 
-const HEADINGS: [&str; 9] =
-    ["tiles", "faces", "proved", "measured", "`simplify`", "open", "non-manifold", "FLIP", "most"];
+const HEADINGS: [&str; 10] = [
+    "tiles",
+    "faces",
+    "proved",
+    "measured",
+    "`simplify`",
+    "open",
+    "non-manifold",
+    "FLIP",
+    "most",
+    "FLIP of `simplify`",
+];
 
 /// Returns a table of the levels of a tileset, compared with the model in a file if there is one.
 pub fn table(name: &str, tileset: &Tileset, model: Option<(&Program, &Path)>) -> Result<String> {
@@ -46,7 +56,7 @@ pub fn table(name: &str, tileset: &Tileset, model: Option<(&Program, &Path)>) ->
         row.extend([count.to_string(), faces.to_string(), format!("{error:.3e}")]);
         match &compared {
             Some(model) => row.extend(model.compare(tileset, depth, error)?),
-            None => row.extend(std::iter::repeat_n(String::new(), 6)),
+            None => row.extend(std::iter::repeat_n(String::new(), 7)),
         }
         table.row(row);
     }
@@ -62,7 +72,7 @@ struct LevelModel<'a> {
 }
 
 impl LevelModel<'_> {
-    /// Returns the last six cells of the row of a level that is within an error.
+    /// Returns the last seven cells of the row of a level that is within an error.
     fn compare(&self, tileset: &Tileset, depth: u8, error: f64) -> Result<Vec<String>> {
         let (scene, level) = tileset.joined(depth)?;
         let distance = self.distance(&level)?;
@@ -71,13 +81,22 @@ impl LevelModel<'_> {
         let [open, others] = excess(self.surface.mesh(), &level);
         let seen = self.image_error(&scene, &level, error)?;
         let most = seen.views.iter().map(|view| view.flip).fold(0.0, f64::max);
+        let least = simplified.as_ref().map(|least| least.flatten());
+        let (ratio, own) = match simplified.as_ref().zip(least.as_ref()) {
+            Some((scene, least)) => {
+                let seen = self.image_error(scene, least, error)?;
+                (format!("{:.2}", faces / least.faces.len() as f64), format!("{:.3}", seen.flip))
+            }
+            None => ("–".into(), "–".into()),
+        };
         Ok(vec![
             format!("{distance:.3e}"),
-            simplified.map_or("–".into(), |least| format!("{:.2}", faces / least)),
+            ratio,
             open.to_string(),
             others.to_string(),
             format!("{:.3}", seen.flip),
             format!("{most:.3}"),
+            own,
         ])
     }
 
@@ -87,21 +106,22 @@ impl LevelModel<'_> {
         Ok(surface_distance(&self.surface, &level, &DistanceOptions::default())?.max())
     }
 
-    /// Returns the least number of faces that `simplify --error` was seen to keep within a distance
-    /// that is measured; `None` if no run stayed within.
-    fn simplified(&self, most: f64) -> Result<Option<f64>> {
+    /// Returns the level with the fewest faces that `simplify --error` was seen to make within a
+    /// distance that is measured; `None` if no run stayed within.
+    fn simplified(&self, most: f64) -> Result<Option<Scene>> {
         let folder = tempfile::tempdir()?;
-        let output = folder.path().join("level.ply");
+        let output = folder.path().join("level.glb");
         let [input, output_text] = [self.path, &output].map(|path| path.display().to_string());
-        let (mut error, mut least) = (most, None);
+        let (mut error, mut least, mut fewest) = (most, None, usize::MAX);
         for _ in 0..RUNS {
             let arguments = ["simplify", &input, &output_text, "--error", &error.to_string()];
-            let report = self.program.answer(arguments)?;
-            let faces = report["output_faces"].as_f64().context("output_faces of simplify")?;
-            let level = meshlod::read(&output, &Default::default())?.into_mesh();
+            self.program.answer(arguments)?;
+            let scene = meshlod::read(&output, &Default::default())?;
+            let level = scene.flatten();
             let distance = self.distance(&level)?;
-            if distance <= most && least.is_none_or(|least| faces < least) {
-                least = Some(faces);
+            if distance <= most && level.faces.len() < fewest {
+                fewest = level.faces.len();
+                least = Some(scene);
             }
             // Towards the distance, and just below it.
             error *= 0.995 * most / distance.max(most * 0.25);
