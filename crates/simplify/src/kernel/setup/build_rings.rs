@@ -31,7 +31,9 @@ impl Fans {
         boundary_weight: f32,
     ) -> Self {
         let cells = CellFaces::new(places.len(), count, face);
-        let mut all: Vec<Vertex> = places.par_iter().map(|&place| Vertex::at(place)).collect();
+        // With room for vertices of cuts, which takes no memory before it is used.
+        let mut all = Vec::with_capacity(places.len() + places.len() / 8);
+        places.par_iter().map(|&place| Vertex::at(place)).collect_into_vec(&mut all);
         let close = |(number, all)| close::<M>((number, all), places, &cells, boundary_weight);
         let closed: Vec<_> = all.par_chunks_mut(CELL).enumerate().map(close).collect();
         let (mut long, mut irregular) = (Vec::new(), Vec::new());
