@@ -42,6 +42,7 @@ mod level;
 mod mesh;
 mod metric;
 mod partition;
+mod polish;
 mod prepare;
 mod repay;
 pub(crate) mod retrace;

@@ -20,10 +20,12 @@ use crate::kernel::mesh::one_ring::VertexStore;
 use crate::kernel::mesh::vertex::{NO_VERTEX, Vertex, VertexFlags};
 use crate::kernel::metric::Metric;
 use crate::kernel::partition::Partition;
+use crate::kernel::polish::{Origin, polish};
 use crate::kernel::repay::{Debt, Means, repay};
 use crate::kernel::retrace::{FarFace, Retrace};
 use crate::kernel::schedule::bucket_queue::{NONE, bucket, min_cost_in};
 use crate::kernel::setup::vertex_order::{Order, numbers};
+use crate::method::Method;
 use crate::options::Contractions;
 use crate::refusal::Refusal;
 use crate::run::{Run, Tally};
@@ -89,6 +91,15 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
         let of_input = self.source.mesh.positions.len() as u32;
         let flags = |v: u32| self.partition.store.all[order.id(VertexId(v)) as usize].flags;
         used.map(|(v, _)| v < of_input && flags(v).any(VertexFlags::HELD)).collect()
+    }
+
+    /// Fits a level to the input, given the ids of the input vertices.
+    fn polish(&self, level: &mut Mesh, ids: &[u32]) {
+        let (KernelInput { mesh, order, .. }, names) = (&self.source, self.names());
+        let live = names.store.live_vertices();
+        let heir = |v: u32| ids[names.input(live[order.id(VertexId(v)) as usize]).index()];
+        let heirs: Vec<u32> = (0..mesh.positions.len() as u32).map(heir).collect();
+        polish(level, &Origin { input: mesh, heirs: &heirs }, &self.held(ids));
     }
 
     /// Returns for each of `count` vertices of a level how far contractions have moved the surface
@@ -250,6 +261,9 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
         // A bound of the error comes before the volume.
         if self.input.get().is_some() {
             return (level, 0.0);
+        }
+        if A::Metric::METHOD == Method::LindstromTurk {
+            self.polish(&mut level, &ids);
         }
         let names = self.names();
         let unit = names.frame.unit.powi(3);

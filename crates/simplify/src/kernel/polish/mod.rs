@@ -1,0 +1,163 @@
+//! Fits the free vertices of a level to the input once more, all together.
+//!
+//! Contractions place each vertex by what the surface was just before, and forget the input. Here
+//! points of the input pull on the faces of the level that are nearest to them, along the normals of
+//! these faces, and all vertices move to where the sum of squared distances is least, if points
+//! stay with their faces. The volume of each component is then what it was.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `nearest` | the face of the level nearest to a point of the input |
+//! | `fit` | sums of squared distances by face, and the moves that make them least |
+//! | `volume` | the volume of components |
+
+mod fit;
+mod nearest;
+mod volume;
+
+use glam::DVec3;
+use meshlod_mesh::{Connectivity, Mesh, VertexId};
+use rayon::prelude::*;
+
+use fit::Fit;
+use nearest::{Hit, Nearest};
+use volume::Volumes;
+
+/// Part of a face's weight that its corners have; the middle has the rest. With middles alone,
+/// means are up to 3 % greater.
+const OF_CORNERS: f64 = 0.25;
+
+/// Number of points that are looked up at a time.
+const BLOCK: usize = 1 << 16;
+
+/// Largest displacement of a vertex, as a part of its shortest edge.
+const FARTHEST: f64 = 0.4;
+
+/// Smallest cosine by which a face may turn.
+const MIN_COSINE: f64 = 0.7;
+
+/// Displacements below this part of the mean edge of the input are none: what is exact stays so.
+const LEAST: f64 = 1e-3;
+
+/// Number of times that vertices of faces which have turned too far are put back.
+const ATTEMPTS: usize = 8;
+
+/// The input of a run, and where its vertices are in a level.
+pub(crate) struct Origin<'a> {
+    pub(crate) input: &'a Mesh,
+    /// Vertex of the level that each vertex of the input was contracted into; `NO_VERTEX` if it has
+    /// gone.
+    pub(crate) heirs: &'a [u32],
+}
+
+/// Moves vertices of a level of the input to where they fit it best, but for those that stay and
+/// boundaries.
+///
+/// Cost: O(n) for n faces of the input.
+pub(crate) fn polish(level: &mut Mesh, origin: &Origin<'_>, stays: &[bool]) {
+    let connectivity = Connectivity::new(&level.faces, level.positions.len());
+    let on_seam = on_seams(level);
+    let is_free =
+        |v: usize| !stays[v] && !on_seam[v] && !connectivity.marks(VertexId::new(v)).boundary();
+    let free: Vec<bool> = (0..level.positions.len()).map(is_free).collect();
+    let nearest = Nearest::new(level, &connectivity);
+    let mut fit = Fit::new(&nearest);
+    origin.each_hit(&nearest, |hit| fit.add(&hit));
+    let mut moves = fit.moves(&connectivity, &level.faces, &free);
+    limit(&mut moves, (level, &connectivity), origin.mean_edge());
+    fit.hold_worst(&mut moves, &level.faces);
+    let volumes = Volumes::new(level);
+    put_back_turned(level, &mut moves);
+    for (at, by) in level.positions.iter_mut().zip(&moves) {
+        *at = (DVec3::from(*at) + *by).into();
+    }
+    volumes.restore(level, &moves);
+}
+
+impl Origin<'_> {
+    /// Looks up all points of the input, and hands them on in a fixed order.
+    fn each_hit(&self, nearest: &Nearest<'_>, mut see: impl FnMut(Hit)) {
+        let Self { input, heirs } = self;
+        let mut shares = vec![0f32; input.positions.len()];
+        let faces = input.faces.len();
+        let place = |v: VertexId| DVec3::from(input.positions[v.index()]);
+        let area = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).length() / 2.0;
+        for face in &input.faces {
+            let share = area(face.map(place)) * OF_CORNERS / 3.0;
+            face.iter().for_each(|v| shares[v.index()] += share as f32);
+        }
+        let of_face = |i: usize| {
+            let corners = input.faces[i].map(place);
+            let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+            let near = input.faces[i].map(|v| heirs[v.index()]);
+            nearest.hit(middle, near, area(corners) * (1.0 - OF_CORNERS))
+        };
+        let of_vertex =
+            |v: usize| nearest.hit(input.positions[v].into(), [heirs[v]; 3], f64::from(shares[v]));
+        let count = faces + input.positions.len();
+        for first in (0..count).step_by(BLOCK) {
+            let block = first..(first + BLOCK).min(count);
+            let look = |i: usize| if i < faces { of_face(i) } else { of_vertex(i - faces) };
+            let hits: Vec<Option<Hit>> = block.into_par_iter().map(look).collect();
+            hits.into_iter().flatten().for_each(&mut see);
+        }
+    }
+
+    /// Returns the length of an edge of faces of the mean area.
+    fn mean_edge(&self) -> f64 {
+        self.input.bounds().diagonal() / (self.input.faces.len() as f64).sqrt()
+    }
+}
+
+/// Returns for each vertex whether charts, materials or objects meet there.
+fn on_seams(level: &Mesh) -> Vec<bool> {
+    let mut on_seam = vec![false; level.positions.len()];
+    let mut first = vec![None; level.positions.len()];
+    for (face, corners) in level.faces.iter().enumerate() {
+        let labels =
+            [&level.materials, &level.objects].map(|all| all.as_ref().map(|all| all.of(face)));
+        let wedges = level.attributes.as_ref().map(|all| all.corners[face]);
+        for (k, v) in corners.iter().enumerate() {
+            let own = (labels, wedges.map(|wedges| wedges[k]));
+            on_seam[v.index()] |= *first[v.index()].get_or_insert(own) != own;
+        }
+    }
+    on_seam
+}
+
+/// Shortens moves to what the edges around allow, and leaves those out that are next to nothing.
+fn limit(moves: &mut [DVec3], (level, connectivity): (&Mesh, &Connectivity), edge: f64) {
+    let place = |v: VertexId| DVec3::from(level.positions[v.index()]);
+    for (v, by) in moves.iter_mut().enumerate().filter(|(_, by)| **by != DVec3::ZERO) {
+        let v = VertexId::new(v);
+        let lengths = connectivity.star(v).iter().flat_map(|face| level.faces[face.index()]);
+        let lengths = lengths.filter(|&w| w != v).map(|w| place(w).distance(place(v)));
+        let most = FARTHEST * lengths.fold(f64::INFINITY, f64::min);
+        let length = by.length();
+        if !(length >= LEAST * edge) {
+            *by = DVec3::ZERO;
+        } else if length > most {
+            *by *= most / length;
+        }
+    }
+}
+
+/// Leaves out moves of the vertices of faces that would turn too far.
+fn put_back_turned(level: &Mesh, moves: &mut [DVec3]) {
+    let normal = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a);
+    for _ in 0..ATTEMPTS {
+        let place = |v: VertexId| DVec3::from(level.positions[v.index()]);
+        let has_turned = |&face: &&[VertexId; 3]| {
+            let old = normal(face.map(place));
+            let new = normal(face.map(|v| place(v) + moves[v.index()]));
+            // A face without area may become anything.
+            old.dot(new) < MIN_COSINE * old.length() * new.length()
+        };
+        let turned: Vec<[VertexId; 3]> = level.faces.iter().filter(has_turned).copied().collect();
+        if turned.is_empty() {
+            return;
+        }
+        turned.iter().flatten().for_each(|v| moves[v.index()] = DVec3::ZERO);
+    }
+    moves.fill(DVec3::ZERO);
+}

@@ -1,0 +1,72 @@
+//! Volume of components, restored by a move of all vertices along their normals by a common factor.
+
+use glam::DVec3;
+use meshlod_mesh::{Mesh, UnionFind};
+
+/// Number of steps of Newton's method, which converges quadratically from a step this small.
+const NEWTON_STEPS: usize = 4;
+
+/// Components of a level, and six times the volume of each.
+pub(super) struct Volumes {
+    /// Component of each vertex.
+    of_vertex: Vec<u32>,
+    /// Place from which the volume of each component is measured: that of one of its vertices.
+    origins: Vec<DVec3>,
+    /// Six times the volume of each component.
+    sixfold: Vec<f64>,
+}
+
+impl Volumes {
+    pub(super) fn new(level: &Mesh) -> Self {
+        let mut joined = UnionFind::new(level.positions.len());
+        for [a, b, c] in &level.faces {
+            joined.union(a.0, b.0);
+            joined.union(a.0, c.0);
+        }
+        let of_vertex = (0..level.positions.len() as u32).map(|v| joined.find(v)).collect();
+        let origins = level.positions.iter().map(|&at| at.into()).collect();
+        let mut volumes = Self { of_vertex, origins, sixfold: Vec::new() };
+        volumes.sixfold = volumes.of(level);
+        volumes
+    }
+
+    /// Returns six times the volume of each component; of one that is not closed, that of the cones
+    /// from a place that stays.
+    fn of(&self, level: &Mesh) -> Vec<f64> {
+        let mut sixfold = vec![0.0; self.of_vertex.len()];
+        for face in &level.faces {
+            let of = self.of_vertex[face[0].index()] as usize;
+            let origin = self.origins[of];
+            let [a, b, c] = face.map(|v| DVec3::from(level.positions[v.index()]) - origin);
+            sixfold[of] += a.cross(b).dot(c);
+        }
+        sixfold
+    }
+
+    /// Gives each component the volume that it had. Only vertices that have moved move.
+    pub(super) fn restore(&self, level: &mut Mesh, moves: &[DVec3]) {
+        for _ in 0..NEWTON_STEPS {
+            let now = self.of(level);
+            let mut normals = vec![DVec3::ZERO; level.positions.len()];
+            for face in &level.faces {
+                let [a, b, c] = face.map(|v| DVec3::from(level.positions[v.index()]));
+                let normal = (b - a).cross(c - a);
+                face.iter().for_each(|v| normals[v.index()] += normal);
+            }
+            let mut slopes = vec![0.0; level.positions.len()];
+            for (v, normal) in normals.iter().enumerate().filter(|(v, _)| moves[*v] != DVec3::ZERO)
+            {
+                slopes[self.of_vertex[v] as usize] += normal.length_squared();
+            }
+            for (v, normal) in normals.iter().enumerate().filter(|(v, _)| moves[*v] != DVec3::ZERO)
+            {
+                let of = self.of_vertex[v] as usize;
+                let factor = (self.sixfold[of] - now[of]) / slopes[of];
+                let at = DVec3::from(level.positions[v]) + *normal * factor;
+                if at.is_finite() {
+                    level.positions[v] = at.into();
+                }
+            }
+        }
+    }
+}
