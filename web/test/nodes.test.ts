@@ -2,7 +2,17 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { AnimationMixer, Bone, LineSegments, Matrix4, SkinnedMesh, Vector3 } from "three";
+import {
+    AnimationMixer,
+    Bone,
+    Box3,
+    LineSegments,
+    Matrix4,
+    Mesh,
+    PerspectiveCamera,
+    SkinnedMesh,
+    Vector3,
+} from "three";
 import type { Object3D } from "three";
 import { MlodLoader } from "../src/three/mlod_loader.ts";
 import type { MlodMesh } from "../src/three/mlod_mesh.ts";
@@ -12,8 +22,9 @@ import { conformanceFile, conformanceNames, vectorFile } from "./files.ts";
 
 const skip = conformanceNames().length === 0 && "the files are not there";
 
-async function open(file: Uint8Array<ArrayBuffer>): Promise<MlodMesh> {
+async function open(file: Uint8Array<ArrayBuffer>, morph = 0): Promise<MlodMesh> {
     const loader = new MlodLoader();
+    loader.limits = { morph };
     loader.worker = null;
     // Without a browser there are no images.
     loader.onStreamError = () => undefined;
@@ -80,14 +91,104 @@ test("a mesh that nodes move is where the file has it", { skip }, async () => {
     mesh.dispose();
 });
 
-test("files without nodes, and with several meshes, say so", { skip }, async () => {
+/** Returns the triangles that a mesh draws, as sorted texts of their positions. */
+function trianglesOf({ geometry }: Mesh): string[] {
+    const { index, groups } = geometry;
+    const { array } = geometry.getAttribute("position");
+    const corner = (at: number) => {
+        const vertex = index?.getX(at) ?? 0;
+        return array.slice(3 * vertex, 3 * vertex + 3).join(",");
+    };
+    const drawn = groups.flatMap(({ start, count }) =>
+        Array.from({ length: count / 3 }, (_, i) =>
+            [0, 1, 2].map((k) => corner(start + 3 * i + k)).join(" "),
+        ),
+    );
+    return drawn.sort();
+}
+
+/** Asks for all of a mesh, and waits until it is there. */
+async function finest(mesh: MlodMesh): Promise<void> {
+    const camera = new PerspectiveCamera(45, 1, 0.01, 1e6);
+    camera.position.set(0, 0, 3 * mesh.info.diagonal);
+    mesh.pixels = 0;
+    for (let i = 0; i < 400; i++) {
+        mesh.update(camera, { getDrawingBufferSize: (size) => size.set(640, 480) });
+        await new Promise((resolve) => setTimeout(resolve, 5));
+        if (i > 5 && mesh.progress?.done && mesh.progress.missing === 0) return;
+    }
+    assert.fail("the finest level does not come");
+}
+
+test(
+    "each mesh of a file has its own triangles, at each node that shows it",
+    { skip },
+    async () => {
+        for (const morph of [0, 30]) {
+            const mesh = await open(conformanceFile("scene"), morph);
+            const early = mesh.clone();
+            const { scene, animations, meshes } = await mesh.nodes();
+            assert.equal((await mesh.nodes()).scene, scene);
+            assert.equal(animations.length, 1);
+            const drawn = all(scene, Mesh).filter(({ layers }) => layers.mask !== 0);
+            drawn.sort((a, b) => trianglesOf(b).length - trianglesOf(a).length);
+            const [body, ...wheels] = drawn;
+            assert.ok(body && wheels.length === 2 && wheels[0].geometry === wheels[1].geometry);
+            for (const isFinest of [false, true]) {
+                if (isFinest) await finest(mesh);
+                const apart = [...trianglesOf(body), ...trianglesOf(wheels[0])];
+                assert.deepEqual(apart.sort(), trianglesOf(mesh));
+                assert.ok(trianglesOf(wheels[0]).length > 0);
+                assert.equal(isFinest, apart.length > 2500, `${apart.length} triangles`);
+            }
+            assert.equal(early.geometry, mesh.geometry);
+            scene.updateMatrixWorld(true);
+            const [wheel, other] = wheels.map((wheels) => new Box3().setFromObject(wheels));
+            assert.ok(!wheel.isEmpty() && !wheel.intersectsBox(other), "wheels are in two places");
+            // The level is chosen for both places of the wheels.
+            assert.ok(meshes.length === 2 && meshes.every(({ layers }) => layers.mask === 0));
+            assert.ok(mesh.dressed.length === 3 && mesh.dressed.every(isWorn(mesh)));
+            for (const mesh of [...meshes, early]) mesh.dispose();
+        }
+    },
+);
+
+function isWorn(mesh: MlodMesh): (other: Mesh) => boolean {
+    return ({ material }) => material === mesh.material;
+}
+
+test("of several places the one nearest to the camera chooses the level", async () => {
+    const mesh = await open(vectorFile());
+    const instances = await mesh.instances(3);
+    const { diagonal } = mesh.info;
+    for (const [i, x] of [0, 1e5, 2e5].entries())
+        instances.setMatrixAt(i, new Matrix4().makeTranslation(x * diagonal, 0, 0));
+    const camera = new PerspectiveCamera(45, 4 / 3, 0.01, 1e6);
+    const faces = async (x: number, z: number) => {
+        camera.position.set(x * diagonal, 0, z * diagonal);
+        for (let i = 0; i < 20; i++) {
+            instances.update(camera, { getDrawingBufferSize: (size) => size.set(640, 480) });
+            await new Promise((resolve) => setTimeout(resolve, 5));
+        }
+        return mesh.progress?.faces;
+    };
+    assert.equal(await faces(1e5, 2), 32);
+    assert.equal(await faces(1e5, 1e5), 1);
+    instances.position.x = -2e5 * diagonal;
+    assert.equal(await faces(0, 2), 32);
+    instances.count = 2;
+    assert.equal(await faces(0, 2), 1);
+    assert.ok(instances.geometry === mesh.geometry && isWorn(mesh)(instances));
+    mesh.dispose();
+    assert.equal(await faces(-1e5, 2), 32);
+    instances.dispose();
+});
+
+test("files without nodes say so", { skip }, async () => {
     const bare = await open(vectorFile());
     await assert.rejects(bare.nodes(), /the file has no nodes/);
     bare.dispose();
-    const scene = await open(conformanceFile("scene"));
-    await assert.rejects(scene.nodes(), /the levels are of 2 meshes/);
-    scene.dispose();
     const ended = { info: { hasScene: true }, scene: null, hasEnded: true };
-    const nodes = nodesOf(bare, ended as unknown as SharedLevels);
+    const nodes = nodesOf(bare.clone(), ended as unknown as SharedLevels);
     await assert.rejects(nodes, /the stream has ended/);
 });

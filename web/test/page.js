@@ -1,5 +1,6 @@
 // The page of `browser.mjs`: shows a model from far away and from near, and looks at the pixels.
 import * as THREE from "three";
+import { coverage, readBack } from "./figures/drawn.js";
 import { look } from "./look.js";
 
 const SIZE = 256;
@@ -23,6 +24,20 @@ function hitsOf(mesh, camera) {
     return hits;
 }
 
+/** Returns what tells whether a mesh is there, as far as it was asked for since some progress. */
+function isDoneSince(mesh, before) {
+    return () => mesh.progress !== before && mesh.progress.done && mesh.progress.missing === 0;
+}
+
+/** Looks at the pixels; `missed` are holes that a triangle covers, so that there is nothing to see through. */
+function inspect(gl, mesh, camera) {
+    const seen = look(gl, SIZE, SIZE);
+    const matrix = camera.projectionMatrix.clone().multiply(camera.matrixWorldInverse).elements;
+    const buffers = { ...readBack(gl), ranges: mesh.geometry.groups };
+    const counts = coverage(seen.where, buffers, { matrix, width: SIZE, height: SIZE });
+    return { ...seen, missed: counts.filter(({ rounded }) => rounded > 0).length };
+}
+
 async function run() {
     const renderer = new THREE.WebGLRenderer({ preserveDrawingBuffer: true });
     renderer.setSize(SIZE, SIZE, false);
@@ -37,8 +52,7 @@ async function run() {
     const mesh = await loader.loadAsync(`${from}/model.mlod`);
     scene.add(mesh);
     const { center, diagonal } = mesh.info;
-    const faces = [];
-    const looks = [];
+    const [faces, looks] = [[], []];
     // Pixels of holes in pictures before the level is there, and how many such pictures.
     const moments = [0, 0];
     // From far away, from near, and from near at the finest level.
@@ -50,8 +64,8 @@ async function run() {
         camera.position.set(center[0], center[1], center[2] + distance * diagonal);
         camera.lookAt(...center);
         mesh.pixels = pixels;
-        const isDone = () => mesh.progress?.done && mesh.progress.missing === 0;
-        for (let frame = 0, still = 0; frame < 600 && still < 10; frame++) {
+        const isDone = isDoneSince(mesh, mesh.progress);
+        for (let frame = 0, still = 0; frame < 1000 && still < 10; frame++) {
             mesh.update(camera, renderer); // A face that is seen from behind is no crack.
             mesh.material.forEach((material) => (material.side = THREE.DoubleSide));
             renderer.render(scene, camera);
@@ -63,7 +77,7 @@ async function run() {
             still = isDone() ? still + 1 : 0;
         }
         faces.push(mesh.progress.faces);
-        looks.push(look(renderer.getContext(), SIZE, SIZE));
+        looks.push(inspect(renderer.getContext(), mesh, camera));
     }
     const hits = hitsOf(mesh, camera);
     const covered = looks[1].covered / SIZE ** 2;
@@ -78,6 +92,7 @@ async function run() {
         bytes: mesh.progress.bytes,
         covered,
         holes: looks.map((look) => look.holes),
+        missed: looks.map((look) => look.missed),
         moments,
         hit: hits > 0,
         materials,

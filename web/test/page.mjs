@@ -51,7 +51,13 @@ async function visit(url, inFrame) {
 /** Waits until all is shown, and looks at the picture. */
 async function look({ frame, errors }, name) {
     const isOver = "['shown', 'failed'].includes(document.documentElement.dataset.state)";
-    await frame.waitForFunction(isOver, { timeout: 60_000 });
+    // The coarsest level is all that is asked for before the first picture.
+    for (let [faces, before] = ["", null]; faces !== before;) {
+        before = faces;
+        await new Promise((resolve) => setTimeout(resolve, 500));
+        await frame.waitForFunction(isOver, { timeout: 60_000 });
+        faces = await frame.evaluate("document.documentElement.dataset.faces");
+    }
     const told = await frame.$eval("#error", (line) => (line.hidden ? "" : line.textContent));
     assert.equal(told, "", name);
     const figures = await frame.$eval("#figures", (line) => line.textContent);

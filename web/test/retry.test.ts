@@ -34,20 +34,21 @@ test("what fails by the network is tried again, and given up at last", async () 
 });
 
 test("a server may say when to come back, and waiting ends with the stream", async () => {
-    let asked = 0;
+    let [asked, seconds] = [0, "0.2"];
     const answer = (request: IncomingMessage, response: ServerResponse) => {
         if (asked++ > 0) sendRange(file, request, response);
-        else response.writeHead(429, { "Retry-After": "0.2" }).end();
+        else response.writeHead(429, { "Retry-After": seconds }).end();
     };
     await serving(answer, async (url) => {
         const start = performance.now();
         await new HttpSource(url, never, {}, fetch, [1]).start(100);
         assert.ok(performance.now() - start >= 190);
-        asked = 0;
+        [asked, seconds] = [0, "10"];
         const abort = new AbortController();
         const waiting = new HttpSource(url, abort.signal, {}, fetch, [1e6]).start(100);
-        setTimeout(() => abort.abort(new Error("enough")), 50);
+        const timer = setInterval(() => asked > 0 && abort.abort(new Error("enough")), 20);
         await assert.rejects(waiting, /enough/);
+        clearInterval(timer);
         assert.equal(asked, 1);
     });
 });

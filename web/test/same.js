@@ -19,6 +19,7 @@ async function load(url, updated, time) {
         updated.push(mesh);
         if (time === null) return mesh;
         shown = await mesh.nodes();
+        updated.push(...shown.meshes.slice(1));
     }
     if (time !== null) {
         const mixer = new THREE.AnimationMixer(shown.scene);
@@ -45,12 +46,15 @@ async function draw(url, renderer, time, ball) {
             .multiplyScalar(ball.radius)
             .add(ball.center);
         camera.lookAt(ball.center);
-        for (let frame = 0, still = 0; frame < 300 && still < 10; frame++) {
+        // What was said before this camera asked does not count.
+        const before = updated.map(({ progress }) => progress);
+        for (let frame = 0, still = 0; frame < 500 && still < 20; frame++) {
             for (const mesh of updated) mesh.update(camera, renderer);
             renderer.render(scene, camera);
             await new Promise((resolve) => setTimeout(resolve, 20));
             const isDone = updated.every(
-                ({ progress }) => progress?.done && progress.missing === 0,
+                ({ progress }, i) =>
+                    progress !== before[i] && progress.done && progress.missing === 0,
             );
             still = isDone ? still + 1 : 0;
         }

@@ -13,7 +13,8 @@ import { Geometry } from "../src/load/geometry.ts";
 import type { GeometryPatch } from "../src/load/geometry.ts";
 import { Levels } from "../src/load/levels.ts";
 import type { FileInfo } from "../src/load/messages.ts";
-import { layersOf, verticesOf } from "../src/load/vertices.ts";
+import { infoOf } from "../src/load/info.ts";
+import { verticesOf } from "../src/load/vertices.ts";
 import { NONE } from "../src/model.ts";
 import type { Model } from "../src/model.ts";
 import { StreamGeometry } from "../src/three/buffers.ts";
@@ -23,20 +24,6 @@ import { conformanceFile, conformanceNames } from "./files.ts";
 import { randomNumbers } from "./random.ts";
 
 const MOMENTS = 12;
-
-function infoOf({ header }: Model, layers: FileInfo["layers"]): FileInfo {
-    const { frame, diagonal, length, chunks } = header;
-    return {
-        kind: "contractions",
-        center: [...frame.origin],
-        diagonal,
-        length,
-        chunks: chunks.length,
-        hasScene: false,
-        layers,
-        materials: null,
-    };
-}
 
 /** A stream without a network: chunks come when they are told to. */
 class Show {
@@ -52,7 +39,7 @@ class Show {
         const { at, length } = header.base;
         this.levels = new Levels(header, file.subarray(at, at + length), Infinity);
         const { model } = this.levels.cut;
-        this.mesh = new StreamGeometry(infoOf(model, layersOf(model)));
+        this.mesh = new StreamGeometry(infoOf(model));
         this.geometry = new Geometry(verticesOf(model));
     }
 

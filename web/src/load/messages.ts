@@ -28,6 +28,7 @@ export interface StreamLimits {
 export type Request =
     | { kind: "open"; origin: Origin; limits: StreamLimits }
     | { kind: "query"; query: Query }
+    | { kind: "split"; parts: readonly number[] }
     | { kind: "close" };
 
 /** A layer of a vertex, as patches have it behind the position. */
@@ -52,6 +53,8 @@ export interface FileInfo {
     layers: LayerInfo[];
     /** Names of material labels, by which patches have their parts. */
     materials: readonly string[] | null;
+    /** Material and object of each pair of labels that a vertex may have, two numbers each. */
+    pairs: Uint32Array | null;
 }
 
 /** The scene of a file, if it has one. */

@@ -41,8 +41,9 @@ export class MovingGeometry extends Geometry {
     constructor(
         private readonly model: Model,
         private readonly time: number,
+        parts?: readonly number[],
     ) {
-        super(verticesOf(model));
+        super(verticesOf(model, parts));
         this.isBlended = [true, true, true];
         for (const { kind, width } of model.wedges?.layers ?? [])
             for (let k = 0; k < width; k++)

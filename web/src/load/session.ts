@@ -18,7 +18,8 @@ import { FRAME, MovingGeometry } from "./morph.ts";
 import { HttpSource, MemorySource } from "./source.ts";
 import type { Hear, Source } from "./source.ts";
 import type { Model } from "../model.ts";
-import { fieldVerticesOf, layersOf, verticesOf } from "./vertices.ts";
+import { fieldInfoOf, infoOf } from "./info.ts";
+import { fieldVerticesOf, verticesOf } from "./vertices.ts";
 
 const FIRST_BYTES = 64 << 10;
 const WHOLE = 2 ** 31;
@@ -56,6 +57,8 @@ export class Session {
     private levels: Levels | null = null;
     private cut: AnyCut | null = null;
     private geometry: Geometry | null = null;
+    /** Part of the triangles of each pair of labels; by materials if it is not given. */
+    private parts: readonly number[] | undefined;
     private head: SceneHead | null = null;
     private nextResource = 0;
     /** Number of bytes fetched in all, and of those fetched to open the file. */
@@ -81,6 +84,7 @@ export class Session {
     receive(request: Request): void {
         if (request.kind === "close") this.abort.abort();
         else if (request.kind === "query") this.ask(request.query);
+        else if (request.kind === "split") this.split(request.parts);
         else void this.guard(this.open(request.origin, request.limits));
     }
 
@@ -128,19 +132,7 @@ export class Session {
         const base = await this.read(header.base);
         const levels = new Levels(header, base, this.limits.memory);
         const { model } = levels.cut;
-        this.post({
-            kind: "opened",
-            info: {
-                kind: "contractions",
-                center: [...header.frame.origin],
-                diagonal: header.diagonal,
-                length: header.length,
-                chunks: header.chunks.length,
-                hasScene: header.resources.length > 0,
-                layers: layersOf(model),
-                materials: model.wedges?.materials ?? null,
-            },
-        });
+        this.post({ kind: "opened", info: infoOf(model) });
         this.header = header;
         this.levels = levels;
         this.show(levels.cut, this.geometryOf(model));
@@ -152,19 +144,7 @@ export class Session {
         const first = decodeField(start);
         const model = new FieldModel(first);
         const length = fieldLength(start);
-        this.post({
-            kind: "opened",
-            info: {
-                kind: "height field",
-                center: [...model.frame.origin],
-                diagonal: model.frame.unit,
-                length,
-                chunks: first.allParts,
-                hasScene: false,
-                layers: [],
-                materials: null,
-            },
-        });
+        this.post({ kind: "opened", info: fieldInfoOf(model, length, first.allParts) });
         this.show(new FieldCut(model), new Geometry(fieldVerticesOf(model)));
         if (first.parts === first.allParts) return;
         // One more, to see what is behind the end.
@@ -175,15 +155,25 @@ export class Session {
     }
 
     private geometryOf(model: Model): Geometry {
-        const { morph } = this.limits;
+        const { limits, parts } = this;
+        const { morph } = limits;
         const moves = morph > 0 && morph < Infinity;
-        return moves ? new MovingGeometry(model, morph) : new Geometry(verticesOf(model));
+        return moves
+            ? new MovingGeometry(model, morph, parts)
+            : new Geometry(verticesOf(model, parts));
     }
 
     private show(cut: AnyCut, geometry: Geometry): void {
         this.cut = cut;
         this.geometry = geometry;
         this.startStepping();
+    }
+
+    /** Shows the same cut with its triangles in other parts. */
+    private split(parts: readonly number[]): void {
+        this.parts = parts;
+        const { levels } = this;
+        if (levels) this.show(levels.cut, this.geometryOf(levels.cut.model));
     }
 
     private ask(query: Query): void {

@@ -47,6 +47,11 @@ export interface MlodStream {
      * @throws RangeError if the query is invalid; the one before goes on
      */
     query(query: Query): void;
+    /**
+     * Divides what is shown into other parts than one for each material: `parts` has the part of
+     * each pair of `info.pairs`. The next new patch has them.
+     */
+    split(parts: readonly number[]): void;
     /** Ends all work, and frees the memory. */
     dispose(): void;
 }
@@ -81,7 +86,12 @@ export function open(
         port.listen((event) => {
             if (event.kind === "opened") {
                 isOpen = true;
-                resolve({ info: event.info, query, dispose });
+                resolve({
+                    info: event.info,
+                    query,
+                    split: (parts) => port.send({ kind: "split", parts }),
+                    dispose,
+                });
             } else if (event.kind === "failed" && !isOpen) {
                 dispose();
                 reject(new MlodError(event.section, event.why));

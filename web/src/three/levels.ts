@@ -9,7 +9,12 @@ import { Pictures, closeTextures } from "./pictures.ts";
 /** Milliseconds for which images are gathered before materials are made with them. */
 const GATHER = 50;
 
-/** A copy that is shown: what it asks for, and how near it is to its camera. */
+/** A copy that is shown, and meshes that show it otherwise, which have its materials. */
+interface Copy extends Mesh {
+    readonly dressed: Mesh[];
+}
+
+/** What a copy asks for, and how near it is to its camera. */
 interface Asked {
     query: Query;
     nearness: number;
@@ -20,14 +25,12 @@ export class SharedLevels {
     readonly geometry: StreamGeometry;
     materials: Material[];
     progress: Progress | null = null;
-    private readonly copies = new Map<Mesh, Asked | null>();
+    private readonly copies = new Map<Copy, Asked | null>();
     scene: SceneInfo | null = null;
     /** Key frames of animations. */
     frames: Uint8Array | null = null;
     /** True if nothing more comes. */
     hasEnded = false;
-    /** Meshes that show this otherwise than copies do. */
-    private readonly dressed: Mesh[] = [];
     private readonly images = new Map<number, Uint8Array>();
     private timer: ReturnType<typeof setTimeout> | undefined;
     private readonly pictures = new Pictures();
@@ -38,10 +41,10 @@ export class SharedLevels {
     private factor = 1;
     private judged: Progress | null = null;
     private budget = Infinity;
-    private isDisposed = false;
+    isDisposed = false;
 
     constructor(
-        private readonly stream: MlodStream,
+        readonly stream: MlodStream,
         private readonly manager: LoadingManager,
         private readonly onError: (error: Error) => void,
     ) {
@@ -57,17 +60,12 @@ export class SharedLevels {
     }
 
     /** Adds a copy, which shares everything. */
-    add(copy: Mesh): void {
+    add(copy: Copy): void {
         this.copies.set(copy, null);
     }
 
-    /** Keeps the materials of a mesh up to date. */
-    dress(mesh: Mesh): void {
-        this.dressed.push(mesh);
-    }
-
     /** Asks for what one copy needs; of several the one nearest to its camera decides. */
-    ask(copy: Mesh, query: Query, nearness: number): void {
+    ask(copy: Copy, query: Query, nearness: number): void {
         if (this.isDisposed) return;
         this.copies.set(copy, { query, nearness });
         let best: Asked | null = null;
@@ -120,15 +118,16 @@ export class SharedLevels {
         const made = await makeMaterials(scene, images, geometry, manager, pictures);
         const old = this.isDisposed ? made.materials : this.materials;
         if (!this.isDisposed) this.materials = made.materials;
-        for (const copy of [...this.copies.keys(), ...this.dressed])
-            if (copy.material === old) copy.material = made.materials;
+        for (const copy of this.copies.keys())
+            for (const mesh of [copy, ...copy.dressed])
+                if (mesh.material === old) mesh.material = made.materials;
         disposeMaterials(old);
         closeTextures(made.replaced);
         if (this.isDisposed) pictures.dispose();
     }
 
     /** Forgets a copy; with the last one goes the stream. */
-    remove(copy: Mesh): void {
+    remove(copy: Copy): void {
         this.copies.delete(copy);
         if (this.copies.size > 0 || this.isDisposed) return;
         this.isDisposed = this.hasEnded = true;

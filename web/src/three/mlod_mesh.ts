@@ -10,6 +10,7 @@ import type {
 } from "three";
 import type { FileInfo, Progress, Query, Vector } from "../index.ts";
 import type { SharedLevels } from "./levels.ts";
+import type { MlodInstances } from "./instances.ts";
 import type { MlodNodes } from "./nodes.ts";
 
 /** What tells the size of a picture; every renderer of three.js does. */
@@ -33,7 +34,8 @@ export class MlodMesh extends Mesh<BufferGeometry, Material[]> {
     mostFaces = Infinity;
     /** True to refine only what the camera sees, false to refine all around it. */
     onlyInView = false;
-
+    /** Meshes that show the same otherwise; their materials follow until this is disposed of. */
+    readonly dressed: Mesh[] = [];
     private readonly toLocal = new Matrix4();
     private readonly eye = new Vector3();
     private readonly ahead = new Vector3();
@@ -101,11 +103,19 @@ export class MlodMesh extends Mesh<BufferGeometry, Material[]> {
     }
 
     /**
-     * Returns the nodes of the file, which its animations move, with this mesh at its place; once
-     * they have come. Of files with several meshes it is an error.
+     * Returns the nodes of the file, which its animations move, with its meshes at their places;
+     * once they have come. There is one set of nodes for each copy.
      */
     async nodes(): Promise<MlodNodes> {
         return (await import("./nodes.ts")).nodesOf(this, this.levels);
+    }
+
+    /**
+     * Returns instances that the GPU draws at once, all at the level that the nearest needs:
+     * `setMatrixAt` places them, and `update` is theirs.
+     */
+    async instances(count: number): Promise<MlodInstances> {
+        return new (await import("./instances.ts")).MlodInstances(this.clone(), count);
     }
 
     /** Returns a copy that shares geometry and materials, and counts when the level is chosen. */
