@@ -2,12 +2,15 @@
 
 use crate::kernel::attributes::AttributeModel;
 use crate::kernel::collapse_loop::CollapseLoop;
-use crate::kernel::mesh::one_ring::{GHOST, MAX_RING};
-use crate::kernel::mesh::vertex::{NO_VERTEX, RING, VertexFlags};
+use crate::kernel::mesh::one_ring::{GHOST, LONG, MAX_RING};
+use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
 use crate::kernel::schedule::batch::Batch;
 use crate::kernel::schedule::bucket_queue::last_bucket;
 use crate::kernel::schedule::edge_costs::{Cheapest, Rank, cheapest};
 use crate::kernel::simd::{SimdTask, widest};
+
+/// Number of neighbours of a vertex that are read ahead: most have no more.
+const READ_AHEAD: usize = 8;
 
 impl<A: AttributeModel> CollapseLoop<'_, A> {
     /// Costs and queues all vertices for the first time, except those that wait for another part.
@@ -47,21 +50,25 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         }
     }
 
-    /// Reads the next vertices and their neighbours in loops whose loads do not depend on each
-    /// other. Read one by one, each would cost a memory latency.
+    /// Reads the next vertices, their rings and their neighbours, with all that a contraction will
+    /// touch of them, in loops whose loads do not depend on each other. Read one by one, each would
+    /// cost a memory latency.
     pub(super) fn prefetch(&self) {
         let (vertices, (next, _)) = (&self.vertices, self.queue.next());
+        let touch = |v: u32| vertices.get(v).target ^ vertices.get(v).ring[0];
         let mut sum = 0;
         for &v in next {
-            sum ^= vertices.get(v).ring[0] ^ vertices.get(v).target ^ self.model.prefetch(v);
+            sum ^= touch(v) ^ self.model.prefetch(v);
         }
         for &v in next {
             let vertex = vertices.get(v);
-            if vertex.flags.any(VertexFlags::DEAD) || vertex.len > RING as u8 {
-                continue;
-            }
-            for &w in &vertex.ring[..vertex.len as usize] {
-                sum ^= vertices.get(w).target ^ self.model.prefetch(w);
+            sum ^= touch(vertex.target);
+            // The end of a loop over the ring would be mispredicted, and found out only once the
+            // ring has come from memory.
+            let len = if vertex.len == LONG { 0 } else { usize::from(vertex.len) };
+            for (i, &w) in vertex.ring[..READ_AHEAD].iter().enumerate() {
+                let w = if i < len { w } else { v };
+                sum ^= touch(w) ^ self.model.prefetch(w);
             }
         }
         std::hint::black_box(sum);

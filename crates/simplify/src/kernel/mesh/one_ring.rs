@@ -337,11 +337,12 @@ impl Vertex {
 /// Returns the index of `v` among the first `len` ids of a ring, without a branch.
 #[inline(always)]
 pub(crate) fn index_in_ring(ring: &[u32; RING], len: usize, v: u32) -> Option<usize> {
-    let (len, mut beyond) = (len as u32, 0);
-    for (i, &w) in (1..).zip(ring) {
-        beyond += if (w == v) & (i <= len) { i } else { 0 };
+    let mut at = 0;
+    for (i, &w) in (0..).zip(ring) {
+        at |= if w == v { 1 << i } else { 0 };
     }
-    (beyond as usize).checked_sub(1)
+    let at = at & ((1_u32 << len) - 1);
+    (at != 0).then(|| at.trailing_zeros() as usize % RING)
 }
 
 /// Returns the index of `v` in a ring.
