@@ -99,7 +99,7 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
         let live = names.store.live_vertices();
         let heir = |v: u32| ids[names.input(live[order.id(VertexId(v)) as usize]).index()];
         let heirs: Vec<u32> = (0..mesh.positions.len() as u32).map(heir).collect();
-        polish(level, &Origin { input: mesh, heirs: &heirs }, &self.held(ids));
+        polish(level, &Origin { input: mesh, heirs: &heirs, frame: *names.frame }, &self.held(ids));
     }
 
     /// Returns for each of `count` vertices of a level how far contractions have moved the surface

@@ -1,9 +1,9 @@
 //! Least squares: moves of vertices that bring faces to the points of the input nearest to them.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, Vec3};
 use meshlod_mesh::{Connectivity, VertexId};
 
-use super::nearest::{Hit, Nearest};
+use super::nearest::{Hit, NearestFaces};
 
 /// Weight that holds a vertex where it is, as a part of that of its points: along the surface nothing
 /// else does.
@@ -28,26 +28,27 @@ struct FaceSum {
 }
 
 /// Sums over the points of all faces of a level.
-pub(super) struct Fit<'n> {
-    normals: &'n [DVec3],
+pub(super) struct LevelFit<'n> {
+    normals: &'n [Vec3],
     sums: Vec<FaceSum>,
 }
 
-impl<'n> Fit<'n> {
-    pub(super) fn new(nearest: &'n Nearest<'_>) -> Self {
+impl<'n> LevelFit<'n> {
+    pub(super) fn new(nearest: &'n NearestFaces<'_>) -> Self {
         let normals = &nearest.normals[..];
         Self { normals, sums: vec![FaceSum::default(); normals.len()] }
     }
 
     pub(super) fn add(&mut self, hit: &Hit) {
         let sum = &mut self.sums[hit.face as usize];
+        let (weights, height) = (hit.weights.map(f64::from), f64::from(hit.height));
         for i in 0..3 {
-            let own = hit.area * hit.weights[i];
-            sum.pulls[i] += own * hit.height;
-            (0..3).for_each(|k| sum.squares[i][k] += own * hit.weights[k]);
+            let own = f64::from(hit.area) * weights[i];
+            sum.pulls[i] += own * height;
+            (0..3).for_each(|k| sum.squares[i][k] += own * weights[k]);
         }
-        if hit.height.abs() > sum.worst.1.abs() {
-            sum.worst = (hit.weights, hit.height);
+        if height.abs() > sum.worst.1.abs() {
+            sum.worst = (weights, height);
         }
     }
 
@@ -65,6 +66,7 @@ impl<'n> Fit<'n> {
                 let (mut matrix, mut pull, mut weight) = (DMat3::ZERO, DVec3::ZERO, 0.0);
                 for face in connectivity.star(v) {
                     let (normal, sum) = (self.normals[face.index()], &self.sums[face.index()]);
+                    let normal = normal.as_dvec3();
                     let corners = faces[face.index()];
                     let own = corners.iter().position(|&w| w == v).expect("it is in its star");
                     let others = (0..3).filter(|&k| k != own);
@@ -89,13 +91,14 @@ impl<'n> Fit<'n> {
 
     /// Leaves out moves of the vertices of faces whose highest point would be higher, and so high that
     /// it may be the highest of all.
-    pub(super) fn hold_worst(&self, moves: &mut [DVec3], faces: &[[VertexId; 3]]) {
+    pub(super) fn hold_worst(&self, moves: &mut [DVec3], faces: &[[VertexId; 3]], unit: f64) {
         let worst = self.sums.iter().map(|sum| sum.worst.1.abs()).fold(0.0, f64::max);
         let mut held = Vec::new();
         for ((sum, face), normal) in self.sums.iter().zip(faces).zip(self.normals) {
             let (weights, height) = sum.worst;
+            let normal = normal.as_dvec3();
             let by: f64 = (0..3).map(|k| weights[k] * normal.dot(moves[face[k].index()])).sum();
-            let left = (height - by).abs();
+            let left = (height - by / unit).abs();
             if left > height.abs() && left > WORST * worst {
                 held.extend(*face);
             }

@@ -15,17 +15,18 @@ mod fit;
 mod nearest;
 mod volume;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use meshlod_mesh::{Connectivity, Mesh, VertexId};
 use rayon::prelude::*;
 
-use fit::Fit;
-use nearest::{Hit, Nearest};
+use crate::kernel::mesh::local_frame::Frame;
+use fit::LevelFit;
+use nearest::{Hit, NearestFaces};
 use volume::Volumes;
 
 /// Part of a face's weight that its corners have; the middle has the rest. With middles alone,
 /// means are up to 3 % greater.
-const OF_CORNERS: f64 = 0.25;
+const OF_CORNERS: f32 = 0.25;
 
 /// Number of points that are looked up at a time.
 const BLOCK: usize = 1 << 16;
@@ -36,7 +37,8 @@ const FARTHEST: f64 = 0.4;
 /// Smallest cosine by which a face may turn.
 const MIN_COSINE: f64 = 0.7;
 
-/// Displacements below this part of the mean edge of the input are none: what is exact stays so.
+/// Displacements below this in the frame, in which the input's edges are about one long, are left out: what
+/// is exact stays so.
 const LEAST: f64 = 1e-3;
 
 /// Number of times that vertices of faces which have turned too far are put back.
@@ -48,6 +50,7 @@ pub(crate) struct Origin<'a> {
     /// Vertex of the level that each vertex of the input was contracted into; `NO_VERTEX` if it has
     /// gone.
     pub(crate) heirs: &'a [u32],
+    pub(crate) frame: Frame,
 }
 
 /// Moves vertices of a level of the input to where they fit it best, but for those that stay and
@@ -60,14 +63,16 @@ pub(crate) fn polish(level: &mut Mesh, origin: &Origin<'_>, stays: &[bool]) {
     let is_free =
         |v: usize| !stays[v] && !on_seam[v] && !connectivity.marks(VertexId::new(v)).boundary();
     let free: Vec<bool> = (0..level.positions.len()).map(is_free).collect();
-    let nearest = Nearest::new(level, &connectivity);
-    let mut fit = Fit::new(&nearest);
+    let nearest = NearestFaces::new(level, &connectivity, origin.frame);
+    let mut fit = LevelFit::new(&nearest);
     origin.each_hit(&nearest, |hit| fit.add(&hit));
     let mut moves = fit.moves(&connectivity, &level.faces, &free);
-    limit(&mut moves, (level, &connectivity), origin.mean_edge());
-    fit.hold_worst(&mut moves, &level.faces);
-    let volumes = Volumes::new(level);
+    moves.iter_mut().filter(|by| by.length() < LEAST).for_each(|by| *by = DVec3::ZERO);
+    moves.iter_mut().for_each(|by| *by *= origin.frame.unit);
+    limit(&mut moves, level, &connectivity);
+    fit.hold_worst(&mut moves, &level.faces, origin.frame.unit);
     put_back_turned(level, &mut moves);
+    let volumes = Volumes::new(level);
     for (at, by) in level.positions.iter_mut().zip(&moves) {
         *at = (DVec3::from(*at) + *by).into();
     }
@@ -76,15 +81,15 @@ pub(crate) fn polish(level: &mut Mesh, origin: &Origin<'_>, stays: &[bool]) {
 
 impl Origin<'_> {
     /// Looks up all points of the input, and hands them on in a fixed order.
-    fn each_hit(&self, nearest: &Nearest<'_>, mut see: impl FnMut(Hit)) {
-        let Self { input, heirs } = self;
+    fn each_hit(&self, nearest: &NearestFaces<'_>, mut see: impl FnMut(Hit)) {
+        let Self { input, heirs, frame } = self;
         let mut shares = vec![0f32; input.positions.len()];
         let faces = input.faces.len();
-        let place = |v: VertexId| DVec3::from(input.positions[v.index()]);
-        let area = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).length() / 2.0;
+        let place = |v: VertexId| frame.to_local(input.positions[v.index()]);
+        let area = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a).length();
         for face in &input.faces {
             let share = area(face.map(place)) * OF_CORNERS / 3.0;
-            face.iter().for_each(|v| shares[v.index()] += share as f32);
+            face.iter().for_each(|v| shares[v.index()] += share);
         }
         let of_face = |i: usize| {
             let corners = input.faces[i].map(place);
@@ -92,8 +97,7 @@ impl Origin<'_> {
             let near = input.faces[i].map(|v| heirs[v.index()]);
             nearest.hit(middle, near, area(corners) * (1.0 - OF_CORNERS))
         };
-        let of_vertex =
-            |v: usize| nearest.hit(input.positions[v].into(), [heirs[v]; 3], f64::from(shares[v]));
+        let of_vertex = |v: usize| nearest.hit(place(VertexId::new(v)), [heirs[v]; 3], shares[v]);
         let count = faces + input.positions.len();
         for first in (0..count).step_by(BLOCK) {
             let block = first..(first + BLOCK).min(count);
@@ -101,11 +105,6 @@ impl Origin<'_> {
             let hits: Vec<Option<Hit>> = block.into_par_iter().map(look).collect();
             hits.into_iter().flatten().for_each(&mut see);
         }
-    }
-
-    /// Returns the length of an edge of faces of the mean area.
-    fn mean_edge(&self) -> f64 {
-        self.input.bounds().diagonal() / (self.input.faces.len() as f64).sqrt()
     }
 }
 
@@ -125,20 +124,15 @@ fn on_seams(level: &Mesh) -> Vec<bool> {
     on_seam
 }
 
-/// Shortens moves to what the edges around allow, and leaves those out that are next to nothing.
-fn limit(moves: &mut [DVec3], (level, connectivity): (&Mesh, &Connectivity), edge: f64) {
+/// Shortens moves to what the edges around allow.
+fn limit(moves: &mut [DVec3], level: &Mesh, connectivity: &Connectivity) {
     let place = |v: VertexId| DVec3::from(level.positions[v.index()]);
     for (v, by) in moves.iter_mut().enumerate().filter(|(_, by)| **by != DVec3::ZERO) {
         let v = VertexId::new(v);
-        let lengths = connectivity.star(v).iter().flat_map(|face| level.faces[face.index()]);
-        let lengths = lengths.filter(|&w| w != v).map(|w| place(w).distance(place(v)));
-        let most = FARTHEST * lengths.fold(f64::INFINITY, f64::min);
-        let length = by.length();
-        if !(length >= LEAST * edge) {
-            *by = DVec3::ZERO;
-        } else if length > most {
-            *by *= most / length;
-        }
+        let around = connectivity.star(v).iter().flat_map(|face| level.faces[face.index()]);
+        let lengths = around.filter(|&w| w != v).map(|w| place(w).distance_squared(place(v)));
+        let most = FARTHEST * lengths.fold(f64::INFINITY, f64::min).sqrt();
+        *by = by.clamp_length_max(most);
     }
 }
 

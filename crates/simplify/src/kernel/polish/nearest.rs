@@ -1,89 +1,147 @@
 //! The face of a level nearest to a point of the input.
 
-use glam::DVec3;
-use meshlod_mesh::{Connectivity, FaceId, Mesh, VertexId};
-use meshlod_spatial::{Triangle, closest_point};
+use glam::{Mat4, Vec3, Vec4};
+use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId};
+use meshlod_spatial::closest_point;
 
+use crate::kernel::mesh::local_frame::Frame;
 use crate::kernel::mesh::vertex::NO_VERTEX;
 
-/// Number of times that the search goes on around another vertex.
-const MOST_HOPS: usize = 3;
+/// Most faces that are crossed on the way to the nearest one.
+const MOST_STEPS: usize = 8;
 
-/// A point of the input at the face of the level that is nearest to it.
+/// A point of the input at the face of the level that is nearest to it, in the frame.
 pub(super) struct Hit {
     pub(super) face: u32,
     /// Weights of the face's corners at the closest point.
-    pub(super) weights: [f64; 3],
+    pub(super) weights: [f32; 3],
     /// Distance above the face's plane.
-    pub(super) height: f64,
+    pub(super) height: f32,
     /// Area that the point stands for.
-    pub(super) area: f64,
+    pub(super) area: f32,
 }
 
-/// Search for the nearest faces.
-pub(super) struct Nearest<'a> {
+/// Search for the nearest faces: the best of those around a vertex, and from there across edges.
+pub(super) struct NearestFaces<'a> {
     faces: &'a [[VertexId; 3]],
     connectivity: &'a Connectivity,
-    pub(super) triangles: Vec<Triangle>,
+    places: Vec<Vec3>,
+    charts: Vec<Chart>,
     /// Unit normals of the faces; zero without area.
-    pub(super) normals: Vec<DVec3>,
+    pub(super) normals: Vec<Vec3>,
 }
 
-impl<'a> Nearest<'a> {
-    pub(super) fn new(level: &'a Mesh, connectivity: &'a Connectivity) -> Self {
-        let place = |v: VertexId| DVec3::from(level.positions[v.index()]);
-        let triangles: Vec<Triangle> = level.faces.iter().map(|face| face.map(place)).collect();
-        let normal = |[a, b, c]: &Triangle| (b - a).cross(c - a).normalize_or_zero();
-        let normals = triangles.iter().map(normal).collect();
-        Self { faces: &level.faces, connectivity, triangles, normals }
+/// What a face needs to know of a point to tell how near it is.
+struct Chart {
+    /// From a point to its distances in the plane from the lines along the edges, inwards, in the
+    /// order of the opposite corners, and to its height above the plane.
+    matrix: Mat4,
+    /// Heights of the triangle above its edges.
+    altitudes: Vec3,
+}
+
+/// A face, and a point as its chart has it.
+#[derive(Clone, Copy)]
+struct Found {
+    face: FaceId,
+    at: Vec4,
+    /// Edge that the point is farthest beyond, by its opposite corner, and how far; at most 0.
+    beyond: (usize, f32),
+}
+
+impl Found {
+    /// Returns the square of a distance that the point has at least. It is that from the face, unless a
+    /// corner is nearest.
+    fn bound(&self) -> f32 {
+        self.at.w * self.at.w + self.beyond.1 * self.beyond.1
+    }
+}
+
+impl<'a> NearestFaces<'a> {
+    pub(super) fn new(level: &'a Mesh, connectivity: &'a Connectivity, frame: Frame) -> Self {
+        let places: Vec<Vec3> = level.positions.iter().map(|&at| frame.to_local(at)).collect();
+        let chart = |face: &[VertexId; 3]| chart(face.map(|v| places[v.index()]));
+        let (charts, normals) = level.faces.iter().map(chart).unzip();
+        Self { faces: &level.faces, connectivity, places, charts, normals }
     }
 
-    /// Returns the face nearest to a point among those around vertices close to it, beginning at one
-    /// of three; `None` if there is none of these.
-    pub(super) fn hit(&self, point: DVec3, near: [u32; 3], area: f64) -> Option<Hit> {
-        let mut from = near.into_iter().find(|&v| v != NO_VERTEX)?;
-        let mut best = (f64::INFINITY, FaceId(0), DVec3::ZERO);
-        let mut seen = [NO_VERTEX; MOST_HOPS];
-        for hop in 0..MOST_HOPS {
-            seen[hop] = from;
-            for &face in self.connectivity.star(VertexId(from)) {
-                self.offer(point, face, &mut best);
-            }
-            let (corners, weights) = (self.faces[best.1.index()], self.weights(best.1, best.2));
-            let most = (0..3).max_by(|&i, &k| weights[i].total_cmp(&weights[k])).expect("three");
-            let next = corners[most].0;
-            if seen.contains(&next) {
+    /// Returns the face nearest to a point, looked for from one of three vertices of the level on;
+    /// `None` if there is none of these.
+    pub(super) fn hit(&self, point: Vec3, near: [u32; 3], area: f32) -> Option<Hit> {
+        let from = VertexId(near.into_iter().find(|&v| v != NO_VERTEX)?);
+        let star = self.connectivity.star(from).iter();
+        let mut best = star
+            .map(|&face| self.find(point, face))
+            .min_by(|a, b| a.bound().total_cmp(&b.bound()))?;
+        for _ in 0..MOST_STEPS {
+            if best.beyond.1 >= 0.0 {
                 break;
             }
-            from = next;
+            let Some(face) = self.across(best.face, best.beyond.0) else { break };
+            let next = self.find(point, face);
+            if next.bound() >= best.bound() {
+                break;
+            }
+            best = next;
         }
-        let (_, face, at) = best;
-        let normal = self.normals[face.index()];
-        let height = (point - at).dot(normal);
-        Some(Hit { face: face.0, weights: self.weights(face, at), height, area })
+        let weights = match best.beyond.1 < 0.0 {
+            true => self.weights(best.face, self.closest(point, best.face)),
+            false => self.weights(best.face, point),
+        };
+        let sum = weights.element_sum();
+        let hit =
+            Hit { face: best.face.0, weights: (weights / sum).to_array(), height: best.at.w, area };
+        (sum.is_finite() && sum > 0.0).then_some(hit)
     }
 
-    /// Takes a face if it is nearer.
     #[inline]
-    fn offer(&self, point: DVec3, face: FaceId, best: &mut (f64, FaceId, DVec3)) {
-        let triangle = &self.triangles[face.index()];
-        let above = self.normals[face.index()].dot(point - triangle[0]);
-        if above * above >= best.0 {
-            return;
+    fn find(&self, point: Vec3, face: FaceId) -> Found {
+        let at = self.charts[face.index()].matrix * point.extend(1.0);
+        let mut beyond = (0, 0.0);
+        for (i, inwards) in [at.x, at.y, at.z].into_iter().enumerate() {
+            if inwards < beyond.1 {
+                beyond = (i, inwards);
+            }
         }
-        let at = closest_point(point, triangle);
-        let apart = point.distance_squared(at);
-        if apart < best.0 {
-            *best = (apart, face, at);
+        Found { face, at, beyond }
+    }
+
+    /// Returns the face across the edge opposite a corner.
+    fn across(&self, face: FaceId, corner: usize) -> Option<FaceId> {
+        match self.connectivity.twin(Side::new(face, (corner + 1) % 3)) {
+            Twin::Side(side) => Some(side.face()),
+            _ => None,
         }
     }
 
-    /// Returns the weights of the corners at a point of a face.
-    fn weights(&self, face: FaceId, at: DVec3) -> [f64; 3] {
-        let ([a, b, c], normal) = (self.triangles[face.index()], self.normals[face.index()]);
-        let of = |u: DVec3, v: DVec3| (u - at).cross(v - at).dot(normal).max(0.0);
-        let parts = [of(b, c), of(c, a), of(a, b)];
-        let sum: f64 = parts.iter().sum();
-        if sum > 0.0 { parts.map(|part| part / sum) } else { [1.0 / 3.0; 3] }
+    fn closest(&self, point: Vec3, face: FaceId) -> Vec3 {
+        let corners = self.faces[face.index()].map(|v| self.places[v.index()].as_dvec3());
+        closest_point(point.as_dvec3(), &corners).as_vec3()
     }
+
+    /// Returns the weights of a face's corners below a point, which is not beyond an edge.
+    fn weights(&self, face: FaceId, point: Vec3) -> Vec3 {
+        let Chart { matrix, altitudes } = &self.charts[face.index()];
+        ((*matrix * point.extend(1.0)).truncate() / *altitudes).max(Vec3::ZERO)
+    }
+}
+
+/// Returns the chart of a triangle, and its unit normal. Without area it is far from everywhere.
+fn chart([a, b, c]: [Vec3; 3]) -> (Chart, Vec3) {
+    let normal = (b - a).cross(c - a);
+    let twice_area = normal.length();
+    let unit = normal / twice_area;
+    let [la, lb, lc] = [c - b, a - c, b - a].map(Vec3::length);
+    let altitudes = twice_area / Vec3::new(la, lb, lc);
+    if !(unit.is_finite() && altitudes.is_finite() && altitudes.min_element() > 0.0) {
+        let matrix = Mat4::from_cols(Vec4::ZERO, Vec4::ZERO, Vec4::ZERO, Vec4::splat(f32::MAX));
+        return (Chart { matrix, altitudes: Vec3::ONE }, Vec3::ZERO);
+    }
+    let row = |from: Vec3, along: Vec3| {
+        let inwards = unit.cross(along);
+        inwards.extend(-inwards.dot(from))
+    };
+    let rows = [row(b, (c - b) / la), row(c, (a - c) / lb), row(a, (b - a) / lc)];
+    let matrix = Mat4::from_cols(rows[0], rows[1], rows[2], unit.extend(-unit.dot(a))).transpose();
+    (Chart { matrix, altitudes }, unit)
 }
