@@ -272,6 +272,7 @@ impl<'s> SceneSimplifier<'s> {
             handles: None,
             reached: true,
             error_estimate: 0.0,
+            near_limit: false,
             proof: None,
             refusals: Refusals::default(),
             volume: VolumeLoss::default(),
@@ -294,6 +295,7 @@ impl<'s> SceneSimplifier<'s> {
             }
             whole.held.add(&report.held, part.copies);
             whole.error_estimate = whole.error_estimate.max(part.scale * report.error_estimate);
+            whole.near_limit |= report.near_limit;
             whole.contractions += report.contractions;
             whole.refusals += report.refusals;
             // Parts are in the order of their meshes; other meshes have nothing to contract.
