@@ -122,9 +122,9 @@ impl<'m> ConditionedMesh<'m> {
         self.flat = Some(flat);
     }
 
-    /// Returns how many faces the mesh needs for its flats, without moving anything; `None` if a sample
-    /// shows none.
-    pub(crate) fn needs(&mut self) -> Option<usize> {
+    /// Returns how many faces the mesh needs for its flats, without moving anything, or once it is more
+    /// than `most`, a lower bound; `None` if a sample shows none.
+    pub(crate) fn needs(&mut self, most: usize) -> Option<usize> {
         let is_valid =
             has_valid_locks(self.input, &self.options.locks) && self.input.validate().is_ok();
         if !is_valid || flat_part(self.input) < FLAT_PART {
@@ -132,7 +132,7 @@ impl<'m> ConditionedMesh<'m> {
         }
         let needs = |this: &Self| {
             let whole = this.unsplit();
-            flat_needs(whole.mesh, &whole.flat_options(0.0))
+            flat_needs(whole.mesh, &whole.flat_options(0.0), most)
         };
         let mut found = needs(self);
         if found.is_crowded && self.split_all() {
@@ -301,7 +301,7 @@ pub(crate) fn simplify_by(
         Target::Error(error) => ready.flatten_within(error),
         target => {
             let (all, faces) = (mesh.faces.len(), target.faces_of(mesh.faces.len()));
-            if ready.needs().is_some_and(|left| FlatFaces::may_be_worth(left, all, faces)) {
+            if ready.needs(faces).is_some_and(|left| FlatFaces::may_be_worth(left, all, faces)) {
                 ready.flatten_within(0.0);
             }
             if ready.flats().is_some_and(|flats| !flats.are_worth(all, faces)) {

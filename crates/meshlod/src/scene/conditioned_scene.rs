@@ -83,7 +83,8 @@ impl<'s> ConditionedScene<'s> {
         let mut needs = vec![None; self.meshes.len()];
         let mut left = 0;
         for (i, mesh) in self.meshes.iter_mut().enumerate().filter(|(i, _)| self.copies[*i] > 0) {
-            needs[i] = mesh.needs();
+            let most = faces.saturating_sub(left) / self.copies[i];
+            needs[i] = mesh.needs(most);
             left += self.copies[i] * needs[i].unwrap_or_else(|| mesh.face_count());
         }
         if !FlatFaces::may_be_worth(left, all, faces) {

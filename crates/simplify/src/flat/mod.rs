@@ -80,22 +80,30 @@ struct NewFace {
 /// What the flat regions of a mesh need, found without filling any.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FlatNeeds {
-    /// Number of faces that the outlines of all regions need, given the constraints. [`flatten`] leaves
-    /// more where regions have to stay as they are.
+    /// Number of faces that the outlines of all regions need, given the constraints, or a lower bound of
+    /// it. [`flatten`] leaves more where regions have to stay as they are.
     pub faces: usize,
     /// True if the mesh has edges of more than two faces, or vertices of several fans: flats end there,
     /// and stay where they share more.
     pub is_crowded: bool,
 }
 
-/// Returns how many faces the flat regions of a mesh need, see [`flatten`].
+/// Returns how many faces the flat regions of a mesh need, see [`flatten`], or once it is more than
+/// `most`, a lower bound.
 ///
-/// Cost: O(n), n = faces, about a third of that of filling them.
+/// Cost: O(n), n = faces, at most a third of that of filling them.
 /// # Panics
 /// If the mesh is not valid, see [`Mesh::validate`].
-pub fn flat_needs(mesh: &Mesh, options: &FlatOptions<'_>) -> FlatNeeds {
-    let flats = Flats::find(mesh, options);
-    FlatNeeds { faces: flats.needed(&flats.outlines().sides), is_crowded: flats.is_crowded() }
+pub fn flat_needs(mesh: &Mesh, options: &FlatOptions<'_>, most: usize) -> FlatNeeds {
+    let mut flats = Flats::find(mesh, options);
+    let is_crowded = flats.is_crowded();
+    let least = |region: &Region| if region.is_kept { region.faces.len() } else { 1 };
+    let least: usize = flats.regions.list.iter().map(least).sum();
+    if least > most {
+        return FlatNeeds { faces: least, is_crowded };
+    }
+    flats.keep_pinched();
+    FlatNeeds { faces: flats.needed(&flats.outlines().sides), is_crowded }
 }
 
 /// Gives the flat regions of a mesh as few faces as their outlines need.
@@ -110,6 +118,7 @@ pub fn flat_needs(mesh: &Mesh, options: &FlatOptions<'_>) -> FlatNeeds {
 /// If the mesh is not valid, see [`Mesh::validate`].
 pub fn flatten(mesh: &Mesh, options: &FlatOptions<'_>) -> Flattened {
     let mut flats = Flats::find(mesh, options);
+    flats.keep_pinched();
     let is_crowded = flats.is_crowded();
     let mut given_up = GivenUp::default();
     let mut needed = None;
@@ -154,12 +163,17 @@ impl<'m> Flats<'m> {
     fn find(mesh: &'m Mesh, options: &'m FlatOptions<'m>) -> Self {
         let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
         let linear = Linear::new(mesh);
-        let mut regions = Regions::find(mesh, &connectivity, &linear, options.tolerance);
-        for r in pinched(mesh, &connectivity, &linear, &regions) {
-            regions.list[r].is_kept = true;
-        }
+        let regions = Regions::find(mesh, &connectivity, &linear, options.tolerance);
         let held = held(mesh, options.locks);
         Self { mesh, options, connectivity, linear, regions, held }
+    }
+
+    /// Keeps regions as they are that would come apart.
+    fn keep_pinched(&mut self) {
+        let Self { mesh, connectivity, linear, regions, .. } = self;
+        for r in pinched(mesh, connectivity, linear, regions) {
+            regions.list[r].is_kept = true;
+        }
     }
 
     fn is_crowded(&self) -> bool {
