@@ -204,7 +204,8 @@ impl<A: AttributeModel> Partition<A> {
     ///
     /// Cost: O(n), n = vertices, where it has moved far, and O(1) elsewhere.
     pub(crate) fn is_near_limit(&mut self) -> bool {
-        let is_far = self.parts.len() == 1 && is_seen(self.error as f32, self.whole.room);
+        // Twice as far as any step may go: scans with many handles that stay are farther off than once.
+        let is_far = self.parts.len() == 1 && is_seen(self.error as f32 / 4.0, self.whole.room);
         let are_stuck =
             |collapse_loop: &mut CollapseLoop<'_, A>| are_parts_stuck(&mut collapse_loop.vertices);
         is_far && self.loops().first_mut().is_some_and(|(whole, _)| are_stuck(whole))
