@@ -116,7 +116,8 @@ impl<'m> ConditionedMesh<'m> {
             flatten(whole.mesh, &whole.flat_options(tolerance))
         };
         let mut flat = flattened(self);
-        if flat.is_crowded && self.split_all() {
+        // Within a tolerance copies at one place would move apart.
+        if flat.is_crowded && tolerance == 0.0 && self.split_all() {
             flat = flattened(self);
         }
         self.flat = Some(flat);
