@@ -7,7 +7,7 @@ use meshlod_mesh::{
 };
 use meshlod_simplify::{
     FlatOptions, Flattened, Options, Report, Simplifier, SimplifyError, Target, Topology,
-    VolumeLoss, flat_part, flatten,
+    VolumeLoss, flat_needs, flat_part, flatten,
 };
 
 use crate::bounded::{Tightness, run_within};
@@ -31,7 +31,12 @@ impl FlatFaces {
     /// (docs/notes/kernel.md).
     pub(crate) fn are_worth(self, all: usize, target: usize) -> bool {
         let left = all - self.gone;
-        WORTH * self.gone >= all && (left..AMPLE * left).contains(&target)
+        Self::may_be_worth(left, all, target) && target < AMPLE * left
+    }
+
+    /// Returns true if flats may be worth it that leave this many faces of `all`, or more.
+    pub(crate) fn may_be_worth(left: usize, all: usize, target: usize) -> bool {
+        WORTH * (all - left.min(all)) >= all && left <= target
     }
 }
 
@@ -78,6 +83,10 @@ impl<'c> Held<'c> {
         let options = ConditionOptions { search, borders, lock_boundary: self.lock_boundary };
         condition(self.mesh, self.locks, &options)
     }
+
+    fn flat_options(&self, tolerance: f64) -> FlatOptions<'c> {
+        FlatOptions { locks: self.locks, lock_boundary: self.lock_boundary, tolerance }
+    }
 }
 
 impl<'m> ConditionedMesh<'m> {
@@ -101,17 +110,45 @@ impl<'m> ConditionedMesh<'m> {
         if !has_valid_locks(self.input, &self.options.locks) || self.input.validate().is_err() {
             return;
         }
-        let Held { mesh, locks, lock_boundary } = self.unsplit();
         let tolerance = error.min(FLAT * self.largest_coordinate());
-        self.flat = Some(flatten(mesh, &FlatOptions { locks, lock_boundary, tolerance }));
+        let flattened = |this: &Self| {
+            let whole = this.unsplit();
+            flatten(whole.mesh, &whole.flat_options(tolerance))
+        };
+        let mut flat = flattened(self);
+        // Within a tolerance copies at one place would move apart.
+        if flat.is_crowded && tolerance == 0.0 && self.split_all() {
+            flat = flattened(self);
+        }
+        self.flat = Some(flat);
     }
 
-    /// Gives the flats of the mesh as few faces as they need, without moving anything, if a sample
-    /// shows flats.
-    pub(crate) fn flatten_exactly(&mut self) {
-        if self.input.validate().is_ok() && flat_part(self.input) >= FLAT_PART {
-            self.flatten_within(0.0);
+    /// Returns how many faces the mesh needs for its flats, without moving anything, or once it is more
+    /// than `most`, a lower bound; `None` if a sample shows none.
+    pub(crate) fn needs(&mut self, most: usize) -> Option<usize> {
+        let is_valid =
+            has_valid_locks(self.input, &self.options.locks) && self.input.validate().is_ok();
+        if !is_valid || flat_part(self.input) < FLAT_PART {
+            return None;
         }
+        let needs = |this: &Self| {
+            let whole = this.unsplit();
+            flat_needs(whole.mesh, &whole.flat_options(0.0), most)
+        };
+        let mut found = needs(self);
+        if found.is_crowded && self.split_all() {
+            found = needs(self);
+        }
+        Some(found.faces)
+    }
+
+    /// Conditions the mesh at all its vertices, if that is wanted: coats on the same vertices are not
+    /// found otherwise. Returns true if that has changed anything.
+    fn split_all(&mut self) -> bool {
+        let whole = self.borders.and_then(|borders| self.held().condition(borders, Search::All));
+        let is_changed = whole.is_some();
+        self.sewn = whole.or_else(|| self.sewn.take());
+        is_changed
     }
 
     /// Returns the number of faces of the mesh with its flats as they were.
@@ -148,11 +185,15 @@ impl<'m> ConditionedMesh<'m> {
         self.flat.as_ref().map_or(0.0, |flat| flat.moved)
     }
 
+    /// Returns the mesh as it came in.
+    fn held(&self) -> Held<'_> {
+        let Options { locks, lock_boundary, .. } = &self.options;
+        Held { mesh: self.input, locks, lock_boundary: *lock_boundary }
+    }
+
     /// Returns the mesh before non-manifold vertices are split.
     fn unsplit(&self) -> Held<'_> {
-        let Options { locks, lock_boundary, .. } = &self.options;
-        let input = Held { mesh: self.input, locks, lock_boundary: *lock_boundary };
-        let sewn = self.sewn.as_ref().map_or(input, Held::of);
+        let sewn = self.sewn.as_ref().map_or(self.held(), Held::of);
         let flat = self.flat.as_ref().and_then(|flat| flat.mesh.as_ref());
         Held { mesh: flat.unwrap_or(sewn.mesh), ..sewn }
     }
@@ -260,8 +301,10 @@ pub(crate) fn simplify_by(
     match own {
         Target::Error(error) => ready.flatten_within(error),
         target => {
-            ready.flatten_exactly();
             let (all, faces) = (mesh.faces.len(), target.faces_of(mesh.faces.len()));
+            if ready.needs(faces).is_some_and(|left| FlatFaces::may_be_worth(left, all, faces)) {
+                ready.flatten_within(0.0);
+            }
             if ready.flats().is_some_and(|flats| !flats.are_worth(all, faces)) {
                 ready.keep_flats();
             }

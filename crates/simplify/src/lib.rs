@@ -36,7 +36,7 @@ use meshlod_mesh::Mesh;
 
 pub use engine::policy::Observe;
 pub use excess::{Excess, ExcessFace};
-pub use flat::{FlatOptions, Flattened, flat_part, flatten};
+pub use flat::{FlatNeeds, FlatOptions, Flattened, flat_needs, flat_part, flatten};
 pub use held::Held;
 pub use history::exact_volume::{Digits, ExactVolumeError, VolumeResidual, conserve_volume};
 pub use history::progressive::{Progressive, ProgressiveError};

@@ -62,6 +62,8 @@ pub(crate) struct Tally {
     pub(crate) refusals: Refusals,
     /// Greatest estimated distance of any contraction from the input, in model units.
     pub(crate) error_estimate: f64,
+    /// True if most of the surface can go no further, and the rest has moved far for it.
+    pub(crate) near_limit: bool,
     pub(crate) volume: VolumeLoss,
 }
 

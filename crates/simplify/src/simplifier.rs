@@ -187,7 +187,7 @@ impl<'m> Simplifier<'m> {
     /// Builds the report of the run so far.
     fn report(&self, target: Target, stop: &Stop) -> Report {
         let output_faces = self.live_faces();
-        let Tally { vanished, handles, contractions, refusals, error_estimate, volume } =
+        let Tally { vanished, handles, contractions, refusals, error_estimate, near_limit, volume } =
             self.engine.tally();
         let reached = matches!(target, Target::Error(_)) || output_faces <= stop.faces;
         Report {
@@ -203,6 +203,7 @@ impl<'m> Simplifier<'m> {
             handles,
             reached,
             error_estimate,
+            near_limit,
             proof: None,
             refusals,
             volume,

@@ -96,6 +96,10 @@ pub fn mesh_notes(report: &Report) -> String {
     line(report.vanished, ["component", "components"], &removed);
     let HandleCounts { before, closed } = report.handles.unwrap_or_default();
     line(closed, ["handle", "handles"], &format!("closed, of {}", count(before)));
+    if report.near_limit && report.reached {
+        text += "near_limit: most parts are as coarse as they can be, and the rest pays for them; ";
+        text += "more faces would be much nearer\n";
+    }
     text
 }
 

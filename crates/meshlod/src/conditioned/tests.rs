@@ -113,6 +113,22 @@ fn a_number_of_faces_near_what_flats_leave_moves_nothing() {
 }
 
 #[test]
+fn flats_of_two_coats_on_the_same_vertices_go() {
+    let to = |mesh: &Mesh, target| simplify(mesh, target, &Options::default()).unwrap();
+    let card = doubled(grid(12));
+    let (level, report) = to(&card, Target::Error(0.0));
+    assert!(report.reached && report.error_estimate == 0.0);
+    assert_eq!((level.faces.len(), level.positions.len()), (4, 4));
+    assert_eq!(to(&card, Target::Faces(5)).0.faces.len(), 4);
+    let cube = samples::cube(600);
+    let cube = Mesh::new(cube.positions, cube.faces);
+    assert_eq!(to(&doubled(cube.clone()), Target::Error(0.0)).0.faces.len(), 24);
+    // The same coat twice is one.
+    let twice = Mesh::new(cube.positions, cube.faces.repeat(2));
+    assert_eq!(to(&twice, Target::Error(0.0)).0.faces.len(), 12);
+}
+
+#[test]
 fn flats_far_from_the_origin_take_no_more_of_an_error_than_rounding() {
     // A sheet that is slightly bent, by less than the error.
     let mut sheet = grid(40);

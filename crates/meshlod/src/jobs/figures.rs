@@ -161,13 +161,15 @@ struct RunFigures {
     vanished: usize,
     vanished_volume: f64,
     handles: Option<HandleCounts>,
+    near_limit: bool,
     refusals: Refusals,
 }
 
 impl From<&Report> for RunFigures {
     fn from(report: &Report) -> Self {
-        let Report { held, vanished, handles, refusals, volume, .. } = *report;
-        Self { held, vanished, vanished_volume: volume.vanished, handles, refusals }
+        let Report { held, vanished, handles, near_limit, refusals, volume, .. } = *report;
+        let vanished_volume = volume.vanished;
+        Self { held, vanished, vanished_volume, handles, near_limit, refusals }
     }
 }
 

@@ -1,7 +1,7 @@
 //! A chain of coarser levels from one run, each measured against the original.
 
 use std::cell::OnceCell;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use meshlod_io::Scene;
 use meshlod_io::gltf::Level;
@@ -110,7 +110,8 @@ pub struct LodReport {
     pub is_same: bool,
 }
 
-/// Makes all levels of a scene in one run, each from the one before.
+/// Makes all levels of a scene in one run, each from the one before. Flats go first where that helps
+/// [the finest](crate::scene::ConditionedScene::flatten_before).
 ///
 /// Cost: O(n log n), n = faces, and a measurement for each level.
 /// # Errors
@@ -151,7 +152,15 @@ fn made(
 ) -> Result<(Vec<Level>, LodsReport), JobError> {
     let LodsRequest { method, weights, boundary, ref constraints, .. } = *request;
     let choice = RunChoice { method, weights, boundary, constraints };
-    let (ready, time) = choice.condition(scene, watch)?;
+    let (mut ready, mut time) = choice.condition(scene, watch)?;
+    let target = |size| fused.map_or(size, |fused| fused.target(size));
+    if let Some(&finest) = request.levels.first()
+        && !matches!(finest, Target::Error(_))
+    {
+        let start = Instant::now();
+        ready.flatten_before(target(finest));
+        time += start.elapsed();
+    }
     let whole = OnceCell::new();
     let original = request.measured.then(|| ready_to_measure(scene, &whole, watch)).flatten();
     let digits = digits(request.written_as.map(|as_| as_.of(scene)));
@@ -159,8 +168,7 @@ fn made(
     check_order(&request.levels, run.input_faces())?;
     let (mut levels, mut reports): (Vec<Level>, Vec<LodReport>) = Default::default();
     for &size in &request.levels {
-        let target = fused.map_or(size, |fused| fused.target(size));
-        let mut report = run.simplify_to(target)?;
+        let mut report = run.simplify_to(target(size))?;
         let mut meshes = run.level(&mut report);
         let volume_residual = match request.exact_volume {
             true => scene_run::restore_volumes(&ready, &mut meshes, digits, watch),
@@ -288,6 +296,17 @@ mod tests {
         assert!(fine.measured.unwrap().max() < coarse.measured.unwrap().max());
         assert!(coarse.screen_coverage < fine.screen_coverage && !coarse.is_same);
         assert_eq!([&fine.size, &coarse.size], ["50%", "10%"]);
+    }
+
+    #[test]
+    fn a_finest_level_near_what_flats_need_moves_nothing() {
+        let scene = Scene::from_mesh("stairs", samples::stairs(5_000));
+        let levels = [150, 60].map(Target::Faces).to_vec();
+        let (_, report) = lods(scene, &LodsRequest { levels, ..Default::default() }, &()).unwrap();
+        let [fine, coarse] = &report.levels[..] else { panic!("{report:?}") };
+        assert_eq!((fine.run.output_faces, fine.run.error_estimate), (100, 0.0));
+        assert!(fine.measured.unwrap().max() < 1e-6 && fine.run.input_faces > 4_000);
+        assert!(coarse.run.output_faces <= 60);
     }
 
     #[test]

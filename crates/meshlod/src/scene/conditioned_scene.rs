@@ -79,9 +79,20 @@ impl<'s> ConditionedScene<'s> {
         }
         let counts = self.meshes.iter().zip(&self.copies);
         let all = counts.map(|(mesh, copies)| copies * mesh.face_count()).sum();
-        let meshes = self.meshes.iter_mut().zip(&self.copies).filter(|(_, copies)| **copies > 0);
-        meshes.for_each(|(mesh, _)| mesh.flatten_exactly());
-        let is_worth = |flats: FlatFaces| flats.are_worth(all, target.faces_of(all));
+        let faces = target.faces_of(all);
+        let mut needs = vec![None; self.meshes.len()];
+        let mut left = 0;
+        for (i, mesh) in self.meshes.iter_mut().enumerate().filter(|(i, _)| self.copies[*i] > 0) {
+            let most = faces.saturating_sub(left) / self.copies[i];
+            needs[i] = mesh.needs(most);
+            left += self.copies[i] * needs[i].unwrap_or_else(|| mesh.face_count());
+        }
+        if !FlatFaces::may_be_worth(left, all, faces) {
+            return;
+        }
+        let flat = self.meshes.iter_mut().zip(needs).filter(|(_, needs)| needs.is_some());
+        flat.for_each(|(mesh, _)| mesh.flatten_within(0.0));
+        let is_worth = |flats: FlatFaces| flats.are_worth(all, faces);
         if !self.flat_faces().is_some_and(is_worth) {
             self.meshes.iter_mut().for_each(ConditionedMesh::keep_flats);
         }

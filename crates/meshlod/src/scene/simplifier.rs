@@ -15,6 +15,10 @@ use crate::bounded::{Tightness, run_within};
 use crate::scene::ConditionedScene;
 use crate::scene::place;
 
+/// Part of the scene's diagonal, one in this many, by which a mesh near its limit must have moved to be
+/// worth a note.
+const SEEN: f64 = 25.0;
+
 /// Simplifies all meshes of a scene to one common target, always contracting where it costs least
 /// in world space.
 ///
@@ -272,6 +276,7 @@ impl<'s> SceneSimplifier<'s> {
             handles: None,
             reached: true,
             error_estimate: 0.0,
+            near_limit: false,
             proof: None,
             refusals: Refusals::default(),
             volume: VolumeLoss::default(),
@@ -294,6 +299,10 @@ impl<'s> SceneSimplifier<'s> {
             }
             whole.held.add(&report.held, part.copies);
             whole.error_estimate = whole.error_estimate.max(part.scale * report.error_estimate);
+            if report.near_limit {
+                let far = part.scale * report.error_estimate;
+                whole.near_limit |= SEEN * far > place::world_bounds(self.scene).diagonal();
+            }
             whole.contractions += report.contractions;
             whole.refusals += report.refusals;
             // Parts are in the order of their meshes; other meshes have nothing to contract.

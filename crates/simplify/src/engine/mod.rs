@@ -356,7 +356,8 @@ where
 
     fn tally(&self) -> Tally {
         let &Self { vanished, contractions, refusals, error_estimate, volume, .. } = self;
-        Tally { vanished, handles: None, contractions, refusals, error_estimate, volume }
+        let (handles, near_limit) = (None, false);
+        Tally { vanished, handles, contractions, refusals, error_estimate, near_limit, volume }
     }
 }
 

@@ -35,9 +35,15 @@ impl<'m> Linear<'m> {
     /// Returns true if there is no seam between two faces, and what the first one has continues in
     /// the other.
     pub(super) fn is_linear_across(&self, side: Side, twin: Side) -> bool {
-        let [here, there] = [side, twin].map(|side| self.wedges(side));
+        self.is_linear_beyond(side, side, twin)
+    }
+
+    /// Returns true if there is no seam between two faces, and what a third one has, given by a side,
+    /// continues in the second.
+    pub(super) fn is_linear_beyond(&self, from: Side, side: Side, twin: Side) -> bool {
+        let [here, there] = [from, twin].map(|side| self.wedges(side));
         let continues = |&(layer, most): &(&Layer, f64)| {
-            self.continues(layer, most, (side, here), (twin, there))
+            self.continues(layer, most, (from, here), (twin, there))
         };
         !self.is_seam(side, twin) && self.layers.iter().all(continues)
     }

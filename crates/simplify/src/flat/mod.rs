@@ -13,6 +13,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | `regions` | faces that lie in one plane and continue each other |
+//! | `slivers` | faces without area on the edges of regions |
 //! | `linear` | whether attributes are linear over faces |
 //! | `outline` | the vertices of outlines that stay, and the sides between them |
 //! | `fill` | a region's outline, triangulated |
@@ -27,6 +28,7 @@ mod linear;
 mod outline;
 mod regions;
 mod sample;
+mod slivers;
 
 use meshlod_mesh::{Attributes, Connectivity, Lock, Locks, Mesh, VertexId, WedgeId};
 use rayon::prelude::*;
@@ -35,7 +37,7 @@ use crate::flat::fill::fill;
 use crate::flat::give_up::GivenUp;
 use crate::flat::linear::Linear;
 use crate::flat::outline::{OutlineSide, Outlines, least_faces, pinched};
-use crate::flat::regions::Regions;
+use crate::flat::regions::{Region, Regions};
 pub use crate::flat::sample::flat_part;
 
 /// Mesh whose flat regions have as few faces as their outlines need.
@@ -50,6 +52,9 @@ pub struct Flattened {
     /// Number of faces that the outlines of all regions need, given the constraints. The mesh has more
     /// where a region had to stay as it is.
     pub needed_faces: usize,
+    /// True if the mesh has edges of more than two faces, or vertices of several fans: flats end there,
+    /// and stay where they share more.
+    pub is_crowded: bool,
 }
 
 /// Constraints on what may go.
@@ -72,6 +77,35 @@ struct NewFace {
     like: u32,
 }
 
+/// What the flat regions of a mesh need, found without filling any.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FlatNeeds {
+    /// Number of faces that the outlines of all regions need, given the constraints, or a lower bound of
+    /// it. [`flatten`] leaves more where regions have to stay as they are.
+    pub faces: usize,
+    /// True if the mesh has edges of more than two faces, or vertices of several fans: flats end there,
+    /// and stay where they share more.
+    pub is_crowded: bool,
+}
+
+/// Returns how many faces the flat regions of a mesh need, see [`flatten`], or once it is more than
+/// `most`, a lower bound.
+///
+/// Cost: O(n), n = faces, at most a third of that of filling them.
+/// # Panics
+/// If the mesh is not valid, see [`Mesh::validate`].
+pub fn flat_needs(mesh: &Mesh, options: &FlatOptions<'_>, most: usize) -> FlatNeeds {
+    let mut flats = Flats::find(mesh, options);
+    let is_crowded = flats.is_crowded();
+    let least = |region: &Region| if region.is_kept { region.faces.len() } else { 1 };
+    let least: usize = flats.regions.list.iter().map(least).sum();
+    if least > most {
+        return FlatNeeds { faces: least, is_crowded };
+    }
+    flats.keep_pinched();
+    FlatNeeds { faces: flats.needed(&flats.outlines().sides), is_crowded }
+}
+
 /// Gives the flat regions of a mesh as few faces as their outlines need.
 ///
 /// Borders, edges between materials, objects or values of faces, seams of attributes, and the volume
@@ -83,51 +117,82 @@ struct NewFace {
 /// # Panics
 /// If the mesh is not valid, see [`Mesh::validate`].
 pub fn flatten(mesh: &Mesh, options: &FlatOptions<'_>) -> Flattened {
-    let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
-    let linear = Linear::new(mesh);
-    let mut regions = Regions::find(mesh, &connectivity, &linear, options.tolerance);
-    for r in pinched(mesh, &connectivity, &linear, &regions) {
-        regions.list[r].is_kept = true;
-    }
-    let held = held(mesh, options.locks);
+    let mut flats = Flats::find(mesh, options);
+    flats.keep_pinched();
+    let is_crowded = flats.is_crowded();
     let mut given_up = GivenUp::default();
     let mut needed = None;
     let mut last = Tried::default();
     loop {
-        let as_it_is = |needed: Option<usize>| {
-            let needed_faces = needed.unwrap_or(mesh.faces.len());
-            Flattened { mesh: None, moved: 0.0, needed_faces }
-        };
+        let outlines = flats.outlines();
+        let needed_faces = *needed.get_or_insert_with(|| flats.needed(&outlines.sides));
+        let as_it_is = Flattened { mesh: None, moved: 0.0, needed_faces, is_crowded };
+        let regions = &mut flats.regions;
         if regions.list.iter().all(|region| region.is_kept) {
-            return as_it_is(needed);
+            return as_it_is;
         }
-        let outlines = Outlines::new(mesh, &connectivity, &linear, &regions, &held, options);
-        let tried = Tried::new(mesh, &regions, outlines.sides, &last);
-        let needed_faces = *needed.get_or_insert_with(|| {
-            let of_region = |(r, faces): (usize, &Option<Vec<NewFace>>)| {
-                let (region, sides) = (&regions.list[r], tried.sides[r].len());
-                match faces {
-                    _ if region.is_kept => region.faces.len(),
-                    Some(faces) => faces.len(),
-                    None => least_faces(mesh, &connectivity, &linear, (&regions, region), sides),
-                }
-            };
-            tried.faces.iter().enumerate().map(of_region).sum()
-        });
+        let tried = Tried::new(mesh, regions, outlines.sides, &last);
         let mut failed: Vec<usize> = tried.failed();
         if failed.is_empty() {
-            match apart::take_apart(mesh, &regions, (&tried.faces, &tried.sides)) {
+            match apart::take_apart(mesh, regions, (&tried.faces, &tried.sides)) {
                 Ok(faces) if faces.len() < mesh.faces.len() => {
                     let moved = regions.moved(outlines.moved);
-                    let mesh = Some(with_faces(mesh, &faces));
-                    return Flattened { mesh, moved, needed_faces };
+                    return Flattened { mesh: Some(with_faces(mesh, &faces)), moved, ..as_it_is };
                 }
-                Ok(_) => return as_it_is(needed),
+                Ok(_) => return as_it_is,
                 Err(together) => failed = together,
             }
         }
-        given_up.give_up(mesh, &mut regions, failed);
+        given_up.give_up(mesh, regions, failed);
         last = tried;
+    }
+}
+
+/// The flat regions of a mesh, and what limits them.
+struct Flats<'m> {
+    mesh: &'m Mesh,
+    options: &'m FlatOptions<'m>,
+    connectivity: Connectivity,
+    linear: Linear<'m>,
+    regions: Regions,
+    /// True for each vertex that must stay.
+    held: Vec<bool>,
+}
+
+impl<'m> Flats<'m> {
+    fn find(mesh: &'m Mesh, options: &'m FlatOptions<'m>) -> Self {
+        let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
+        let linear = Linear::new(mesh);
+        let regions = Regions::find(mesh, &connectivity, &linear, options.tolerance);
+        let held = held(mesh, options.locks);
+        Self { mesh, options, connectivity, linear, regions, held }
+    }
+
+    /// Keeps regions as they are that would come apart.
+    fn keep_pinched(&mut self) {
+        let Self { mesh, connectivity, linear, regions, .. } = self;
+        for r in pinched(mesh, connectivity, linear, regions) {
+            regions.list[r].is_kept = true;
+        }
+    }
+
+    fn is_crowded(&self) -> bool {
+        self.connectivity.non_manifold_edges() + self.connectivity.pinched_vertices() > 0
+    }
+
+    fn outlines(&self) -> Outlines {
+        let Self { mesh, options, connectivity, linear, regions, held } = self;
+        Outlines::new(mesh, connectivity, linear, regions, held, options)
+    }
+
+    /// Returns the number of faces that all regions need within these outlines.
+    fn needed(&self, sides: &[Vec<OutlineSide>]) -> usize {
+        let Self { mesh, connectivity, linear, regions, .. } = self;
+        let of_region = |(region, sides): (&Region, &Vec<OutlineSide>)| match region.is_kept {
+            true => region.faces.len(),
+            false => least_faces(mesh, connectivity, linear, (regions, region), sides.len()),
+        };
+        regions.list.iter().zip(sides).map(of_region).sum()
     }
 }
 

@@ -272,7 +272,8 @@ impl<'m> Graph<'m> {
     }
 
     /// Returns true if a vertex is on a straight line between the same regions: no more than `most`
-    /// beside it, or exactly on it if that is 0.
+    /// beside it, or exactly on it if that is 0. Between two regions the line may go back and forth,
+    /// since one of them has no area there; a border that does so is the end of a slit.
     fn is_spare(&self, v: u32, most: f64) -> bool {
         if self.count[v as usize] != 2 {
             return false;
@@ -283,8 +284,9 @@ impl<'m> Graph<'m> {
         });
         let [a, b] = self.beside(v).map(|v| self.place(v));
         let at = self.place(v);
+        let is_between = regions[0].first() != regions[0].last();
         regions[0] == regions[1]
-            && (at - a).dot(b - at) > 0.0
+            && (is_between || (at - a).dot(b - at) > 0.0)
             && if most > 0.0 { beside([a, b], at) <= most } else { is_on_line([a, at, b]) }
     }
 

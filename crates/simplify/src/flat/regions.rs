@@ -5,6 +5,7 @@ use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, UnionFind};
 use robust::{Coord3D, orient3d};
 
 use crate::flat::linear::Linear;
+use crate::flat::slivers::Slivers;
 
 /// Part of the tolerance that a region may be high. Outlines move across that, so that both may have
 /// seven tenths.
@@ -66,10 +67,10 @@ impl Regions {
     fn group(planes: &Planes<'_>, connectivity: &Connectivity) -> Self {
         let mesh = planes.mesh;
         let mut joined = UnionFind::new(mesh.faces.len());
-        let mut without_area = Vec::new();
+        let mut slivers = Vec::new();
         for face in (0..mesh.faces.len()).map(FaceId::new) {
-            if normal(mesh, face.0) == DVec3::ZERO {
-                without_area.push(face);
+            if planes.is_sliver(face.0) {
+                slivers.push(face.0);
                 continue;
             }
             for side in (0..3).map(|k| Side::new(face, k)) {
@@ -81,9 +82,7 @@ impl Regions {
                 }
             }
         }
-        for face in without_area {
-            planes.join_without_area(face, connectivity, &mut joined);
-        }
+        Slivers::new(planes, connectivity, slivers).join(&mut joined);
         Self::of_groups(mesh.faces.len(), &mut joined)
     }
 
@@ -104,10 +103,10 @@ impl Regions {
 }
 
 /// Decides which faces continue each other.
-struct Planes<'m> {
-    mesh: &'m Mesh,
-    tolerance: f64,
-    linear: &'m Linear<'m>,
+pub(super) struct Planes<'m> {
+    pub(super) mesh: &'m Mesh,
+    pub(super) tolerance: f64,
+    pub(super) linear: &'m Linear<'m>,
 }
 
 impl Planes<'_> {
@@ -117,48 +116,24 @@ impl Planes<'_> {
         let faces = [side, twin].map(|side| side.face().0);
         let [ends, of_twin] = [side, twin].map(|side| side.ends(&self.mesh.faces));
         let [normal, other] = faces.map(|face| normal(self.mesh, face));
-        other != DVec3::ZERO
+        !self.is_sliver(faces[1])
             && ends == [of_twin[1], of_twin[0]]
             && normal.dot(other) > 0.0
             && self.is_alike(faces)
-            && self.contains(faces[0], opposite(self.mesh, twin))
-            && (self.tolerance == 0.0 || self.contains(faces[1], opposite(self.mesh, side)))
+            && self.contains(faces[0], self.opposite(twin))
+            && (self.tolerance == 0.0 || self.contains(faces[1], self.opposite(side)))
             && self.linear.is_linear_across(side, twin)
     }
 
-    /// Joins a face without area to the region across its longest edge, and that to others around
-    /// which are in the same plane.
-    fn join_without_area(&self, face: FaceId, connectivity: &Connectivity, joined: &mut UnionFind) {
-        let length = |side: &Side| {
-            let [a, b] = side.ends(&self.mesh.faces).map(|v| self.mesh.positions[v.index()]);
-            DVec3::from(a).distance_squared(b.into())
-        };
-        let mut sides = [0, 1, 2].map(|k| Side::new(face, k));
-        sides.sort_by(|a, b| length(b).total_cmp(&length(a)));
-        let mut first: Option<u32> = None;
-        for side in sides {
-            let Twin::Side(twin) = connectivity.twin(side) else { continue };
-            let other = twin.face().0;
-            let is_face = normal(self.mesh, other) != DVec3::ZERO;
-            let fits = is_face
-                && self.is_alike([face.0, other])
-                && self.linear.is_linear_across(twin, side)
-                && first.is_none_or(|first| self.is_same_plane(first, other));
-            if fits {
-                joined.union(face.0, other);
-                first.get_or_insert(other);
-            }
-        }
-    }
-
-    fn is_same_plane(&self, a: u32, b: u32) -> bool {
+    /// Returns true if two faces with areas lie in one plane and face the same way.
+    pub(super) fn is_same_plane(&self, a: u32, b: u32) -> bool {
         let corners = self.mesh.triangle(self.mesh.faces[b as usize]);
         normal(self.mesh, a).dot(normal(self.mesh, b)) > 0.0
             && corners.iter().all(|&corner| self.contains(a, corner))
     }
 
     /// Returns true if a point is in the plane of a face, to the tolerance.
-    fn contains(&self, face: u32, point: DVec3) -> bool {
+    pub(super) fn contains(&self, face: u32, point: DVec3) -> bool {
         let corners = self.mesh.triangle(self.mesh.faces[face as usize]);
         if self.tolerance > 0.0 {
             let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize();
@@ -169,8 +144,14 @@ impl Planes<'_> {
         orient3d(a, b, c, d) == 0.0
     }
 
+    /// Returns the corner of a face that is not on one of its sides.
+    pub(super) fn opposite(&self, side: Side) -> DVec3 {
+        let face = self.mesh.faces[side.face().index()];
+        self.mesh.triangle(face)[(side.corner() + 2) % 3]
+    }
+
     /// Returns true if two faces have the same material, object and numbers.
-    fn is_alike(&self, [a, b]: [u32; 2]) -> bool {
+    pub(super) fn is_alike(&self, [a, b]: [u32; 2]) -> bool {
         let [a, b] = [a as usize, b as usize];
         let labels = [&self.mesh.materials, &self.mesh.objects].into_iter().flatten();
         labels.into_iter().all(|labels| labels.of(a) == labels.of(b))
@@ -179,14 +160,9 @@ impl Planes<'_> {
 }
 
 /// Returns the normal of a face, twice its area long.
-fn normal(mesh: &Mesh, face: u32) -> DVec3 {
+pub(super) fn normal(mesh: &Mesh, face: u32) -> DVec3 {
     let [a, b, c] = mesh.triangle(mesh.faces[face as usize]);
     (b - a).cross(c - a)
-}
-
-/// Returns the corner of a face that is not on one of its sides.
-fn opposite(mesh: &Mesh, side: Side) -> DVec3 {
-    mesh.triangle(mesh.faces[side.face().index()])[(side.corner() + 2) % 3]
 }
 
 /// Returns how high a region is along its normal.

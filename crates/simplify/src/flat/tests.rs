@@ -27,6 +27,16 @@ fn flat(mesh: &Mesh) -> Mesh {
     level
 }
 
+/// Returns numbers below others, drawn by lot.
+fn lot(seed: u64) -> impl FnMut(u64) -> u64 {
+    let mut state = seed;
+    move |below| {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) % below
+    }
+}
+
 fn area(mesh: &Mesh) -> f64 {
     let of = |&face: &[VertexId; 3]| {
         let [a, b, c] = mesh.triangle(face);
@@ -246,12 +256,7 @@ fn a_tunnel_without_a_width_stays() {
 
 #[test]
 fn random_faces_on_a_lattice_keep_their_shape() {
-    let mut state = 7u64;
-    let mut random = move |below: u64| {
-        state =
-            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) % below
-    };
+    let mut random = lot(7);
     let mut found = 0;
     for round in 0..4_000 {
         // A lattice with holes and steps, some of whose vertices are one, or torn apart.
@@ -285,4 +290,60 @@ fn random_faces_on_a_lattice_keep_their_shape() {
         assert!((area(&level) - area(&square)).abs() < 1e-9, "round {round}");
     }
     assert!(found > 1_000, "{found}");
+}
+
+/// Returns a box each of whose sides has points of its own on its rim, with faces without area between
+/// the points of two sides: triangulations of points on a line, drawn by lot.
+fn box_with_rows(random: &mut impl FnMut(u64) -> u64) -> Mesh {
+    let mut places: Vec<[f64; 3]> =
+        (0..8).map(|i| [0, 1, 2].map(|k| f64::from(i >> k & 1))).collect();
+    let mut faces: Vec<[u32; 3]> = Vec::new();
+    let mut rims: Vec<Vec<u32>> = Vec::new();
+    for corners in
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+    {
+        let middle = places.len() as u32;
+        let mean = |k: usize| corners.iter().map(|&v| places[v as usize][k]).sum::<f64>() / 4.0;
+        places.push([mean(0), mean(1), mean(2)]);
+        for (&from, &to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
+            let mut at: Vec<u64> = (0..random(6)).map(|_| 1 + random(1023)).collect();
+            at.sort_unstable();
+            at.dedup();
+            let [a, b] = [from, to].map(|v| places[v as usize]);
+            let between = at.iter().map(|&at| at as f64 / 1024.0);
+            let first = places.len() as u32;
+            places.extend(between.map(|t| [0, 1, 2].map(|k| a[k] + t * (b[k] - a[k]))));
+            let row = [from].into_iter().chain(first..places.len() as u32).chain([to]);
+            let row: Vec<u32> = row.collect();
+            faces.extend(row.windows(2).map(|pair| [pair[0], pair[1], middle]));
+            rims.push(row);
+        }
+    }
+    for (i, rim) in rims.iter().enumerate() {
+        let is_other =
+            |other: &&Vec<u32>| (other[0], other[other.len() - 1]) == (rim[rim.len() - 1], rim[0]);
+        let other = rims[..i].iter().find(is_other);
+        let Some(other) = other else { continue };
+        // Both rims the other way round, as seen from the gap.
+        let inner = rim[1..].iter().chain(&other[1..]).rev().copied();
+        let mut hole: Vec<u32> = inner.collect();
+        while hole.len() > 2 {
+            let k = random(hole.len() as u64) as usize;
+            let next = |by: usize| hole[(k + by) % hole.len()];
+            faces.push([next(0), next(1), next(2)]);
+            hole.remove((k + 1) % hole.len());
+        }
+    }
+    mesh(&places, &faces)
+}
+
+#[test]
+fn rows_of_faces_without_area_go_with_their_vertices() {
+    let mut random = lot(3);
+    for round in 0..300 {
+        let rows = box_with_rows(&mut random);
+        assert_eq!(topology(&rows).euler, 2, "round {round}");
+        let level = flat(&rows);
+        assert_eq!(level.faces.len(), 12, "round {round}, of {}", rows.faces.len());
+    }
 }

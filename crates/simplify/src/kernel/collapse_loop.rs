@@ -23,8 +23,9 @@ mod queueing;
 mod ruin;
 
 pub(crate) use crate::kernel::collapse_loop::placed_edge::PlacedEdge;
-pub(crate) use crate::kernel::collapse_loop::ruin::is_out_of_proportion;
-use crate::kernel::collapse_loop::ruin::{are_parts_stuck, is_seen};
+pub(crate) use crate::kernel::collapse_loop::ruin::{
+    are_parts_stuck, is_out_of_proportion, is_seen,
+};
 
 use glam::{DVec3, Vec3};
 

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use crate::kernel::attributes::AttributeModel;
 use crate::kernel::bound::ErrorBound;
 use crate::kernel::collapse::edge_ring::EdgeRing;
-use crate::kernel::collapse_loop::CollapseLoop;
+use crate::kernel::collapse_loop::{CollapseLoop, are_parts_stuck, is_seen};
 use crate::kernel::components::Components;
 use crate::kernel::contraction_log::{Logged, merge};
 use crate::kernel::handles::Handles;
@@ -198,6 +198,17 @@ impl<A: AttributeModel> Partition<A> {
             part.debts.all().map(move |(v, debt)| ((base + v) as u32, debt)).collect::<Vec<_>>()
         };
         self.parts.iter().flat_map(of_part).collect()
+    }
+
+    /// Returns true if most of several components can go no further, and the surface has moved far.
+    ///
+    /// Cost: O(n), n = vertices, where it has moved far, and O(1) elsewhere.
+    pub(crate) fn is_near_limit(&mut self) -> bool {
+        // Twice as far as any step may go: scans with many handles that stay are farther off than once.
+        let is_far = self.parts.len() == 1 && is_seen(self.error as f32 / 4.0, self.whole.room);
+        let are_stuck =
+            |collapse_loop: &mut CollapseLoop<'_, A>| are_parts_stuck(&mut collapse_loop.vertices);
+        is_far && self.loops().first_mut().is_some_and(|(whole, _)| are_stuck(whole))
     }
 
     /// Merges all parts into one.

@@ -54,6 +54,8 @@ pub(crate) struct KernelRun<'m, A> {
     /// The last error bound, and the part of it that holds at each vertex; empty if the whole
     /// bound holds everywhere.
     lowered: (f64, Vec<f32>),
+    /// True if most of the surface could go no further after the last run, and the rest has moved far.
+    near_limit: bool,
     /// Current surface, if it was asked for and has not changed unobserved since.
     surface: OnceCell<Surface>,
 }
@@ -64,7 +66,8 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
         let steps = partition.whole.ties.is_none().then(Vec::new);
         let lowered = (f64::INFINITY, Vec::new());
         let (input, surface) = (OnceCell::new(), OnceCell::new());
-        Self { source, partition, refused_above: f64::INFINITY, input, steps, lowered, surface }
+        let (refused_above, near_limit) = (f64::INFINITY, false);
+        Self { source, partition, refused_above, input, steps, lowered, near_limit, surface }
     }
 
     /// Returns the faces of the input in the kernel's vertices, if they differ from its own.
@@ -232,6 +235,7 @@ fn bound<'o>(
 impl<A: AttributeModel> Run for KernelRun<'_, A> {
     fn run(&mut self, stop: &Stop, observer: &mut dyn Observe) {
         self.advance(stop.faces, stop, observer);
+        self.near_limit = stop.error == f64::INFINITY && self.partition.is_near_limit();
     }
 
     fn step(&mut self, stop: &Stop, observer: &mut dyn Observe) -> bool {
@@ -336,6 +340,7 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
             contractions: Contractions { edges: self.partition.contractions, faces: 0 },
             refusals: self.partition.refusals,
             error_estimate: self.partition.error.sqrt() * self.source.frame.unit,
+            near_limit: self.near_limit,
             volume: self.partition.volume.loss(&self.source.frame, owed),
         }
     }

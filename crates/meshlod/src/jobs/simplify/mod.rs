@@ -123,7 +123,7 @@ impl Task<'_> {
         let report = SimplifyReport {
             measured,
             conditioning: ready.counts(),
-            flats: ready.flat_faces().map(|flats| flats.without(&report)),
+            flats: ready.flat_faces().map(|flats| flats.without(&report, &ready.counts())),
             near_borders: request.near_borders.then(|| ready.near_borders()).flatten(),
             fused: None,
             error,

@@ -92,9 +92,11 @@ fn can_restore(ready: &ConditionedScene<'_>, level: &[Mesh]) -> bool {
 }
 
 impl FlatFaces {
-    /// Returns the figures without the faces that a run has left out: no shape needs them.
-    pub(crate) fn without(self, report: &Report) -> Self {
-        let left_out = report.degenerate_faces + report.duplicate_faces;
+    /// Returns the figures without the faces that a run has left out, but for those that conditioning
+    /// had before: no shape needs them.
+    pub(crate) fn without(self, report: &Report, before: &Conditioning) -> Self {
+        let left_out = (report.degenerate_faces + report.duplicate_faces)
+            .saturating_sub(before.duplicate_faces);
         Self { needed: self.needed.saturating_sub(left_out), ..self }
     }
 }
@@ -102,6 +104,21 @@ impl FlatFaces {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn faces_that_are_there_twice_are_needed_once() {
+        use meshlod_samples as samples;
+
+        use crate::jobs::{Aim, SimplifyRequest, simplify};
+
+        let mut cube = samples::cube(600);
+        (cube.attributes, cube.faces) = (None, cube.faces.repeat(2));
+        let scene = Scene::from_mesh("cube", cube);
+        let target = Aim::Error("0".parse().unwrap());
+        let request = SimplifyRequest { target, ..SimplifyRequest::default() };
+        let (level, report) = simplify(scene, &request, &()).unwrap();
+        assert_eq!((level.flatten().faces.len(), report.flats.unwrap().needed), (12, 12));
+    }
 
     #[test]
     fn a_volume_is_lost_if_it_is_not_repaid() {

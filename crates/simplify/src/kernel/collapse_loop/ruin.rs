@@ -26,13 +26,13 @@ pub(crate) fn is_out_of_proportion(now: f32, largest: f32, room: Vec3) -> bool {
 /// Returns true if a step that moves the surface by this squared distance changes the shape as a
 /// whole.
 #[inline(always)]
-pub(super) fn is_seen(now: f32, room: Vec3) -> bool {
+pub(crate) fn is_seen(now: f32, room: Vec3) -> bool {
     now > SEEN * SEEN * 4.0 * room.length_squared()
 }
 
 /// Returns true if the surface is in several components, and more than half of its vertices can go
 /// no further.
-pub(super) fn are_parts_stuck(vertices: &mut Vertices<'_>) -> bool {
+pub(crate) fn are_parts_stuck(vertices: &mut Vertices<'_>) -> bool {
     let (mut live, mut stuck, mut joins) = (0, 0, 0);
     let mut joined = UnionFind::new(vertices.all.len());
     for v in vertices.ids() {
