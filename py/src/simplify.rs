@@ -28,6 +28,7 @@ pub struct Asked {
     method: String,
     topology: String,
     lock_boundary: bool,
+    polish: bool,
     /// Ids of the vertices to lock.
     locks: Vec<u32>,
     /// Weights of normals, texture coordinates and colours; `None` for the default.
@@ -110,6 +111,7 @@ impl Asked {
             target: self.target()?.into(),
             method: self.method()?,
             weights: self.weights(),
+            polish: self.polish,
             constraints: self.constraints(scene)?,
             written_as: Some(self.written_as(scene)?),
             ..SimplifyRequest::default()

@@ -189,6 +189,7 @@ class Mesh(Immutable):
         topology: str = "free",
         locks: ArrayLike | None = None,
         lock_boundary: bool = False,
+        polish: bool = False,
         weights: tuple[float, float, float] | None = None,
         precision: str = "auto",
         progress: ProgressLike = None,
@@ -200,6 +201,7 @@ class Mesh(Immutable):
             "method": method,
             "topology": topology,
             "lock_boundary": lock_boundary,
+            "polish": polish,
             "weights": weights,
             "precision": precision,
             "progress": callback(progress, "simplifying"),
@@ -216,6 +218,7 @@ class Mesh(Immutable):
         method: str = "lindstrom-turk",
         topology: str = "free",
         lock_boundary: bool = False,
+        polish: bool = False,
         progress: ProgressLike = None,
     ) -> list[Mesh]:
         """Returns coarser and coarser meshes, with these ratios of the faces, from one run."""
@@ -231,6 +234,7 @@ class Mesh(Immutable):
             "method": method,
             "topology": topology,
             "lock_boundary": lock_boundary,
+            "polish": polish,
         }
         asked = _asked.asked(self._native, "ratio", ratios[-1], progress=bar, **options)
         done = _native.levels(self._native, ratios, asked)

@@ -12,6 +12,7 @@ class Asked(TypedDict):
     method: str
     topology: str
     lock_boundary: bool
+    polish: bool
     locks: list[int]
     weights: tuple[float, float, float] | None
     precision: str

@@ -20,6 +20,7 @@ class SceneOptions(TypedDict, total=False):
     method: str
     topology: str
     lock_boundary: bool
+    polish: bool
     weights: tuple[float, float, float] | None
     precision: str
     progress: ProgressLike

@@ -143,6 +143,7 @@ def simplify(
     topology: str = "free",
     locks: ArrayLike | None = None,
     lock_boundary: bool = False,
+    polish: bool = False,
     weights: tuple[float, float, float] | None = None,
     precision: str = "auto",
     progress: ProgressLike = None,
@@ -173,6 +174,8 @@ def simplify(
 
     ``locks`` is a mask, or rows, of points that stay where they are; ``lock_boundary`` locks those
     on the boundary. ``topology="keep"`` keeps closed surfaces closed and every component.
+    ``polish`` fits the points that are left to the original once more: distances are some 7 % less,
+    for up to half as long again; with ``max_error`` it does nothing.
     ``weights`` are those of normals, uvs and colours against distances. ``precision`` is that of
     the coordinates for which ``max_error`` is proved: ``"f32"``, as most files have them,
     ``"f64"``, or ``"auto"``, which is 32 bits unless they take more than half of the error;
@@ -214,6 +217,7 @@ def simplify(
         "method": method,
         "topology": topology,
         "lock_boundary": lock_boundary,
+        "polish": polish,
         "weights": weights,
         "precision": precision,
         "progress": bar,

@@ -7,6 +7,7 @@
 pub mod args;
 pub mod constraints;
 pub mod doubt;
+pub mod finish;
 pub mod fuse;
 pub mod locks;
 pub mod method;
@@ -16,4 +17,3 @@ pub mod parse;
 pub mod query_args;
 pub mod tolerance;
 pub mod topology;
-pub mod volume;

@@ -12,11 +12,11 @@ use meshlod::{Format, Scene, Topology};
 
 use crate::options::args::{ReadArgs, WriteArgs};
 use crate::options::doubt;
+use crate::options::finish::FinishArgs;
 use crate::options::locks::InputScene;
 use crate::options::method::MethodArgs;
 use crate::options::parse::{self, LevelSize};
 use crate::options::topology;
-use crate::options::volume::ExactVolumeArgs;
 use crate::session::Session;
 use crate::session::answer::Answer;
 use crate::session::failure::Failure;
@@ -57,7 +57,7 @@ pub struct Lods {
     #[command(flatten)]
     method: MethodArgs,
     #[command(flatten)]
-    volume: ExactVolumeArgs,
+    finish: FinishArgs,
     #[command(flatten)]
     reading: ReadArgs,
     #[command(flatten)]
@@ -117,8 +117,9 @@ impl Lods {
             method: self.method.method,
             weights: self.method.weights(),
             boundary: self.method.boundary,
+            polish: self.finish.polish,
             constraints: self.method.constraints.constraints(&input)?,
-            exact_volume: self.volume.exact_volume,
+            exact_volume: self.finish.exact_volume,
             measured: true,
             near_borders: true,
             written_as: Some(self.writing.in_format(format)),

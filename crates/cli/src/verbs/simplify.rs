@@ -10,12 +10,12 @@ use meshlod::{Format, Scene};
 
 use crate::options::args::{ReadArgs, WriteArgs};
 use crate::options::doubt;
+use crate::options::finish::FinishArgs;
 use crate::options::locks::InputScene;
 use crate::options::method::MethodArgs;
 use crate::options::parse::{self, Bound};
 use crate::options::tolerance::Tolerance;
 use crate::options::topology;
-use crate::options::volume::ExactVolumeArgs;
 use crate::session::Session;
 use crate::session::answer::Answer;
 use crate::session::failure::Failure;
@@ -43,7 +43,7 @@ pub struct Simplify {
     #[command(flatten)]
     method: MethodArgs,
     #[command(flatten)]
-    volume: ExactVolumeArgs,
+    finish: FinishArgs,
     #[command(flatten)]
     reading: ReadArgs,
     #[command(flatten)]
@@ -124,8 +124,9 @@ impl Simplify {
             method: self.method.method,
             weights: self.method.weights(),
             boundary: self.method.boundary,
+            polish: self.finish.polish,
             constraints: self.method.constraints.constraints(&input)?,
-            exact_volume: self.volume.exact_volume,
+            exact_volume: self.finish.exact_volume,
             measured: self.measured,
             near_borders: true,
             written_as: Some(self.writing.in_format(format)),

@@ -31,6 +31,8 @@ pub struct LodsRequest {
     pub weights: AttributeWeights,
     /// Weight of boundaries in the costs; `None` for that of the method.
     pub boundary: Option<f64>,
+    /// True to fit the vertices of each level to the input once more, all together.
+    pub polish: bool,
     /// Constraints on every level.
     pub constraints: Constraints,
     /// True to restore the volume of closed parts, exactly in the digits that are written.
@@ -54,6 +56,7 @@ impl Default for LodsRequest {
             method: Method::default(),
             weights: AttributeWeights::DEFAULT,
             boundary: None,
+            polish: false,
             constraints: Constraints::default(),
             exact_volume: false,
             measured: true,
@@ -150,8 +153,8 @@ fn made(
     fused: Option<FuseReport>,
     watch: &dyn Watch,
 ) -> Result<(Vec<Level>, LodsReport), JobError> {
-    let LodsRequest { method, weights, boundary, ref constraints, .. } = *request;
-    let choice = RunChoice { method, weights, boundary, constraints };
+    let LodsRequest { method, weights, boundary, polish, ref constraints, .. } = *request;
+    let choice = RunChoice { method, weights, boundary, polish, constraints };
     let (mut ready, mut time) = choice.condition(scene, watch)?;
     let target = |size| fused.map_or(size, |fused| fused.target(size));
     if let Some(&finest) = request.levels.first()

@@ -30,17 +30,18 @@ pub(super) struct RunChoice<'r> {
     pub method: Method,
     pub weights: AttributeWeights,
     pub boundary: Option<f64>,
+    pub polish: bool,
     pub constraints: &'r Constraints,
 }
 
 impl RunChoice<'_> {
     /// Returns the options for a scene that is already fused.
     fn options(&self, scene: &Scene, watch: &dyn Watch) -> Result<Options, JobError> {
-        let Self { method, weights, boundary: boundary_weight, constraints } = *self;
+        let Self { method, weights, boundary: boundary_weight, polish, constraints } = *self;
         if matches!(constraints.locks, VertexLocking::Contacts(_)) {
             watch.stage("looking for contacts");
         }
-        let options = Options { method, weights, boundary_weight, ..Options::default() };
+        let options = Options { method, weights, boundary_weight, polish, ..Options::default() };
         constraints.options(scene, options).map_err(JobError::input)
     }
 
@@ -65,6 +66,10 @@ impl RunChoice<'_> {
                 "weight_…",
                 format_args!("{name} ignores attributes; use lindstrom-turk, qem or qem-endpoint"),
             ));
+        }
+        if self.polish && method != Method::LindstromTurk {
+            let reason = format_args!("{name} does not polish; use lindstrom-turk");
+            watch.remark(&Remark::field("polish", reason));
         }
         if self.boundary.is_some() && !method.weighs_boundaries() {
             watch.remark(&Remark::field(

@@ -48,6 +48,7 @@ pub(crate) struct Prepared<'m, M> {
     faces: Option<Vec<[u32; 3]>>,
     input: InputSummary,
     whole: Whole,
+    polish: bool,
 }
 
 impl<'m, M: Metric + 'm> Prepared<'m, M> {
@@ -95,7 +96,8 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
         let room = frame.to_local(bounds.max);
         let room = room + Vec3::splat(BEYOND * (bounds.diagonal() / frame.unit) as f32);
         let whole = Whole { room, ..Whole::default() };
-        let mut prepared = Self { metric, mesh, frame, order, fans, faces, input, whole };
+        let polish = options.polish;
+        let mut prepared = Self { metric, mesh, frame, order, fans, faces, input, whole, polish };
         prepared.pin();
         let is_held = prepared.lock(options);
         prepared.tie(options);
@@ -235,9 +237,9 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
     }
 
     fn run<A: AttributeModel + 'm>(self, model: A) -> Box<dyn Run + 'm> {
-        let Self { mesh, frame, order, fans, faces, whole, .. } = self;
+        let Self { mesh, frame, order, fans, faces, whole, polish, .. } = self;
         let partition = Partition::new(fans.store, model, fans.faces, whole);
-        Box::new(KernelRun::new(KernelInput { mesh, frame, order, faces }, partition))
+        Box::new(KernelRun::new(KernelInput { mesh, frame, order, faces, polish }, partition))
     }
 }
 

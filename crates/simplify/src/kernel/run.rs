@@ -39,6 +39,8 @@ pub(crate) struct KernelInput<'m> {
     pub(crate) order: Order,
     /// The faces with copies of vertices, if they differ from the input's.
     pub(crate) faces: Option<Vec<[u32; 3]>>,
+    /// True to fit levels to the input.
+    pub(crate) polish: bool,
 }
 
 /// A mesh being simplified by the kernel.
@@ -219,7 +221,7 @@ fn bound<'o>(
     store: &VertexStore,
     input: &'o OnceCell<InputSurface>,
 ) -> ErrorBound<'o> {
-    let KernelInput { mesh, frame, order, faces } = source;
+    let KernelInput { mesh, frame, order, faces, .. } = source;
     let input = input.get_or_init(|| {
         let place = |v: u32| frame.to_local(mesh.positions[order.input(store.origin(v)) as usize]);
         let of_cuts = store.all[store.all.len() - store.spare..].iter().map(Vertex::place);
@@ -266,7 +268,7 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
         if self.input.get().is_some() {
             return (level, 0.0);
         }
-        if A::Metric::METHOD == Method::LindstromTurk {
+        if self.source.polish && A::Metric::METHOD == Method::LindstromTurk {
             self.polish(&mut level, &ids);
         }
         let names = self.names();

@@ -186,7 +186,7 @@ impl Task<'_> {
 
 impl SimplifyRequest {
     fn choice(&self) -> RunChoice<'_> {
-        let Self { method, weights, boundary, ref constraints, .. } = *self;
-        RunChoice { method, weights, boundary, constraints }
+        let Self { method, weights, boundary, polish, ref constraints, .. } = *self;
+        RunChoice { method, weights, boundary, polish, constraints }
     }
 }

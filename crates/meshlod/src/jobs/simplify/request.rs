@@ -20,6 +20,9 @@ pub struct SimplifyRequest {
     pub weights: AttributeWeights,
     /// Weight of boundaries in the costs; `None` for that of the method.
     pub boundary: Option<f64>,
+    /// True to fit the vertices of the level to the input once more, all together, if a number of
+    /// faces is asked for.
+    pub polish: bool,
     /// Constraints on the level.
     pub constraints: Constraints,
     /// True to restore the volume of closed parts, exactly in the digits that are written.
