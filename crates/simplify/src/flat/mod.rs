@@ -77,7 +77,7 @@ struct NewFace {
     like: u32,
 }
 
-/// What the flat regions of a mesh need, found without filling any.
+/// Faces that the flat regions of a mesh need, found without filling any.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FlatNeeds {
     /// Number of faces that the outlines of all regions need, given the constraints, or a lower bound of

@@ -22,6 +22,7 @@
 //! | `components`, `apart` | the components that may vanish, and how far they are apart |
 //! | `volume` | the volume lost and owed |
 //! | `partition` | parts that coarsen side by side |
+//! | `repay`, `polish` | levels whose debts are repaid, and that are fitted to the input |
 //! | `run`, `level`, `contraction_log` | the face to `Simplifier`: runs, levels, observers |
 //!
 //! A wedge is known by its *slot*, an index: the first wedge of a vertex has the vertex's own id,

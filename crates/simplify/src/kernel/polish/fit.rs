@@ -9,6 +9,10 @@ use super::nearest::{Hit, NearestFaces};
 /// else does.
 const HOLD: f64 = 0.03;
 
+/// Largest displacement of a vertex, as a multiple of the root of the mean squared height of the points
+/// around.
+const FARTHEST: f64 = 2.0;
+
 /// Number of times that all vertices are moved one after the other.
 const SWEEPS: usize = 3;
 
@@ -23,6 +27,8 @@ struct FaceSum {
     squares: [[f64; 3]; 3],
     /// Σ b h.
     pulls: [f64; 3],
+    /// Σ h², and the sum of the weights of points.
+    heights: [f64; 2],
     /// Weights and height of the highest point, above or below.
     worst: ([f64; 3], f64),
 }
@@ -47,6 +53,8 @@ impl<'n> LevelFit<'n> {
             sum.pulls[i] += own * height;
             (0..3).for_each(|k| sum.squares[i][k] += own * weights[k]);
         }
+        sum.heights[0] += f64::from(hit.area) * height * height;
+        sum.heights[1] += f64::from(hit.area);
         if height.abs() > sum.worst.1.abs() {
             sum.worst = (weights, height);
         }
@@ -62,31 +70,39 @@ impl<'n> LevelFit<'n> {
         let mut moves = vec![DVec3::ZERO; free.len()];
         for _ in 0..SWEEPS {
             for v in (0..free.len()).filter(|&v| free[v]) {
-                let v = VertexId::new(v);
-                let (mut matrix, mut pull, mut weight) = (DMat3::ZERO, DVec3::ZERO, 0.0);
-                for face in connectivity.star(v) {
-                    let (normal, sum) = (self.normals[face.index()], &self.sums[face.index()]);
-                    let normal = normal.as_dvec3();
-                    let corners = faces[face.index()];
-                    let own = corners.iter().position(|&w| w == v).expect("it is in its star");
-                    let others = (0..3).filter(|&k| k != own);
-                    let by_others =
-                        others.map(|k| sum.squares[own][k] * normal.dot(moves[corners[k].index()]));
-                    pull += normal * (sum.pulls[own] - by_others.sum::<f64>());
-                    let square = sum.squares[own][own];
-                    weight += square;
-                    let scaled = normal * square;
-                    matrix +=
-                        DMat3::from_cols(scaled * normal.x, scaled * normal.y, scaled * normal.z);
-                }
-                if weight > 0.0 {
-                    matrix += DMat3::from_diagonal(DVec3::splat(HOLD * weight));
-                    let by = matrix.inverse() * pull;
-                    moves[v.index()] = if by.is_finite() { by } else { DVec3::ZERO };
-                }
+                let by = self.best(VertexId::new(v), (connectivity, faces), &moves);
+                moves[v] = if by.is_finite() { by } else { DVec3::ZERO };
             }
         }
         moves
+    }
+
+    /// Returns the best move of a vertex, given those of the others.
+    fn best(
+        &self,
+        v: VertexId,
+        (connectivity, faces): (&Connectivity, &[[VertexId; 3]]),
+        moves: &[DVec3],
+    ) -> DVec3 {
+        let (mut matrix, mut pull, mut weight, mut heights) =
+            (DMat3::ZERO, DVec3::ZERO, 0.0, [0.0; 2]);
+        for face in connectivity.star(v) {
+            let (corners, sum) = (faces[face.index()], &self.sums[face.index()]);
+            let normal = self.normals[face.index()].as_dvec3();
+            let own = corners.iter().position(|&w| w == v).expect("it is in its star");
+            let others = (0..3).filter(|&k| k != own);
+            let by_others: f64 =
+                others.map(|k| sum.squares[own][k] * normal.dot(moves[corners[k].index()])).sum();
+            let square = sum.squares[own][own];
+            pull += normal * (sum.pulls[own] - by_others);
+            matrix +=
+                DMat3::from_cols(normal * normal.x, normal * normal.y, normal * normal.z) * square;
+            weight += square;
+            heights = [heights[0] + sum.heights[0], heights[1] + sum.heights[1]];
+        }
+        let held = matrix + DMat3::from_diagonal(DVec3::splat(HOLD * weight));
+        let most = FARTHEST * (heights[0] / heights[1]).sqrt();
+        if weight > 0.0 { (held.inverse() * pull).clamp_length_max(most) } else { DVec3::ZERO }
     }
 
     /// Leaves out moves of the vertices of faces whose highest point would be higher, and so high that

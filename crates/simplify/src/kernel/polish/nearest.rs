@@ -31,7 +31,7 @@ pub(super) struct NearestFaces<'a> {
     pub(super) normals: Vec<Vec3>,
 }
 
-/// What a face needs to know of a point to tell how near it is.
+/// Plane of a face with its edges, by which it tells how near a point is.
 struct Chart {
     /// From a point to its distances in the plane from the lines along the edges, inwards, in the
     /// order of the opposite corners, and to its height above the plane.
