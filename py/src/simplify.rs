@@ -191,6 +191,7 @@ pub fn levels<'py>(
         levels: ratios.into_iter().map(Target::Ratio).collect(),
         method: asked.method()?,
         weights: asked.weights(),
+        polish: asked.polish,
         constraints: asked.constraints(&scene)?,
         measured: false,
         ..LodsRequest::default()

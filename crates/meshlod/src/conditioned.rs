@@ -26,7 +26,7 @@ pub struct FlatFaces {
 }
 
 impl FlatFaces {
-    /// Returns true if flats should go before a run from `all` faces to some. A run to fewer than they
+    /// Returns true if flats should go before a run to some of `all` faces, which flats are among. A run to fewer than they
     /// leave would start with their long thin faces, which makes some levels worse
     /// (docs/notes/kernel.md).
     pub(crate) fn are_worth(self, all: usize, target: usize) -> bool {
@@ -154,6 +154,11 @@ impl<'m> ConditionedMesh<'m> {
     /// Returns the number of faces of the mesh with its flats as they were.
     pub(crate) fn face_count(&self) -> usize {
         self.sewn.as_ref().map_or(self.input, |sewn| &sewn.mesh).faces.len()
+    }
+
+    /// Returns how many faces that are there twice had been left out before flats went.
+    pub(crate) fn duplicates_before_flats(&self) -> usize {
+        self.sewn.as_ref().map_or(0, |sewn| sewn.counts.duplicate_faces)
     }
 
     /// Undoes what has been done to flats.
@@ -301,8 +306,10 @@ pub(crate) fn simplify_by(
     match own {
         Target::Error(error) => ready.flatten_within(error),
         target => {
-            let (all, faces) = (mesh.faces.len(), target.faces_of(mesh.faces.len()));
-            if ready.needs(faces).is_some_and(|left| FlatFaces::may_be_worth(left, all, faces)) {
+            let faces = target.faces_of(mesh.faces.len());
+            let left = ready.needs(faces);
+            let all = ready.face_count();
+            if left.is_some_and(|left| FlatFaces::may_be_worth(left, all, faces)) {
                 ready.flatten_within(0.0);
             }
             if ready.flats().is_some_and(|flats| !flats.are_worth(all, faces)) {

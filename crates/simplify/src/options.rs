@@ -368,9 +368,9 @@ pub struct Report {
     /// that the kernel has removed counts with its distance from the rest of the input, and one that
     /// the policy engine has removed with its size.
     pub error_estimate: f64,
-    /// True if the surface is in several components, more than half of it can go no further, and the
-    /// rest has moved by more than a 25th of the diagonal for it: a level of few more faces would be much
-    /// nearer. False within an error, and from the methods of the policy engine.
+    /// True if the surface is in several components, more than half of its vertices can go no further,
+    /// and the rest has moved by more than a 25th of the diagonal for it: a level of few more faces
+    /// would be much nearer. False within an error, and from the methods of the policy engine.
     pub near_limit: bool,
     /// Proof of the distance from the input; `None` if nothing is proved. [`Simplifier`]
     /// proves nothing; the facade `meshlod` does for every [`Target::Error`].

@@ -2,11 +2,13 @@
 
 mod common;
 
+use std::collections::HashMap;
+
 use glam::DVec3;
 use meshlod_fixtures::shape::{bare, volume};
 use meshlod_mesh::{Connectivity, FaceId, Lock, Locks, Mesh, VertexId};
 use meshlod_samples as samples;
-use meshlod_simplify::{Options, Simplifier, Target, VolumeLoss};
+use meshlod_simplify::{Options, Simplifier, Target, Topology, VolumeLoss};
 use meshlod_spatial::Bvh;
 
 /// Returns the settled level with a fraction of the faces, without and with polish.
@@ -43,7 +45,7 @@ fn levels_are_nearer_and_keep_their_volume() {
             let [plain, fitted] = levels(&mesh, ratio, &Options::default());
             assert_eq!(plain.faces, fitted.faces, "{name}");
             let gain = apart(&mesh, &fitted) / apart(&mesh, &plain);
-            assert!(gain < 0.98, "{name} {ratio}: {gain}");
+            assert!(gain < 0.99, "{name} {ratio}: {gain}");
             let lost = (volume(&fitted) / volume(&plain) - 1.0).abs();
             assert!(lost < 1e-12, "{name} {ratio}: {lost:e}");
         }
@@ -72,10 +74,47 @@ fn boundaries_and_locked_vertices_stay() {
 
 #[test]
 fn what_is_exact_stays_so() {
-    let mesh = samples::voxels(20_000, 1);
-    let options = Options::default();
-    let [plain, fitted] = levels(&mesh, 0.5, &options);
-    assert_eq!(plain.positions, fitted.positions);
+    let turn = glam::DMat3::from_rotation_x(0.3) * glam::DMat3::from_rotation_z(0.7);
+    for (mesh, ratio) in [(samples::voxels(20_000, 1), 0.5), (samples::stairs(5_000), 0.03)] {
+        let [plain, fitted] = levels(&mesh, ratio, &Options::default());
+        assert_eq!(plain.positions, fitted.positions);
+        let turned = |at: &[f64; 3]| (turn * DVec3::from(*at)).as_vec3().as_dvec3().into();
+        let positions = mesh.positions.iter().map(turned).collect();
+        let [plain, fitted] = levels(&Mesh { positions, ..mesh }, ratio, &Options::default());
+        let moved = plain.positions.iter().zip(&fitted.positions).filter(|(a, b)| a != b).count();
+        assert_eq!(moved, 0, "{ratio}");
+    }
+}
+
+#[test]
+fn a_run_within_an_error_is_left_as_it_is() {
+    let mesh = samples::knot(4_000);
+    let [plain, asked] = [false, true].map(|polish| {
+        let mut simplifier =
+            Simplifier::new(&mesh, &Options { polish, ..Options::default() }).unwrap();
+        simplifier.run(Target::Error(0.01), &mut ()).unwrap();
+        simplifier.settled_level(&mut VolumeLoss::default())
+    });
+    assert!(plain == asked && plain.faces.len() < mesh.faces.len());
+}
+
+#[test]
+fn vertices_at_one_place_stay() {
+    let mut mesh = bare(samples::torus(4_000));
+    let count = mesh.positions.len() as u32;
+    // Two shells that touch everywhere.
+    let other: Vec<_> = mesh.faces.iter().map(|face| face.map(|v| VertexId(v.0 + count))).collect();
+    mesh.positions.extend_from_within(..);
+    mesh.faces.extend(other);
+    let options = Options { topology: Topology::Keep, ..Options::default() };
+    let [plain, fitted] = levels(&mesh, 0.7, &options);
+    let mut at: HashMap<[u64; 3], Vec<usize>> = HashMap::new();
+    for (v, place) in plain.positions.iter().enumerate() {
+        at.entry(place.map(f64::to_bits)).or_default().push(v);
+    }
+    let shared: Vec<usize> = at.into_values().filter(|all| all.len() > 1).flatten().collect();
+    assert!(shared.len() > 100 && shared.len() < plain.positions.len());
+    assert!(shared.into_iter().all(|v| plain.positions[v] == fitted.positions[v]));
 }
 
 #[test]

@@ -97,8 +97,9 @@ pub fn mesh_notes(report: &Report) -> String {
     let HandleCounts { before, closed } = report.handles.unwrap_or_default();
     line(closed, ["handle", "handles"], &format!("closed, of {}", count(before)));
     if report.near_limit && report.reached {
-        text += "near_limit: most parts are as coarse as they can be, and the rest pays for them; ";
-        text += "more faces would be much nearer\n";
+        text +=
+            "near_limit: most of the model is as coarse as it can be, and the rest has moved far ";
+        text += "for it; ask for more faces\n";
     }
     text
 }

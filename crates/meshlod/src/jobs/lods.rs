@@ -155,15 +155,8 @@ fn made(
 ) -> Result<(Vec<Level>, LodsReport), JobError> {
     let LodsRequest { method, weights, boundary, polish, ref constraints, .. } = *request;
     let choice = RunChoice { method, weights, boundary, polish, constraints };
-    let (mut ready, mut time) = choice.condition(scene, watch)?;
+    let (ready, time) = choice.condition(scene, watch)?;
     let target = |size| fused.map_or(size, |fused| fused.target(size));
-    if let Some(&finest) = request.levels.first()
-        && !matches!(finest, Target::Error(_))
-    {
-        let start = Instant::now();
-        ready.flatten_before(target(finest));
-        time += start.elapsed();
-    }
     let whole = OnceCell::new();
     let original = request.measured.then(|| ready_to_measure(scene, &whole, watch)).flatten();
     let digits = digits(request.written_as.map(|as_| as_.of(scene)));
@@ -299,17 +292,6 @@ mod tests {
         assert!(fine.measured.unwrap().max() < coarse.measured.unwrap().max());
         assert!(coarse.screen_coverage < fine.screen_coverage && !coarse.is_same);
         assert_eq!([&fine.size, &coarse.size], ["50%", "10%"]);
-    }
-
-    #[test]
-    fn a_finest_level_near_what_flats_need_moves_nothing() {
-        let scene = Scene::from_mesh("stairs", samples::stairs(5_000));
-        let levels = [150, 60].map(Target::Faces).to_vec();
-        let (_, report) = lods(scene, &LodsRequest { levels, ..Default::default() }, &()).unwrap();
-        let [fine, coarse] = &report.levels[..] else { panic!("{report:?}") };
-        assert_eq!((fine.run.output_faces, fine.run.error_estimate), (100, 0.0));
-        assert!(fine.measured.unwrap().max() < 1e-6 && fine.run.input_faces > 4_000);
-        assert!(coarse.run.output_faces <= 60);
     }
 
     #[test]

@@ -78,7 +78,7 @@ impl<'s> ConditionedScene<'s> {
             return self.flatten_within(error);
         }
         let counts = self.meshes.iter().zip(&self.copies);
-        let all = counts.map(|(mesh, copies)| copies * mesh.face_count()).sum();
+        let all: usize = counts.map(|(mesh, copies)| copies * mesh.face_count()).sum();
         let faces = target.faces_of(all);
         let mut needs = vec![None; self.meshes.len()];
         let mut left = 0;
@@ -87,6 +87,9 @@ impl<'s> ConditionedScene<'s> {
             needs[i] = mesh.needs(most);
             left += self.copies[i] * needs[i].unwrap_or_else(|| mesh.face_count());
         }
+        // Faces that are there twice may have gone since.
+        let counts = self.meshes.iter().zip(&self.copies);
+        let all = counts.map(|(mesh, copies)| copies * mesh.face_count()).sum();
         if !FlatFaces::may_be_worth(left, all, faces) {
             return;
         }
@@ -112,6 +115,13 @@ impl<'s> ConditionedScene<'s> {
             all.needed += copies * needed;
         }
         Some(all)
+    }
+
+    /// Returns how many faces that are there twice had been left out before flats went, counting every
+    /// instance.
+    pub fn duplicates_before_flats(&self) -> usize {
+        let all = self.meshes.iter().zip(&self.copies);
+        all.map(|(mesh, copies)| copies * mesh.duplicates_before_flats()).sum()
     }
 
     /// Returns what has been changed so far in the meshes of the scene, counting every instance.

@@ -299,7 +299,7 @@ impl<'s> SceneSimplifier<'s> {
             }
             whole.held.add(&report.held, part.copies);
             whole.error_estimate = whole.error_estimate.max(part.scale * report.error_estimate);
-            if report.near_limit {
+            if report.near_limit && !part.is_bounded {
                 let far = part.scale * report.error_estimate;
                 whole.near_limit |= SEEN * far > place::world_bounds(self.scene).diagonal();
             }

@@ -118,12 +118,17 @@ impl Task<'_> {
         time += start.elapsed();
         let (measured, error) = self.measure(&report, &level, moved)?;
         choice.remark(watch);
+        if request.polish && matches!(request.target, Aim::Error(_)) {
+            watch.remark(&Remark::field("polish", "a level within an error is left as it is"));
+        }
         report.reached &= error.is_none_or(|error| error.is_held);
         let lost = || LostVolume::of(&report, scene, (&ready, &level));
         let report = SimplifyReport {
             measured,
             conditioning: ready.counts(),
-            flats: ready.flat_faces().map(|flats| flats.without(&report, &ready.counts())),
+            flats: ready
+                .flat_faces()
+                .map(|flats| flats.without(&report, ready.duplicates_before_flats())),
             near_borders: request.near_borders.then(|| ready.near_borders()).flatten(),
             fused: None,
             error,

@@ -18,6 +18,7 @@ mod volume;
 use glam::{DVec3, Vec3};
 use meshlod_mesh::{Connectivity, Mesh, VertexId};
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
 use crate::kernel::mesh::local_frame::Frame;
 use fit::LevelFit;
@@ -40,12 +41,9 @@ const FARTHEST: f64 = 0.4;
 /// Smallest cosine by which a face may turn.
 const MIN_COSINE: f64 = 0.7;
 
-/// Displacements below this in the frame, in which the input's edges are about one long, are left out: what
-/// is exact stays so.
+/// Displacements below this in the frame, in which the input's edges are about one long, are left
+/// out: what is exact stays so.
 const LEAST: f64 = 1e-3;
-
-/// Number of times that vertices of faces which have turned too far are put back.
-const ATTEMPTS: usize = 8;
 
 /// The input of a run, and where its vertices are in a level.
 pub(crate) struct Origin<'a> {
@@ -62,9 +60,11 @@ pub(crate) struct Origin<'a> {
 /// Cost: O(n) for n faces of the input.
 pub(crate) fn polish(level: &mut Mesh, origin: &Origin<'_>, stays: &[bool]) {
     let connectivity = Connectivity::new(&level.faces, level.positions.len());
-    let on_seam = on_seams(level);
-    let is_free =
-        |v: usize| !stays[v] && !on_seam[v] && !connectivity.marks(VertexId::new(v)).boundary();
+    let [on_seam, is_shared] = [on_seams(level), shared_places(level)];
+    let is_free = |v: usize| {
+        let is_held = stays[v] || on_seam[v] || is_shared[v];
+        !is_held && !connectivity.marks(VertexId::new(v)).boundary()
+    };
     let free: Vec<bool> = (0..level.positions.len()).map(is_free).collect();
     let nearest = NearestFaces::new(level, &connectivity, origin.frame);
     let mut fit = LevelFit::new(&nearest);
@@ -74,12 +74,14 @@ pub(crate) fn polish(level: &mut Mesh, origin: &Origin<'_>, stays: &[bool]) {
     moves.iter_mut().for_each(|by| *by *= origin.frame.unit);
     limit(&mut moves, level, &connectivity);
     fit.hold_worst(&mut moves, &level.faces, origin.frame.unit);
+    let before = level.positions.clone();
     put_back_turned(level, &mut moves);
     let volumes = Volumes::new(level);
     for (at, by) in level.positions.iter_mut().zip(&moves) {
         *at = (DVec3::from(*at) + *by).into();
     }
     volumes.restore(level, &moves);
+    volumes.put_back(level, &before, |face, now| has_turned(face, &before, now));
 }
 
 impl Origin<'_> {
@@ -134,6 +136,20 @@ fn on_seams(level: &Mesh) -> Vec<bool> {
     on_seam
 }
 
+/// Returns for each vertex whether another is at the same place: surfaces meet there.
+fn shared_places(level: &Mesh) -> Vec<bool> {
+    let mut is_shared = vec![false; level.positions.len()];
+    let mut first: FxHashMap<[u64; 3], usize> = FxHashMap::default();
+    for (v, at) in level.positions.iter().enumerate() {
+        // Zero has two signs.
+        let other = *first.entry(at.map(|x| (x + 0.0).to_bits())).or_insert(v);
+        if other != v {
+            (is_shared[v], is_shared[other]) = (true, true);
+        }
+    }
+    is_shared
+}
+
 /// Shortens moves to what the edges around allow.
 fn limit(moves: &mut [DVec3], level: &Mesh, connectivity: &Connectivity) {
     let place = |v: VertexId| DVec3::from(level.positions[v.index()]);
@@ -148,20 +164,25 @@ fn limit(moves: &mut [DVec3], level: &Mesh, connectivity: &Connectivity) {
 
 /// Leaves out moves of the vertices of faces that would turn too far.
 fn put_back_turned(level: &Mesh, moves: &mut [DVec3]) {
-    let normal = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a);
-    for _ in 0..ATTEMPTS {
-        let place = |v: VertexId| DVec3::from(level.positions[v.index()]);
-        let has_turned = |&face: &&[VertexId; 3]| {
-            let old = normal(face.map(place));
-            let new = normal(face.map(|v| place(v) + moves[v.index()]));
-            // A face without area may become anything.
-            old.dot(new) < MIN_COSINE * old.length() * new.length()
-        };
-        let turned: Vec<[VertexId; 3]> = level.faces.iter().filter(has_turned).copied().collect();
+    loop {
+        let place = |v: usize| DVec3::from(level.positions[v]) + moves[v];
+        let moved: Vec<[f64; 3]> = (0..moves.len()).map(|v| place(v).into()).collect();
+        let turned = level.faces.iter().filter(|face| has_turned(face, &level.positions, &moved));
+        let turned: Vec<[VertexId; 3]> = turned.copied().collect();
+        // Faces whose vertices all stay have not turned, so this ends.
+        turned.iter().flatten().for_each(|v| moves[v.index()] = DVec3::ZERO);
         if turned.is_empty() {
             return;
         }
-        turned.iter().flatten().for_each(|v| moves[v.index()] = DVec3::ZERO);
     }
-    moves.fill(DVec3::ZERO);
+}
+
+/// Returns true if a face has turned too far. One without area may become anything.
+fn has_turned(face: &[VertexId; 3], from: &[[f64; 3]], to: &[[f64; 3]]) -> bool {
+    let [old, new] = [from, to].map(|positions| {
+        let [a, b, c] = face.map(|v| DVec3::from(positions[v.index()]));
+        (b - a).cross(c - a)
+    });
+    let is_same = face.iter().all(|v| from[v.index()] == to[v.index()]);
+    !is_same && old.dot(new) < MIN_COSINE * old.length() * new.length()
 }

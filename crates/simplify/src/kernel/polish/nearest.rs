@@ -1,6 +1,6 @@
 //! The face of a level nearest to a point of the input.
 
-use glam::{Mat4, Vec3, Vec4};
+use glam::{DVec3, Mat4, Vec3, Vec4};
 use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId};
 use meshlod_spatial::closest_point;
 
@@ -127,21 +127,21 @@ impl<'a> NearestFaces<'a> {
 }
 
 /// Returns the chart of a triangle, and its unit normal. Without area it is far from everywhere.
-fn chart([a, b, c]: [Vec3; 3]) -> (Chart, Vec3) {
+fn chart(corners: [Vec3; 3]) -> (Chart, Vec3) {
+    let [a, b, c] = corners.map(Vec3::as_dvec3);
     let normal = (b - a).cross(c - a);
-    let twice_area = normal.length();
-    let unit = normal / twice_area;
-    let [la, lb, lc] = [c - b, a - c, b - a].map(Vec3::length);
-    let altitudes = twice_area / Vec3::new(la, lb, lc);
+    let unit = normal / normal.length();
+    let lengths = [c - b, a - c, b - a].map(DVec3::length);
+    let altitudes = (normal.length() / DVec3::from(lengths)).as_vec3();
     if !(unit.is_finite() && altitudes.is_finite() && altitudes.min_element() > 0.0) {
         let matrix = Mat4::from_cols(Vec4::ZERO, Vec4::ZERO, Vec4::ZERO, Vec4::splat(f32::MAX));
         return (Chart { matrix, altitudes: Vec3::ONE }, Vec3::ZERO);
     }
-    let row = |from: Vec3, along: Vec3| {
-        let inwards = unit.cross(along);
-        inwards.extend(-inwards.dot(from))
+    let row = |from: DVec3, to: DVec3| {
+        let inwards = unit.cross((to - from).normalize());
+        inwards.extend(-inwards.dot(from)).as_vec4()
     };
-    let rows = [row(b, (c - b) / la), row(c, (a - c) / lb), row(a, (b - a) / lc)];
-    let matrix = Mat4::from_cols(rows[0], rows[1], rows[2], unit.extend(-unit.dot(a))).transpose();
-    (Chart { matrix, altitudes }, unit)
+    let height = unit.extend(-unit.dot(a)).as_vec4();
+    let matrix = Mat4::from_cols(row(b, c), row(c, a), row(a, b), height).transpose();
+    (Chart { matrix, altitudes }, unit.as_vec3())
 }

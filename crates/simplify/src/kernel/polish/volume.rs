@@ -1,10 +1,13 @@
 //! Volume of components, restored by a move of all vertices along their normals by a common factor.
 
 use glam::DVec3;
-use meshlod_mesh::{Mesh, UnionFind};
+use meshlod_mesh::{Mesh, UnionFind, VertexId};
 
 /// Number of steps of Newton's method, which converges quadratically from a step this small.
 const NEWTON_STEPS: usize = 4;
+
+/// Part of the sum of cones by which a volume may be off: rounding.
+const ROUNDING: f64 = 1e-9;
 
 /// Components of a level, and six times the volume of each.
 pub(super) struct Volumes {
@@ -14,6 +17,8 @@ pub(super) struct Volumes {
     origins: Vec<DVec3>,
     /// Six times the volume of each component.
     sixfold: Vec<f64>,
+    /// The same with each cone counted as positive.
+    sizes: Vec<f64>,
 }
 
 impl Volumes {
@@ -25,20 +30,21 @@ impl Volumes {
         }
         let of_vertex = (0..level.positions.len() as u32).map(|v| joined.find(v)).collect();
         let origins = level.positions.iter().map(|&at| at.into()).collect();
-        let mut volumes = Self { of_vertex, origins, sixfold: Vec::new() };
-        volumes.sixfold = volumes.of(level);
+        let mut volumes = Self { of_vertex, origins, sixfold: Vec::new(), sizes: Vec::new() };
+        volumes.sixfold = volumes.sums(level, |cone| cone);
+        volumes.sizes = volumes.sums(level, f64::abs);
         volumes
     }
 
-    /// Returns six times the volume of each component; of one that is not closed, that of the cones
-    /// from a place that stays.
-    fn of(&self, level: &Mesh) -> Vec<f64> {
+    /// Returns the sum of each component over its faces: six times the volume of the cone from a place
+    /// that stays, as `term` counts it.
+    fn sums(&self, level: &Mesh, term: impl Fn(f64) -> f64) -> Vec<f64> {
         let mut sixfold = vec![0.0; self.of_vertex.len()];
         for face in &level.faces {
             let of = self.of_vertex[face[0].index()] as usize;
             let origin = self.origins[of];
             let [a, b, c] = face.map(|v| DVec3::from(level.positions[v.index()]) - origin);
-            sixfold[of] += a.cross(b).dot(c);
+            sixfold[of] += term(a.cross(b).dot(c));
         }
         sixfold
     }
@@ -46,7 +52,7 @@ impl Volumes {
     /// Gives each component the volume that it had. Only vertices that have moved move.
     pub(super) fn restore(&self, level: &mut Mesh, moves: &[DVec3]) {
         for _ in 0..NEWTON_STEPS {
-            let now = self.of(level);
+            let now = self.sums(level, |cone| cone);
             let mut normals = vec![DVec3::ZERO; level.positions.len()];
             for face in &level.faces {
                 let [a, b, c] = face.map(|v| DVec3::from(level.positions[v.index()]));
@@ -66,6 +72,26 @@ impl Volumes {
                 if at.is_finite() {
                     level.positions[v] = at.into();
                 }
+            }
+        }
+    }
+
+    /// Puts the vertices back of components that do not have their volume now, or a bad face.
+    pub(super) fn put_back(
+        &self,
+        level: &mut Mesh,
+        before: &[[f64; 3]],
+        is_bad: impl Fn(&[VertexId; 3], &[[f64; 3]]) -> bool,
+    ) {
+        let now = self.sums(level, |cone| cone);
+        let is_off = |of: usize| !((now[of] - self.sixfold[of]).abs() <= ROUNDING * self.sizes[of]);
+        let mut is_out: Vec<bool> = (0..now.len()).map(is_off).collect();
+        for face in level.faces.iter().filter(|face| is_bad(face, &level.positions)) {
+            is_out[self.of_vertex[face[0].index()] as usize] = true;
+        }
+        for (v, at) in level.positions.iter_mut().enumerate() {
+            if is_out[self.of_vertex[v] as usize] {
+                *at = before[v];
             }
         }
     }
