@@ -209,6 +209,18 @@ def test_the_boundary_can_be_locked():
     assert (edges(welded(level.vertices, level.faces)) == 1).sum() == on.sum()
 
 
+def test_levels_are_polished_on_request():
+    mesh = meshlod.Mesh(*torus())
+    for levels in (
+        lambda **options: [mesh.simplify(0.8, **options)],
+        lambda **options: mesh.lods([0.5, 0.2], **options),
+    ):
+        for plain, fitted in zip(levels(), levels(polish=True), strict=True):
+            assert (plain.faces == fitted.faces).all()
+            assert (plain.vertices != fitted.vertices).any()
+            assert fitted.volume == pytest.approx(plain.volume, rel=1e-9)
+
+
 def test_notebooks_get_a_live_view_a_picture_and_text(tmp_path, monkeypatch):
     mesh = meshlod.Mesh(*torus())
     bundle = mesh._repr_mimebundle_()

@@ -36,12 +36,10 @@ pub fn flat_part(mesh: &Mesh) -> f64 {
     }
     let is_flat = |face: &&[VertexId; 3]| {
         let [a, b, c] = face.map(|v| coordinates(mesh, v));
-        edges(face).into_iter().all(|(edge, apex)| match beside[&edge][..] {
-            [x, y] => {
-                let other = coordinates(mesh, if x == apex { y } else { x });
-                orient3d(a, b, c, other) == 0.0
-            }
-            _ => false,
+        // More than two in one plane are faces that are there twice.
+        edges(face).into_iter().all(|(edge, _)| match &beside[&edge][..] {
+            [] | [_] => false,
+            all => all.iter().all(|&v| orient3d(a, b, c, coordinates(mesh, v)) == 0.0),
         })
     };
     sample.iter().filter(is_flat).count() as f64 / sample.len() as f64

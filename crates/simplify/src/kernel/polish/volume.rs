@@ -17,7 +17,7 @@ pub(super) struct Volumes {
     origins: Vec<DVec3>,
     /// Six times the volume of each component.
     sixfold: Vec<f64>,
-    /// The same with each cone counted as positive.
+    /// Sum of the cones of each component, all counted as positive.
     sizes: Vec<f64>,
 }
 
