@@ -1,7 +1,7 @@
 //! A chain of coarser levels from one run, each measured against the original.
 
 use std::cell::OnceCell;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use meshlod_io::Scene;
 use meshlod_io::gltf::Level;

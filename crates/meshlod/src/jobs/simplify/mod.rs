@@ -16,7 +16,7 @@ use crate::jobs::faceless::refuse_points;
 use crate::jobs::scene_run::{self, Original, RunChoice, SceneRun, own_surface};
 use crate::jobs::simplify::proved_error::BoundToProve;
 use crate::jobs::written_as::digits;
-use crate::jobs::{JobError, Watch, WrittenAs, cancellable};
+use crate::jobs::{JobError, Remark, Watch, WrittenAs, cancellable};
 use crate::scene::{ConditionedScene, moved_at_most};
 
 pub use proved_error::ProvedError;

@@ -84,7 +84,10 @@ impl Volumes {
         is_bad: impl Fn(&[VertexId; 3], &[[f64; 3]]) -> bool,
     ) {
         let now = self.sums(level, |cone| cone);
-        let is_off = |of: usize| !((now[of] - self.sixfold[of]).abs() <= ROUNDING * self.sizes[of]);
+        let is_off = |of: usize| {
+            let off = (now[of] - self.sixfold[of]).abs();
+            off.is_nan() || off > ROUNDING * self.sizes[of]
+        };
         let mut is_out: Vec<bool> = (0..now.len()).map(is_off).collect();
         for face in level.faces.iter().filter(|face| is_bad(face, &level.positions)) {
             is_out[self.of_vertex[face[0].index()] as usize] = true;
