@@ -156,11 +156,6 @@ impl<'m> ConditionedMesh<'m> {
         self.sewn.as_ref().map_or(self.input, |sewn| &sewn.mesh).faces.len()
     }
 
-    /// Returns how many faces that are there twice had been left out before flats went.
-    pub(crate) fn duplicates_before_flats(&self) -> usize {
-        self.sewn.as_ref().map_or(0, |sewn| sewn.counts.duplicate_faces)
-    }
-
     /// Undoes what has been done to flats.
     pub(crate) fn keep_flats(&mut self) {
         self.flat = None;
@@ -255,6 +250,11 @@ impl<'m> ConditionedMesh<'m> {
 
 #[cfg(feature = "io")]
 impl ConditionedMesh<'_> {
+    /// Returns how many faces that are there twice had been left out before flats went.
+    pub(crate) fn duplicates_before_flats(&self) -> usize {
+        self.sewn.as_ref().map_or(0, |sewn| sewn.counts.duplicate_faces)
+    }
+
     /// Returns the mesh as it is simplified.
     pub(crate) fn mesh(&self) -> &Mesh {
         self.whole().mesh
