@@ -45,7 +45,7 @@ pub fn content(
     let halvings = plan.tree.deepest_in(cell) - cell.depth;
     let shown = repack(look, &mut mesh, halvings.into());
     let skirts = plan.options.skirts.then(|| skirt(plan, cell, tile, &mesh)).flatten();
-    // A tile of slivers may lose all its faces, but not its place.
+    // A tile of crumbs may lose all its faces, but not its place.
     let place = mesh.positions.first().copied();
     drop_degenerate(&mut mesh);
     let faces = mesh.faces.len();

@@ -13,6 +13,7 @@ impl Implicit {
     /// Cost: linear.
     pub(crate) fn each_triangle(&self, mut visit: impl FnMut([u32; 3])) {
         let mut front = Front::new(self);
+        front.triangles.reserve(2 * self.update_count());
         self.base().iter().for_each(|&face| visit(face));
         // Fused updates stay together.
         let order = by_level(self.update_count(), |update| {

@@ -57,6 +57,13 @@ impl Triangles {
         Self { wedges: has_wedges.then(Vec::new), ..Self::default() }
     }
 
+    /// Makes room for some more triangles at once, and not for twice as many as there are.
+    pub(super) fn reserve(&mut self, more: usize) {
+        self.all.reserve_exact(more);
+        self.changed.reserve_exact(more);
+        self.wedges.iter_mut().for_each(|wedges| wedges.reserve_exact(more));
+    }
+
     /// Returns the number of triangles.
     pub(super) fn len(&self) -> usize {
         self.all.len() - self.holes.len()

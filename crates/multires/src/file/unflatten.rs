@@ -27,20 +27,21 @@ pub(super) fn unflatten(
     is_free: impl Fn(u32) -> bool,
     had_area: impl Fn([u32; 3]) -> bool,
 ) {
-    // Storing the triangles is faster than enumerating them twice.
-    let mut all = Vec::new();
-    mt.each_triangle(|nodes| all.push(nodes));
     let mut is_movable = vec![false; places.len()];
-    for nodes in &all {
-        if flatness(nodes.map(|n| places[n as usize])) > 0 && had_area(*nodes) {
+    mt.each_triangle(|nodes| {
+        if flatness(nodes.map(|n| places[n as usize])) > 0 && had_area(nodes) {
             nodes.iter().for_each(|&node| is_movable[node as usize] = is_free(node));
         }
+    });
+    if !is_movable.contains(&true) {
+        return;
     }
+    // All triangles would take 84 bytes for each face of the finest mesh: they are enumerated twice.
     let mut at: Vec<(u32, [u32; 3])> = Vec::new();
-    for nodes in all {
+    mt.each_triangle(|nodes| {
         let movable = nodes.into_iter().filter(|&node| is_movable[node as usize]);
         at.extend(movable.map(|node| (node, nodes)));
-    }
+    });
     at.sort_unstable();
     let offsets = offsets();
     let movable = at.chunk_by(|a, b| a.0 == b.0).map(|triangles| {

@@ -1,10 +1,10 @@
-//! Tiles of slivers: the last row of the sample terrain is just beyond the middle of its cell, and
-//! too thin for the grid of coarser tiles.
+//! Tiles of crumbs: a face that is alone in its cell, and too small for the grid of the tile.
 
 mod common;
 
 use common::Kernel;
 use meshlod_io::Scene;
+use meshlod_mesh::{Bounds, Mesh, VertexId};
 use meshlod_samples::terrain;
 use meshlod_tiles::folder::Folder;
 use meshlod_tiles::plan::{Look, Plan, TileOptions};
@@ -24,7 +24,14 @@ fn tiles_without_faces_are_done() {
         placement: [0, 1, 2, 3].map(one),
         is_z_up: false,
     };
-    let source = SceneSource::new(Scene::from_mesh("terrain", terrain(2_000)));
+    let Mesh { mut positions, mut faces, .. } = terrain(2_000);
+    let [low, high] = [Bounds::of(&positions).min, Bounds::of(&positions).max];
+    let (first, extent) = (positions.len(), high[0] - low[0]);
+    for [x, y] in [[0.7, 0.7], [0.700_001_5, 0.7], [0.7, 0.700_001_5]] {
+        positions.push([low[0] + x * extent, low[1] + y * extent, low[2] + 0.7 * extent]);
+    }
+    faces.push([0, 1, 2].map(|corner| VertexId::new(first + corner)));
+    let source = SceneSource::new(Scene::from_mesh("terrain", Mesh::new(positions, faces)));
     let look = Look::default();
     let plan = Plan::new(&source, &look, &options, &folder.scratch()).unwrap();
     let plan = Plan { errors: vec![2e3; usize::from(plan.tree.depth()) + 1], ..plan };
