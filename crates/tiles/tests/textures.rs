@@ -193,6 +193,10 @@ fn check_colors(scale: f64, left: u32) {
         // Without the skirt.
         let surface = Scene { roots: scene.roots[..1].to_vec(), ..scene }.into_mesh();
         for face in 0..surface.faces.len() {
+            // One as thin as the grid of its tile has a texel or two.
+            if thickness(&surface, face) < 1e-5 {
+                continue;
+            }
             let [x, y] = middle(&plan, *cell, &surface, face);
             // A sliver at the seam may be of either chart.
             let is_near = |is_right: &bool| (x > seam) == *is_right || (x - seam).abs() < 1e-4;
@@ -204,6 +208,16 @@ fn check_colors(scale: f64, left: u32) {
             assert!(off <= bound, "{cell}, face {face} at {x}, {y}: {off} of {bound}");
         }
     }
+}
+
+/// Lesser extent of a face along the axes of the grid.
+fn thickness(surface: &Mesh, face: usize) -> f64 {
+    let corners = surface.faces[face].map(|v| surface.positions[v.index()]);
+    let extent = |axis: usize| {
+        let all = corners.map(|at| at[axis]);
+        all.into_iter().fold(f64::MIN, f64::max) - all.into_iter().fold(f64::MAX, f64::min)
+    };
+    extent(0).min(extent(1))
 }
 
 /// Place of the middle of a face of a tile on the grid.
