@@ -147,13 +147,13 @@ test(
             assert.ok(!wheel.isEmpty() && !wheel.intersectsBox(other), "wheels are in two places");
             // The level is chosen for both places of the wheels.
             assert.ok(meshes.length === 2 && meshes.every(({ layers }) => layers.mask === 0));
-            assert.ok(mesh.dressed.length === 3 && mesh.dressed.every(isWorn(mesh)));
+            assert.ok(mesh.followers.length === 3 && mesh.followers.every(follows(mesh)));
             for (const mesh of [...meshes, early]) mesh.dispose();
         }
     },
 );
 
-function isWorn(mesh: MlodMesh): (other: Mesh) => boolean {
+function follows(mesh: MlodMesh): (other: Mesh) => boolean {
     return ({ material }) => material === mesh.material;
 }
 
@@ -178,7 +178,7 @@ test("of several places the one nearest to the camera chooses the level", async 
     assert.equal(await faces(0, 2), 32);
     instances.count = 2;
     assert.equal(await faces(0, 2), 1);
-    assert.ok(instances.geometry === mesh.geometry && isWorn(mesh)(instances));
+    assert.ok(instances.geometry === mesh.geometry && follows(mesh)(instances));
     mesh.dispose();
     assert.equal(await faces(-1e5, 2), 32);
     instances.dispose();

@@ -54,7 +54,7 @@ pub use bevy::BevyMeshError;
 pub use bounds::Bounds;
 pub use buckets::Buckets;
 pub use closed::closed_faces;
-pub use components::face_components;
+pub use components::{face_components, joined_vertices};
 pub use condition::{
     Borders, ConditionOptions, Conditioned, Conditioning, NearBorders, Search, condition,
     near_borders,

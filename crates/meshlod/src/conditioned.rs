@@ -26,8 +26,8 @@ pub struct FlatFaces {
 }
 
 impl FlatFaces {
-    /// Returns true if flats should go before a run to some of `all` faces, which flats are among. A run to fewer than they
-    /// leave would start with their long thin faces, which makes some levels worse
+    /// Returns true if flats should go before a run from `all` faces, to some number of them. A run to
+    /// fewer than they leave would start with their long thin faces, which makes some levels worse
     /// (docs/notes/kernel.md).
     pub(crate) fn are_worth(self, all: usize, target: usize) -> bool {
         let left = all - self.gone;
@@ -142,7 +142,7 @@ impl<'m> ConditionedMesh<'m> {
         Some(found.faces)
     }
 
-    /// Conditions the mesh at all its vertices, if that is wanted: coats on the same vertices are not
+    /// Conditions the mesh at all its vertices, if that is wanted: sheets on the same vertices are not
     /// found otherwise. Returns true if that has changed anything.
     fn split_all(&mut self) -> bool {
         let whole = self.borders.and_then(|borders| self.held().condition(borders, Search::All));

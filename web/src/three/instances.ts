@@ -14,7 +14,7 @@ export class MlodInstances extends InstancedMesh<BufferGeometry, Material[]> {
     constructor(copy: MlodMesh, count: number) {
         super(copy.geometry, copy.material, count);
         this.mesh = placedMesh(copy, () => this.places());
-        copy.dressed.push(this);
+        copy.followers.push(this);
         this.add(copy);
     }
 

@@ -11,7 +11,7 @@ const GATHER = 50;
 
 /** A copy that is shown, and meshes that show it otherwise, which have its materials. */
 interface Copy extends Mesh {
-    readonly dressed: Mesh[];
+    readonly followers: Mesh[];
 }
 
 /** What a copy asks for, and how near it is to its camera. */
@@ -119,7 +119,7 @@ export class SharedLevels {
         const old = this.isDisposed ? made.materials : this.materials;
         if (!this.isDisposed) this.materials = made.materials;
         for (const copy of this.copies.keys())
-            for (const mesh of [copy, ...copy.dressed])
+            for (const mesh of [copy, ...copy.followers])
                 if (mesh.material === old) mesh.material = made.materials;
         disposeMaterials(old);
         closeTextures(made.replaced);

@@ -35,7 +35,7 @@ export class MlodMesh extends Mesh<BufferGeometry, Material[]> {
     /** True to refine only what the camera sees, false to refine all around it. */
     onlyInView = false;
     /** Meshes that show the same otherwise; their materials follow until this is disposed of. */
-    readonly dressed: Mesh[] = [];
+    readonly followers: Mesh[] = [];
     private readonly toLocal = new Matrix4();
     private readonly eye = new Vector3();
     private readonly ahead = new Vector3();

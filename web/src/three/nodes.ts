@@ -202,7 +202,7 @@ function still(mesh: MlodMesh, geometry: BufferGeometry, toMesh: Matrix4): Mesh 
     const shown = new Mesh(geometry, mesh.material);
     shown.matrixAutoUpdate = false;
     shown.matrix.copy(toMesh);
-    mesh.dressed.push(shown);
+    mesh.followers.push(shown);
     return shown;
 }
 
@@ -217,6 +217,6 @@ function skinned(
     shown.bind(skeleton, toMesh);
     // Poses may be anywhere, and bounds of all vertices would take long and be those of one level.
     shown.boundingSphere = new Sphere(new Vector3(), Infinity);
-    mesh.dressed.push(shown);
+    mesh.followers.push(shown);
     return shown;
 }

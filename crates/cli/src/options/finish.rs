@@ -7,8 +7,8 @@ use clap::Args;
 pub struct FinishArgs {
     /// Fit the vertices of a level to the original once more, all together
     ///
-    /// Distances of scans are some 7% less in the mean; models with sharp edges gain less, and may
-    /// be farther off at single places. A run to a number of faces takes up to half as long again.
+    /// Distances of scans are some 7% less in the mean; models with sharp edges or many parts may
+    /// gain nothing, and single places may be farther off. A run to a number of faces takes up to half as long again.
     /// Volumes, boundaries, seams and locked vertices stay. For lindstrom-turk; a run within
     /// --error does without.
     #[arg(long)]

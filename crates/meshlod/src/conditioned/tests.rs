@@ -113,7 +113,7 @@ fn a_number_of_faces_near_what_flats_leave_moves_nothing() {
 }
 
 #[test]
-fn flats_of_two_coats_on_the_same_vertices_go() {
+fn flats_of_two_sheets_on_the_same_vertices_go() {
     let to = |mesh: &Mesh, target| simplify(mesh, target, &Options::default()).unwrap();
     let card = doubled(grid(12));
     let (level, report) = to(&card, Target::Error(0.0));
@@ -124,7 +124,7 @@ fn flats_of_two_coats_on_the_same_vertices_go() {
     let cube = samples::cube(600);
     let cube = Mesh::new(cube.positions, cube.faces);
     assert_eq!(to(&doubled(cube.clone()), Target::Error(0.0)).0.faces.len(), 24);
-    // The same coat twice is one.
+    // The same sheet twice is one.
     let twice = Mesh::new(cube.positions, cube.faces.repeat(2));
     assert_eq!(to(&twice, Target::Error(0.0)).0.faces.len(), 12);
 }

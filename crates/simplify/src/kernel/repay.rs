@@ -11,7 +11,7 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use meshlod_mesh::{Connectivity, FaceId, Mesh, UnionFind, VertexId};
+use meshlod_mesh::{Connectivity, FaceId, Mesh, VertexId, joined_vertices};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Largest displacement of a vertex, as a part of the root of its area normal, which is about two
@@ -105,11 +105,7 @@ fn repay_by_components(
     if debts.is_empty() {
         return 0.0;
     }
-    let mut joined = UnionFind::new(level.positions.len());
-    for [a, b, c] in &level.faces {
-        joined.union(a.0, b.0);
-        joined.union(a.0, c.0);
-    }
+    let mut joined = joined_vertices(&level.faces, level.positions.len());
     let mut owed: BTreeMap<u32, f64> = BTreeMap::new();
     for debt in debts {
         *owed.entry(joined.find(debt.vertex.0)).or_default() += debt.sixfold;

@@ -1,7 +1,7 @@
 //! Volume of components, restored by a move of all vertices along their normals by a common factor.
 
 use glam::DVec3;
-use meshlod_mesh::{Mesh, UnionFind, VertexId};
+use meshlod_mesh::{Mesh, VertexId, joined_vertices};
 
 /// Number of steps of Newton's method, which converges quadratically from a step this small.
 const NEWTON_STEPS: usize = 4;
@@ -23,11 +23,7 @@ pub(super) struct Volumes {
 
 impl Volumes {
     pub(super) fn new(level: &Mesh) -> Self {
-        let mut joined = UnionFind::new(level.positions.len());
-        for [a, b, c] in &level.faces {
-            joined.union(a.0, b.0);
-            joined.union(a.0, c.0);
-        }
+        let mut joined = joined_vertices(&level.faces, level.positions.len());
         let of_vertex = (0..level.positions.len() as u32).map(|v| joined.find(v)).collect();
         let origins = level.positions.iter().map(|&at| at.into()).collect();
         let mut volumes = Self { of_vertex, origins, sixfold: Vec::new(), sizes: Vec::new() };
