@@ -144,6 +144,10 @@ pub struct Options {
     /// component always stays, for the former two the largest, and so does one with a locked or tied
     /// vertex.
     pub vanish_below: Option<f64>,
+    /// True if surfaces are seen from their fronts only. A component that lies on another and faces
+    /// away from it is then measured without that other coat: if it vanished, there would be nothing
+    /// to see from its side.
+    pub single_sided: bool,
     /// True to fit the free vertices of each [settled level](crate::Simplifier::settled_level) to the
     /// input once more, all together. Only [`Method::LindstromTurk`] does it, and not after a run to a
     /// [`Target::Error`]. Volumes, boundaries, seams and locked vertices stay.

@@ -23,14 +23,19 @@ const DIAGONAL: f64 = 3.47;
 fn balls(sizes: &[f64]) -> Mesh {
     let mut all = Mesh::default();
     for (i, &size) in [1.0].iter().chain(sizes).enumerate() {
-        let mesh = samples::sphere(400);
-        let start = all.positions.len() as u32;
-        let moved =
-            mesh.positions.iter().map(|p| [p[0] * size + 3.0 * i as f64, p[1] * size, p[2] * size]);
-        all.positions.extend(moved);
-        all.faces.extend(mesh.faces.iter().map(|face| face.map(|v| VertexId(v.0 + start))));
+        let aside = 3.0 * i as f64;
+        append(&mut all, &samples::sphere(400), |p| {
+            [p[0] * size + aside, p[1] * size, p[2] * size]
+        });
     }
     all
+}
+
+/// Appends a mesh with its vertices moved.
+fn append(all: &mut Mesh, other: &Mesh, moved: impl Fn([f64; 3]) -> [f64; 3]) {
+    let start = all.positions.len() as u32;
+    all.positions.extend(other.positions.iter().map(|&p| moved(p)));
+    all.faces.extend(other.faces.iter().map(|face| face.map(|v| VertexId(v.0 + start))));
 }
 
 fn run(mesh: &Mesh, options: &Options, target: Target) -> (Mesh, Report) {
@@ -244,18 +249,12 @@ fn what_a_part_owes_is_repaid_by_that_part() {
 #[test]
 fn where_parts_are_at_their_floor_the_rest_does_not_pay_for_them() {
     // A large cube, and a row of small ones beside it.
-    let place = |mesh: Mesh, size: f64, aside: f64| {
-        let mut mesh = mesh;
-        mesh.positions.iter_mut().for_each(|p| *p = p.map(|x| size * x + aside));
-        mesh
-    };
-    let mut mesh = place(fixtures::cube(), 10.0, 0.0);
+    let mut mesh = Mesh::default();
+    append(&mut mesh, &fixtures::cube(), |p| p.map(|x| 10.0 * x));
     let large = mesh.positions.clone();
     for i in 0..30 {
-        let small = place(fixtures::cube(), 0.5, 12.0 + f64::from(i));
-        let start = mesh.positions.len() as u32;
-        mesh.positions.extend(small.positions);
-        mesh.faces.extend(small.faces.iter().map(|face| face.map(|v| VertexId(v.0 + start))));
+        let aside = 12.0 + f64::from(i);
+        append(&mut mesh, &fixtures::cube(), |p| p.map(|x| 0.5 * x + aside));
     }
     for method in kernel_methods() {
         let options = Options { method, topology: Topology::Keep, ..Options::default() };
@@ -263,6 +262,71 @@ fn where_parts_are_at_their_floor_the_rest_does_not_pay_for_them() {
         assert!(!report.reached && report.refusals.count(Refusal::Disproportion) > 0);
         assert_eq!(level.faces.len(), 12 + 30 * 4, "{}", method.name());
         assert!(large.iter().all(|corner| level.positions.contains(corner)));
+    }
+}
+
+#[test]
+fn most_parts_at_their_floor_and_the_rest_far_off_is_near_the_limit() {
+    let mut mesh = samples::sphere(400);
+    mesh.positions.iter_mut().for_each(|p| *p = p.map(|x| 10.0 * x));
+    for i in 0..20 {
+        let aside = 12.0 + f64::from(i);
+        append(&mut mesh, &fixtures::cube(), |p| p.map(|x| 0.5 * x + aside));
+    }
+    let options = Options { topology: Topology::Keep, ..Options::default() };
+    let is_near = |faces: usize| {
+        let (_, report) = run(&mesh, &options, Target::Faces(faces));
+        assert!(report.reached, "{faces}");
+        report.near_limit
+    };
+    assert_eq!([480, 200, 96].map(is_near), [false, false, true]);
+}
+
+#[test]
+fn a_back_stays_with_its_front_where_only_fronts_are_seen() {
+    let card = fixtures::grid(1);
+    let mut mesh = Mesh::default();
+    for i in 0..20 {
+        let aside = [0.0, f64::from(i % 5), f64::from(i)];
+        append(&mut mesh, &card, |p| [p[0], p[1] + aside[1], p[2] + aside[2]]);
+        let backs: Vec<[VertexId; 3]> =
+            mesh.faces.iter().rev().take(2).map(|&[a, b, c]| [c, b, a]).collect();
+        mesh.faces.extend(backs);
+    }
+    for method in kernel_methods() {
+        let sides = |single_sided: bool| {
+            let options = Options { method, single_sided, ..Options::default() };
+            let (level, _) = run(&mesh, &options, Target::Ratio(0.5));
+            let up = |face: &&[VertexId; 3]| {
+                let [a, b, c] = face.map(|v| DVec3::from(level.positions[v.index()]));
+                (b - a).cross(c - a).z > 0.0
+            };
+            [level.faces.len(), level.faces.iter().filter(up).count()]
+        };
+        assert_eq!(sides(true), [40, 20], "{}", method.name());
+        // One coat of each is as near as both.
+        let [all, _] = sides(false);
+        assert_eq!(all, 40);
+    }
+}
+
+#[test]
+fn no_part_vanishes_that_has_most_of_the_faces_wanted() {
+    // Far wider than the waves a little above it.
+    let mut mesh = fixtures::grid(1);
+    mesh.positions.iter_mut().for_each(|p| *p = [100.0 * p[0] - 50.0, 100.0 * p[1] - 50.0, 0.0]);
+    append(&mut mesh, &samples::terrain(800), |p| [p[0], p[2], 1e-3 * (p[1] + 2.0)]);
+    for method in kernel_methods() {
+        let options = Options { method, ..Options::default() };
+        let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
+        let mut left = |faces: usize| {
+            simplifier.run(Target::Faces(faces), &mut ()).unwrap();
+            let level = simplifier.level();
+            assert_eq!(level.faces.len(), run(&mesh, &options, Target::Faces(faces)).0.faces.len());
+            level.faces.len()
+        };
+        assert!((50..=100).contains(&left(100)));
+        assert_eq!(left(3), 2);
     }
 }
 

@@ -1,4 +1,4 @@
-//! Distance to the parts of a surface that are left, excluding one of them.
+//! Distance to the parts of a surface that are left, excluding up to two of them.
 //!
 //! Each part has a tree of its own, over its triangles in the order they come in, four by four.
 //! Boxes are compared, to find a good tree, only over the parts. So building takes little time, a
@@ -34,7 +34,7 @@ const TOUCHING: f32 = 2e-7;
 const TINY: f32 = 1e-36;
 
 /// Bounding volume hierarchy over the parts of a surface, such as its connected components. Parts
-/// can be removed, and distances exclude one part.
+/// can be removed, and distances exclude one or two parts.
 ///
 /// Size: about 100 bytes a triangle. In single precision, as the places are: a distance is off by
 /// about the rounding of the largest coordinate.
@@ -251,14 +251,14 @@ impl PartBvh {
         self.is_left[part as usize]
     }
 
-    /// Returns the nearest of the remaining parts but `except`, or one that touches the point or is
-    /// near enough.
+    /// Returns the nearest of the remaining parts but those of `except`, or one that touches the point
+    /// or is near enough.
     ///
     /// Cost: O(log n) for points near these parts, n = triangles.
     pub fn nearest(
         &self,
         point: Vec3,
-        except: u32,
+        except: [u32; 2],
         within: Within,
         search: &mut PartSearch,
     ) -> NearestPart {
@@ -298,7 +298,9 @@ impl PartBvh {
                 let part = match below.map(|below| below[i]) {
                     None => part,
                     Some(Below { left: 0, .. }) => continue,
-                    Some(Below { part, .. }) if part == except && part != SEVERAL => continue,
+                    Some(Below { part, .. }) if except.contains(&part) && part != SEVERAL => {
+                        continue;
+                    }
                     Some(Below { part, .. }) => part,
                 };
                 let own = Waiting { distance_squared: distances[i], child: node.children[i], part };

@@ -1,6 +1,6 @@
 //! Scenes ready to be simplified: their meshes conditioned, unless their topology is to be kept.
 
-use meshlod_io::Scene;
+use meshlod_io::{Scene, SceneMesh};
 use meshlod_mesh::{Borders, Conditioning, Mesh, NearBorders, near_borders};
 use meshlod_simplify::{Options, SimplifyError, Target};
 
@@ -52,7 +52,8 @@ impl<'s> ConditionedScene<'s> {
         scene.instances().iter().for_each(|placed| copies[placed.mesh] += 1);
         let parts = scene.meshes.iter().zip(locks).zip(&copies);
         let meshes = parts.map(|((mesh, locks), &copies)| {
-            let options = Options { locks, ..options.clone() };
+            let single_sided = options.single_sided || has_single_sides(scene, mesh);
+            let options = Options { locks, single_sided, ..options.clone() };
             ConditionedMesh::new(&mesh.mesh, options, (copies > 0).then_some(borders))
         });
         Ok(Self { scene, options: options.clone(), meshes: meshes.collect(), copies })
@@ -161,4 +162,9 @@ impl<'s> ConditionedScene<'s> {
         let enough = |found: &NearBorders| found.near_edges * 10 >= most * 9;
         found.into_iter().filter(|_| is_many).find(enough)
     }
+}
+
+/// Returns true if a face of a mesh is seen from its front only.
+fn has_single_sides(scene: &Scene, mesh: &SceneMesh) -> bool {
+    mesh.materials.iter().flatten().any(|&material| !scene.materials[material].is_double_sided)
 }

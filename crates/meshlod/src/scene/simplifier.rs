@@ -17,7 +17,7 @@ use crate::scene::place;
 
 /// Part of the scene's diagonal, one in this many, by which a mesh near its limit must have moved to be
 /// worth a note.
-const SEEN: f64 = 25.0;
+const WORTH_A_NOTE: f64 = 25.0;
 
 /// Simplifies all meshes of a scene to one common target, always contracting where it costs least
 /// in world space.
@@ -301,7 +301,7 @@ impl<'s> SceneSimplifier<'s> {
             whole.error_estimate = whole.error_estimate.max(part.scale * report.error_estimate);
             if report.near_limit && !part.is_bounded {
                 let far = part.scale * report.error_estimate;
-                whole.near_limit |= SEEN * far > place::world_bounds(self.scene).diagonal();
+                whole.near_limit |= WORTH_A_NOTE * far > place::world_bounds(self.scene).diagonal();
             }
             whole.contractions += report.contractions;
             whole.refusals += report.refusals;

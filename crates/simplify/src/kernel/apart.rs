@@ -26,7 +26,7 @@ pub(crate) struct Apart {
     pub(crate) greatest: f32,
 }
 
-/// ComponentSample points on components, and how far they are from the rest.
+/// Sample points on components, and how far they are from the rest.
 ///
 /// Distances only grow, as components vanish, and that of a point changes only when the component
 /// nearest to it has vanished. So what was measured is a lower bound, and few points are measured
@@ -52,7 +52,7 @@ struct ComponentSample {
 }
 
 impl ComponentSamples {
-    /// ComponentSamples the next component at the centres and corners of some of its faces. `slots` is
+    /// Samples the next component at the centres and corners of some of its faces. `slots` is
     /// memory for each vertex, at first [`u32::MAX`].
     pub(crate) fn add(
         &mut self,
@@ -93,11 +93,11 @@ impl ComponentSamples {
         self.ends.push(self.points.len());
     }
 
-    /// Measures how far a component is from the rest of `surface`. Stops, and returns a lower bound
-    /// of the mean square distance, once that is beyond what matters.
+    /// Measures how far a component is from the rest of `surface`, without its other coat. Stops,
+    /// and returns a lower bound of the mean square distance, once that is beyond what matters.
     pub(crate) fn measure(
         &mut self,
-        component: u32,
+        [component, coat]: [u32; 2],
         surface: &PartBvh,
         is_beyond: impl Fn(f32) -> bool,
     ) -> Result<Apart, f32> {
@@ -122,12 +122,12 @@ impl ComponentSamples {
             let most = known.map_or(f32::INFINITY, |known| known.most_at(place));
             let mut found = surface.nearest(
                 place,
-                component,
+                [component, coat],
                 Within { enough: squared, most },
                 &mut self.search,
             );
             if found.part == UNKNOWN && most < f32::INFINITY {
-                found = surface.nearest(place, component, Within::ANY, &mut self.search);
+                found = surface.nearest(place, [component, coat], Within::ANY, &mut self.search);
             }
             let NearestPart { distance_squared, part } = found;
             // What the tree calls touching may be nearer than before.
@@ -182,7 +182,7 @@ mod tests {
         let mut surface = builder.build();
         let mut mean = |surface: &PartBvh, limit: f32| {
             samples
-                .measure(0, surface, |mean| mean > limit)
+                .measure([0, 0], surface, |mean| mean > limit)
                 .map(|apart| (apart.mean, apart.greatest))
         };
         // The first point has three quarters of the weight.

@@ -9,6 +9,7 @@ use meshlod_mesh::UnionFind;
 use meshlod_spatial::{PartBvh, PartBvhBuilder};
 
 use crate::kernel::apart::{Apart, ComponentSamples, area};
+use crate::kernel::coats::{Imprint, pair};
 use crate::kernel::handles::PER_CUT;
 use crate::kernel::mesh::local_frame::Frame;
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
@@ -36,6 +37,8 @@ pub(crate) struct Component {
     is_held: bool,
     /// Number of faces at first.
     faces: u32,
+    /// The component that is its other coat, or [`NO_COMPONENT`].
+    coat: u32,
     vertices: Range<usize>,
 }
 
@@ -57,6 +60,8 @@ pub(crate) struct Components {
     waiting: BinaryHeap<Reverse<(u16, u32)>>,
     /// Components that have been refused.
     refused: Vec<u32>,
+    /// Components that have more faces than the current run may remove at once.
+    too_many: Vec<u32>,
     vanished: Vec<u32>,
 }
 
@@ -67,6 +72,8 @@ pub(crate) struct Pieces<'a, 'v> {
     pub(crate) vertices: &'a Vertices<'v>,
     /// True for each vertex of the input that a lock or a tie holds.
     pub(crate) is_held: &'a [bool],
+    /// True if a component needs its other coat.
+    pub(crate) single_sided: bool,
 }
 
 /// Cost of removing a component.
@@ -115,6 +122,7 @@ impl Components {
         let mut samples = ComponentSamples::default();
         let mut slots = vec![u32::MAX; of_vertex.len()];
         let mut all = Vec::with_capacity(count);
+        let mut imprints = Vec::new();
         let mut faces = Vec::new();
         let mut start = 0;
         for end in ends {
@@ -125,8 +133,14 @@ impl Components {
             // `map` over an array is not inlined.
             builder.add(faces.iter().map(|&[a, b, c]: &[u32; 3]| [place(a), place(b), place(c)]));
             samples.add(&faces, place, &mut slots);
+            if pieces.single_sided {
+                imprints.push(Imprint::of(own, &faces, place));
+            }
             all.push(Component::new(pieces, own, &faces, start..end));
             start = end;
+        }
+        for (component, coat) in all.iter_mut().zip(pair(&imprints)) {
+            component.coat = coat;
         }
         Self {
             faces_left: all.iter().map(|component| component.faces).collect(),
@@ -138,6 +152,7 @@ impl Components {
             input: builder.build(),
             waiting: BinaryHeap::new(),
             refused: Vec::new(),
+            too_many: Vec::new(),
             vanished: Vec::new(),
         }
     }
@@ -145,14 +160,14 @@ impl Components {
     /// Returns the cost of removing a component, measured as far as is needed to tell whether it is
     /// beyond the bucket `last`.
     pub(crate) fn cost<M: Metric>(&mut self, component: u32, last: u16) -> VanishingCost {
-        let Component { area, protection, .. } = self.all[component as usize];
+        let Component { area, protection, coat, .. } = self.all[component as usize];
         let faces = self.faces_left[component as usize] as f32;
         let bucket_of = |mean_square: f32| {
             let cost = M::vanishing_cost(area, faces, mean_square) * protection;
             bucket(cost).min(last_bucket())
         };
         let is_beyond = |mean_square: f32| bucket_of(mean_square) > last;
-        match self.samples.measure(component, &self.input, is_beyond) {
+        match self.samples.measure([component, coat], &self.input, is_beyond) {
             Ok(apart) => VanishingCost::Exactly(bucket_of(apart.mean), apart),
             Err(least) => VanishingCost::AtLeast(bucket_of(least)),
         }
@@ -260,6 +275,18 @@ impl Components {
         self.refused.push(component);
     }
 
+    /// Sets a component aside that has more faces than the current run may remove at once.
+    pub(crate) fn leave_too_many(&mut self, component: u32) {
+        self.too_many.push(component);
+    }
+
+    /// Makes components that were set aside for their number of faces candidates again.
+    pub(crate) fn wake_too_many(&mut self) {
+        for component in std::mem::take(&mut self.too_many) {
+            self.put_back(component, 0);
+        }
+    }
+
     /// Removes a component for good.
     pub(crate) fn remove(&mut self, component: u32) {
         self.input.remove(component);
@@ -304,6 +331,7 @@ impl Component {
             protection: if protected { all.protection } else { 1.0 },
             is_held: held,
             faces: faces.len() as u32,
+            coat: NO_COMPONENT,
             vertices,
         }
     }

@@ -34,6 +34,7 @@
 mod apart;
 mod attributes;
 mod bound;
+mod coats;
 mod collapse;
 mod collapse_loop;
 mod components;

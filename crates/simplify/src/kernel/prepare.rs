@@ -164,6 +164,7 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
             order: &self.order,
             vertices: &self.fans.store.whole(),
             is_held: &is_held,
+            single_sided: options.single_sided,
         };
         self.whole.components = Components::new(&pieces, faces, below);
     }

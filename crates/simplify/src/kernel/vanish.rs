@@ -15,13 +15,13 @@ use crate::refusal::Refusal;
 const LATER: u16 = 8;
 
 impl<A: AttributeModel> CollapseLoop<'_, A> {
-    /// Removes the cheapest component if its bucket is at most `last`, unless it is refused or has
-    /// become more expensive.
+    /// Removes the cheapest component if its bucket is at most `last` and `fewest` faces are left,
+    /// unless it is refused or has become more expensive.
     ///
     /// Costs only rise, as a component loses faces and as others vanish. So a cost found earlier is
     /// a lower bound, and is computed again when its turn comes.
     #[cold]
-    pub(crate) fn vanish_up_to(&mut self, last: u16) {
+    pub(crate) fn vanish_up_to(&mut self, last: u16, fewest: usize) {
         if let Some(components) = &mut self.components {
             components.count(&mut self.vertices);
         }
@@ -53,6 +53,9 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
                 .map_or(f32::INFINITY, |bound| bound.limit_at(components.vertices(component)));
             if left >= self.live_faces {
                 self.refusals.add(Refusal::LastFaces);
+            } else if self.live_faces - left < fewest {
+                components.leave_too_many(component);
+                self.refusals.add(Refusal::Disproportion);
             } else if is_out_of_proportion(loss, self.error as f32, self.room) {
                 self.refusals.add(Refusal::Disproportion);
                 // By then the surface may have moved as far elsewhere.
