@@ -1,7 +1,7 @@
 //! Surface area and enclosed volume of a mesh.
 
 use glam::DVec3;
-use meshlod_mesh::{Frame, Mesh};
+use meshlod_mesh::{Frame, Mesh, VertexId};
 use meshlod_spatial::CompensatedSum;
 
 /// Computes the total area of the faces, in square model units; 0 for a mesh without faces.
@@ -32,7 +32,9 @@ pub fn volume(mesh: &Mesh) -> f64 {
 }
 
 fn local_triangles(mesh: &Mesh, frame: Frame) -> impl Iterator<Item = [DVec3; 3]> {
-    mesh.faces.iter().map(move |face| face.map(|v| frame.local(mesh.positions[v.index()])))
+    let at = move |v: VertexId| frame.local(mesh.positions[v.index()]);
+    // `map` over an array is not inlined.
+    mesh.faces.iter().map(move |&[a, b, c]| [at(a), at(b), at(c)])
 }
 
 pub(crate) fn triangle_area([a, b, c]: &[DVec3; 3]) -> f64 {

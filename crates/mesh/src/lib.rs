@@ -57,7 +57,7 @@ pub use closed::closed_faces;
 pub use components::{face_components, joined_vertices};
 pub use condition::{
     Borders, ConditionOptions, Conditioned, Conditioning, NearBorders, Search, condition,
-    near_borders,
+    is_balanced, near_borders,
 };
 pub use connectivity::{Connectivity, Marks, Side, Twin};
 pub use face_layers::{FaceLayer, FaceLayerKind};

@@ -5,7 +5,7 @@ mod blocks;
 mod links;
 mod output;
 mod pictures;
-mod program;
+pub mod program;
 mod session;
 mod summary;
 

@@ -4,6 +4,7 @@
 mod book;
 mod check;
 mod doc;
+mod instructions;
 mod lab;
 mod project;
 
@@ -19,6 +20,8 @@ const USAGE: &str = "usage: cargo xtask VERB
            into them
   doc [OPTION...]
            build the documentation of all crates, with more options of cargo; warnings are errors
+  instructions [--program PATH] [--write]
+           count the instructions of commands and compare them with docs/notes/instructions.md
 These run in the laboratory, the program `lab` of the crate bench, which is built first:
   results [SECTION...]  remake docs/RESULTS.md, or only the sections with such titles
   policies             draw and measure fish of several parts by each policy for contacts, in docs/notes/contacts
@@ -40,6 +43,7 @@ fn main() -> ExitCode {
         "book" => book::run(&project, rest),
         "check" => check::run(&project),
         "doc" => doc::run(&project, rest),
+        "instructions" => instructions::run(&project, rest),
         _ if lab::VERBS.contains(&verb) => lab::run(&project, &arguments),
         _ => {
             eprintln!("{USAGE}");

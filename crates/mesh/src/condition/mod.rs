@@ -24,6 +24,7 @@ use links::Links;
 pub use near::{NearBorders, near_borders};
 use rejoin::Joints;
 use suspects::Around;
+pub use suspects::is_balanced;
 
 /// Treatment of boundary edges that lie on each other in the conditioning of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

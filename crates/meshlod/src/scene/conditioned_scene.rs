@@ -1,7 +1,7 @@
 //! Scenes ready to be simplified: their meshes conditioned, unless their topology is to be kept.
 
 use meshlod_io::{Scene, SceneMesh};
-use meshlod_mesh::{Borders, Conditioning, Mesh, NearBorders, near_borders};
+use meshlod_mesh::{Borders, Conditioning, Mesh, NearBorders, is_balanced, near_borders};
 use meshlod_simplify::{Options, SimplifyError, Target};
 
 use crate::conditioned::{ConditionedMesh, FlatFaces};
@@ -138,13 +138,13 @@ impl<'s> ConditionedScene<'s> {
     /// lie near each other, and their number; `None` if they are few.
     ///
     /// Looks for distances of about a millionth to a ten-thousandth of the diagonal of the largest
-    /// mesh. Edges that lie exactly on each other are not counted where they have been sewn.
+    /// mesh that has a boundary. Edges that lie exactly on each other are not counted where they have been sewn.
     ///
     /// Cost: as for [`near_borders`], at three distances.
     pub fn near_borders(&self) -> Option<NearBorders> {
-        let valid = |mesh: &&Mesh| mesh.validate().is_ok();
+        let may_be_near = |mesh: &&Mesh| mesh.validate().is_ok() && !is_balanced(mesh);
         let meshes: Vec<&Mesh> =
-            self.meshes.iter().map(ConditionedMesh::mesh).filter(valid).collect();
+            self.meshes.iter().map(ConditionedMesh::mesh).filter(may_be_near).collect();
         let diagonal = meshes.iter().map(|mesh| mesh.bounds().diagonal()).fold(0.0, f64::max);
         let power = diagonal.log10().floor();
         if !power.is_finite() {

@@ -3,7 +3,7 @@
 use glam::DMat4;
 use meshlod_io::{Format, MeshInstance, Precision, Scene, StoredDigits};
 use meshlod_measure::volume;
-use meshlod_mesh::{Mesh, closed_faces};
+use meshlod_mesh::{Mesh, closed_faces, is_balanced};
 use meshlod_simplify::{Digits, ExactVolumeError, VolumeResidual, conserve_volume};
 
 use crate::conditioned::ConditionedMesh;
@@ -41,7 +41,17 @@ pub fn conserve_volumes(
 ///
 /// Cost: O(n), n = faces, and a copy of the positions.
 pub fn closed_volume(scene: &Scene) -> f64 {
-    let volumes: Vec<f64> = scene.meshes.iter().map(|of| of_closed(&of.mesh).abs()).collect();
+    volume_by(scene, of_closed)
+}
+
+/// Returns the [`closed_volume`] of a scene of which no face repeats another. Meshes without a
+/// boundary need a fifth of its time.
+pub(crate) fn closed_volume_of_distinct(scene: &Scene) -> f64 {
+    volume_by(scene, |mesh| if is_balanced(mesh) { volume(mesh) } else { of_closed(mesh) })
+}
+
+fn volume_by(scene: &Scene, of_mesh: impl Fn(&Mesh) -> f64) -> f64 {
+    let volumes: Vec<f64> = scene.meshes.iter().map(|of| of_mesh(&of.mesh).abs()).collect();
     let scaled = |place: &MeshInstance| {
         volumes[place.mesh] * DMat4::from_cols_array_2d(&place.transform).determinant().abs()
     };

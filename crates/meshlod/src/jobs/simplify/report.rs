@@ -9,7 +9,8 @@ use meshlod_simplify::{Digits, ExactVolumeError, Report, VolumeLoss};
 
 use crate::jobs::{ProvedError, WrittenAs};
 use crate::scene::{
-    ConditionedScene, FlatFaces, FuseReport, closed_volume, conserve_volumes, world_bounds,
+    ConditionedScene, FlatFaces, FuseReport, closed_volume, closed_volume_of_distinct,
+    conserve_volumes, world_bounds,
 };
 
 /// Report of [`simplify`](super::simplify). Serde writes the keys that the command prints.
@@ -64,13 +65,16 @@ impl LostVolume {
         (ready, level): (&ConditionedScene<'_>, &[Mesh]),
     ) -> Option<Self> {
         let lost = report.volume.lost().abs() + report.volume.vanished;
-        // Most runs lose next to nothing, and need no volume of the input.
-        if !report.method.conserves_volume()
-            || lost < 1e-12 * world_bounds(input).diagonal().powi(3)
-        {
+        if !report.method.conserves_volume() || lost == 0.0 {
             return None;
         }
-        Self::relative(&report.volume, closed_volume(input), || can_restore(ready, level))
+        let of_input = match report.duplicate_faces {
+            0 => closed_volume_of_distinct(input),
+            _ => closed_volume(input),
+        };
+        // What is flat has no volume but rounding.
+        let is_more = || lost >= 1e-12 * world_bounds(input).diagonal().powi(3);
+        Self::relative(&report.volume, of_input, || can_restore(ready, level)).filter(|_| is_more())
     }
 
     fn relative(
