@@ -137,6 +137,22 @@ impl Mesh {
     /// # Errors
     /// The first violation found.
     pub fn validate(&self) -> Result<(), MeshError> {
+        if !self.is_in_range() {
+            self.find_out_of_range()?;
+        }
+        self.validate_attributes()
+    }
+
+    /// Returns true if all positions are finite and all indices below their number. Without a branch:
+    /// many at a time.
+    fn is_in_range(&self) -> bool {
+        let coordinates = self.positions.as_flattened().iter();
+        let are_finite = coordinates.fold(true, |all, x| all & x.is_finite());
+        let last = self.faces.as_flattened().iter().fold(0, |last, v| last.max(v.0));
+        are_finite && (self.faces.is_empty() || (last as usize) < self.positions.len())
+    }
+
+    fn find_out_of_range(&self) -> Result<(), MeshError> {
         for (i, &position) in self.positions.iter().enumerate() {
             if !position.iter().all(|x| x.is_finite()) {
                 return Err(MeshError::NotFinite { vertex: VertexId::new(i), position });
@@ -148,7 +164,7 @@ impl Mesh {
                 return Err(MeshError::BadVertex { face: FaceId::new(i), vertex, count });
             }
         }
-        self.validate_attributes()
+        Ok(())
     }
 
     /// Checks only attributes, labels and layers of faces as [`Mesh::validate`] does, not positions and

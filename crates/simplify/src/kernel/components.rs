@@ -96,7 +96,11 @@ impl Components {
         faces: impl Iterator<Item = [u32; 3]> + Clone,
         below: f64,
     ) -> Option<Self> {
-        let joined = join(pieces.vertices, faces.clone());
+        let (joined, joins) = join(pieces.vertices, faces.clone());
+        let with_faces = pieces.vertices.all.iter().filter(|vertex| vertex.len > 0).count();
+        if pieces.vertices.copies().is_empty() && joins + 1 == with_faces {
+            return None;
+        }
         let (of_vertex, count) = number(pieces.vertices, faces, joined);
         if count < 2 {
             return None;
@@ -337,19 +341,19 @@ impl Component {
     }
 }
 
-/// Joins the corners of faces, and copies with their vertices.
-fn join(vertices: &Vertices<'_>, faces: impl Iterator<Item = [u32; 3]>) -> UnionFind {
+/// Joins the corners of faces, and copies with their vertices. Returns how often two sets became one.
+fn join(vertices: &Vertices<'_>, faces: impl Iterator<Item = [u32; 3]>) -> (UnionFind, usize) {
     let mut joined = UnionFind::new(vertices.all.len());
+    let mut joins = 0;
     for face @ [a, b, c] in faces {
         if is_face(face) {
-            joined.union(a, b);
-            joined.union(a, c);
+            joins += usize::from(joined.union(a, b)) + usize::from(joined.union(a, c));
         }
     }
-    for v in vertices.first_copy.min(vertices.all.len() as u32)..vertices.all.len() as u32 {
-        joined.union(v, vertices.origin(v));
+    for v in vertices.copies() {
+        joins += usize::from(joined.union(v, vertices.origin(v)));
     }
-    joined
+    (joined, joins)
 }
 
 /// Numbers the components in the order of their first faces. Returns the component of each vertex,

@@ -151,6 +151,12 @@ impl<'v> Vertices<'v> {
         self.base..self.base + self.all.len() as u32
     }
 
+    /// Returns the ids of the copies.
+    pub(crate) fn copies(&self) -> Range<u32> {
+        let end = self.all.len() as u32;
+        self.first_copy.min(end)..end
+    }
+
     /// Returns the index of a vertex in its part.
     #[inline(always)]
     pub(crate) fn slot(&self, v: u32) -> usize {
