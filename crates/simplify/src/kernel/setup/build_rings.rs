@@ -1,8 +1,6 @@
 //! Builds one-rings from faces. The faces around a manifold vertex are one fan, closed or open; an
 //! open one is closed by the ghost.
 
-use std::marker::PhantomData;
-
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -11,7 +9,6 @@ use crate::kernel::mesh::vertex::{NO_VERTEX, RING, Vertex};
 use crate::kernel::metric::Metric;
 use crate::kernel::setup::face_blocks::{CELL, CellFaces};
 use crate::kernel::setup::split_non_manifold::Pair;
-use crate::kernel::simd::{SimdTask, widest};
 
 /// Number of neighbour pairs that a vertex has room for before they are a ring.
 const PAIRS: usize = RING / 2;
@@ -59,24 +56,9 @@ fn close<M: Metric>(
     let mut long = Vec::new();
     let vertices = Vertices::new(all, (number * CELL) as u32, &mut long);
     let mut cell = Cell { number, vertices, places, boundary_weight, irregular: Vec::new() };
-    widest(CloseCell::<M> { cell: &mut cell, cells, metric: PhantomData });
+    cell.close::<M>(cells);
     let irregular = cell.irregular;
     (long, irregular)
-}
-
-struct CloseCell<'a, 'c, M> {
-    cell: &'a mut Cell<'c>,
-    cells: &'a CellFaces,
-    metric: PhantomData<M>,
-}
-
-impl<M: Metric> SimdTask for CloseCell<'_, '_, M> {
-    type Output = ();
-
-    #[inline(always)]
-    fn work(self) {
-        self.cell.close::<M>(self.cells);
-    }
 }
 
 /// A run of vertices whose rings are being built.
@@ -90,7 +72,6 @@ struct Cell<'c> {
 }
 
 impl Cell<'_> {
-    #[inline(always)]
     fn close<M: Metric>(&mut self, cells: &CellFaces) {
         let mut beyond = self.collect::<M>(cells);
         beyond.sort_by_key(|&(v, _)| v);
@@ -117,7 +98,6 @@ impl Cell<'_> {
 
     /// Gives each vertex the quadric and the pairs of its faces. Returns the pairs that it has no
     /// room for.
-    #[inline(always)]
     fn collect<M: Metric>(&mut self, cells: &CellFaces) -> Vec<(u32, Pair)> {
         let (places, first) = (self.places, self.vertices.base);
         let all = &mut *self.vertices.all;
