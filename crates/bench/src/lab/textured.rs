@@ -14,7 +14,8 @@ use meshlod::{Constraints, Scene, Topology};
 use crate::lab::table::Table;
 use crate::peer::{Settings, SimplifyOptions, Update, simplify_with_attributes};
 
-const MODELS: [&str; 5] =
+/// Models with charts and materials, but for copies.
+pub const MODELS: [&str; 5] =
     ["flight-helmet/FlightHelmet.gltf", "duck.glb", "pirate.obj", "spot.obj", "fish-bream.obj"];
 /// The most accurate methods, and one that moves no vertex, as meshoptimizer does.
 const METHODS: [Method; 3] = [Method::Qem, Method::LindstromTurk, Method::QemEndpoint];
