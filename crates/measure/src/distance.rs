@@ -163,22 +163,49 @@ fn one_way(
     options: &DistanceOptions,
 ) -> OneSidedDistance {
     let count = options.samples;
-    let vertices = from.vertices.par_chunks(CHUNK).map(|chunk| {
-        let points = chunk.iter().map(|v| from.mesh.positions[v.index()]);
-        ChunkSums::of(closest_to_each(points, to))
-    });
     let samples = (0..count.div_ceil(CHUNK)).into_par_iter().map(|i| {
         let range = i * CHUNK..((i + 1) * CHUNK).min(count);
         ChunkSums::of(closest_to_each(samples(from, count, options.seed, range), to))
     });
-    // Vertices first: at equal distance, the vertex wins over a sample.
-    let vertices: Vec<ChunkSums> = vertices.collect();
     let samples: Vec<ChunkSums> = samples.collect();
-    let worst = vertices.iter().chain(&samples).map(|chunk| chunk.worst).reduce(farther);
+    let known = samples.iter().map(|chunk| chunk.worst.0).fold(0.0, f64::max);
+    let vertices = from.vertices.par_chunks(CHUNK).map(|chunk| {
+        let points = chunk.iter().map(|v| from.mesh.positions[v.index()]);
+        farthest(points, to, known)
+    });
+    let vertices: Vec<(f64, Place)> = vertices.collect();
+    // Vertices first: at equal distance, the vertex wins over a sample.
+    let worst = vertices.into_iter().chain(samples.iter().map(|chunk| chunk.worst)).reduce(farther);
     let (max, place) = worst.expect("there are samples");
     let mean = samples.iter().map(|chunk| chunk.sum).sum::<f64>() / count as f64;
     let square = samples.iter().map(|chunk| chunk.sum_of_squares).sum::<f64>() / count as f64;
     OneSidedDistance { mean, rms: square.sqrt(), max, place }
+}
+
+/// Part of a distance by which another must be less not to count, whatever rounding does to both.
+const CLEARLY_LESS: f64 = 1.0 - 1e-9;
+
+/// Returns the greatest distance of the points and its place, or less if that is less than `known`,
+/// which another point has.
+///
+/// Of all other points only that they are nearer is found out, so a search mostly ends at the first
+/// face.
+fn farthest(
+    points: impl Iterator<Item = [f64; 3]>,
+    to: &PreparedSurface<'_>,
+    known: f64,
+) -> (f64, Place) {
+    let mut worst: (f64, Place) = (-1.0, NOWHERE);
+    let mut hint = None;
+    for from in points {
+        let enough = worst.0.max(known) * CLEARLY_LESS;
+        let near = (enough > 0.0).then(|| to.bvh.near(from, hint, [enough, f64::INFINITY]));
+        let closest = near.flatten().unwrap_or_else(|| to.bvh.closest(from, hint));
+        hint = Some(closest.face);
+        let place = Place { from, to: closest.point, face: closest.face };
+        worst = farther(worst, (length(&closest), place));
+    }
+    worst
 }
 
 fn closest_to_each(
@@ -197,6 +224,9 @@ fn length(closest: &ClosestPoint) -> f64 {
     closest.distance_squared.sqrt()
 }
 
+/// Place of no point at all.
+const NOWHERE: Place = Place { from: [f64::NAN; 3], to: [f64::NAN; 3], face: FaceId(0) };
+
 /// Partial sums and maximum over a chunk of points.
 struct ChunkSums {
     sum: f64,
@@ -206,8 +236,7 @@ struct ChunkSums {
 
 impl ChunkSums {
     fn of(closest: impl Iterator<Item = ([f64; 3], ClosestPoint)>) -> Self {
-        let nowhere = Place { from: [f64::NAN; 3], to: [f64::NAN; 3], face: FaceId(0) };
-        let mut sums = Self { sum: 0.0, sum_of_squares: 0.0, worst: (-1.0, nowhere) };
+        let mut sums = Self { sum: 0.0, sum_of_squares: 0.0, worst: (-1.0, NOWHERE) };
         for (from, closest) in closest {
             let length = length(&closest);
             sums.sum += length;
@@ -307,6 +336,33 @@ mod tests {
         let apart = Distance { forward, backward, diagonal: 50.0 };
         assert_eq!((apart.mean(), apart.rms(), apart.max()), (2.0, 5.0, 9.0));
         assert_eq!(apart.percent(apart.max()), 18.0);
+    }
+
+    /// Searches end early at vertices that are near enough.
+    #[test]
+    fn the_farthest_point_is_the_farthest_of_all() {
+        let mut dented = sphere(40, 1.0);
+        for (i, position) in dented.positions.iter_mut().enumerate() {
+            position.iter_mut().for_each(|x| *x *= 1.0 + 0.01 * ((i * 7919 % 101) as f64 / 101.0));
+        }
+        for other in [sphere(37, 1.0), sphere(12, 1.003), dented.clone()] {
+            let all = [&dented, &other].map(|mesh| PreparedSurface::new(mesh).unwrap());
+            let farthest = |from: &PreparedSurface<'_>, to: &PreparedSurface<'_>| {
+                let vertices = from.vertices.iter().map(|v| from.mesh.positions[v.index()]);
+                let points: Vec<_> = vertices.chain(samples(from, 3_000, 0, 0..3_000)).collect();
+                let each = points.into_iter().map(|point| {
+                    let closest = to.bvh.closest(point, None);
+                    let place = Place { from: point, to: closest.point, face: closest.face };
+                    (length(&closest), place)
+                });
+                each.reduce(farther).unwrap()
+            };
+            let found = surface_distance(&all[0], &all[1], &options(3_000)).unwrap();
+            let ways = [(found.forward, [0, 1]), (found.backward, [1, 0])];
+            for (way, [from, to]) in ways {
+                assert_eq!((way.max, way.place), farthest(&all[from], &all[to]));
+            }
+        }
     }
 
     #[test]

@@ -7,5 +7,6 @@ mod geomorphs;
 mod locate;
 mod long;
 mod motions;
+mod recorded;
 pub(crate) mod walks;
 mod wedges;

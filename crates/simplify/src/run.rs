@@ -19,6 +19,12 @@ use crate::surface::level::level;
 pub(crate) trait Run {
     /// Contracts until a limit of `stop` is reached or no candidate is allowed.
     fn run(&mut self, stop: &Stop, observer: &mut dyn Observe);
+    /// Contracts as [`run`](Self::run) does, for the last time, and returns the counts and the number
+    /// of faces left. What no more contractions need may be freed before the observer sees these.
+    fn run_out(mut self: Box<Self>, stop: &Stop, observer: &mut dyn Observe) -> (Tally, usize) {
+        self.run(stop, observer);
+        (self.tally(), self.live_faces())
+    }
     /// Makes one contraction. Returns false if no candidate is allowed at this cost.
     fn step(&mut self, stop: &Stop, observer: &mut dyn Observe) -> bool;
     /// Returns the cost of the next candidate, before any check.

@@ -101,6 +101,16 @@ impl<'m> Simplifier<'m> {
         Ok(self.report(target, &stop))
     }
 
+    /// Contracts as far as possible, as [`run`](Self::run) to no faces does, and ends.
+    ///
+    /// The kernel frees its vertices before it shows the contractions to the observer, who thus takes
+    /// their place in memory: about 130 bytes a face.
+    pub fn run_out(self, observer: &mut dyn Observe) -> Report {
+        let Self { mesh, engine, options, input } = self;
+        let done = engine.run_out(&Stop { faces: 0, ..Stop::NEVER }, observer);
+        report((mesh, options.method, &input), Target::Faces(0), 0, done)
+    }
+
     /// Contracts within an error as [`run`](Self::run) does, for a caller who compares the level with
     /// the input and [takes back](Self::take_back) what is beyond: it takes about two thirds of
     /// the time, and places have been up to 2.3 times as far away: docs/notes/kernel.md has figures.
@@ -186,28 +196,8 @@ impl<'m> Simplifier<'m> {
 
     /// Builds the report of the run so far.
     fn report(&self, target: Target, stop: &Stop) -> Report {
-        let output_faces = self.live_faces();
-        let Tally { vanished, handles, contractions, refusals, error_estimate, near_limit, volume } =
-            self.engine.tally();
-        let reached = matches!(target, Target::Error(_)) || output_faces <= stop.faces;
-        Report {
-            method: self.options.method,
-            input_faces: self.mesh.faces.len(),
-            degenerate_faces: self.input.degenerate_faces,
-            duplicate_faces: self.input.duplicate_faces,
-            non_manifold_vertices: self.input.non_manifold_vertices,
-            held: self.input.held,
-            output_faces,
-            contractions,
-            vanished,
-            handles,
-            reached,
-            error_estimate,
-            near_limit,
-            proof: None,
-            refusals,
-            volume,
-        }
+        let done = (self.engine.tally(), self.live_faces());
+        report((self.mesh, self.options.method, &self.input), target, stop.faces, done)
     }
 
     fn stop(&self, target: Target) -> Result<Stop, SimplifyError> {
@@ -244,6 +234,36 @@ impl<'m> Simplifier<'m> {
 
     pub(crate) fn into_surface(self) -> (&'m Mesh, Surface) {
         (self.mesh, self.engine.into_surface())
+    }
+}
+
+/// Builds the report of a run to a target that allows `most` faces, from what was done and the number
+/// of faces left.
+fn report(
+    (mesh, method, input): (&Mesh, Method, &InputSummary),
+    target: Target,
+    most: usize,
+    (tally, output_faces): (Tally, usize),
+) -> Report {
+    let Tally { vanished, handles, contractions, refusals, error_estimate, near_limit, volume } =
+        tally;
+    Report {
+        method,
+        input_faces: mesh.faces.len(),
+        degenerate_faces: input.degenerate_faces,
+        duplicate_faces: input.duplicate_faces,
+        non_manifold_vertices: input.non_manifold_vertices,
+        held: input.held,
+        output_faces,
+        contractions,
+        vanished,
+        handles,
+        reached: matches!(target, Target::Error(_)) || output_faces <= most,
+        error_estimate,
+        near_limit,
+        proof: None,
+        refusals,
+        volume,
     }
 }
 

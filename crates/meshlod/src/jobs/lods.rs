@@ -157,12 +157,10 @@ fn made(
     let choice = RunChoice { method, weights, boundary, polish, constraints };
     let (ready, time) = choice.condition(scene, watch)?;
     let target = |size| fused.map_or(size, |fused| fused.target(size));
-    let whole = OnceCell::new();
-    let original = request.measured.then(|| ready_to_measure(scene, &whole, watch)).flatten();
     let digits = digits(request.written_as.map(|as_| as_.of(scene)));
     let mut run = SceneRun::start(&ready, time, watch)?;
     check_order(&request.levels, run.input_faces())?;
-    let (mut levels, mut reports): (Vec<Level>, Vec<LodReport>) = Default::default();
+    let mut made: Vec<Made> = Vec::with_capacity(request.levels.len());
     for &size in &request.levels {
         let mut report = run.simplify_to(target(size))?;
         let mut meshes = run.level(&mut report);
@@ -170,6 +168,40 @@ fn made(
             true => scene_run::restore_volumes(&ready, &mut meshes, digits, watch),
             false => None,
         };
+        made.push((size, meshes, report, volume_residual));
+    }
+    let time = run.time();
+    // Measuring takes as much memory as a run, so this one ends first.
+    drop(run);
+    let (levels, reports) = measured(scene, request, made, watch);
+    choice.remark(watch);
+    let last = reports.last().ok_or_else(|| JobError::request("levels", "give at least one"))?;
+    let report = LodsReport {
+        run: last.run,
+        conditioning: ready.counts(),
+        near_borders: request.near_borders.then(|| ready.near_borders()).flatten(),
+        fused,
+        time,
+        levels: reports,
+    };
+    Ok((levels, report))
+}
+
+/// Level that has not been measured: its size as asked for, its meshes, the report of its run, and
+/// what is left to its volumes.
+type Made = (Target, Vec<Mesh>, Report, Option<f64>);
+
+/// Measures levels, if that is asked for, and says from where each is fine enough.
+fn measured(
+    scene: &Scene,
+    request: &LodsRequest,
+    made: Vec<Made>,
+    watch: &dyn Watch,
+) -> (Vec<Level>, Vec<LodReport>) {
+    let whole = OnceCell::new();
+    let original = request.measured.then(|| ready_to_measure(scene, &whole, watch)).flatten();
+    let (mut levels, mut reports): (Vec<Level>, Vec<LodReport>) = Default::default();
+    for (size, meshes, report, volume_residual) in made {
         let measured = original
             .as_ref()
             .and_then(|original| original.measure(&samples_for(original.faces()), &meshes, watch));
@@ -188,17 +220,7 @@ fn made(
             is_same,
         });
     }
-    choice.remark(watch);
-    let last = reports.last().ok_or_else(|| JobError::request("levels", "give at least one"))?;
-    let report = LodsReport {
-        run: last.run,
-        conditioning: ready.counts(),
-        near_borders: request.near_borders.then(|| ready.near_borders()).flatten(),
-        fused,
-        time: run.time(),
-        levels: reports,
-    };
-    Ok((levels, report))
+    (levels, reports)
 }
 
 fn ready_to_measure<'m>(

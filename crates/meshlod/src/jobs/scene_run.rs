@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 use std::time::{Duration, Instant};
 
-use meshlod_io::{Scene, SceneMesh};
+use meshlod_io::{Node, Scene, SceneMesh};
 use meshlod_measure::{
     Distance, DistanceOptions, MeasureError, PreparedSurface, SurfaceError, surface_distance,
 };
@@ -194,6 +194,16 @@ pub(super) fn own_surface(scene: &Scene) -> Mesh {
     surface_of(scene, scene.meshes.iter().map(|mesh| &mesh.mesh))
 }
 
+/// Returns the surface that a scene shows, as [`own_surface`] does; `whole` keeps it, unless it is a
+/// mesh of the scene as it is.
+pub(super) fn shown_surface<'m>(scene: &'m Scene, whole: &'m OnceCell<Mesh>) -> &'m Mesh {
+    let as_it_is = Node::default().transform;
+    match scene.instances()[..] {
+        [only] if only.transform == as_it_is => &scene.meshes[only.mesh].mesh,
+        _ => whole.get_or_init(|| own_surface(scene)),
+    }
+}
+
 /// A scene from which levels are measured.
 pub(super) struct Original<'m> {
     scene: &'m Scene,
@@ -218,8 +228,7 @@ impl<'m> Original<'m> {
         let surface = match copies.zip(surfaces) {
             Some((copies, surfaces)) => OriginalSurface::Copies(copies, surfaces),
             None => {
-                let whole = whole.get_or_init(|| own_surface(scene));
-                OriginalSurface::Whole(PreparedSurface::new(whole)?)
+                OriginalSurface::Whole(PreparedSurface::new(shown_surface(scene, whole))?)
             }
         };
         Ok(Self { scene, surface })

@@ -103,6 +103,7 @@ impl Implicit {
     /// The first update that fails.
     pub fn certify(&self) -> Result<Certificate, CertifyError> {
         let mut proof = Proof::new(self);
+        proof.front.triangles.reserve(self.full_faces().min(2 * self.update_count()));
         if !coarse_wedges::are_of_their_nodes(&proof.front, 0..self.base_faces() as u32) {
             return Err(CertifyError::BaseWedges);
         }
@@ -196,6 +197,8 @@ impl<'m> Proof<'m> {
     /// Applies an update if its dependencies are met, and keeps the triangles of both sides.
     fn apply(&mut self, update: u32) -> Result<(), Flaw> {
         let Self { front, coarse, fine, wedges, around, first } = self;
+        // Nobody asks which slots have changed.
+        front.triangles.mark();
         let mt = front.mt;
         let (node, level) = (mt.parent(update), mt.level(update));
         if !front.is_active(node) {

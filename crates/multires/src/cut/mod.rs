@@ -10,6 +10,7 @@
 
 mod certificate;
 mod coarse_wedges;
+#[cfg(test)]
 mod each_triangle;
 mod force;
 mod front;

@@ -60,7 +60,6 @@ impl Triangles {
     /// Makes room for some more triangles at once, and not for twice as many as there are.
     pub(super) fn reserve(&mut self, more: usize) {
         self.all.reserve_exact(more);
-        self.changed.reserve_exact(more);
         self.wedges.iter_mut().for_each(|wedges| wedges.reserve_exact(more));
     }
 

@@ -51,7 +51,7 @@ fn in_order<C: Ord>(faces: impl Iterator<Item = [C; 3]>) -> Vec<[C; 3]> {
 fn a_file_gives_back_the_model() {
     each(|what, mesh, forest| {
         let lattice = lattice(forest, &small(), diagonal(forest));
-        let rounded = forest.quantized(lattice, StoredErrors::AsRecorded).unwrap().forest;
+        let rounded = forest.clone().quantized(lattice, StoredErrors::AsRecorded).forest;
         let rounded = Implicit::in_order(&rounded, &Order::for_file(&rounded)).unwrap();
         let (read, certificate) = Archive::open(bytes(forest)).unwrap().read().unwrap();
         assert_eq!(certificate, rounded.certify().unwrap(), "{what}");

@@ -1,6 +1,7 @@
 //! Repair of triangles that rounding to the lattice has collapsed to a line or a point.
 
-use crate::implicit::Implicit;
+use crate::forest::Forest;
+use crate::implicit::Order;
 
 /// Position in cells of the lattice.
 ///
@@ -21,14 +22,14 @@ const MAX_ROUNDS: usize = 16;
 /// `places` holds the positions of all nodes, `unrounded` returns one before rounding, `is_free`
 /// tells which of them may be moved, and `had_area` whether a triangle had an area before rounding.
 pub(super) fn unflatten(
-    mt: &Implicit,
+    forest: &Forest,
     places: &mut [CellPosition],
     unrounded: impl Fn(u32) -> CellPosition,
     is_free: impl Fn(u32) -> bool,
     had_area: impl Fn([u32; 3]) -> bool,
 ) {
     let mut is_movable = vec![false; places.len()];
-    mt.each_triangle(|nodes| {
+    forest.each_triangle(|nodes| {
         if flatness(nodes.map(|n| places[n as usize])) > 0 && had_area(nodes) {
             nodes.iter().for_each(|&node| is_movable[node as usize] = is_free(node));
         }
@@ -37,16 +38,17 @@ pub(super) fn unflatten(
         return;
     }
     // All triangles would take 84 bytes for each face of the finest mesh: they are enumerated twice.
+    let order = Order::new(forest);
     let mut at: Vec<(u32, [u32; 3])> = Vec::new();
-    mt.each_triangle(|nodes| {
+    forest.each_triangle(|nodes| {
         let movable = nodes.into_iter().filter(|&node| is_movable[node as usize]);
-        at.extend(movable.map(|node| (node, nodes)));
+        at.extend(movable.map(|node| (order.index_of_node[node as usize], nodes)));
     });
     at.sort_unstable();
     let offsets = offsets();
     let movable = at.chunk_by(|a, b| a.0 == b.0).map(|triangles| {
-        let node = triangles[0].0;
-        MovableNode::new(triangles, places[node as usize], unrounded(node), &offsets)
+        let node = order.nodes[triangles[0].0 as usize];
+        MovableNode::new((node, triangles), places[node as usize], unrounded(node), &offsets)
     });
     solve(&movable.collect::<Vec<_>>(), places);
 }
@@ -63,6 +65,7 @@ fn solve(movable: &[MovableNode<'_>], places: &mut [CellPosition]) {
 
 /// Node that may move, with all its triangles.
 struct MovableNode<'t> {
+    node: u32,
     triangles: &'t [(u32, [u32; 3])],
     /// Positions to try, those nearest to the position before rounding first.
     choices: Vec<CellPosition>,
@@ -70,7 +73,7 @@ struct MovableNode<'t> {
 
 impl<'t> MovableNode<'t> {
     fn new(
-        triangles: &'t [(u32, [u32; 3])],
+        (node, triangles): (u32, &'t [(u32, [u32; 3])]),
         rounded: CellPosition,
         unrounded: CellPosition,
         offsets: &[CellPosition],
@@ -79,13 +82,13 @@ impl<'t> MovableNode<'t> {
         let mut choices: Vec<CellPosition> = offsets.iter().map(add).collect();
         let away = |at: &CellPosition| (0..3).map(|k| (at[k] - unrounded[k]).powi(2)).sum::<f64>();
         choices.sort_by(|a, b| away(a).total_cmp(&away(b)));
-        Self { triangles, choices }
+        Self { node, triangles, choices }
     }
 
     /// Moves the node to the nearest position at which its triangles are least degenerate. Returns
     /// true if that is an improvement.
     fn improve(&self, places: &mut [CellPosition]) -> bool {
-        let node = self.triangles[0].0 as usize;
+        let node = self.node as usize;
         let (mut best, mut least) = (places[node], self.flatness(places, u32::MAX));
         let before = least;
         for choice in &self.choices {
@@ -123,14 +126,20 @@ fn offsets() -> Vec<CellPosition> {
 
 /// Degree of degeneracy: 0 for a triangle with an area, 1 if its corners are collinear, more if
 /// some coincide.
+#[inline]
 fn flatness([a, b, c]: [CellPosition; 3]) -> u32 {
+    // Corners that coincide are collinear.
+    if !are_collinear([a, b, c]) {
+        return 0;
+    }
     match [a == b, b == c, c == a].into_iter().filter(|&same| same).count() {
-        0 => u32::from(are_collinear([a, b, c])),
+        0 => 1,
         1 => 2,
         _ => 4,
     }
 }
 
+#[inline]
 fn are_collinear([a, b, c]: [CellPosition; 3]) -> bool {
     let from_a = |p: CellPosition| [0, 1, 2].map(|k| p[k] - a[k]);
     let (u, v) = (from_a(b), from_a(c));

@@ -74,43 +74,47 @@ const ROUNDING: f64 = 5e-5;
 const LOSSLESS_ROUNDING: f64 = 2e-5;
 
 /// Encodes a forest, and returns the header with the bytes of the whole file; see
-/// [`Archive::write`](super::Archive::write).
+/// [`Archive::encode`](super::Archive::encode).
 pub(super) fn write(
-    forest: &Forest,
+    forest: Forest,
     storage: &Storage,
 ) -> Result<(Header, Vec<u8>, Certificate), FileError> {
-    let diagonal = diagonal(forest);
+    let diagonal = diagonal(&forest);
     if let Some(rounding) = storage.rounding.filter(|&most| !(0.0..=diagonal).contains(&most)) {
         return Err(FileError::Rounding(rounding));
     }
-    let lattice = lattice(forest, storage, diagonal);
-    let Quantized { forest, max_displacement } = forest.quantized(lattice, storage.errors)?;
+    let lattice = lattice(&forest, storage, diagonal);
+    let Quantized { forest, max_displacement } = forest.quantized(lattice, storage.errors);
     let order = Order::for_file(&forest);
-    let mt = Implicit::in_order(&forest, &order)?;
+    let (mt, links) = rayon::join(
+        || Implicit::in_order(&forest, &order),
+        || Dependencies::in_order(&forest, &order, SplitRule::Strict),
+    );
+    let mt = mt?;
+    // The model and its dependencies hold all that is written.
+    drop((forest, order));
+    let has_wedges = mt.wedges().is_some();
+    let lossless = mt.exact().is_lossless();
     let (certificate, sections) = rayon::join(
         || mt.certify(),
         || {
-            let links = Dependencies::in_order(&forest, &order, SplitRule::Strict);
-            encode_sections(
-                &mt,
-                &plan_chunks(&mt, &links, storage.updates_per_chunk.max(1)),
-                lattice,
-                (!forest.exact.is_lossless()).then_some(&storage.attributes),
-            )
+            let plan = plan_chunks(&mt, &links, storage.updates_per_chunk.max(1));
+            drop(links);
+            encode_sections(&mt, &plan, lattice, (!lossless).then_some(&storage.attributes))
         },
     );
     let (certificate, sections) = (certificate?, sections?);
     let header = Header {
         about: ModelInfo {
-            frame: forest.frame,
-            error_kind: forest.error_kind,
-            has_stages: forest.wedges.is_some(),
+            frame: *mt.frame(),
+            error_kind: mt.error_kind(),
+            has_stages: has_wedges,
         },
         lattice,
-        lossless: forest.exact.is_lossless(),
-        has_wedges: forest.wedges.is_some(),
+        lossless,
+        has_wedges,
         diagonal,
-        rounding: forest.frame.model_length(max_displacement),
+        rounding: mt.frame().model_length(max_displacement),
         roots: mt.root_count() as u32,
         base_faces: mt.base_faces() as u32,
         base: Section::of(&sections.base),

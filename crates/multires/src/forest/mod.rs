@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
 use meshlod_mesh::{Frame, Mesh};
-use meshlod_simplify::{Options, Simplifier, SimplifyError, Target, Topology};
+use meshlod_simplify::{Options, Simplifier, SimplifyError, Topology};
 use thiserror::Error;
 
 use crate::error_kind::ErrorKind;
@@ -160,9 +160,9 @@ impl Forest {
         options: &Options,
         recorder: impl FnOnce(&Simplifier<'_>) -> Recorder,
     ) -> Result<Self, BuildError> {
-        let mut simplifier = Simplifier::new(mesh, &Self::options(mesh, options))?;
+        let simplifier = Simplifier::new(mesh, &Self::options(mesh, options))?;
         let mut recorder = recorder(&simplifier);
-        simplifier.run(Target::Faces(0), &mut recorder)?;
+        simplifier.run_out(&mut recorder);
         recorder.into_forest()
     }
 

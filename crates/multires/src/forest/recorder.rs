@@ -25,7 +25,7 @@ pub struct Recorder {
     wedges: Option<WedgeRecorder>,
     /// Live node by input vertex.
     live: Vec<LiveNode>,
-    /// Index among the forest's faces by input face, or [`NONE`].
+    /// Index among the forest's faces by input face, or [`NONE`]; empty if it has all of them.
     forest_face: Vec<u32>,
     /// Number of faces left.
     live_faces: usize,
@@ -55,8 +55,10 @@ impl Recorder {
         let vertices = surface.vertex_count();
         let ids = (0..surface.face_count()).map(FaceId::new);
         let alive: Vec<FaceId> = ids.filter(|&face| surface.is_alive(face)).collect();
-        let mut forest_face = vec![NONE; surface.face_count()];
-        alive.iter().enumerate().for_each(|(i, face)| forest_face[face.index()] = i as u32);
+        let some = if alive.len() < surface.face_count() { surface.face_count() } else { 0 };
+        let mut forest_face = vec![NONE; some];
+        let numbers = alive.iter().enumerate().filter(|_| some > 0);
+        numbers.for_each(|(i, face)| forest_face[face.index()] = i as u32);
         let faces: Vec<_> = alive.iter().map(|&face| surface.face(face).map(|v| v.0)).collect();
         let corners = faces.iter().flatten().map(|&v| surface.position(VertexId(v)).to_array());
         let frame = Frame::of_diagonal(&Bounds::of(&corners.collect::<Vec<_>>()));
@@ -83,7 +85,8 @@ impl Recorder {
                 positions,
                 exact: ExactPositions::default(),
                 updates: Vec::with_capacity(vertices),
-                rings: Vec::with_capacity(7 * vertices),
+                // 7.4 nodes on the way to nothing, on terrains and scans.
+                rings: Vec::with_capacity(15 * vertices / 2),
                 created_by: vec![NONE; faces.len()],
                 faces,
                 wedges: None,
@@ -176,8 +179,9 @@ impl Recorder {
         let kept = hood.contracted()[placed.kept];
         live[kept.index()] = LiveNode { node, level, error, radius };
         for removed in hood.removed_faces() {
-            forest.created_by[self.forest_face[removed.face.index()] as usize] =
-                node - forest.vertices as u32;
+            let face = self.forest_face.get(removed.face.index());
+            let face = face.map_or(removed.face.index(), |&face| face as usize);
+            forest.created_by[face] = node - forest.vertices as u32;
         }
     }
 

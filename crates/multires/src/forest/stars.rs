@@ -2,29 +2,49 @@
 
 use crate::forest::{Forest, NONE};
 
+impl Forest {
+    /// Calls `visit` with the nodes of each triangle that occurs in some cut: the faces of the input
+    /// and those that contractions make.
+    ///
+    /// Cost: linear.
+    pub(crate) fn each_triangle(&self, mut visit: impl FnMut([u32; 3])) {
+        let mut stars = Stars::new(self);
+        self.faces.iter().for_each(|&face| visit(face));
+        for (u, update) in self.updates.iter().enumerate() {
+            stars.contract(update.children, self.node(u) as u32);
+            stars.changed().iter().filter_map(|&face| stars.face(face)).for_each(&mut visit);
+        }
+    }
+}
+
 /// Faces of the current mesh, with the corners at each node.
 ///
 /// The corners at a node form a linked list, so that a contraction joins two lists.
 #[derive(Debug)]
 pub(crate) struct Stars {
-    /// Faces by their nodes; the first node of a removed face is [`NONE`].
-    faces: Vec<[u32; 3]>,
+    faces: Vec<LinkedFace>,
     /// First and last corner of each node's list. Corner `k` of face `f` is `3 f + k`.
     ends: Vec<[u32; 2]>,
-    /// By corner: the next one in its list.
-    next: Vec<u32>,
     /// Fine side of the last contraction.
     fine: Vec<[u32; 3]>,
     /// Numbers of its faces.
     changed: Vec<u32>,
 }
 
+/// Face with the links of its corners, which are needed together.
+#[derive(Clone, Copy, Debug)]
+struct LinkedFace {
+    /// Its nodes; the first one of a removed face is [`NONE`].
+    nodes: [u32; 3],
+    /// By corner: the next one in its list.
+    next: [u32; 3],
+}
+
 impl Stars {
     pub(crate) fn new(forest: &Forest) -> Self {
         let mut this = Self {
-            faces: forest.faces.clone(),
+            faces: forest.faces.iter().map(|&nodes| LinkedFace { nodes, next: [NONE; 3] }).collect(),
             ends: vec![[NONE; 2]; forest.positions.len()],
-            next: vec![NONE; 3 * forest.faces.len()],
             fine: Vec::new(),
             changed: Vec::new(),
         };
@@ -43,17 +63,18 @@ impl Stars {
             let mut next = self.ends[child as usize][0];
             while next != NONE {
                 let corner = next;
-                next = self.next[corner as usize];
                 let face = &mut self.faces[corner as usize / 3];
-                if face[0] == NONE {
+                next = face.next[corner as usize % 3];
+                let nodes = &mut face.nodes;
+                if nodes[0] == NONE {
                     continue;
                 }
-                self.fine.push(*face);
+                self.fine.push(*nodes);
                 self.changed.push(corner / 3);
-                if face.contains(&other) {
-                    *face = [NONE; 3];
+                if nodes.contains(&other) {
+                    *nodes = [NONE; 3];
                 } else {
-                    face[corner as usize % 3] = node;
+                    nodes[corner as usize % 3] = node;
                     self.append(node, corner);
                 }
             }
@@ -68,7 +89,7 @@ impl Stars {
 
     /// Returns a face by its nodes, or `None` if it was removed.
     pub(crate) fn face(&self, face: u32) -> Option<[u32; 3]> {
-        Some(self.faces[face as usize]).filter(|nodes| nodes[0] != NONE)
+        Some(self.faces[face as usize].nodes).filter(|nodes| nodes[0] != NONE)
     }
 
     fn append(&mut self, node: u32, corner: u32) {
@@ -76,9 +97,9 @@ impl Stars {
         if *first == NONE {
             *first = corner;
         } else {
-            self.next[*last as usize] = corner;
+            self.faces[*last as usize / 3].next[*last as usize % 3] = corner;
         }
         *last = corner;
-        self.next[corner as usize] = NONE;
+        self.faces[corner as usize / 3].next[corner as usize % 3] = NONE;
     }
 }

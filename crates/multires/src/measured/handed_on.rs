@@ -18,7 +18,7 @@ const THIN_OUT_ABOVE: usize = 100;
 /// Vertices of the input by the face of the current mesh that they were handed to.
 #[derive(Debug)]
 pub(super) struct HandedOn {
-    places: Vec<DVec3>,
+    places: Vec<[f64; 3]>,
     /// By face: its first vertex.
     first: Vec<u32>,
     /// By vertex: the next one of its face.
@@ -29,7 +29,7 @@ pub(super) struct HandedOn {
 
 impl HandedOn {
     /// Hands each vertex of the input to one of its faces.
-    pub(super) fn new(input: &Mesh) -> Self {
+    pub(super) fn new(input: Mesh) -> Self {
         let mut first = vec![NONE; input.faces.len()];
         let mut next = vec![NONE; input.positions.len()];
         let mut taken = vec![false; input.positions.len()];
@@ -40,8 +40,7 @@ impl HandedOn {
                 }
             }
         }
-        let places = input.positions.iter().map(|&at| at.into()).collect();
-        Self { places, first, next, passed: Vec::new() }
+        Self { places: input.positions, first, next, passed: Vec::new() }
     }
 
     /// Hands the vertices of the changed faces on to the coarse side, each to the nearest face, or
@@ -71,7 +70,7 @@ impl HandedOn {
         for &v in &self.passed {
             let squared;
             // Vertices of one face are together, so the last one's face comes first.
-            (squared, near) = nearest(self.places[v as usize], coarse, near, enough);
+            (squared, near) = nearest(self.places[v as usize].into(), coarse, near, enough);
             farthest = farthest.max(squared);
             let first = &mut self.first[coarse[near].face as usize];
             self.next[v as usize] = std::mem::replace(first, v);

@@ -54,8 +54,7 @@ impl Forest {
     /// [CMO97] for errors taken from step to step; differs: distances from the input itself, of
     /// points.
     pub fn measure_errors(&mut self) {
-        let input = self.input();
-        self.measure_against(&input, NOISE);
+        self.measure_against(self.input(), NOISE);
     }
 
     /// Gives the mesh poses in which errors are measured, here and when a file is written with
@@ -73,15 +72,17 @@ impl Forest {
 
     /// Replaces all errors by measured distances from `input`, given in stored units with the
     /// leaves as vertices; distances up to `noise` count as none.
-    pub(crate) fn measure_against(&mut self, input: &Mesh, noise: f64) {
-        let Ok(bvh) = Bvh::new(input) else { return };
+    pub(crate) fn measure_against(&mut self, input: Mesh, noise: f64) {
+        let Ok(bvh) = Bvh::new(&input) else { return };
+        let posed = self.posing.clone().map(|posing| (posing, input.clone()));
         let measure = Measure::new(self, AtNodes(self), input, noise);
         let rounded = Length16::up(noise);
         let known = |u: usize| (Length16(0), self.updates[u].error.min(rounded));
         let errors = measure.replay(Probes::new(&bvh, self), known);
+        drop(bvh);
         self.set_errors(errors);
-        if let Some(posing) = self.posing.clone() {
-            self.measure_poses(&*posing, input, noise);
+        if let Some((posing, input)) = posed {
+            self.measure_poses(&*posing, &input, noise);
         }
         self.error_kind = ErrorKind::Measured;
     }
@@ -96,7 +97,7 @@ impl Forest {
                 return vec![Length16::INFINITE; self.updates.len()];
             };
             let corners = table.corners(self, posing, pose);
-            let measure = Measure::new(self, corners, &input, noise);
+            let measure = Measure::new(self, corners, input, noise);
             // Only what is farther away than in the pose of the mesh counts.
             let known = |u: usize| (self.updates[u].error, self.updates[u].error);
             measure.replay(Probes::new(&bvh, self), known)
@@ -154,7 +155,7 @@ impl Replayed {
 }
 
 impl<'f, C: Corners + Send> Measure<'f, C> {
-    fn new(forest: &'f Forest, corners: C, input: &Mesh, noise: f64) -> Self {
+    fn new(forest: &'f Forest, corners: C, input: Mesh, noise: f64) -> Self {
         Self {
             forest,
             stars: Stars::new(forest),

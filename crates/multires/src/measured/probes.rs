@@ -6,28 +6,28 @@ use meshlod_spatial::Bvh;
 use rayon::prelude::*;
 
 use super::{CoarseFace, Replayed};
-use crate::forest::Forest;
+use crate::forest::{Forest, NONE};
 
 /// Distances of points from the input, near points that were asked for before.
 #[derive(Debug)]
 pub(super) struct Probes<'b> {
     input: &'b Bvh,
-    /// By node: a face of the input nearby.
-    near: Vec<Option<FaceId>>,
+    /// By node: a face of the input nearby, or [`NONE`].
+    near: Vec<u32>,
 }
 
 impl<'b> Probes<'b> {
     pub(super) fn new(input: &'b Bvh, forest: &Forest) -> Self {
-        let mut near = vec![None; forest.positions.len()];
-        for (i, face) in forest.faces.iter().enumerate() {
-            face.iter().for_each(|&leaf| near[leaf as usize] = Some(FaceId::new(i)));
+        let mut near = vec![NONE; forest.positions.len()];
+        for (i, face) in (0..).zip(&forest.faces) {
+            face.iter().for_each(|&leaf| near[leaf as usize] = i);
         }
         Self { input, near }
     }
 
     /// Notes a face of the input near a node.
     pub(super) fn note(&mut self, node: usize, near: Option<FaceId>) {
-        self.near[node] = near;
+        self.near[node] = near.map_or(NONE, |face| face.0);
     }
 
     /// Returns for each update of a block the greatest distance known of its coarse side and the
@@ -71,8 +71,8 @@ impl<'b> Probes<'b> {
         let mut node = forest.updates[u].children[0];
         loop {
             match (self.near[node as usize], forest.update_of(node)) {
-                (None, Some(below)) => node = forest.updates[below].children[0],
-                (near, _) => return near,
+                (NONE, Some(below)) => node = forest.updates[below].children[0],
+                (near, _) => return Some(near).filter(|&near| near != NONE).map(FaceId),
             }
         }
     }

@@ -44,6 +44,8 @@ pub(crate) struct InputNames<'w> {
     pub(crate) frame: &'w Frame,
     pub(crate) order: &'w Order,
     pub(crate) store: &'w VertexStore,
+    /// Number of vertices of the input, without copies.
+    pub(crate) own: usize,
 }
 
 impl InputNames<'_> {
@@ -51,10 +53,11 @@ impl InputNames<'_> {
     /// the input.
     #[inline]
     pub(crate) fn input(&self, v: u32) -> VertexId {
-        let InputNames { mesh, order, store, .. } = self;
-        match (v as usize).checked_sub(store.own()) {
+        let InputNames { mesh, order, store, own, .. } = self;
+        match (v as usize).checked_sub(*own) {
             Some(spare) if store.spare > 0 => VertexId::new(mesh.positions.len() + spare),
-            _ => VertexId(order.input(store.origin(v))),
+            Some(copy) => VertexId(order.input(store.copied[copy])),
+            None => VertexId(order.input(v)),
         }
     }
 

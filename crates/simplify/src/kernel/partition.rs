@@ -181,6 +181,14 @@ impl<A: AttributeModel> Partition<A> {
         }
     }
 
+    /// Ends the simplification. Returns what a log needs to be understood: the copies of vertices,
+    /// without the vertices, and the components.
+    pub(crate) fn without_vertices(self) -> (VertexStore, Whole) {
+        let Self { mut store, whole, .. } = self;
+        store.all = Vec::new();
+        (store, whole)
+    }
+
     /// Returns the bucket of the next step. The surface must be one part.
     pub(crate) fn next_bucket(&mut self) -> Option<u16> {
         self.loops().iter_mut().filter_map(|(collapse_loop, _)| collapse_loop.next_bucket()).min()

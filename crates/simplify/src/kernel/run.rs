@@ -79,8 +79,7 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
     }
 
     fn names(&self) -> InputNames<'_> {
-        let KernelInput { mesh, frame, order, .. } = &self.source;
-        InputNames { mesh, frame, order, store: &self.partition.store }
+        names(&self.source, &self.partition.store, self.partition.store.own())
     }
 
     /// Returns the current mesh, and the id there of each input vertex.
@@ -168,10 +167,36 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
 
     /// Simplifies to this number of faces, and shows the observer what it wants to see.
     fn advance(&mut self, faces: usize, stop: &Stop, observer: &mut dyn Observe) {
+        if observer.needs_surface() {
+            self.surface();
+        }
+        let at_first = self.partition.live_faces;
+        let log = self.contract(faces, stop, observer);
+        let is_unchanged = self.partition.live_faces == at_first;
+        match (log, self.surface.take()) {
+            (Some(log), Some(mut surface)) => {
+                let values = self.partition.models[0].recorded();
+                let components = self.partition.whole.components.as_ref();
+                replay((&log, &values), components, self.names(), &mut surface, observer);
+                self.surface = surface.into();
+            }
+            (_, surface) if is_unchanged => {
+                self.surface = surface.map_or_else(OnceCell::new, OnceCell::from);
+            }
+            _ => {}
+        }
+    }
+
+    /// Simplifies to this number of faces, and returns the log if the observer wants to see it.
+    fn contract(
+        &mut self,
+        faces: usize,
+        stop: &Stop,
+        observer: &mut dyn Observe,
+    ) -> Option<Vec<Logged>> {
         let is_shown = observer.needs_surface();
         let is_bounded = stop.error < f64::INFINITY;
         if is_shown {
-            self.surface();
             self.steps = None;
             self.partition.log = Some(Vec::new());
         } else if is_bounded {
@@ -198,19 +223,35 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
         if !is_shown {
             self.steps = log.take().or(self.steps.take().filter(|_| is_unchanged));
         }
-        match (log, self.surface.take()) {
-            (Some(log), Some(mut surface)) => {
-                let values = self.partition.models[0].recorded();
-                let components = self.partition.whole.components.as_ref();
-                replay((&log, &values), components, self.names(), &mut surface, observer);
-                self.surface = surface.into();
-            }
-            (_, surface) if is_unchanged => {
-                self.surface = surface.map_or_else(OnceCell::new, OnceCell::from);
-            }
-            _ => {}
-        }
+        log
     }
+
+    /// Returns true if the surface is the input as it is: nothing has been contracted, left out or
+    /// copied, and no face has more than its vertices.
+    fn is_input(&self) -> bool {
+        let Mesh { attributes, materials, objects, .. } = self.source.mesh;
+        let is_bare = attributes.is_none() && materials.is_none() && objects.is_none();
+        let Partition { store, contractions, .. } = &self.partition;
+        let is_whole = self.faces().is_none() && store.spare == 0 && store.copied.is_empty();
+        is_bare && is_whole && *contractions == 0
+    }
+
+    /// Builds the current surface.
+    fn new_surface(&self) -> Surface {
+        surface_of(&workspace(self.names(), &self.partition.models[0], self.faces()))
+    }
+}
+
+fn surface_of(mesh: &Mesh) -> Surface {
+    let (connectivity, _) = clean::connect(mesh);
+    let mut surface = Surface::new(mesh, &connectivity);
+    surface.rims = Rims::new(mesh, &connectivity);
+    surface
+}
+
+fn names<'w>(source: &'w KernelInput<'_>, store: &'w VertexStore, own: usize) -> InputNames<'w> {
+    let KernelInput { mesh, frame, order, .. } = source;
+    InputNames { mesh, frame, order, store, own }
 }
 
 /// Returns the error bound of a run. Builds the input surface if it is missing.
@@ -238,6 +279,30 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
     fn run(&mut self, stop: &Stop, observer: &mut dyn Observe) {
         self.advance(stop.faces, stop, observer);
         self.near_limit = stop.error == f64::INFINITY && self.partition.is_near_limit();
+    }
+
+    fn run_out(mut self: Box<Self>, stop: &Stop, observer: &mut dyn Observe) -> (Tally, usize) {
+        let is_shown = observer.needs_surface();
+        // The input's surface is built anew, rather than kept beside the kernel's.
+        let is_input = is_shown && self.is_input();
+        if is_input {
+            self.surface.take();
+        } else if is_shown {
+            self.surface();
+        }
+        let log = self.contract(stop.faces, stop, observer);
+        self.near_limit = stop.error == f64::INFINITY && self.partition.is_near_limit();
+        let done = (self.tally(), self.live_faces());
+        let Self { source, mut partition, surface, .. } = *self;
+        let Some(log) = log else { return done };
+        let values = partition.models[0].recorded();
+        let own = partition.store.own();
+        let (store, whole) = partition.without_vertices();
+        let kept = surface.into_inner().filter(|_| !is_input);
+        let mut surface = kept.unwrap_or_else(|| surface_of(source.mesh));
+        let names = names(&source, &store, own);
+        replay((&log, &values), whole.components.as_ref(), names, &mut surface, observer);
+        done
     }
 
     fn step(&mut self, stop: &Stop, observer: &mut dyn Observe) -> bool {
@@ -311,13 +376,7 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
     }
 
     fn surface(&self) -> &Surface {
-        self.surface.get_or_init(|| {
-            let mesh = workspace(self.names(), &self.partition.models[0], self.faces());
-            let (connectivity, _) = clean::connect(&mesh);
-            let mut surface = Surface::new(&mesh, &connectivity);
-            surface.rims = Rims::new(&mesh, &connectivity);
-            surface
-        })
+        self.surface.get_or_init(|| self.new_surface())
     }
 
     fn into_surface(self: Box<Self>) -> Surface {

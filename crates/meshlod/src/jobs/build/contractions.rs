@@ -29,11 +29,12 @@ const NEXT_ERROR: f64 = 1.3;
 /// Error from which contractions go by their cost alone.
 const LAST_ERROR: f64 = 2e-2;
 
-/// Recorded contractions with their errors, ready to be written.
+/// Facts about recorded contractions that a report has.
 struct Recorded {
-    forest: Forest,
     held: Held,
     poses: ErrorPoses,
+    /// Proof that no cut has a crack, once they are written.
+    certificate: Certificate,
 }
 
 /// Builds the levels of a scene whose constraints have been applied to it.
@@ -51,7 +52,7 @@ pub(super) fn build(
         remark_if_open(&mesh, watch);
     }
     let lossless = request.lossless || request.exact_volume;
-    let recorded = record(&mesh, (&options, lossless), rest.as_mut(), request, watch)?;
+    let (forest, mut done) = record(&mesh, (&options, lossless), rest.as_mut(), request, watch)?;
     let scene = rest.is_some().then_some(counts);
     let storage = Storage {
         rounding: (!lossless).then(|| request.rounding_of(&mesh)),
@@ -62,23 +63,26 @@ pub(super) fn build(
         },
         attributes,
     };
-    let (archive, certificate, surface_bytes) = pack(&recorded.forest, &storage, rest, watch)?;
-    let faces = recorded.forest.full_faces();
+    let faces = forest.full_faces();
     notes.extend(unused_parts(&mesh, faces));
-    let input_vertices = used_vertices(&mesh);
+    let (input_vertices, input_faces) = (used_vertices(&mesh), mesh.faces.len());
+    // From here on the contractions hold the mesh.
+    drop(mesh);
+    let (archive, certificate, surface_bytes) = pack(forest, &storage, rest, watch)?;
+    done.certificate = certificate;
     let mut report = BuildReport {
         input_vertices,
-        input_faces: mesh.faces.len(),
+        input_faces,
         bytes: 0,
         scene_bytes: 0,
         bytes_per_vertex: surface_bytes as f64 / input_vertices as f64,
         rounding: if lossless { 0.0 } else { archive.rounding() },
-        levels: levels(&archive, &recorded, certificate, request),
+        levels: levels(&archive, &done, request),
         scene,
         faces,
         moved: archive.rounding(),
         diagonal: archive.diagonal(),
-        error_poses: recorded.poses,
+        error_poses: done.poses,
         notes,
     };
     let bytes = archive.into_source();
@@ -107,14 +111,14 @@ fn record(
     rest: Option<&mut PackedScene>,
     request: &BuildRequest,
     watch: &dyn Watch,
-) -> Result<Recorded, JobError> {
+) -> Result<(Forest, Recorded), JobError> {
     let failed = |error: BuildError| JobError::input(error);
     let options = Forest::options(mesh, options);
-    let mut simplifier = Simplifier::new(mesh, &options).map_err(|error| failed(error.into()))?;
+    let simplifier = Simplifier::new(mesh, &options).map_err(|error| failed(error.into()))?;
     watch.stage("contracting");
     let recorder = if lossless { Recorder::lossless } else { Recorder::new };
     let mut both = (recorder(&simplifier), Contractions::new(watch, Some(mesh.faces.len())));
-    let report = contract(&mut simplifier, request.order, &mut both, watch);
+    let report = contract(simplifier, request.order, &mut both, watch);
     let held = report.map_err(|error| failed(error.into()))?.held;
     let mut forest = both.0.into_forest().map_err(failed)?;
     watch.stage("measuring errors");
@@ -124,7 +128,7 @@ fn record(
         ErrorKind::Bound => forest.measure_bounds(),
         ErrorKind::Estimate | ErrorKind::Measured => forest.smooth_errors(),
     }
-    Ok(Recorded { forest, held, poses })
+    Ok((forest, Recorded { held, poses, certificate: Certificate::default() }))
 }
 
 /// Contracts a mesh to nothing, in this order.
@@ -132,7 +136,7 @@ fn record(
 /// A run within an error leaves what would break it for a later run. So no contraction that needs a
 /// greater error is below one that needs less, as happens by cost, and a cut need not undo both.
 fn contract(
-    simplifier: &mut Simplifier<'_>,
+    mut simplifier: Simplifier<'_>,
     order: LevelOrder,
     observer: &mut dyn Observe,
     watch: &dyn Watch,
@@ -145,7 +149,7 @@ fn contract(
             end_if_cancelled(watch);
         }
     }
-    simplifier.run(Target::Faces(0), observer)
+    Ok(simplifier.run_out(observer))
 }
 
 /// Has errors measured in the poses of the scene's animations, where they are measured and the
@@ -177,14 +181,14 @@ fn pose(
 /// Writes recorded contractions and the rest of their scene; also returns the proof that no cut has
 /// a crack, and the number of bytes without that rest.
 fn pack(
-    forest: &Forest,
+    forest: Forest,
     storage: &Storage,
     rest: Option<PackedScene>,
     watch: &dyn Watch,
 ) -> Result<(Archive<Vec<u8>>, Certificate, usize), JobError> {
     watch.stage("proving and packing");
     end_if_cancelled(watch);
-    let (archive, certificate) = Archive::write(forest, storage).map_err(JobError::input)?;
+    let (archive, certificate) = Archive::encode(forest, storage).map_err(JobError::input)?;
     let surface_bytes = archive.bytes().len();
     let Some(rest) = rest else { return Ok((archive, certificate, surface_bytes)) };
     watch.stage("packing images");
@@ -197,7 +201,6 @@ fn pack(
 fn levels(
     archive: &Archive<Vec<u8>>,
     recorded: &Recorded,
-    certificate: Certificate,
     request: &BuildRequest,
 ) -> BuiltLevels {
     BuiltLevels::Contractions {
@@ -210,7 +213,7 @@ fn levels(
         lossless: archive.is_lossless(),
         updates: archive.update_count(),
         base_faces: archive.base_faces(),
-        certificate,
+        certificate: recorded.certificate,
     }
 }
 

@@ -13,7 +13,7 @@ use meshlod_mesh::Mesh;
 use meshlod_simplify::{Report, Target};
 
 use crate::jobs::faceless::refuse_points;
-use crate::jobs::scene_run::{self, Original, RunChoice, SceneRun, own_surface};
+use crate::jobs::scene_run::{self, Original, RunChoice, SceneRun, shown_surface};
 use crate::jobs::simplify::proved_error::BoundToProve;
 use crate::jobs::written_as::digits;
 use crate::jobs::{JobError, Remark, Watch, WrittenAs, cancellable};
@@ -181,7 +181,7 @@ impl Task<'_> {
         let wanted = original.as_ref().filter(|_| self.request.measured);
         let measured = wanted.and_then(|original| original.measure(&options, level, self.watch));
         let by_measuring = |asked: BoundToProve| {
-            let whole = original.as_ref().map(|_| whole.get_or_init(|| own_surface(self.scene)));
+            let whole = original.as_ref().map(|_| shown_surface(self.scene, &whole));
             let whole = whole.and_then(|whole| PreparedSurface::new(whole).ok());
             asked.by_measuring(whole.as_ref(), self.scene, level)
         };

@@ -156,7 +156,7 @@ fn a_stray_value_takes_nothing_from_the_others() {
 /// Returns the model of a forest with the positions and the order of nodes that a file has.
 fn rounded(forest: &Forest, storage: &Storage) -> Implicit {
     let cells = lattice(forest, storage, diagonal(forest));
-    Implicit::new(&forest.quantized(cells, StoredErrors::AsRecorded).unwrap().forest).unwrap()
+    Implicit::new(&forest.clone().quantized(cells, StoredErrors::AsRecorded).forest).unwrap()
 }
 
 #[test]

@@ -90,12 +90,8 @@ fn the_finest_level_is_the_input() {
         assert!(is_input(extractor.uniform(0.0).unwrap()), "{what}: uniform");
         assert!(is_input(extractor.exact(&all).unwrap()), "{what}: exact");
         assert!(is_input(extractor.at_most(most, &all).unwrap()), "{what}: at most");
-        let kept = forest
-            .quantized(
-                super::lattice(forest, &small(), super::diagonal(forest)),
-                super::StoredErrors::AsRecorded,
-            )
-            .unwrap();
+        let lattice = super::lattice(forest, &small(), super::diagonal(forest));
+        let kept = forest.clone().quantized(lattice, super::StoredErrors::AsRecorded);
         let explicit = Explicit::new(&kept.forest);
         assert!(is_input(&explicit.extract(&all).unwrap()), "{what}: explicit");
         let mut bounded = forest.clone();
@@ -198,12 +194,8 @@ fn balls_are_around_vertices_where_they_are() {
     mesh.positions.extend([[-0.5; 3], [0.5, -0.5, -0.5], [-0.5, 0.5, -0.5]]);
     mesh.faces.push([0, 1, 2].map(|k| VertexId(first + k)));
     let forest = Forest::lossless(&mesh, &Options::default()).unwrap();
-    let kept = forest
-        .quantized(
-            super::lattice(&forest, &small(), super::diagonal(&forest)),
-            super::StoredErrors::AsRecorded,
-        )
-        .unwrap();
+    let lattice = super::lattice(&forest, &small(), super::diagonal(&forest));
+    let kept = forest.clone().quantized(lattice, super::StoredErrors::AsRecorded);
     for (way, forest) in [("in memory", &forest), ("in a file", &kept.forest)] {
         for u in 0..forest.update_count() {
             let ball = forest.ball(u);
