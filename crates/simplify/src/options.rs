@@ -146,7 +146,8 @@ pub struct Options {
     pub vanish_below: Option<f64>,
     /// True if surfaces are seen from their fronts only. A component that lies on another and faces
     /// away from it is then measured without that other coat: if it vanished, there would be nothing
-    /// to see from its side.
+    /// to see from its side. Only [`Method::LindstromTurk`] and [`Method::Qem`] use it. Scenes set it
+    /// for each mesh with a single-sided material.
     pub single_sided: bool,
     /// True to fit the free vertices of each [settled level](crate::Simplifier::settled_level) to the
     /// input once more, all together. Only [`Method::LindstromTurk`] does it, and not after a run to a

@@ -252,7 +252,7 @@ impl PartBvh {
     }
 
     /// Returns the nearest of the remaining parts but those of `except`, or one that touches the point
-    /// or is near enough.
+    /// or is near enough. [`u32::MAX`] is the number of no part.
     ///
     /// Cost: O(log n) for points near these parts, n = triangles.
     pub fn nearest(

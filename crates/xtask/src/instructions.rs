@@ -18,7 +18,7 @@ const SAMPLE: &str = "    meshlod ";
 /// Fraction of its figure by which a command may differ.
 const TOLERANCE: f64 = 0.01;
 
-/// Row of the table: the arguments of `meshlod`, millions of instructions, and what they are worth.
+/// Row of the table: the arguments of `meshlod`, millions of instructions, and why they have grown.
 #[derive(Debug, PartialEq)]
 struct Row<'t> {
     arguments: &'t str,
@@ -26,8 +26,8 @@ struct Row<'t> {
     why: &'t str,
 }
 
-/// Counts anew what every row takes, and prints it. Writes it into the note with `--write`, and
-/// fails without where one differs.
+/// Counts anew what every row takes, and prints it. With `--write` it goes into the note; otherwise
+/// a row that differs is an error.
 pub fn run(project: &Project, arguments: &[String]) -> Result<()> {
     let mut write = false;
     let mut program = None;

@@ -48,6 +48,9 @@ const PEERS: [Peer; 16] = [
 /// Largest number of faces for `pm`, which takes minutes beyond.
 const MOST_FOR_PM: usize = 100_000;
 
+/// Name of the default method with its option `polish`.
+const POLISHED: &str = "lindstrom-turk --polish";
+
 /// Returns tables of the mean, RMS and maximum distance by mesh, ratio and method.
 pub fn section() -> Result<String> {
     let mut table = Table::new(["mesh, ratio, method", "faces", "mean %", "RMS %", "max %"]);
@@ -74,13 +77,14 @@ fn add_rows(
     ratio: f64,
 ) -> Result<()> {
     let what = |method: &str| format!("{file}, {:.0} %, {method}", ratio * 100.0);
-    for method in Method::ALL {
-        if method == Method::Pm && mesh.faces.len() > MOST_FOR_PM {
+    let plain = |method: Method| (method.name(), Options { method, ..Options::default() });
+    let polish = Options { polish: true, ..Options::default() };
+    for (name, options) in Method::ALL.map(plain).into_iter().chain([(POLISHED, polish)]) {
+        if options.method == Method::Pm && mesh.faces.len() > MOST_FOR_PM {
             continue;
         }
-        let options = Options { method, ..Options::default() };
         let (level, _) = contract_to(mesh, Target::Ratio(ratio), &options)?;
-        table.row(row(&what(method.name()), &level, surface)?);
+        table.row(row(&what(name), &level, surface)?);
     }
     let target = (mesh.faces.len() as f64 * ratio) as usize;
     let level = Mesh::from(&simplify_with_update(&Indexed::from(mesh), target));

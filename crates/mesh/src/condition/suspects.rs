@@ -27,10 +27,13 @@ pub(super) fn unbalanced(mesh: &Mesh) -> Vec<bool> {
     sums.into_iter().map(|sum| sum != 0).collect()
 }
 
-/// Returns true if as many faces run along every edge in one direction as in the other. Where no face
-/// repeats another, such a mesh is [closed](crate::closed_faces) everywhere.
+/// Returns true if as many faces run along every edge in one direction as in the other, by 64-bit sums
+/// of hashes. Where no face repeats another, such a mesh is [closed](crate::closed_faces) everywhere.
 ///
-/// Compares 64-bit sums of hashes. Cost: one pass over the faces.
+/// Faces that repeat a vertex are left out. Cost: one pass over the faces.
+///
+/// # Panics
+/// If an index is out of range.
 pub fn is_balanced(mesh: &Mesh) -> bool {
     !unbalanced(mesh).contains(&true)
 }

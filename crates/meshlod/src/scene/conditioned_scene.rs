@@ -39,7 +39,8 @@ impl<'s> ConditionedScene<'s> {
     /// are simplified independently.
     ///
     /// Cost: linear, with a sort of the boundary edges. Non-manifold vertices are split only when
-    /// a simplifier finds some.
+    /// a simplifier finds some. A mesh with a single-sided material is simplified with
+    /// [`Options::single_sided`].
     /// # Errors
     /// Locks of another length.
     pub fn new(
@@ -138,13 +139,17 @@ impl<'s> ConditionedScene<'s> {
     /// lie near each other, and their number; `None` if they are few.
     ///
     /// Looks for distances of about a millionth to a ten-thousandth of the diagonal of the largest
-    /// mesh that has a boundary. Edges that lie exactly on each other are not counted where they have been sewn.
+    /// mesh. Edges that lie exactly on each other are not counted where they have been sewn.
     ///
     /// Cost: as for [`near_borders`], at three distances.
     pub fn near_borders(&self) -> Option<NearBorders> {
-        let may_be_near = |mesh: &&Mesh| mesh.validate().is_ok() && !is_balanced(mesh);
+        let valid = |mesh: &&Mesh| mesh.validate().is_ok();
         let meshes: Vec<&Mesh> =
-            self.meshes.iter().map(ConditionedMesh::mesh).filter(may_be_near).collect();
+            self.meshes.iter().map(ConditionedMesh::mesh).filter(valid).collect();
+        // A mesh without a boundary has nothing near.
+        if meshes.iter().all(|mesh| is_balanced(mesh)) {
+            return None;
+        }
         let diagonal = meshes.iter().map(|mesh| mesh.bounds().diagonal()).fold(0.0, f64::max);
         let power = diagonal.log10().floor();
         if !power.is_finite() {
@@ -164,7 +169,7 @@ impl<'s> ConditionedScene<'s> {
     }
 }
 
-/// Returns true if a face of a mesh is seen from its front only.
+/// Returns true if a face of a mesh has a material that is seen from its front only.
 fn has_single_sides(scene: &Scene, mesh: &SceneMesh) -> bool {
     mesh.materials.iter().flatten().any(|&material| !scene.materials[material].is_double_sided)
 }

@@ -7,6 +7,8 @@ use std::collections::HashMap;
 
 use glam::Vec3;
 
+use crate::kernel::components::NO_COMPONENT;
+
 /// Sums over a component that say whether another is its other coat.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Imprint {
@@ -45,22 +47,23 @@ impl Imprint {
     }
 }
 
-/// Returns the other coat of each component: its own number if it has just one. Each component is
-/// the coat of at most one other.
+/// Returns the other coat of each component, or [`NO_COMPONENT`]. Each component is the coat of at
+/// most one other.
 pub(crate) fn pair(imprints: &[Imprint]) -> Vec<u32> {
-    let mut coats: Vec<u32> = (0..imprints.len() as u32).collect();
-    let mut alone = HashMap::new();
+    let mut coats = vec![NO_COMPONENT; imprints.len()];
+    let mut alone: HashMap<_, Vec<u32>> = HashMap::new();
     for (i, imprint) in (0..).zip(imprints) {
         let (common, direction) = imprint.split();
         if direction == 0 {
             continue;
         }
-        match alone.remove(&(common, direction.wrapping_neg())) {
+        let opposite = alone.get_mut(&(common, direction.wrapping_neg()));
+        match opposite.and_then(Vec::pop) {
             Some(other) => {
                 coats[i as usize] = other;
                 coats[other as usize] = i;
             }
-            None => _ = alone.insert((common, direction), i),
+            None => alone.entry((common, direction)).or_default().push(i),
         }
     }
     coats
@@ -100,7 +103,9 @@ mod tests {
         let back = imprint(&[[3, 1, 0], [2, 3, 0]], 0.0);
         let other_diagonal = imprint(&[[1, 0, 2], [3, 1, 2]], 0.0);
         let beside = imprint(&[[3, 1, 0], [2, 3, 0]], 1.0);
-        assert_eq!(pair(&[front, front, beside, back]), [0, 3, 2, 1]);
+        let none = NO_COMPONENT;
+        assert_eq!(pair(&[front, beside, back]), [2, none, 0]);
+        assert_eq!(pair(&[front, front, back, back]), [3, 2, 1, 0]);
         assert_eq!(pair(&[front, other_diagonal]), [1, 0]);
         assert_eq!(pair(&[front, back, front, back]), [1, 0, 3, 2]);
     }
@@ -113,6 +118,6 @@ mod tests {
         let [front, back] =
             [shell, inside_out].map(|faces| Imprint::of(&[0, 1, 2, 3], &faces, place));
         assert_eq!(pair(&[front, back]), [1, 0]);
-        assert_eq!(pair(&[front, front]), [0, 1]);
+        assert_eq!(pair(&[front, front]), [NO_COMPONENT; 2]);
     }
 }

@@ -150,11 +150,9 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         widest(ContractAll { collapse_loop: self, faces, last });
     }
 
-    /// Contracts edges, and between them removes each component once no edge costs less, unless that
-    /// would leave less than half of the faces that are wanted.
+    /// Contracts edges, and between them removes each component once no edge costs less.
     #[inline(always)]
     fn contract_all(&mut self, faces: usize, last: u16) {
-        self.components.iter_mut().for_each(|components| components.wake_too_many());
         loop {
             let component =
                 self.next_component().filter(|&bucket| bucket <= last.min(last_bucket()));
@@ -163,7 +161,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
             }
             match component {
                 Some(bucket) if self.live_faces > faces => {
-                    self.vanish_up_to(bucket, faces / 2);
+                    self.vanish_up_to(bucket);
                 }
                 _ => return,
             }

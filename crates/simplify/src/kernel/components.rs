@@ -22,7 +22,7 @@ use crate::kernel::setup::vertex_order::{Order, is_face};
 const EARLY_SHARE: usize = 32;
 
 /// Component of vertices without faces.
-const NO_COMPONENT: u32 = u32::MAX;
+pub(crate) const NO_COMPONENT: u32 = u32::MAX;
 
 /// A connected component of the input.
 #[derive(Clone, Debug)]
@@ -60,8 +60,6 @@ pub(crate) struct Components {
     waiting: BinaryHeap<Reverse<(u16, u32)>>,
     /// Components that have been refused.
     refused: Vec<u32>,
-    /// Components that have more faces than the current run may remove at once.
-    too_many: Vec<u32>,
     vanished: Vec<u32>,
 }
 
@@ -156,7 +154,6 @@ impl Components {
             input: builder.build(),
             waiting: BinaryHeap::new(),
             refused: Vec::new(),
-            too_many: Vec::new(),
             vanished: Vec::new(),
         }
     }
@@ -277,18 +274,6 @@ impl Components {
     /// Sets a component aside that is refused, until all are made eligible again.
     pub(crate) fn refuse(&mut self, component: u32) {
         self.refused.push(component);
-    }
-
-    /// Sets a component aside that has more faces than the current run may remove at once.
-    pub(crate) fn leave_too_many(&mut self, component: u32) {
-        self.too_many.push(component);
-    }
-
-    /// Makes components that were set aside for their number of faces candidates again.
-    pub(crate) fn wake_too_many(&mut self) {
-        for component in std::mem::take(&mut self.too_many) {
-            self.put_back(component, 0);
-        }
     }
 
     /// Removes a component for good.

@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use crate::kernel::attributes::AttributeModel;
-use crate::kernel::collapse_loop::{CollapseLoop, is_out_of_proportion};
+use crate::kernel::collapse_loop::{CollapseLoop, is_out_of_proportion, is_seen};
 use crate::kernel::components::{VanishingCost, faces_at};
 use crate::kernel::contraction_log::Logged;
 use crate::kernel::mesh::one_ring::GHOST;
@@ -14,14 +14,22 @@ use crate::refusal::Refusal;
 /// Number of buckets after which a component is tried again that was out of proportion.
 const LATER: u16 = 8;
 
+/// Number of faces up to which a component may be most of what is left and yet vanish.
+const FEW: usize = 64;
+
+/// Returns true if a component with this many of all faces is most of what is left.
+fn is_most(faces: usize, all: usize) -> bool {
+    faces > FEW && 2 * faces > all
+}
+
 impl<A: AttributeModel> CollapseLoop<'_, A> {
-    /// Removes the cheapest component if its bucket is at most `last` and `fewest` faces are left,
-    /// unless it is refused or has become more expensive.
+    /// Removes the cheapest component if its bucket is at most `last`, unless it is refused or has
+    /// become more expensive.
     ///
     /// Costs only rise, as a component loses faces and as others vanish. So a cost found earlier is
     /// a lower bound, and is computed again when its turn comes.
     #[cold]
-    pub(crate) fn vanish_up_to(&mut self, last: u16, fewest: usize) {
+    pub(crate) fn vanish_up_to(&mut self, last: u16) {
         if let Some(components) = &mut self.components {
             components.count(&mut self.vertices);
         }
@@ -53,10 +61,9 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
                 .map_or(f32::INFINITY, |bound| bound.limit_at(components.vertices(component)));
             if left >= self.live_faces {
                 self.refusals.add(Refusal::LastFaces);
-            } else if self.live_faces - left < fewest {
-                components.leave_too_many(component);
-                self.refusals.add(Refusal::Disproportion);
-            } else if is_out_of_proportion(loss, self.error as f32, self.room) {
+            } else if is_out_of_proportion(loss, self.error as f32, self.room)
+                || is_most(left, self.live_faces) && is_seen(loss, self.room)
+            {
                 self.refusals.add(Refusal::Disproportion);
                 // By then the surface may have moved as far elsewhere.
                 match last.min(last_bucket()).saturating_add(LATER) {

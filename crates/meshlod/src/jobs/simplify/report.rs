@@ -65,16 +65,18 @@ impl LostVolume {
         (ready, level): (&ConditionedScene<'_>, &[Mesh]),
     ) -> Option<Self> {
         let lost = report.volume.lost().abs() + report.volume.vanished;
-        if !report.method.conserves_volume() || lost == 0.0 {
+        // What is flat has no volume but rounding.
+        if !report.method.conserves_volume()
+            || lost == 0.0
+            || lost < 1e-12 * world_bounds(input).diagonal().powi(3)
+        {
             return None;
         }
-        let of_input = match report.duplicate_faces {
-            0 => closed_volume_of_distinct(input),
-            _ => closed_volume(input),
+        let of_input = match are_distinct(report, ready) {
+            true => closed_volume_of_distinct(input),
+            false => closed_volume(input),
         };
-        // What is flat has no volume but rounding.
-        let is_more = || lost >= 1e-12 * world_bounds(input).diagonal().powi(3);
-        Self::relative(&report.volume, of_input, || can_restore(ready, level)).filter(|_| is_more())
+        Self::relative(&report.volume, of_input, || can_restore(ready, level))
     }
 
     fn relative(
@@ -87,6 +89,12 @@ impl LostVolume {
         let is_seen = part.is_finite() && part.abs().max(vanished) >= UNSEEN;
         is_seen.then(|| Self { part, vanished, is_restorable: can_restore() })
     }
+}
+
+/// Returns true if no face repeats another for sure: their edges would have four faces.
+fn are_distinct(report: &Report, ready: &ConditionedScene<'_>) -> bool {
+    let split = ready.counts().split_vertices;
+    [report.duplicate_faces, report.non_manifold_vertices, split] == [0; 3]
 }
 
 /// Returns true if the volumes of all meshes of a level that have one can be restored.
@@ -126,6 +134,33 @@ mod tests {
             // Within a tolerance they stay as they are, but no shape needs them twice.
             assert_eq!(needed, if error == "0" { 12 } else { once });
             assert!(level.flatten().faces.len() <= needed);
+        }
+    }
+
+    #[test]
+    fn faces_that_are_there_twice_are_not_taken_for_distinct() {
+        use meshlod_mesh::{Borders, Labels};
+        use meshlod_samples as samples;
+        use meshlod_simplify::{Options, Target};
+
+        use crate::scene::SceneSimplifier;
+
+        let ball = Mesh { attributes: None, ..samples::sphere(400) };
+        let mut twice = ball.clone();
+        twice.faces.extend(&ball.faces);
+        let names = ["a", "b"].map(str::to_owned).to_vec();
+        let of_face = [0, 1].map(|label| vec![label; ball.faces.len()]).concat();
+        twice.materials = Some(Labels { names, of_face });
+        for (mesh, expected) in [(ball, true), (twice, false)] {
+            let scene = Scene::from_mesh("", mesh);
+            let ready =
+                ConditionedScene::new(&scene, &Options::default(), Borders::Stitch).unwrap();
+            let mut simplifier = SceneSimplifier::new(&ready).unwrap();
+            let report = simplifier.run(Target::Ratio(0.5), &mut ()).unwrap();
+            assert_eq!(are_distinct(&report, &ready), expected);
+            if expected {
+                assert_eq!(closed_volume_of_distinct(&scene), closed_volume(&scene));
+            }
         }
     }
 

@@ -1,7 +1,7 @@
-use meshlod_fixtures::{fan, shared_mesh};
-use meshlod_io::{Node, ReadOptions, SceneMesh, read};
+use meshlod_fixtures::{fan, grid, shared_mesh};
+use meshlod_io::{Material, Node, ReadOptions, SceneMesh, read};
 use meshlod_measure::{DistanceOptions, distance};
-use meshlod_mesh::{Borders, Lock, Locks};
+use meshlod_mesh::{Borders, Lock, Locks, VertexId};
 use meshlod_samples as samples;
 use meshlod_simplify::{Options, Topology};
 
@@ -53,6 +53,32 @@ fn the_larger_copy_keeps_more() {
     let [small, large] = faces(&level)[..] else { panic!("two meshes") };
     assert!(report.reached && small + large == report.output_faces);
     assert!(large > 2 * small, "{small} and {large}");
+}
+
+#[test]
+fn what_is_seen_from_its_front_only_keeps_its_back() {
+    let mut cards = grid(1);
+    for i in 1..20 {
+        let (mut card, start) = (grid(1), cards.positions.len() as u32);
+        card.positions.iter_mut().for_each(|at| at[2] = f64::from(i));
+        cards.positions.extend(card.positions);
+        cards.faces.extend(card.faces.iter().map(|face| face.map(|v| VertexId(v.0 + start))));
+    }
+    let backs = cards.faces.clone().into_iter().map(|[a, b, c]| [c, b, a]);
+    cards.faces.extend(backs);
+    for is_double_sided in [false, true] {
+        let mut cards = scene(vec![cards.clone()], vec![node(0, 1.0)]);
+        cards.materials = vec![Material { is_double_sided, ..Material::default() }];
+        cards.meshes[0].materials = vec![Some(0)];
+        let (level, _) = run(&cards, Target::Ratio(0.5));
+        let is_front = |face: &&[VertexId; 3]| {
+            let [a, b, c] = face.map(|v| level[0].positions[v.index()]);
+            (b[0] - a[0]) * (c[1] - a[1]) > (b[1] - a[1]) * (c[0] - a[0])
+        };
+        let fronts = level[0].faces.iter().filter(is_front).count();
+        assert_eq!(level[0].faces.len(), 40);
+        assert_eq!(fronts == 20, !is_double_sided, "{fronts} of 40 faces are fronts");
+    }
 }
 
 #[test]
