@@ -227,9 +227,7 @@ impl<'m> Original<'m> {
         let surfaces = copies.as_ref().and_then(|copies| copies.prepare(|i| &scene.meshes[i].mesh));
         let surface = match copies.zip(surfaces) {
             Some((copies, surfaces)) => OriginalSurface::Copies(copies, surfaces),
-            None => {
-                OriginalSurface::Whole(PreparedSurface::new(shown_surface(scene, whole))?)
-            }
+            None => OriginalSurface::Whole(PreparedSurface::new(shown_surface(scene, whole))?),
         };
         Ok(Self { scene, surface })
     }

@@ -43,7 +43,11 @@ struct LinkedFace {
 impl Stars {
     pub(crate) fn new(forest: &Forest) -> Self {
         let mut this = Self {
-            faces: forest.faces.iter().map(|&nodes| LinkedFace { nodes, next: [NONE; 3] }).collect(),
+            faces: forest
+                .faces
+                .iter()
+                .map(|&nodes| LinkedFace { nodes, next: [NONE; 3] })
+                .collect(),
             ends: vec![[NONE; 2]; forest.positions.len()],
             fine: Vec::new(),
             changed: Vec::new(),

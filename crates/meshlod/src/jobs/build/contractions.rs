@@ -198,11 +198,7 @@ fn pack(
     Ok((archive, certificate, surface_bytes))
 }
 
-fn levels(
-    archive: &Archive<Vec<u8>>,
-    recorded: &Recorded,
-    request: &BuildRequest,
-) -> BuiltLevels {
+fn levels(archive: &Archive<Vec<u8>>, recorded: &Recorded, request: &BuildRequest) -> BuiltLevels {
     BuiltLevels::Contractions {
         held: recorded.held,
         error_kind: archive.error_kind(),
