@@ -53,8 +53,8 @@ impl Archive<Vec<u8>> {
         Self::encode(forest.clone(), storage)
     }
 
-    /// Encodes a forest that nobody needs any more, in three fifths of the memory that
-    /// [`write`](Self::write) takes beside it.
+    /// Encodes a forest that nobody needs any more, as [`write`](Self::write) does, but in its place:
+    /// it is gone before its model is encoded.
     /// # Errors
     /// As for [`write`](Self::write).
     pub fn encode(forest: Forest, storage: &Storage) -> Result<(Self, Certificate), FileError> {

@@ -8,7 +8,7 @@ use super::normal_predictor::NormalPredictor;
 use super::unflatten::unflatten;
 use super::write::StoredErrors;
 use crate::error_kind::ErrorKind;
-use crate::forest::{Forest, MAX_LEVELS, NONE};
+use crate::forest::{Forest, MAX_LEVELS, NONE, used_leaves};
 use crate::length16::Length16;
 use crate::pack::{ERRORS, error9, error16, radius8, radius16};
 use crate::query::SLACK;
@@ -98,8 +98,7 @@ impl Forest {
         unflatten(self, &mut places, unrounded, is_free, |nodes| {
             has_area(nodes.map(|node| self.exact_stored(node)))
         });
-        let mut is_used = vec![false; self.vertices];
-        self.faces.iter().flatten().for_each(|&leaf| is_used[leaf as usize] = true);
+        let is_used = used_leaves(&self.faces, self.vertices);
         let mut moved = Displacement::default();
         for (node, place) in (0u32..).zip(places) {
             if is_used.get(node as usize) == Some(&false) {

@@ -13,7 +13,7 @@ use super::quantize::Quantized;
 use super::wedge_state::WedgeState;
 use super::{FileError, base, chunk, header};
 use crate::cut::Certificate;
-use crate::forest::Forest;
+use crate::forest::{Forest, used_leaves};
 use crate::implicit::{Dependencies, DetachedUpdate, Implicit, ModelInfo, Order, SplitRule};
 
 /// Options for writing a `.mlod` file.
@@ -180,8 +180,9 @@ pub(super) fn lattice(forest: &Forest, storage: &Storage, diagonal: f64) -> Latt
 
 /// Returns the bounding-box diagonal of the finest mesh, in model units.
 pub(super) fn diagonal(forest: &Forest) -> f64 {
-    let leaves = forest.faces.iter().flatten().map(|&leaf| forest.positions[leaf as usize]);
-    let places: Vec<_> = leaves.map(|p| p.map(f64::from)).collect();
+    let leaves = forest.positions.iter().zip(used_leaves(&forest.faces, forest.vertices));
+    let places = leaves.filter(|(_, is_used)| *is_used).map(|(place, _)| place.map(f64::from));
+    let places: Vec<_> = places.collect();
     let bounds = Bounds::of(&places);
     if bounds.is_empty() { 0.0 } else { forest.frame.model_length(bounds.diagonal()) }
 }

@@ -25,8 +25,8 @@ use crate::wedges::ForestWedges;
 
 pub(crate) use by_level::by_level;
 pub(crate) use monotone_errors::MonotoneErrors;
-pub(crate) use recorder::MAX_RANKED;
 pub use recorder::Recorder;
+pub(crate) use recorder::{MAX_RANKED, used_leaves};
 pub(crate) use stage::Stage;
 pub(crate) use stars::Stars;
 

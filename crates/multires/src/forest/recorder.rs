@@ -34,6 +34,13 @@ pub struct Recorder {
     failure: Option<BuildError>,
 }
 
+/// Returns for each leaf whether a face uses it.
+pub(crate) fn used_leaves(faces: &[[u32; 3]], leaves: usize) -> Vec<bool> {
+    let mut is_used = vec![false; leaves];
+    faces.iter().flatten().for_each(|&leaf| is_used[leaf as usize] = true);
+    is_used
+}
+
 /// A live node, and what the update that contracts it has to satisfy.
 #[derive(Clone, Copy, Debug)]
 struct LiveNode {
@@ -60,8 +67,9 @@ impl Recorder {
         let numbers = alive.iter().enumerate().filter(|_| some > 0);
         numbers.for_each(|(i, face)| forest_face[face.index()] = i as u32);
         let faces: Vec<_> = alive.iter().map(|&face| surface.face(face).map(|v| v.0)).collect();
-        let corners = faces.iter().flatten().map(|&v| surface.position(VertexId(v)).to_array());
-        let frame = Frame::of_diagonal(&Bounds::of(&corners.collect::<Vec<_>>()));
+        let used = used_leaves(&faces, vertices).into_iter().enumerate().filter(|(_, used)| *used);
+        let places = used.map(|(v, _)| surface.position(VertexId::new(v)).to_array());
+        let frame = Frame::of_diagonal(&Bounds::of(&places.collect::<Vec<_>>()));
         let at = |v: usize| frame.local(surface.position(VertexId::new(v))).as_vec3().to_array();
         let standing = |node: usize| LiveNode {
             node: node as u32,
