@@ -158,7 +158,8 @@ pub(super) enum RareStep {
 
 /// Bits of the table of rare steps.
 const RARE_BITS: u32 = 8;
-/// Slots of a new vertex, of the next one, of each of [`NEARBY`], and of a node by its number.
+/// Slots of a new vertex, of the next one, of each of [`NEARBY`], and of a node by its number. Those
+/// of the nodes are in proportion to those of [`NEARBY`]; the first two are not fitted to anything.
 const RARE: [u16; NEARBY.len() + 3] = [4, 36, 186, 14, 4, 4, 2, 2, 2, 2];
 
 impl RareStep {
