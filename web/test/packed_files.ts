@@ -1,7 +1,7 @@
 /** Quads of two faces with texture coordinates, as `compress --bits 6` writes them. */
 
 import { crc32 } from "../src/file/crc32.ts";
-import { readMlzHeader } from "../src/mlz/header.ts";
+import { headerSumOf, readMlzHeader } from "../src/mlz/header.ts";
 import { ByteReader } from "../src/packed/reader.ts";
 
 const MLZ =
@@ -28,7 +28,7 @@ export function mlzHeaderLength(file: Uint8Array): number {
 export function sealMlz(file: Uint8Array, header: number): void {
     const view = new DataView(file.buffer, file.byteOffset);
     view.setUint32(16, crc32(file.subarray(header)), true);
-    view.setUint32(12, crc32(file.subarray(20, header)), true);
+    view.setUint32(12, headerSumOf(file, header), true);
 }
 
 /** The quad as `.mlq` in each scheme. */

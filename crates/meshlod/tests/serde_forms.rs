@@ -168,7 +168,7 @@ fn options_of_files_levels_and_bytes() {
     let quantization = TransportQuantization::Lattice(Lattice::new(-9).unwrap());
     options_as(
         &TransportOptions { quantization, ..Default::default() },
-        &json!({ "quantization": { "lattice": { "exponent": -9 } }, "block_faces": 256 }),
+        &json!({ "quantization": { "lattice": { "exponent": -9 } }, "block_faces": 320 }),
     );
     options_as(&AttributeBounds { uv: 0.5, ..Default::default() }, &json!({ "uv": 0.5 }));
     let cache = CacheAware { entries: 24, ..CacheAware::default() };

@@ -7,22 +7,17 @@ import { BlockFaces, BlockShape } from "./block_shape.ts";
 import { decodeLayers } from "./layers/block_layers.ts";
 import type { BlockLayers } from "./layers/block_layers.ts";
 import { Places } from "./place.ts";
-import { STEP_BITS } from "./tables.ts";
+import { MAX_NEW, STEP_BITS } from "./tables.ts";
 import { Symbols } from "./symbols.ts";
 import { must } from "../error.ts";
 
 /** Steps, as they are numbered. */
-const [NEW, PREVIOUS, NEXT, NOTHING] = [0, 1, 2, 3];
-/** Where other nodes mostly are along the loop, and their slots of 256. */
-const NEARBY = [
-    [-2, 222],
-    [-3, 18],
-    [-4, 5],
-    [3, 4],
-    [4, 2],
-    [-5, 2],
-    [5, 1],
-] as const;
+const [NEW, PREVIOUS, NEXT, NOTHING, OTHER] = [0, 1, 2, 3, 4];
+/** Where other nodes mostly are along the loop, and where their slots of 256 start. */
+const NEARBY = [-2, -3, -4, 3, 4, -5, 5];
+const NEARBY_STARTS = Uint16Array.of(0, 222, 240, 245, 249, 251, 253, 254, 256);
+/** Starts of steps after fans: a new vertex, the next one, those nearby, any other. */
+const RARE = Uint16Array.of(0, 4, 40, 226, 240, 244, 248, 250, 252, 254, 256);
 const NEARBY_BITS = 8;
 const NODE_BITS = 12;
 const VALUES_PER_BYTE = 256;
@@ -49,6 +44,9 @@ export class BlockDecoder {
     private readonly border = new Border();
     private readonly gates = new Gates();
     private readonly places: Places;
+    /** Faces of the block, and the number of their corners so far. */
+    private faces = new Uint16Array(0);
+    private at = 0;
 
     constructor(private readonly header: MlzHeader) {
         this.places = new Places(NODES, header.models);
@@ -78,53 +76,71 @@ export class BlockDecoder {
         const { border, gates } = this;
         border.clear();
         gates.length = 0;
-        const faces = new Uint16Array(3 * count);
-        for (let at = 0; at < faces.length;) {
+        this.faces = new Uint16Array(3 * count);
+        for (this.at = 0; this.at < this.faces.length;) {
             const pivot = border.pivot();
             if (pivot < 0) {
                 const first = gates.addCorners();
                 border.start(first);
-                for (let k = 0; k < 3; k++) faces[at++] = first + k;
-                continue;
+                for (let k = 0; k < 3; k++) this.faces[this.at++] = first + k;
+            } else if (this.header.hasFans) {
+                this.fan(symbols, pivot);
+            } else {
+                this.add(pivot, symbols.among(this.stepsAt(pivot), STEP_BITS), symbols);
             }
-            const a = border.vertex[pivot];
-            const b = border.vertex[border.next[pivot]];
-            const third = this.step(symbols, pivot);
-            if (third < 0) continue;
-            faces[at++] = b;
-            faces[at++] = a;
-            faces[at++] = third;
         }
-        return faces;
+        return this.faces;
     }
 
-    /** Decodes a step; returns the third corner of its face, or −1. */
-    private step(symbols: Symbols, at: number): number {
+    /** Decodes a fan: new vertices, and how it ends. */
+    private fan(symbols: Symbols, at: number): void {
+        const fan = symbols.among(this.header.models.fans[contextAt(this.border, at)], STEP_BITS);
+        for (let left = fan % (MAX_NEW + 1); left > 0; left--) {
+            this.add(at, NEW, symbols);
+            if (this.at === this.faces.length) return;
+        }
+        const end = Math.floor(fan / (MAX_NEW + 1));
+        if (end < 2) {
+            this.add(at, end === 0 ? PREVIOUS : NOTHING, symbols);
+            return;
+        }
+        const rare = symbols.among(RARE, NEARBY_BITS);
+        if (rare < 2) this.add(at, rare === 0 ? NEW : NEXT, symbols);
+        else this.add(at, OTHER, symbols, this.nearby(symbols, at, rare - 2));
+    }
+
+    private stepsAt(at: number): Uint16Array {
+        return this.header.models.steps[contextAt(this.border, at)];
+    }
+
+    /** Does a step, and adds its face. */
+    private add(at: number, step: number, symbols: Symbols, other = -1): void {
         const { border, gates } = this;
-        const starts = this.header.models.steps[contextAt(border, at)];
-        const place = symbols.place(STEP_BITS);
-        let step = 0;
-        while (place >= starts[step + 1]) step++;
-        symbols.consume(STEP_BITS, starts[step + 1] - starts[step], place - starts[step], 0);
-        if (step === NEW) return border.addNew(at, gates.add(border, at));
-        if (step === PREVIOUS) return border.addPrevious(at);
-        if (step === NEXT) return border.addNext(at);
-        if (step !== NOTHING) return border.addOther(at, this.other(symbols, at));
-        border.close(at);
-        return -1;
+        const a = border.vertex[at];
+        const b = border.vertex[border.next[at]];
+        let third: number;
+        if (step === NEW) third = border.addNew(at, gates.add(border, at));
+        else if (step === PREVIOUS) third = border.addPrevious(at);
+        else if (step === NEXT) third = border.addNext(at);
+        else if (step === NOTHING) {
+            border.close(at);
+            return;
+        } else {
+            const node = other < 0 ? this.other(symbols, at) : other;
+            third = border.addOther(at, node);
+        }
+        this.faces[this.at++] = b;
+        this.faces[this.at++] = a;
+        this.faces[this.at++] = third;
     }
 
     private other(symbols: Symbols, at: number): number {
-        const place = symbols.place(NEARBY_BITS);
-        let start = 0;
-        for (const [by, size] of NEARBY) {
-            if (place < start + size) {
-                symbols.consume(NEARBY_BITS, size, place - start, 0);
-                return this.border.along(at, by);
-            }
-            start += size;
-        }
-        symbols.consume(NEARBY_BITS, (1 << NEARBY_BITS) - start, place - start, 0);
+        return this.nearby(symbols, at, symbols.among(NEARBY_STARTS, NEARBY_BITS));
+    }
+
+    /** Returns a node that is often hit, given its number, or else one whose number follows. */
+    private nearby(symbols: Symbols, at: number, which: number): number {
+        if (which < NEARBY.length) return this.border.along(at, NEARBY[which]);
         return this.border.known(symbols.number(NODE_BITS));
     }
 

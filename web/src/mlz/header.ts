@@ -13,6 +13,8 @@ import { MAX_CELLS } from "./place.ts";
 export const MAGIC = "meshlodz";
 /** Versions: positions and faces only, with layers, with directions that follow neighbours. */
 const [SURFACES, WITH_LAYERS, BY_DIRECTIONS] = [1, 2, 3];
+/** Added to the version where faces are coded by fans. */
+const WITH_FANS = 3;
 const SUMS_END = 20;
 const MOST_BITS = 21;
 const FACES_PER_BYTE = 16;
@@ -34,6 +36,8 @@ export interface MlzHeader {
     firstBits: [number, number, number];
     faces: number;
     vertices: number;
+    /** True if faces are coded by fans instead of single steps. */
+    hasFans: boolean;
     models: Models;
     layers: LayersFormat | null;
     resources: number;
@@ -51,8 +55,10 @@ export function readMlzHeader(file: Uint8Array, reader: ByteReader): MlzHeader {
     );
     reader.take(8);
     const version = reader.u32();
-    const isKnown = version >= SURFACES && version <= BY_DIRECTIONS;
-    reader.must(isKnown, `version ${version} is not supported, only 1 to 3`);
+    const isKnown = version >= SURFACES && version <= WITH_FANS + BY_DIRECTIONS;
+    reader.must(isKnown, `version ${version} is not supported, only 1 to 6`);
+    const hasFans = version > WITH_FANS;
+    const base = hasFans ? WITH_FANS : 0;
     const [headerSum, checksum] = [reader.u32(), reader.u32()];
     const origin: [number, number, number] = [reader.f64(), reader.f64(), reader.f64()];
     const cell = reader.f64();
@@ -66,10 +72,10 @@ export function readMlzHeader(file: Uint8Array, reader: ByteReader): MlzHeader {
     const models = readModels(reader);
     let layers: LayersFormat | null = null;
     let resources = 0;
-    if (version !== SURFACES) {
+    if (version - base !== SURFACES) {
         layers = readLayersFormat(reader);
         const follows = layers.layers.some(({ mode }) => mode === BY_NEIGHBOURS);
-        const expected = follows ? BY_DIRECTIONS : WITH_LAYERS;
+        const expected = base + (follows ? BY_DIRECTIONS : WITH_LAYERS);
         reader.must(version === expected, `its layers are of version ${expected}`);
         resources = reader.u64();
         const isEmpty = layers.layers.length === 0 && layers.labels.every(({ names }) => !names);
@@ -79,14 +85,21 @@ export function readMlzHeader(file: Uint8Array, reader: ByteReader): MlzHeader {
     const all = blocks.reduce((sum, block) => sum + block.faces, 0);
     reader.must(all === faces, "the faces of its blocks are not those of the mesh");
     reader.must(vertices <= 3 * faces, "it has more vertices than corners of faces");
-    const isWhole = crc32(file.subarray(SUMS_END, reader.at)) === headerSum;
+    const isWhole = headerSumOf(file, reader.at) === headerSum;
     reader.must(isWhole, "its checksum does not match: the file is damaged");
     const last = blocks.at(-1);
     const blockBytes = last ? last.at + last.bytes : 0;
     return {
-        ...{ origin, cell, firstBits, faces, vertices, models, layers, resources, blocks },
+        ...{ origin, cell, firstBits, faces, vertices, hasFans, models, layers, resources, blocks },
         ...{ blockBytes, checksum },
     };
+}
+
+/** Returns the checksum of a header; with fans, it covers the version. */
+export function headerSumOf(file: Uint8Array, end: number): number {
+    const sealed = file.slice(SUMS_END - 4, end);
+    sealed.set(file.subarray(8, 12));
+    return crc32(sealed.subarray(file[8] > WITH_FANS ? 0 : 4));
 }
 
 function readIndex(count: number, reader: ByteReader): BlockSpan[] {

@@ -4,7 +4,7 @@ import { eighthPower } from "../packed/eighths.ts";
 import { BitReader } from "../packed/reader.ts";
 import type { ByteReader } from "../packed/reader.ts";
 import { CONTEXTS, KINDS } from "./gates.ts";
-import { STEPS, residualTable, stepTable } from "./tables.ts";
+import { STEPS, fanTable, residualTable, stepTable } from "./tables.ts";
 import type { ResidualTable } from "./tables.ts";
 
 const FEATURES = 5;
@@ -20,6 +20,8 @@ export interface Models {
     residuals: ResidualTable[];
     /** For each context the starts of the steps. */
     steps: Uint16Array[];
+    /** For each context the starts of the fans. */
+    fans: Uint16Array[];
 }
 
 /** Reads the models. */
@@ -40,5 +42,11 @@ export function readModels(reader: ByteReader): Models {
     });
     const rest = codes[CONTEXTS] ?? new Array<number>(STEPS).fill(6);
     const steps = codes.slice(0, CONTEXTS).map((own) => stepTable(own ?? rest));
-    return { gates, start, residuals, steps };
+    // Each new vertex adds a face to the fan's, and has one itself.
+    const after = (context: number, added: number) =>
+        24 * Math.min(Math.floor(context / 24) + added, 6) + (context & 2);
+    const fans = steps.map((own, context) =>
+        fanTable((added) => (added === 0 ? own : steps[after(context, added)])),
+    );
+    return { gates, start, residuals, steps, fans };
 }

@@ -46,6 +46,15 @@ export class Symbols {
         return low;
     }
 
+    /** Returns one of several symbols, given where they start, and the end, of 2^`bits`. */
+    among(starts: Uint16Array, bits: number): number {
+        const place = this.place(bits);
+        let symbol = 0;
+        while (place >= starts[symbol + 1]) symbol++;
+        this.consume(bits, starts[symbol + 1] - starts[symbol], place - starts[symbol], 0);
+        return symbol;
+    }
+
     /** Returns a number of a known length, up to 32 bits. */
     number(bits: number): number {
         let number = 0;

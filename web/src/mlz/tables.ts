@@ -68,9 +68,35 @@ export function stepTable(codes: readonly number[]): Uint16Array {
     const sizes = parts.map((part) =>
         Math.max(Math.floor((part * ((1 << STEP_BITS) - 8)) / all), 1),
     );
+    return startsOf(sizes, 1 << STEP_BITS);
+}
+
+/** Most new vertices of a fan, and the number of fans: three ends after each number of them. */
+export const MAX_NEW = 7;
+export const FANS = 3 * (MAX_NEW + 1);
+
+/** Returns where each fan starts, and the end, given where the steps start after some vertices. */
+export function fanTable(steps: (added: number) => Uint16Array): Uint16Array {
+    const whole = 1 << STEP_BITS;
+    const sizes = new Array<number>(FANS);
+    let part = 1;
+    for (let added = 0; added <= MAX_NEW; added++) {
+        const starts = steps(added);
+        const size = (step: number) => starts[step + 1] - starts[step];
+        const rare = added < MAX_NEW ? size(2) + size(4) : whole - size(1) - size(3);
+        [size(1), size(3), rare].forEach((size, end) => {
+            sizes[end * (MAX_NEW + 1) + added] = Math.max(Math.floor(part * size + 0.5), 1);
+        });
+        part *= size(0) / whole;
+    }
+    return startsOf(sizes, whole);
+}
+
+/** Returns where each size starts; the last of the greatest ones gets what is left. */
+function startsOf(sizes: number[], whole: number): Uint16Array {
     const most = sizes.lastIndexOf(Math.max(...sizes));
-    sizes[most] += (1 << STEP_BITS) - sizes.reduce((sum, size) => sum + size, 0);
-    const starts = new Uint16Array(STEPS + 1);
-    sizes.forEach((size, step) => (starts[step + 1] = starts[step] + size));
+    sizes[most] += whole - sizes.reduce((sum, size) => sum + size, 0);
+    const starts = new Uint16Array(sizes.length + 1);
+    sizes.forEach((size, k) => (starts[k + 1] = starts[k] + size));
     return starts;
 }

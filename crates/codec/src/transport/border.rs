@@ -63,7 +63,8 @@ pub(super) struct Border {
     nodes: Box<[Node; NODES]>,
     len: usize,
     /// Nodes whose edges are still to be processed, in order of creation.
-    queue: Vec<u16>,
+    queue: Box<[u16; NODES]>,
+    queued: usize,
     taken: usize,
     /// Number of known faces at each vertex.
     faces: Box<[u8; NODES]>,
@@ -72,11 +73,13 @@ pub(super) struct Border {
 impl Border {
     pub(super) fn new() -> Self {
         let nodes: Box<[Node]> = vec![Node::default(); NODES].into();
+        let queue: Box<[u16]> = vec![0; NODES].into();
         let faces: Box<[u8]> = vec![0; NODES].into();
         Self {
             nodes: nodes.try_into().expect("as many as there are"),
             len: 0,
-            queue: Vec::with_capacity(NODES),
+            queue: queue.try_into().expect("as many as there are"),
+            queued: 0,
             taken: 0,
             faces: faces.try_into().expect("as many as there are"),
         }
@@ -84,7 +87,7 @@ impl Border {
 
     pub(super) fn clear(&mut self) {
         self.len = 0;
-        self.queue.clear();
+        self.queued = 0;
         self.taken = 0;
     }
 
@@ -94,7 +97,7 @@ impl Border {
     }
 
     #[inline(always)]
-    fn node_mut(&mut self, at: u16) -> &mut Node {
+    pub(super) fn node_mut(&mut self, at: u16) -> &mut Node {
         &mut self.nodes[usize::from(at) & MASK]
     }
 
@@ -102,6 +105,18 @@ impl Border {
     #[inline(always)]
     pub(super) fn faces_at(&self, vertex: u16) -> u8 {
         self.faces[usize::from(vertex) & MASK]
+    }
+
+    /// Sets the number of known faces at a vertex.
+    #[inline(always)]
+    pub(super) fn set_faces(&mut self, vertex: u16, count: u8) {
+        self.faces[usize::from(vertex) & MASK] = count;
+    }
+
+    /// Returns the number of nodes so far.
+    #[inline(always)]
+    pub(super) fn len(&self) -> usize {
+        self.len
     }
 
     #[inline(always)]
@@ -115,7 +130,8 @@ impl Border {
     /// Returns the first node in the queue whose edge is open.
     #[inline(always)]
     pub(super) fn pivot(&mut self) -> Option<u16> {
-        while let Some(&at) = self.queue.get(self.taken) {
+        while self.taken < self.queued {
+            let at = self.queue[self.taken & MASK];
             if self.node(at).state == EdgeState::Open {
                 return Some(at);
             }
@@ -129,7 +145,7 @@ impl Border {
         let at = self.len as u16;
         for k in 0..3u16 {
             let [vertex, _, apex] = [0, 1, 2].map(|i| vertices[usize::from(k + i) % 3]);
-            self.faces[usize::from(vertex) & MASK] = 0;
+            self.set_faces(vertex, 0);
             let (next, previous) = (at + (k + 1) % 3, at + (k + 2) % 3);
             self.push(Node {
                 vertex,
@@ -144,13 +160,21 @@ impl Border {
         at
     }
 
+    /// Adds a node, which waits in the queue.
     #[inline(always)]
-    fn push(&mut self, node: Node) -> u16 {
+    pub(super) fn push(&mut self, node: Node) -> u16 {
         let at = self.len as u16;
         *self.node_mut(at) = node;
         self.len += 1;
-        self.queue.push(at);
+        self.wait(at);
         at
+    }
+
+    /// Lets a node wait in the queue.
+    #[inline(always)]
+    fn wait(&mut self, at: u16) {
+        self.queue[self.queued & MASK] = at;
+        self.queued += 1;
     }
 
     /// Adds a face on an edge to a new vertex, and a node for it between the edge's two.
@@ -158,7 +182,7 @@ impl Border {
     pub(super) fn add_new(&mut self, at: u16, vertex: u16) -> [u16; 3] {
         let Node { vertex: a, next: second, apex, .. } = *self.node(at);
         let b = self.node(second).vertex;
-        self.faces[usize::from(vertex) & MASK] = 0;
+        self.set_faces(vertex, 0);
         let new = self.push(Node {
             vertex,
             next: second,
@@ -239,7 +263,7 @@ impl Border {
         (node.next, node.apex, node.previous_apex) = (second, a, a);
         node.state = EdgeState::Open;
         self.node_mut(second).previous = other;
-        self.queue.push(other);
+        self.wait(other);
         self.add_face([b, a, c]);
         [b, a, c]
     }

@@ -2,17 +2,18 @@
 
 use glam::{BVec4A, Vec4};
 
-use super::border::{Border, NODES, Step};
+use super::border::{Border, MAX_FACES, NODES, Step};
+use super::fans::{FanEnd, RareStep, add_fan};
 use super::gate::{CONTEXTS, Gate, NEARBY, NEARBY_BITS, NODE_BITS, context, node_at_offset};
-use super::header::{OpenHeader, max_values};
+use super::header::{FaceCoding, OpenHeader, max_values};
 use super::lanes::LANES;
 use super::layers::{
     BlockGeometry, BlockLayers, LayerTables, LayersFormat, SymbolReader, code_block,
 };
 use super::models::{Models, STEP_BITS};
-use super::predict::{CellVec, MAX_CELLS, Prediction, SpreadScales};
+use super::predict::{CellVec, MAX_CELLS, SpreadScales};
 use super::rans::Symbols;
-use super::read::{any_number, number, residual};
+use super::read::{any_number, number, residual_of};
 use super::weld_blocks::checksum;
 use crate::bytes::Malformed;
 
@@ -26,9 +27,11 @@ pub(super) struct Decoder {
 /// Decoder state for one block.
 pub(super) struct Lane {
     border: Border,
-    gates: Vec<Gate>,
+    gates: Box<[Gate; NODES]>,
+    vertices: usize,
     cells: Box<[Vec4; NODES]>,
-    pub(super) faces: Vec<[u16; 3]>,
+    faces: Box<[[u16; 3]; MAX_FACES]>,
+    face_count: usize,
     /// Tags of vertices that are not welded by cell alone.
     tags: Vec<(u16, u32)>,
     /// Attributes and labels, if the file has any.
@@ -69,9 +72,13 @@ impl Decoder {
             self.lanes[k].begin(&mut symbols[k], header.first_bits);
         }
         for lane in &mut self.lanes[blocks.len()..] {
-            lane.gates.clear();
+            lane.vertices = 0;
         }
-        connect(&mut self.lanes[..blocks.len()], &mut symbols, blocks, models);
+        let lanes = &mut self.lanes[..blocks.len()];
+        match header.coding {
+            FaceCoding::Steps => connect(lanes, &mut symbols, blocks, Lane::step, models),
+            FaceCoding::Fans => connect(lanes, &mut symbols, blocks, Lane::fan, models),
+        }
         let inside = place(&mut self.lanes, &mut symbols, models);
         for (k, lane) in self.lanes[..blocks.len()].iter_mut().enumerate() {
             lane.read_tags(&mut symbols[k]).map_err(|wrong| (k, wrong))?;
@@ -86,21 +93,22 @@ impl Decoder {
     }
 }
 
-/// Decodes the connectivity, one step of each block in turn, so that the processor can overlap
-/// them.
-#[inline(never)]
+/// Decodes the connectivity, one step or fan of each block in turn, so that the processor can
+/// overlap them.
+#[inline(always)]
 fn connect(
     lanes: &mut [Lane],
     symbols: &mut [Symbols; LANES],
     blocks: &[BlockBytes],
+    add: impl Fn(&mut Lane, &mut Symbols, &Models, usize),
     models: &Models,
 ) {
     let mut is_left = true;
     while is_left {
         is_left = false;
         for ((lane, symbols), block) in lanes.iter_mut().zip(&mut *symbols).zip(blocks) {
-            if lane.faces.len() < block.faces {
-                lane.step(symbols, models);
+            if lane.face_count < block.faces {
+                add(lane, symbols, models, block.faces);
                 is_left = true;
             }
         }
@@ -116,61 +124,97 @@ fn place(
     models: &Models,
 ) -> [bool; LANES] {
     let mut scales = SpreadScales::new();
-    let mut outside = [0; LANES];
-    let longest = lanes.iter().map(|lane| lane.gates.len()).max().unwrap_or(0);
+    let (mut least, mut greatest) = (Vec4::ZERO, Vec4::ZERO);
+    let longest = lanes.iter().map(|lane| lane.vertices).max().unwrap_or(0);
+    let shortest = lanes.iter().map(|lane| lane.vertices).min().unwrap_or(0);
     for v in 1..longest {
-        let gate = |lane: usize| lanes[lane].gates.get(v).copied().unwrap_or_default();
+        let gate = |lane: usize| lanes[lane].gates[v & MASK];
         let gates = [gate(0), gate(1), gate(2), gate(3)];
         let at = |lane: usize, v: u16| lanes[lane].cells[usize::from(v) & MASK];
-        let predictions = scales.predict(&gates, models, at);
-        let mut places = [Vec4::ZERO; LANES];
-        for k in 0..LANES {
-            if v >= lanes[k].gates.len() {
-                continue;
+        let mut predictions = scales.predict(&gates, models, at);
+        let has_gate = BVec4A::from_array(gates.map(|gate| gate.faces_a > 0));
+        if !has_gate.all() {
+            for (lane, gate) in gates.iter().enumerate().filter(|(_, gate)| gate.faces_a == 0) {
+                predictions.start(lane, (v as u16, gate), models, |v| at(lane, v));
             }
-            let prediction = match gates[k].faces_a {
-                0 => Prediction::start(v as u16, &gates[k], models, |v| at(k, v)),
-                _ => predictions.of(k),
-            };
-            places[k] = prediction.take(|_, nearest, (class, low_bits)| {
-                let table = &models.residuals[class];
-                let residual = residual(&mut symbols[k], table, low_bits);
-                let cell = nearest.wrapping_add(residual);
-                outside[k] |= cell;
-                cell & (MAX_CELLS - 1)
-            });
         }
+        let mut residuals = [[0.0; LANES]; 3];
+        for (turn, residuals) in residuals.iter_mut().enumerate() {
+            let widths = predictions.widths(turn);
+            for lane in 0..LANES {
+                if v < lanes[lane].vertices {
+                    residuals[lane] = residual_of(&mut symbols[lane], models, widths[lane]) as f32;
+                }
+            }
+        }
+        let residuals = residuals.map(Vec4::from_array);
+        let (places, mut turns) = predictions.decode(residuals);
+        if v >= shortest {
+            // Lanes that are done decode gates of earlier blocks, for nothing.
+            for lane in (0..LANES).filter(|&lane| v >= lanes[lane].vertices) {
+                turns.iter_mut().for_each(|turn| turn[lane] = 0.0);
+            }
+        }
+        for turn in turns {
+            least = least.min(turn);
+            greatest = greatest.max(turn);
+        }
+        let points = places.each(|x| x.max(Vec4::ZERO).min(Vec4::splat(LAST_CELL))).points();
         for k in 0..LANES {
-            lanes[k].cells[v & MASK] = places[k];
+            lanes[k].cells[v & MASK] = points[k];
         }
-        let has_gate = gates.map(|gate| gate.faces_a > 0);
-        scales.update(&predictions, places, BVec4A::from_array(has_gate));
+        scales.update(&predictions, places, has_gate);
     }
-    outside.map(|bits| (0..MAX_CELLS).contains(&bits))
+    let is_inside = least.cmpge(Vec4::ZERO) & greatest.cmple(Vec4::splat(LAST_CELL));
+    is_inside.into()
 }
+
+/// Greatest coordinate of a cell.
+const LAST_CELL: f32 = (MAX_CELLS - 1) as f32;
 
 impl Lane {
     fn new() -> Self {
         let cells: Box<[Vec4]> = vec![Vec4::ZERO; NODES].into();
+        let gates: Box<[Gate]> = vec![Gate::default(); NODES].into();
+        let faces: Box<[[u16; 3]]> = vec![[0; 3]; MAX_FACES].into();
         Self {
             border: Border::new(),
-            gates: Vec::with_capacity(NODES),
+            gates: gates.try_into().expect("as many as there are"),
+            vertices: 0,
             cells: cells.try_into().expect("as many as there are"),
-            faces: Vec::new(),
+            faces: faces.try_into().expect("as many as there are"),
+            face_count: 0,
             tags: Vec::new(),
             layers: None,
         }
     }
 
+    /// Returns the decoded faces.
+    pub(super) fn faces(&self) -> &[[u16; 3]] {
+        &self.faces[..self.face_count]
+    }
+
+    #[inline(always)]
+    fn push_gate(&mut self, gate: Gate) {
+        self.gates[self.vertices & MASK] = gate;
+        self.vertices += 1;
+    }
+
+    #[inline(always)]
+    fn push_face(&mut self, face: [u16; 3]) {
+        self.faces[self.face_count % MAX_FACES] = face;
+        self.face_count += 1;
+    }
+
     /// Returns the cells of the decoded vertices.
     pub(super) fn cells(&self) -> impl ExactSizeIterator<Item = CellVec> {
-        self.cells[..self.gates.len()].iter().map(|&cell| CellVec::from_vec4(cell))
+        self.cells[..self.vertices].iter().map(|&cell| CellVec::from_vec4(cell))
     }
 
     fn begin(&mut self, symbols: &mut Symbols, first_bits: [u8; 3]) {
         self.border.clear();
-        self.gates.clear();
-        self.faces.clear();
+        self.vertices = 0;
+        self.face_count = 0;
         let first = first_bits.map(|bits| number(symbols, u32::from(bits)) as f32);
         self.cells[0] = CellVec::from(first).extend(0.0);
     }
@@ -182,15 +226,15 @@ impl Lane {
 
     /// Decodes one step at the border.
     #[inline(always)]
-    fn step(&mut self, symbols: &mut Symbols, models: &Models) {
+    fn step(&mut self, symbols: &mut Symbols, models: &Models, _faces: usize) {
         let Some(at) = self.border.pivot() else { return self.start() };
         let steps = &models.steps[context(&self.border, at) % CONTEXTS];
         let (step, size, offset) = steps.at(symbols.place(STEP_BITS));
         symbols.consume(STEP_BITS, size, offset, 0);
         let face = match step {
             Step::New => {
-                let vertex = self.gates.len() as u16;
-                self.gates.push(Gate::at(&self.border, at));
+                let vertex = self.vertices as u16;
+                self.push_gate(Gate::at(&self.border, at));
                 self.border.add_new(at, vertex)
             }
             Step::Previous => self.border.add_previous(at),
@@ -201,17 +245,60 @@ impl Lane {
                 self.border.add_other(at, other)
             }
         };
-        self.faces.push(face);
+        self.push_face(face);
+    }
+
+    /// Decodes a fan at the border of a block with this many faces.
+    #[inline(always)]
+    fn fan(&mut self, symbols: &mut Symbols, models: &Models, faces: usize) {
+        let Some(at) = self.border.pivot() else { return self.start() };
+        let table = &models.fans[context(&self.border, at) % CONTEXTS];
+        let (new, end) = table.read(symbols);
+        if new > 0 {
+            let left = faces - self.face_count;
+            let count = new.min(left) as u16;
+            let first = self.vertices as u16;
+            let Self { border, gates, vertices, faces, face_count, .. } = self;
+            add_fan(border, at, (first, count), |face, gate| {
+                gates[*vertices & MASK] = gate;
+                *vertices += 1;
+                faces[*face_count % MAX_FACES] = face;
+                *face_count += 1;
+            });
+            if new >= left {
+                return;
+            }
+        }
+        let face = match end {
+            FanEnd::Previous => self.border.add_previous(at),
+            FanEnd::Nothing => return self.border.close(at),
+            FanEnd::Rare => return self.rare(at, symbols),
+        };
+        self.push_face(face);
+    }
+
+    #[cold]
+    fn rare(&mut self, at: u16, symbols: &mut Symbols) {
+        let face = match RareStep::read(&self.border, at, symbols) {
+            RareStep::New => {
+                let vertex = self.vertices as u16;
+                self.push_gate(Gate::at(&self.border, at));
+                self.border.add_new(at, vertex)
+            }
+            RareStep::Next => self.border.add_next(at),
+            RareStep::Other(other) => self.border.add_other(at, other),
+        };
+        self.push_face(face);
     }
 
     /// Adds a separate face.
     #[cold]
     fn start(&mut self) {
-        let first = self.gates.len() as u16;
+        let first = self.vertices as u16;
         let corners = [first, first + 1, first + 2];
-        self.gates.extend([Gate::corner(0), Gate::corner(1), Gate::corner(2)]);
+        (0..3).for_each(|k| self.push_gate(Gate::corner(k)));
         self.border.start(corners);
-        self.faces.push(corners);
+        self.push_face(corners);
     }
 
     fn read_tags(&mut self, symbols: &mut Symbols) -> Result<(), Malformed> {
@@ -222,7 +309,7 @@ impl Lane {
         for _ in 0..number(symbols, NODE_BITS) {
             let vertex = number(symbols, NODE_BITS) as u16;
             let tag = any_number(symbols);
-            if usize::from(vertex) >= self.gates.len() {
+            if usize::from(vertex) >= self.vertices {
                 return Err(wrong("a tag names a vertex that does not exist"));
             }
             self.tags.push((vertex, tag));
@@ -238,7 +325,7 @@ impl Lane {
         max_values: usize,
     ) -> Result<(), Malformed> {
         let points = self.cells().map(|cell| cell.as_dvec3()).collect();
-        let geometry = BlockGeometry::new(&self.faces, points);
+        let geometry = BlockGeometry::new(self.faces(), points);
         let mut reader = SymbolReader::new(tables, symbols);
         let layers = code_block(&geometry, format, &mut reader, max_values, None);
         self.layers = Some(layers.ok_or_else(|| wrong("a block has impossible attributes"))?);
@@ -248,7 +335,7 @@ impl Lane {
     /// Lists which vertices may also be in other blocks, or in this one again.
     pub(super) fn sharing(&self, out: &mut Vec<Sharing>) {
         out.clear();
-        out.resize(self.gates.len(), Sharing::Inside);
+        out.resize(self.vertices, Sharing::Inside);
         for vertex in self.border.vertices() {
             out[usize::from(vertex)] = Sharing::Shared(0);
         }

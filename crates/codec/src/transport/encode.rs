@@ -2,11 +2,11 @@
 
 use glam::{BVec4A, Vec4};
 
-use super::border::Step;
-use super::gate::{Gate, NEARBY, NEARBY_BITS, NODE_BITS};
-use super::lanes::LANES;
+use super::fans::push_fans;
+use super::gate::{Gate, NODE_BITS};
+use super::lanes::{LANES, Vec3x4};
 use super::models::{ESCAPE, MAX_RESIDUAL, Models, ResidualTable};
-use super::predict::{CellVec, Prediction, SpreadScales};
+use super::predict::{CellVec, SpreadScales, Width};
 use super::rans::Symbol;
 use super::walk::BlockWalk;
 
@@ -101,20 +101,18 @@ pub(super) fn residuals(
         let gate = |lane: usize| walks.get(lane).and_then(|walk| walk.gates.get(v)).copied();
         let known: [Option<Gate>; LANES] = std::array::from_fn(gate);
         let gates = known.map(Option::unwrap_or_default);
-        let predictions = scales.predict(&gates, models, at);
-        let places = std::array::from_fn(|lane| at(lane, v as u16));
+        let mut predictions = scales.predict(&gates, models, at);
+        let places = Vec3x4::new(std::array::from_fn(|lane| at(lane, v as u16)));
+        for (lane, gate) in gates.iter().enumerate().filter(|(_, gate)| gate.faces_a == 0) {
+            predictions.start(lane, (v as u16, gate), models, |v| at(lane, v));
+        }
+        let values = predictions.encode(places);
         for (lane, _) in known.iter().enumerate().filter(|(_, gate)| gate.is_some()) {
-            let prediction = match gates[lane].faces_a {
-                0 => Prediction::start(v as u16, &gates[lane], models, |v| at(lane, v)),
-                _ => predictions.of(lane),
-            };
-            let axes = prediction.axes();
-            prediction.take(|turn, nearest, (class, low_bits)| {
-                let cell = places[lane][axes[turn]] as i32;
-                let (class, low_bits) = (class as u8, low_bits as u8);
-                residuals[lane].push(Residual { value: cell - nearest, class, low_bits });
-                cell
-            });
+            for (turn, value) in values.iter().enumerate() {
+                let Width { class, low_bits } = predictions.widths(turn)[lane];
+                let (value, class) = (value[lane] as i32, class as u8);
+                residuals[lane].push(Residual { value, class, low_bits });
+            }
         }
         scales.update(&predictions, places, BVec4A::from_array(gates.map(|gate| gate.faces_a > 0)));
     }
@@ -133,13 +131,7 @@ pub(super) fn symbols(
     for k in 0..3 {
         push_number(first[k] as u32, u32::from(first_bits[k]), symbols);
     }
-    let mut others = walk.others.iter();
-    for &(context, step) in &walk.steps {
-        symbols.push(models.steps[usize::from(context)].symbol(step));
-        if step == Step::Other {
-            push_other(*others.next().expect("one each"), symbols);
-        }
-    }
+    push_fans(&walk.steps, &walk.others, &models.fans, symbols);
     let from = symbols.len();
     for residual in residuals {
         residual.push(&models.residuals[usize::from(residual.class)], symbols);
@@ -154,18 +146,4 @@ pub(super) fn symbols(
         push_any(tag, symbols);
     }
     [from, to]
-}
-
-fn push_other(other: Result<usize, u16>, symbols: &mut Vec<Symbol>) {
-    let start_of = |count: usize| NEARBY[..count].iter().map(|&(_, size)| size).sum::<u16>();
-    let bits = NEARBY_BITS as u8;
-    let symbol = |start, size| Symbol { start, size, bits, low_bits: 0, low: 0 };
-    match other {
-        Ok(at) => symbols.push(symbol(start_of(at), NEARBY[at].1)),
-        Err(node) => {
-            let start = start_of(NEARBY.len());
-            symbols.push(symbol(start, (1 << NEARBY_BITS) - start));
-            push_number(u32::from(node), NODE_BITS, symbols);
-        }
-    }
 }

@@ -4,7 +4,7 @@ use meshlod_mesh::{Mesh, VertexId};
 
 use super::decode::{BlockBytes, Decoder, Lane};
 use super::gather::{LayersBuilder, VertexNumbers};
-use super::header::{BlockSpan, OpenHeader, SUMS_END, read_version};
+use super::header::{BlockSpan, OpenHeader, SUMS_END, header_sum, read_version};
 use super::lanes::LANES;
 use super::layers::BlockLayers;
 use super::predict::CellVec;
@@ -30,10 +30,10 @@ impl<'a> TransportFile<'a> {
     pub fn open(bytes: &'a [u8]) -> Result<Self, Malformed> {
         let mut reader = Reader::new(bytes);
         let version = read_version(&mut reader)?;
-        let (header_sum, checksum) = (reader.u32()?, reader.u32()?);
+        let (expected, checksum) = (reader.u32()?, reader.u32()?);
         let header = OpenHeader::read(version, &mut reader)?;
         let at = bytes.len() - reader.left();
-        if crc32fast::hash(&bytes[SUMS_END..at]) != header_sum {
+        if header_sum(version, &bytes[SUMS_END..at]) != expected {
             return Err(reader.wrong("the header is damaged: its checksum does not match"));
         }
         let rest = reader.take(header.block_bytes().saturating_add(header.resources))?;
@@ -145,10 +145,10 @@ impl<'a> TransportFile<'a> {
     /// Recomputes the checksums of a modified `.mlz` file, for tests of [`TransportFile::open`].
     #[doc(hidden)]
     pub fn seal(bytes: &mut [u8]) {
-        let Some(header) = header_end(bytes) else { return };
+        let Some((version, header)) = header_end(bytes) else { return };
         let blocks = crc32fast::hash(&bytes[header..]);
         bytes[16..20].copy_from_slice(&blocks.to_le_bytes());
-        let header = crc32fast::hash(&bytes[20..header]);
+        let header = header_sum(version, &bytes[SUMS_END..header]);
         bytes[12..16].copy_from_slice(&header.to_le_bytes());
     }
 
@@ -201,11 +201,11 @@ impl<'a> TransportFile<'a> {
     }
 }
 
-/// Returns where the blocks begin, if everything before can be read.
-fn header_end(bytes: &[u8]) -> Option<usize> {
+/// Returns the version, and where the blocks begin, if everything before can be read.
+fn header_end(bytes: &[u8]) -> Option<(u32, usize)> {
     let mut reader = Reader::new(bytes);
     let version = read_version(&mut reader).ok()?;
     reader.take(8).ok()?;
     OpenHeader::read(version, &mut reader).ok()?;
-    Some(bytes.len() - reader.left())
+    Some((version, bytes.len() - reader.left()))
 }

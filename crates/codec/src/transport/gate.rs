@@ -52,7 +52,14 @@ pub(super) fn context(border: &Border, at: u16) -> usize {
     let is_closed = |node: u16| usize::from(border.node(node).state == EdgeState::Closed);
     let a = count(node.vertex).clamp(1, 7) - 1;
     let b = count(second.vertex).clamp(1, 6) - 1;
-    ((a * 6 + b) * 2 + is_closed(node.previous)) * 2 + is_closed(node.next)
+    context_of(a, b, is_closed(node.previous), is_closed(node.next))
+}
+
+/// Returns the context of an edge, given the numbers of faces at its ends less one, and whether the
+/// edges before and after it are closed.
+#[inline(always)]
+pub(super) fn context_of(a: usize, b: usize, before: usize, after: usize) -> usize {
+    ((a * 6 + b) * 2 + before) * 2 + after
 }
 pub(super) const CONTEXTS: usize = 7 * 6 * 4;
 

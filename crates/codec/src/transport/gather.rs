@@ -2,6 +2,7 @@
 
 use meshlod_mesh::{Attributes, Labels, Layer, Mesh, WedgeId, merge_equal_wedges};
 
+use super::border::NODES;
 use super::decode::{Lane, Sharing};
 use super::layers::{BlockLayers, LayersFormat};
 use super::predict::CellVec;
@@ -12,12 +13,19 @@ pub(super) struct VertexNumbers {
     welds: WeldTable,
     pub(super) vertices: u32,
     sharing: Vec<Sharing>,
-    numbers: Vec<u32>,
+    /// Number of each vertex of a block.
+    numbers: Box<[u32; NODES]>,
 }
 
 impl VertexNumbers {
     pub(super) fn new(welds: usize) -> Self {
-        Self { welds: WeldTable::new(welds), vertices: 0, sharing: Vec::new(), numbers: Vec::new() }
+        let numbers: Box<[u32]> = vec![0; NODES].into();
+        Self {
+            welds: WeldTable::new(welds),
+            vertices: 0,
+            sharing: Vec::new(),
+            numbers: numbers.try_into().expect("as many as there are"),
+        }
     }
 
     /// Adds a block: calls `place` for each new vertex, and appends its faces.
@@ -29,8 +37,8 @@ impl VertexNumbers {
         faces: &mut Vec<[u32; 3]>,
     ) {
         lane.sharing(&mut self.sharing);
-        self.numbers.clear();
-        for (cell, &sharing) in lane.cells().zip(&self.sharing) {
+        for ((cell, &sharing), number_of) in lane.cells().zip(&self.sharing).zip(&mut *self.numbers)
+        {
             let number = match sharing {
                 Sharing::Inside => self.vertices,
                 Sharing::Shared(tag) => *self.welds.find_or_insert(key(cell), tag, self.vertices),
@@ -39,11 +47,11 @@ impl VertexNumbers {
                 self.vertices += 1;
                 place(cell);
             }
-            self.numbers.push(number);
+            *number_of = number;
         }
         let numbers = &self.numbers;
-        let number = |v: u16| numbers[usize::from(v)];
-        faces.extend(lane.faces.iter().map(|&[a, b, c]| [number(a), number(b), number(c)]));
+        let number = |v: u16| numbers[usize::from(v) % NODES];
+        faces.extend(lane.faces().iter().map(|&[a, b, c]| [number(a), number(b), number(c)]));
     }
 }
 

@@ -33,6 +33,7 @@ pub(super) struct OpenHeader {
     pub(super) first_bits: [u8; 3],
     pub(super) faces: usize,
     pub(super) vertices: usize,
+    pub(super) coding: FaceCoding,
     pub(super) models: Models,
     pub(super) layers: Option<(LayersFormat, LayerTables)>,
     pub(super) resources: usize,
@@ -54,6 +55,17 @@ pub(super) struct BlockSpan {
     pub(super) faces: usize,
 }
 
+/// Coding of the faces of a block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum FaceCoding {
+    /// A symbol for each step at the border: versions 1 to 3.
+    Steps,
+    /// A symbol for all new vertices around one: versions 4 to 6.
+    Fans,
+}
+
+/// Added to the version of a file whose faces are coded by fans: all that are written now.
+const WITH_FANS: u32 = 3;
 /// Version of files with positions and faces only.
 const SURFACES: u32 = 1;
 /// Version of files with attributes, labels or resources.
@@ -100,8 +112,9 @@ impl Header {
         self.store_index(&mut out);
         let mut file = TransportFile::MAGIC.to_vec();
         let format = self.layers.as_ref().map(|(format, _)| format);
-        file.extend(format.map_or(SURFACES, version_of).to_le_bytes());
-        file.extend(crc32fast::hash(&out).to_le_bytes());
+        let version = WITH_FANS + format.map_or(SURFACES, version_of);
+        file.extend(version.to_le_bytes());
+        file.extend(header_sum(version, &out).to_le_bytes());
         file.extend(crc32fast::hash(rest).to_le_bytes());
         file.extend(out);
         file
@@ -136,9 +149,13 @@ impl OpenHeader {
         let [faces, vertices, blocks] = [reader.u32()?, reader.u32()?, reader.u32()?];
         let codes = ModelCodes::restore(reader)?;
         let (mut layers, mut resources) = (None, 0);
-        if version != SURFACES {
+        let (coding, content) = match version {
+            ..=WITH_FANS => (FaceCoding::Steps, version),
+            _ => (FaceCoding::Fans, version - WITH_FANS),
+        };
+        if content != SURFACES {
             let (format, tables) = LayersFormat::restore(reader)?;
-            let expected = version_of(&format);
+            let expected = version - content + version_of(&format);
             if version != expected {
                 let found = format!("version {version}, but its layers are of version {expected}");
                 return Err(reader.wrong(found));
@@ -152,13 +169,24 @@ impl OpenHeader {
         }
         let (faces, vertices) = (faces as usize, vertices as usize);
         let models = Models::new(&codes);
-        Ok(Self { grid, first_bits, faces, vertices, models, layers, resources, places })
+        Ok(Self { grid, first_bits, faces, vertices, coding, models, layers, resources, places })
     }
 
     /// Returns the number of bytes of all blocks.
     pub(super) fn block_bytes(&self) -> usize {
         self.places.last().map_or(0, |place| place.at + place.bytes)
     }
+}
+
+/// Returns the checksum of a header, given the bytes after both checksums. From version 4 on, it
+/// covers the version: by another one, the faces of a block would be other faces.
+pub(super) fn header_sum(version: u32, bytes: &[u8]) -> u32 {
+    let mut hasher = crc32fast::Hasher::new();
+    if version > WITH_FANS {
+        hasher.update(&version.to_le_bytes());
+    }
+    hasher.update(bytes);
+    hasher.finalize()
 }
 
 /// Returns the first version that has all that layers need.
@@ -172,8 +200,9 @@ pub(super) fn read_version(reader: &mut Reader) -> Result<u32, Malformed> {
         return Err(reader.wrong("not an .mlz file: the magic bytes are missing"));
     }
     let version = reader.u32()?;
-    if !(SURFACES..=BY_NEIGHBOURS).contains(&version) {
-        let known = format!("this reader knows versions {SURFACES} to {BY_NEIGHBOURS}");
+    const LAST: u32 = WITH_FANS + BY_NEIGHBOURS;
+    if !(SURFACES..=LAST).contains(&version) {
+        let known = format!("this reader knows versions {SURFACES} to {LAST}");
         return Err(reader.wrong(format!("unknown version {version}; {known}")));
     }
     Ok(version)

@@ -1,7 +1,7 @@
 //! Arithmetic on the points of four blocks at a time, one in each lane.
 //!
 //! All operations are `f32` sums, products and quotients, each rounded by itself, so that a lane does
-//! not depend on the others.
+//! not depend on the others. No number is NaN, so least and greatest ones are the same everywhere.
 
 use glam::{BVec4A, Mat4, Vec4};
 
@@ -51,6 +51,20 @@ impl Vec3x4 {
         let Self { x, y, z } = self;
         [last.select(y, z, x), last.select(z, x, y), last.select(x, y, z)]
     }
+
+    /// Returns the point of coordinates in coding order.
+    #[inline(always)]
+    pub(super) fn turned_back([u, v, w]: [Vec4; 3], last: &LastAxis) -> Self {
+        Self { x: last.select(w, v, u), y: last.select(u, w, v), z: last.select(v, u, w) }
+    }
+
+    /// Returns the point of each lane, with 0 as fourth component.
+    #[inline(always)]
+    pub(super) fn points(self) -> [Vec4; LANES] {
+        let Mat4 { x_axis, y_axis, z_axis, w_axis } =
+            Mat4::from_cols(self.x, self.y, self.z, Vec4::ZERO).transpose();
+        [x_axis, y_axis, z_axis, w_axis]
+    }
 }
 
 impl std::ops::Add for Vec3x4 {
@@ -86,20 +100,14 @@ impl LastAxis {
         Self { is_x: x.cmpgt(z) & !is_y, is_y }
     }
 
+    /// Codes z last in a lane.
+    pub(super) fn set_z(&mut self, lane: usize) {
+        self.is_x.set(lane, false);
+        self.is_y.set(lane, false);
+    }
+
     #[inline(always)]
     pub(super) fn select(&self, x: Vec4, y: Vec4, z: Vec4) -> Vec4 {
         Vec4::select(self.is_x, x, Vec4::select(self.is_y, y, z))
     }
-}
-
-/// Returns the lesser number of each lane; `b` where `a` is NaN.
-#[inline(always)]
-pub(super) fn least(a: Vec4, b: Vec4) -> Vec4 {
-    Vec4::select(a.cmplt(b), a, b)
-}
-
-/// Returns the greater number of each lane; `b` where `a` is NaN.
-#[inline(always)]
-pub(super) fn most(a: Vec4, b: Vec4) -> Vec4 {
-    Vec4::select(a.cmpgt(b), a, b)
 }

@@ -277,17 +277,17 @@ fn versions_say_what_a_reader_needs() {
         Some(Attributes { layers, ..own.clone() })
     };
     let all = [
-        (None, 1),
-        (with(None), 2),
-        (with(Some((LayerKind::Normal, &[0.0, 0.6, 0.8]))), 3),
-        (with(Some((LayerKind::Tangent, &[1.0, 0.0, 0.0, -1.0]))), 3),
+        (None, 4),
+        (with(None), 5),
+        (with(Some((LayerKind::Normal, &[0.0, 0.6, 0.8]))), 6),
+        (with(Some((LayerKind::Tangent, &[1.0, 0.0, 0.0, -1.0]))), 6),
     ];
     for (attributes, version) in all {
         mesh.attributes = attributes;
         let bytes = Transport::encode(&mesh, &options(256)).unwrap().bytes;
         assert_eq!(bytes[8..12], u32::to_le_bytes(version));
         assert!(TransportFile::open(&bytes).unwrap().decode().is_ok());
-        for other in [0, 1, 2, 3, 4, u32::MAX] {
+        for other in (0..=7).chain([u32::MAX]) {
             let mut named = bytes.clone();
             named[8..12].copy_from_slice(&other.to_le_bytes());
             let opened = TransportFile::open(&named);
@@ -328,12 +328,12 @@ fn blocks_decoded_alone_have_the_attributes_of_the_mesh() {
 fn resources_come_back_and_bare_files_have_no_trace_of_what_they_lack() {
     let bare = cube();
     let plain = Transport::encode(&bare, &options(256)).unwrap();
-    assert_eq!(plain.bytes[8], 1);
+    assert_eq!(plain.bytes[8], 4);
     assert_eq!((plain.sizes.attributes, plain.sizes.resources), (0.0, 0));
     let resources: Vec<u8> = (0..=255).cycle().take(1000).collect();
     for mesh in [bare, seam_strip()] {
         let encoded = Transport::encode_with_resources(&mesh, &resources, &options(256)).unwrap();
-        assert_eq!((encoded.bytes[8], encoded.sizes.resources), (2, 1000));
+        assert_eq!((encoded.bytes[8], encoded.sizes.resources), (5, 1000));
         let file = TransportFile::open(&encoded.bytes).unwrap();
         assert_eq!(file.resources(), Ok(&resources[..]));
         assert_eq!(file.decode().unwrap().faces.len(), mesh.faces.len());

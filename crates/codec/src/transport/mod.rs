@@ -5,6 +5,7 @@
 //! | `write` | from a mesh to a file: start here for the encoder |
 //! | `grid`, `face_blocks` | cells of positions, and faces in blocks |
 //! | `walk`, `border`, `gate` | the order of a block: one face after the other across an edge |
+//! | `fans` | the faces around a vertex as one symbol |
 //! | `predict`, `lanes` | where the next vertex is, for four blocks at a time |
 //! | `models`, `fit` | probabilities of a file, fitted to its mesh |
 //! | `encode`, `rans`, `encoded_layers`, `layers` | symbols, and attributes after positions |
@@ -18,6 +19,7 @@ mod decode;
 mod encode;
 mod encoded_layers;
 mod face_blocks;
+mod fans;
 mod file;
 mod fit;
 mod gate;
@@ -119,7 +121,7 @@ pub enum TransportQuantization {
 impl Default for TransportOptions {
     fn default() -> Self {
         let attributes = AttributeBounds::default();
-        Self { quantization: TransportQuantization::Bits(11), block_faces: 256, attributes }
+        Self { quantization: TransportQuantization::Bits(11), block_faces: 320, attributes }
     }
 }
 

@@ -6,6 +6,7 @@
 use glam::Vec4;
 
 use super::border::Step;
+use super::fans::FanTable;
 use super::gate::CONTEXTS;
 use super::predict::{FEATURES, GATES};
 use super::rans::Symbol;
@@ -14,7 +15,7 @@ use crate::bytes::{Malformed, Reader};
 
 /// Bits of the tables of residuals.
 pub(super) const RESIDUAL_BITS: u32 = 11;
-const RESIDUAL_ALL: usize = 1 << RESIDUAL_BITS;
+pub(super) const RESIDUAL_ALL: usize = 1 << RESIDUAL_BITS;
 /// Largest residual with its own symbol.
 pub(super) const MAX_RESIDUAL: i32 = 24;
 pub(super) const SYMBOLS: usize = 2 * MAX_RESIDUAL as usize + 2;
@@ -49,7 +50,10 @@ pub(super) struct Models {
     /// Variance of the corners of a separate face.
     pub(super) start: f32,
     pub(super) residuals: Box<[ResidualTable; CLASSES]>,
+    /// The slots of all of these, class after class.
+    pub(super) slots: Box<[u32; CLASSES * RESIDUAL_ALL]>,
     pub(super) steps: Box<[StepTable; CONTEXTS]>,
+    pub(super) fans: Box<[FanTable; CONTEXTS]>,
 }
 
 /// Probability table of the residuals of a class.
@@ -68,8 +72,7 @@ impl ResidualTable {
     /// Returns the symbol at a slot, its size, and the slot's offset from its start.
     #[inline(always)]
     pub(super) fn at(&self, place: usize) -> (usize, u32, u32) {
-        let entry = self.places[place % RESIDUAL_ALL];
-        ((entry & 63) as usize, entry >> 6 & 0xfff, entry >> 18)
+        unpack(self.places[place % RESIDUAL_ALL])
     }
 
     /// Returns a symbol with low bits; `None` if it has no slots and must be escaped.
@@ -106,6 +109,12 @@ impl ResidualTable {
         let places: Box<[u32]> = places.into();
         Self { places: places.try_into().expect("as many as there are"), starts }
     }
+}
+
+/// Returns the symbol of a slot, its size, and the slot's offset from its start.
+#[inline(always)]
+pub(super) fn unpack(slot: u32) -> (usize, u32, u32) {
+    ((slot & 63) as usize, slot >> 6 & 0xfff, slot >> 18)
 }
 
 /// Integrates Student's t-distribution over the cell of each symbol, with the width and the degrees
@@ -171,7 +180,7 @@ impl StepTable {
     }
 
     /// Builds a table. A code is a power of the cube root of ½; every step gets at least one slot.
-    fn of(codes: [u8; STEPS]) -> Self {
+    pub(super) fn of(codes: [u8; STEPS]) -> Self {
         const THIRDS: [u32; 3] = [1 << 16, 52_016, 41_285];
         let part = |code: u8| (THIRDS[usize::from(code) % 3] >> (code / 3)).max(1);
         let all: u32 = codes.iter().map(|&code| part(code)).sum();
@@ -253,15 +262,20 @@ impl Models {
             let [along, across] = codes.spreads[kind].map(|code| pow2(32 - i32::from(code)) as f32);
             [Vec4::new(w0, w1, w2, w3), Vec4::new(w4, along, across, 0.0)]
         };
+        let steps = Box::new(std::array::from_fn(|context| {
+            StepTable::of(codes.steps[context].unwrap_or(rest))
+        }));
+        let residuals: Box<[_; CLASSES]> =
+            Box::new(std::array::from_fn(|class| ResidualTable::of(class, codes.shapes[class])));
+        let slots: Vec<u32> = residuals.iter().flat_map(|table| *table.places).collect();
+        let slots: Box<[u32]> = slots.into();
         Self {
             gates: std::array::from_fn(gate),
             start: pow2(2 * i32::from(codes.start)) as f32,
-            residuals: Box::new(std::array::from_fn(|class| {
-                ResidualTable::of(class, codes.shapes[class])
-            })),
-            steps: Box::new(std::array::from_fn(|context| {
-                StepTable::of(codes.steps[context].unwrap_or(rest))
-            })),
+            slots: slots.try_into().expect("as many as there are"),
+            residuals,
+            fans: FanTable::all(&steps),
+            steps,
         }
     }
 }

@@ -9,7 +9,7 @@
 use glam::{BVec4A, Mat4, Vec3A, Vec4};
 
 use super::gate::Gate;
-use super::lanes::{LANES, LastAxis, Vec3x4, least, most};
+use super::lanes::{LANES, LastAxis, Vec3x4};
 use super::models::{CLASSES, Models};
 
 /// Point or vector, in cells.
@@ -88,29 +88,19 @@ pub(super) struct SpreadScales {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Predictions {
     mean: Vec3x4,
-    /// Coordinates in coding order. The axis closest to the normal is last, and nearly certain by
-    /// then.
-    turns: [[f32; LANES]; 3],
-    variances: [[f32; LANES]; 3],
+    /// Means in coding order. The axis closest to the normal is last, and nearly certain by then.
+    turns: [Vec4; 3],
     /// Dependence of the second axis on the first, and of the third on both.
-    second: [f32; LANES],
-    third: [[f32; LANES]; 2],
-    last: [u8; LANES],
+    second: Vec4,
+    third: [Vec4; 2],
+    /// Variances in coding order.
+    variances: [Vec4; 3],
+    last: LastAxis,
     normal: Vec3x4,
     /// 1 / squared length of the normal, or 0.
     inverse: Vec4,
     /// Variances along the surface and across it.
     expected: [Vec4; 2],
-}
-
-/// Prediction of one lane.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Prediction {
-    mean: [f32; 3],
-    variances: [f32; 3],
-    second: f32,
-    third: [f32; 2],
-    last: u8,
 }
 
 /// Variance of the first corner of a separate face, relative to that of its other corners.
@@ -144,28 +134,23 @@ impl SpreadScales {
             + f2.each(|x| x * w2);
         let floor = Vec4::splat(FLOOR);
         let along = along * sides * self.now[0] + floor;
-        let across = least(across * sides * self.now[1] + floor, along);
+        let across = (across * sides * self.now[1] + floor).min(along);
         Predictions::across(corner + more, normal, [along, across])
     }
 
     /// Updates the scales of the chosen lanes by how far their vertices were from the predictions.
     #[inline(always)]
-    pub(super) fn update(
-        &mut self,
-        predictions: &Predictions,
-        places: [Vec4; LANES],
-        which: BVec4A,
-    ) {
-        let way = Vec3x4::new(places) - predictions.mean;
+    pub(super) fn update(&mut self, predictions: &Predictions, places: Vec3x4, which: BVec4A) {
+        let way = places - predictions.mean;
         let height = way.dot(predictions.normal);
         let across = height * height * predictions.inverse;
         let squares = [0.5 * (way.dot(way) - across), across];
         let next = self.next;
         for k in 0..2 {
             let beyond = (squares[k] + Vec4::splat(FLOOR)) / predictions.expected[k] - Vec4::ONE;
-            let beyond = least(beyond, Vec4::splat(3.0));
+            let beyond = beyond.min(Vec4::splat(3.0));
             let value = next[k] + next[k] * beyond * GAIN;
-            let value = least(most(value, Vec4::splat(0.05)), Vec4::splat(20.0));
+            let value = value.max(Vec4::splat(0.05)).min(Vec4::splat(20.0));
             self.now[k] = Vec4::select(which, next[k], self.now[k]);
             self.next[k] = Vec4::select(which, value, next[k]);
         }
@@ -193,117 +178,122 @@ impl Predictions {
             along * (Vec4::ONE - thin * (uu + vv)) * by_rest,
             along * across * by_last,
         ];
-        let axis = last.select(Vec4::ZERO, Vec4::ONE, Vec4::splat(2.0)).to_array();
         Self {
             mean,
             turns: mean.turned(&last).map(inside),
-            variances: variances.map(Vec4::into),
-            second: second.to_array(),
-            third: [(third * u).to_array(), (third * v).to_array()],
-            last: axis.map(|axis| axis as u8),
+            second,
+            third: [third * u, third * v],
+            variances: variances.map(coded),
+            last,
             normal,
             inverse,
             expected: [along, across],
         }
     }
 
-    #[inline(always)]
-    pub(super) fn of(&self, lane: usize) -> Prediction {
-        let [u, v, w] = &self.turns;
-        let [var_u, var_v, var_w] = &self.variances;
-        Prediction {
-            mean: [u[lane], v[lane], w[lane]],
-            variances: [var_u[lane], var_v[lane], var_w[lane]],
-            second: self.second[lane],
-            third: [self.third[0][lane], self.third[1][lane]],
-            last: self.last[lane],
+    /// Replaces the prediction of a lane whose gate is a corner of a separate face: it is predicted
+    /// from earlier vertices, with equal spread in all directions.
+    #[cold]
+    pub(super) fn start(
+        &mut self,
+        lane: usize,
+        (vertex, gate): (u16, &Gate),
+        models: &Models,
+        at: impl Fn(u16) -> Vec4,
+    ) {
+        let (mean, variance) = match gate.faces_b {
+            0 => (at(vertex.saturating_sub(1)), APART * models.start),
+            corner => (at(vertex.saturating_sub(u16::from(corner))), models.start),
+        };
+        let variance = coded(Vec4::splat(variance))[lane];
+        for turn in 0..3 {
+            self.turns[turn][lane] = mean[turn];
+            self.variances[turn][lane] = variance;
         }
+        self.second[lane] = 0.0;
+        self.third[0][lane] = 0.0;
+        self.third[1][lane] = 0.0;
+        self.last.set_z(lane);
+    }
+
+    /// Returns how the residuals of an axis are coded, given its number in coding order.
+    #[inline(always)]
+    pub(super) fn widths(&self, turn: usize) -> [Width; LANES] {
+        // Exponent and first mantissa bit count half octaves of the variance.
+        const FIRST: usize = (LEAST_VARIANCE.to_bits() >> 22) as usize;
+        let [a, b, c, d] = self.variances[turn].to_array().map(f32::to_bits);
+        let width = |bits: u32| WIDTHS[((bits >> 22) as usize).wrapping_sub(FIRST) % WIDTHS.len()];
+        [width(a), width(b), width(c), width(d)]
+    }
+
+    /// Returns the cells, given how far they are from the nearest ones, in coding order; and the
+    /// coordinates in that order.
+    #[inline(always)]
+    pub(super) fn decode(&self, residuals: [Vec4; 3]) -> (Vec3x4, [Vec4; 3]) {
+        let [first, second, third] = residuals;
+        let first = nearest(self.turns[0]) + first;
+        let off_u = first - self.turns[0];
+        let second = nearest(self.turns[1] + self.second * off_u) + second;
+        let off_v = second - self.turns[1];
+        let third =
+            nearest(self.turns[2] + (self.third[0] * off_u + self.third[1] * off_v)) + third;
+        let turns = [first, second, third];
+        (Vec3x4::turned_back(turns, &self.last), turns)
+    }
+
+    /// Returns how far cells are from the nearest ones, in coding order.
+    pub(super) fn encode(&self, places: Vec3x4) -> [Vec4; 3] {
+        let [first, second, third] = places.turned(&self.last);
+        let (off_u, off_v) = (first - self.turns[0], second - self.turns[1]);
+        [
+            first - nearest(self.turns[0]),
+            second - nearest(self.turns[1] + self.second * off_u),
+            third - nearest(self.turns[2] + (self.third[0] * off_u + self.third[1] * off_v)),
+        ]
     }
 }
 
 /// Clamps a prediction to the range of cells.
 #[inline(always)]
-fn inside(mean: Vec4) -> [f32; LANES] {
-    least(most(mean, Vec4::ZERO), Vec4::splat(MAX_CELLS as f32)).to_array()
+fn inside(mean: Vec4) -> Vec4 {
+    mean.max(Vec4::ZERO).min(Vec4::splat(MAX_CELLS as f32))
 }
 
-impl Prediction {
-    /// Predicts a corner of a separate face from earlier vertices, with equal spread in all
-    /// directions.
-    pub(super) fn start(
-        vertex: u16,
-        gate: &Gate,
-        models: &Models,
-        at: impl Fn(u16) -> Vec4,
-    ) -> Self {
-        let (mean, variance) = match gate.faces_b {
-            0 => (at(vertex.saturating_sub(1)), APART * models.start),
-            corner => (at(vertex.saturating_sub(u16::from(corner))), models.start),
-        };
-        Self {
-            mean: [mean.x, mean.y, mean.z],
-            variances: [variance; 3],
-            second: 0.0,
-            third: [0.0; 2],
-            last: 2,
-        }
-    }
-
-    /// Lets `cell` code the coordinates in order, given the turn, the nearest cell, and the class
-    /// with its low bits. Returns the vertex.
-    #[inline(always)]
-    pub(super) fn take(&self, mut cell: impl FnMut(usize, i32, (usize, u32)) -> i32) -> Vec4 {
-        let [u, v, w] = self.mean;
-        let first = cell(0, nearest(u), class(self.variances[0])) as f32;
-        let off_u = first - u;
-        let second = nearest(v + self.second * off_u);
-        let second = cell(1, second, class(self.variances[1])) as f32;
-        let off_v = second - v;
-        let third = nearest(w + (self.third[0] * off_u + self.third[1] * off_v));
-        let third = cell(2, third, class(self.variances[2])) as f32;
-        // A table, since a branch would be mispredicted wherever the surface turns.
-        const TURNS: [[u8; 3]; 4] = [[2, 0, 1], [1, 2, 0], [0, 1, 2], [0, 1, 2]];
-        let by_turn = [first, second, third, 0.0];
-        let [x, y, z] = TURNS[usize::from(self.last % 4)];
-        let by_turn = |turn: u8| by_turn[usize::from(turn % 4)];
-        Vec4::new(by_turn(x), by_turn(y), by_turn(z), 0.0)
-    }
-
-    /// Returns the axis of each turn.
-    pub(super) fn axes(&self) -> [usize; 3] {
-        [[1, 2, 0], [2, 0, 1], [0, 1, 2]][usize::from(self.last)]
-    }
-}
-
-/// Returns the class of a variance, and the number of low bits of a residual.
+/// Clamps variances to those that have a class.
 #[inline(always)]
-fn class(variance: f32) -> (usize, u32) {
-    // Exponent and first mantissa bit count half octaves of the variance.
-    const FIRST: i32 = (0.0625f32.to_bits() >> 22) as i32;
-    let octaves = ((variance.to_bits() >> 22) as i32 - FIRST).clamp(0, WIDEST as i32);
-    let (class, low_bits) = WIDTHS[octaves as usize % WIDTHS.len()];
-    (usize::from(class), u32::from(low_bits))
+fn coded(variance: Vec4) -> Vec4 {
+    variance.max(Vec4::splat(LEAST_VARIANCE)).min(Vec4::splat(GREATEST_VARIANCE))
 }
+
+const LEAST_VARIANCE: f32 = 0.0625;
+/// Half an octave below the end of the last class.
+const GREATEST_VARIANCE: f32 = LEAST_VARIANCE * (1u64 << (WIDEST / 2)) as f32 * 1.5;
 
 const WIDEST: usize = CLASSES + 4 * 15 - 1;
-/// Class and low bits of each half octave.
-const WIDTHS: [(u8, u8); 128] = {
-    let mut widths = [(0, 0); 128];
+/// How a residual is coded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Width {
+    pub(super) class: usize,
+    /// Number of bits below the symbol.
+    pub(super) low_bits: u8,
+}
+
+/// Width of each half octave.
+const WIDTHS: [Width; 128] = {
+    let mut widths = [Width { class: 0, low_bits: 0 }; 128];
     let mut octaves = 0;
     while octaves <= WIDEST {
         let low_bits = (octaves / 4).saturating_sub(CLASSES / 4 - 1);
-        widths[octaves] = ((octaves - 4 * low_bits) as u8, low_bits as u8);
+        widths[octaves] = Width { class: octaves - 4 * low_bits, low_bits: low_bits as u8 };
         octaves += 1;
     }
     widths
 };
 
-/// Returns the cell nearest to a coordinate.
+/// Returns the cells nearest to coordinates.
 #[inline(always)]
-fn nearest(x: f32) -> i32 {
+fn nearest(x: Vec4) -> Vec4 {
     // At this magnitude floats are integers.
     const WHOLE: f32 = 1.5 * (1 << 23) as f32;
-    let x = if x > 0.0 { x } else { 0.0 };
-    let x = if x < MAX_CELLS as f32 { x } else { MAX_CELLS as f32 };
-    (x + WHOLE).to_bits() as i32 - WHOLE.to_bits() as i32
+    inside(x) + Vec4::splat(WHOLE) - Vec4::splat(WHOLE)
 }

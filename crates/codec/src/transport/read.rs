@@ -1,13 +1,30 @@
 //! Reading of residuals and numbers.
 
 use super::encode::{CHUNK_BITS, JOINT_LOW_BITS, LENGTH_BITS};
-use super::models::{ESCAPE, MAX_RESIDUAL, RESIDUAL_BITS, ResidualTable};
+use super::models::{ESCAPE, MAX_RESIDUAL, Models, RESIDUAL_BITS, ResidualTable, unpack};
+use super::predict::Width;
 use super::rans::Symbols;
 
 /// Decodes the difference of a number from its prediction.
 #[inline(always)]
 pub(super) fn residual(symbols: &mut Symbols, table: &ResidualTable, low_bits: u32) -> i32 {
-    let (symbol, size, offset) = table.at(symbols.place(RESIDUAL_BITS));
+    let slot = table.at(symbols.place(RESIDUAL_BITS));
+    residual_at(symbols, slot, low_bits)
+}
+
+/// Decodes the difference of a coordinate from its prediction.
+#[inline(always)]
+pub(super) fn residual_of(symbols: &mut Symbols, models: &Models, width: Width) -> i32 {
+    let at = width.class << RESIDUAL_BITS | symbols.place(RESIDUAL_BITS);
+    residual_at(symbols, unpack(models.slots[at % models.slots.len()]), width.low_bits.into())
+}
+
+#[inline(always)]
+fn residual_at(
+    symbols: &mut Symbols,
+    (symbol, size, offset): (usize, u32, u32),
+    low_bits: u32,
+) -> i32 {
     if symbol == ESCAPE || low_bits > u32::from(JOINT_LOW_BITS) {
         return rare(symbols, (symbol, size, offset), low_bits);
     }

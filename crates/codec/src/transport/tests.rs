@@ -1,5 +1,5 @@
 use meshlod_fixtures::{
-    cube, fan, grid, hourglass, mesh, moebius, seam_strip, tetrahedron, two_objects,
+    cube, fan, grid, hourglass, mesh, moebius, own_file, seam_strip, tetrahedron, two_objects,
 };
 use meshlod_mesh::{Mesh, VertexId};
 use meshlod_samples as samples;
@@ -251,6 +251,70 @@ fn bad_input_is_refused_in_words() {
     assert_eq!(encode(&far, lattice(-15)), TransportError::TooFar);
 }
 
+/// Returns a file of an earlier version, kept since that was the latest.
+fn kept(name: &str) -> Vec<u8> {
+    std::fs::read(own_file(name)).expect("our own file")
+}
+
+#[test]
+fn files_of_version_1_give_the_same_mesh() {
+    for (name, mut mesh) in
+        [("knot-v1.mlz", samples::knot(400)), ("terrain-v1.mlz", samples::terrain(300))]
+    {
+        // They were made from files with single precision.
+        mesh.positions.iter_mut().flatten().for_each(|x| *x = f64::from(*x as f32));
+        let bytes = kept(name);
+        assert_eq!(bytes[8], 1);
+        let quantization = TransportQuantization::Bits(10);
+        let now = Transport::encode(&mesh, &TransportOptions { quantization, ..options(256) });
+        let decoded = [bytes, now.unwrap().bytes].map(|bytes| decode_all(&bytes).unwrap());
+        assert_eq!(decoded[0].positions, decoded[1].positions, "{name}");
+        assert_eq!(decoded[0].faces, decoded[1].faces, "{name}");
+    }
+}
+
+#[test]
+fn files_of_version_2_keep_their_attributes() {
+    let bytes = kept("quad-v2.mlz");
+    assert_eq!(bytes[8], 2);
+    let mesh = decode_all(&bytes).unwrap();
+    assert_eq!((mesh.positions.len(), mesh.faces.len()), (4, 2));
+    let attributes = mesh.attributes.unwrap();
+    assert_eq!((attributes.wedge_count, attributes.layers.len()), (4, 1));
+    let corners: Vec<_> = attributes.layers[0].values.iter().map(|x| x.round()).collect();
+    let corners: std::collections::BTreeSet<_> =
+        corners.as_chunks().0.iter().map(|&[u, v]: &[f32; 2]| (u as i32, v as i32)).collect();
+    assert_eq!(corners.len(), 4);
+}
+
+#[test]
+fn fans_are_at_least_as_likely_as_a_slot() {
+    // Every fan can occur, whatever the header says of its steps.
+    for codes in [[0, 31, 31, 31, 31], [31, 0, 31, 31, 31], [31, 31, 31, 31, 0], [6; 5]] {
+        let steps = [models::StepTable::of(codes); gate::CONTEXTS];
+        for table in fans::FanTable::all(&steps).iter() {
+            let sizes = table.sizes();
+            assert!(sizes.iter().all(|&size| size > 0), "{sizes:?}");
+            assert_eq!(sizes.iter().sum::<i32>(), 4096);
+        }
+    }
+}
+
+#[test]
+fn a_long_fan_comes_back() {
+    // More new vertices around one than a single symbol counts, closed and open.
+    for around in 5..40 {
+        for is_closed in [false, true] {
+            let angle = |k: usize| k as f64 / f64::from(around) * std::f64::consts::TAU;
+            let rim = (0..around as usize).map(|k| [angle(k).cos(), angle(k).sin(), 0.0]);
+            let corners: Vec<_> = std::iter::once([0.0; 3]).chain(rim).collect();
+            let last = around - u32::from(!is_closed);
+            let faces: Vec<_> = (0..last).map(|k| [0, 1 + k, 1 + (k + 1) % around]).collect();
+            assert_same(&mesh(&corners, &faces), &options(64));
+        }
+    }
+}
+
 /// Recomputes the checksums of header and blocks.
 pub(super) fn seal(bytes: &mut [u8]) {
     TransportFile::seal(bytes);
@@ -290,8 +354,11 @@ fn a_flipped_bit_is_detected() {
 fn any_bytes_are_survived() {
     let meshes = [samples::sphere(700), soup(60, 300, 5), hourglass(), grid(9)];
     let mut numbers = Numbers(1);
+    let mut files = ["knot-v1.mlz", "terrain-v1.mlz", "quad-v2.mlz"].map(kept).to_vec();
     for mesh in meshes {
-        let bytes = Transport::encode(&mesh, &options(100)).unwrap().bytes;
+        files.push(Transport::encode(&mesh, &options(100)).unwrap().bytes);
+    }
+    for bytes in files {
         for _ in 0..1500 {
             let mut bytes = bytes.clone();
             for _ in 0..1 + numbers.next(4) {

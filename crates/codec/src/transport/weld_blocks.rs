@@ -24,8 +24,11 @@ const EMPTY: u32 = u32::MAX;
 /// Packs a cell into a number.
 #[inline]
 pub(super) fn key(cell: CellVec) -> u64 {
-    let (x, y, z) = (cell.x as u32 as u64, cell.y as u32 as u64, cell.z as u32 as u64);
-    x | y << 21 | z << 42
+    // From here on, the lowest bits of floats are integers: no conversion has to care for others.
+    const WHOLE: f32 = (1 << 23) as f32;
+    let [x, y, z] = (cell + CellVec::splat(WHOLE)).to_array().map(f32::to_bits);
+    let whole = WHOLE.to_bits();
+    u64::from(x - whole) | u64::from(y - whole) << 21 | u64::from(z - whole) << 42
 }
 
 /// Computes a checksum over the cells of a block, in order.
