@@ -125,7 +125,12 @@ impl<S: AttributeStore> Partition<S> {
     }
 
     /// Splits the surface into parts of at most `part` vertices.
-    fn of_at_most(part: usize, mut store: VertexStore, attributes: S, live_faces: usize) -> Self {
+    pub(in crate::kernel) fn of_at_most(
+        part: usize,
+        mut store: VertexStore,
+        attributes: S,
+        live_faces: usize,
+    ) -> Self {
         let mut count = 1;
         while store.own().div_ceil(count) > part {
             count *= MERGED_PARTS;
@@ -269,9 +274,10 @@ impl<S: AttributeStore> Partition<S> {
         let Some((collapse_loop, _)) = loops.first_mut() else { return };
         collapse_loop.live_faces = live_faces;
         collapse_loop.log = log.map(|steps| steps.log);
+        let is_logged = collapse_loop.log.is_some();
         collapse_loop.retrace(retrace);
         let (done, live_faces) = (Done::of(collapse_loop), collapse_loop.live_faces);
-        let log = collapse_loop.log.take().map(|log| Steps { log, values: Vec::new() });
+        let log = is_logged.then(|| take_steps(collapse_loop));
         drop(loops);
         self.add(&done);
         (self.live_faces, self.log) = (live_faces, log);

@@ -10,7 +10,7 @@ use crate::kernel::mesh::vertex::VertexFlags;
 use crate::kernel::metric::Metric;
 use crate::kernel::metric::edge_quadric::EdgeSide;
 use crate::kernel::metric::swept_volume::SweptVolume;
-use crate::kernel::partition::{Partition, Whole};
+use crate::kernel::partition::Partition;
 use crate::kernel::schedule::edge_costs::costs;
 use crate::kernel::setup::build_rings::Fans;
 use crate::kernel::setup::vertex_order::Order;
@@ -101,12 +101,19 @@ fn check_quadrics(mesh: &Mesh, faces: usize) {
 }
 
 fn check_quadrics_with(mesh: &Mesh, faces: usize, seams_hold: bool) {
+    for part in [usize::MAX, 150] {
+        check_quadrics_in_parts(mesh, faces, (seams_hold, part));
+    }
+}
+
+fn check_quadrics_in_parts(mesh: &Mesh, faces: usize, (seams_hold, part): (bool, usize)) {
     let (order, fans, mut wedges) = start::<2>(mesh);
     wedges.hold_seams(seams_hold);
     let numbers = || mesh.faces.iter().map(|face| order.face(face));
-    let mut partition = Partition::new(fans.store, wedges, fans.faces, Whole::default());
+    let mut partition = Partition::of_at_most(part, fans.store, wedges, fans.faces);
     partition.run(faces, u16::MAX, None, &mut |_| ());
     assert!(partition.live_faces <= faces && partition.live_faces > faces / 2);
+    partition.unite();
     let Partition { mut store, mut attributes, .. } = partition;
     let live_vertices = store.live_vertices();
     let vertices = store.whole();
@@ -115,8 +122,7 @@ fn check_quadrics_with(mesh: &Mesh, faces: usize, seams_hold: bool) {
     let (_, _, mut again) = start::<2>(mesh);
     let mut again = again.whole();
     for slot in 0..live.len() as u32 {
-        *again.quadrics.get_mut(slot) =
-            AttributeQuadric::of_values(model.quadric(slot).values());
+        *again.quadrics.get_mut(slot) = AttributeQuadric::of_values(model.quadric(slot).values());
     }
     let mut seam_faces = 0;
     for (i, face) in numbers().enumerate() {
