@@ -5,9 +5,11 @@ mod common;
 use std::collections::HashSet;
 use std::sync::LazyLock;
 
+use glam::DVec3;
 use meshlod_fixtures as fixtures;
 use meshlod_fixtures::shape::{bare, topology};
-use meshlod_mesh::{Lock, Locks, Mesh, VertexId};
+use meshlod_fixtures::{charted, in_materials};
+use meshlod_mesh::{FaceId, Layer, LayerKind, Lock, Locks, Mesh, VertexId};
 use meshlod_samples as samples;
 use meshlod_simplify::{
     History, Method, Options, Report, Simplifier, Target, VolumeLoss, contract_to,
@@ -28,8 +30,9 @@ fn run(method: Method, mesh: &Mesh, target: Target) -> (Mesh, Report) {
     run_with(2, mesh, target, &options(method))
 }
 
-/// Meshes of several partitions, with boundaries, with flats, in pieces, and non-manifold.
-static LARGE: LazyLock<[(&str, Mesh); 5]> = LazyLock::new(|| {
+/// Meshes of several partitions, with boundaries, with flats, in pieces, and non-manifold; with uvs in
+/// charts, with normals, and with materials.
+static LARGE: LazyLock<[(&str, Mesh); 8]> = LazyLock::new(|| {
     let terrain = bare(samples::terrain(120_000));
     [
         ("torus", samples::torus(120_000)),
@@ -37,8 +40,26 @@ static LARGE: LazyLock<[(&str, Mesh); 5]> = LazyLock::new(|| {
         ("flat", fixtures::grid(240)),
         ("pieces", pieces(&samples::sphere(60), 2_000)),
         ("crossing", crossing(&fixtures::grid(200))),
+        ("charts", with_normals(charted(&samples::torus(120_000)))),
+        ("crossing charts", charted(&crossing(&fixtures::grid(200)))),
+        ("materials", in_materials(&samples::terrain(120_000))),
     ]
 });
+
+/// Adds a normal to each wedge of a mesh with uvs: the mean of those of its faces.
+fn with_normals(mut mesh: Mesh) -> Mesh {
+    let faces: Vec<_> = mesh.faces.iter().map(|&face| mesh.triangle(face)).collect();
+    if let Some(all) = &mut mesh.attributes {
+        let mut sums = vec![DVec3::ZERO; all.wedge_count];
+        for ([a, b, c], corners) in faces.into_iter().zip(&all.corners) {
+            corners.iter().for_each(|w| sums[w.index()] += (b - a).cross(c - a));
+        }
+        let values = sums.iter().flat_map(|sum| sum.normalize().as_vec3().to_array()).collect();
+        let kind = LayerKind::Normal;
+        all.layers.push(Layer { kind, name: String::new(), width: 3, values });
+    }
+    mesh
+}
 
 /// Places copies of a mesh side by side.
 fn pieces(of: &Mesh, count: u32) -> Mesh {
@@ -144,6 +165,16 @@ fn observers_see_the_same_level() {
             assert_eq!(mesh.faces.len() - level.faces.len(), died, "{name}");
             let surface = simplifier.surface();
             assert_eq!(surface.live_faces(), level.faces.len(), "{name}");
+            let left =
+                (0..mesh.faces.len()).map(FaceId::new).filter(|&face| surface.is_alive(face));
+            let Some(all) = &level.attributes else { continue };
+            for (face, corners) in left.zip(&all.corners) {
+                let shown = surface.wedges(face).expect("the level has attributes");
+                for (layer, of_level) in surface.layers().iter().zip(&all.layers) {
+                    let values = shown.map(|w| layer.of(w)).concat();
+                    assert_eq!(values, corners.map(|w| of_level.of(w)).concat(), "{name} {face}");
+                }
+            }
         }
     }
 }

@@ -325,7 +325,7 @@ fn sheet_over_square(n: u32, height: f64) -> Mesh {
 
 #[test]
 fn most_of_what_is_left_vanishes_only_where_it_is_not_missed() {
-    for (method, n) in kernel_methods().into_iter().zip([8, 40]) {
+    for (method, n) in kernel_methods().zip([8, 40]) {
         let options = Options { method, ..Options::default() };
         let far = sheet_over_square(n, 0.5);
         let holes = (n * n) as usize;

@@ -74,7 +74,7 @@ pub(crate) const UV_FLIP_DELAY: u16 = 8;
 /// A part of the surface being simplified, with its queue and its attributes.
 pub(crate) struct CollapseLoop<'v, A> {
     pub(crate) vertices: Vertices<'v>,
-    pub(crate) model: &'v mut A,
+    pub(crate) model: A,
     pub(crate) live_faces: usize,
     /// Square of the largest error estimate so far, in the frame's units.
     pub(crate) error: f64,
@@ -116,7 +116,7 @@ pub(crate) enum Rejection {
 impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     pub(crate) fn new(
         vertices: Vertices<'v>,
-        model: &'v mut A,
+        model: A,
         queue: &'v mut BucketQueue,
         edge_ring: &'v mut EdgeRing,
         (deferral, debts): (&'v mut Deferral, &'v mut VolumeDebts),
@@ -240,13 +240,13 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
             risen[count] = v;
             count += usize::from(target.is_none());
         }
-        changed.cost_all(&self.vertices, self.model, |[v, _], cost| {
+        changed.cost_all(&self.vertices, &self.model, |[v, _], cost| {
             risen[count] = v;
             count += usize::from(bucket(cost) > front.saturating_add(A::Metric::SLACK));
         });
         for &v in &risen[..count] {
             self.vertices.refresh(v);
-            let Cheapest { bucket, target } = cheapest(&self.vertices, self.model, v);
+            let Cheapest { bucket, target } = cheapest(&self.vertices, &self.model, v);
             let vertex = self.vertices.get_mut(v);
             vertex.target = target;
             if bucket > front.saturating_add(A::Metric::SLACK) {

@@ -76,20 +76,38 @@ impl InputNames<'_> {
     }
 }
 
-/// Merges the logs of parts that ran side by side: by cost, each part in its own order.
-pub(crate) fn merge(logs: impl Iterator<Item = Vec<Logged>>) -> Vec<Logged> {
-    let mut merged: Vec<(u16, Logged)> = Vec::new();
-    for log in logs {
-        let mut front = 0;
-        merged.extend(log.into_iter().map(|done| {
-            if let Logged::Contraction(done) = &done {
-                front = front.max(done.front);
+/// Steps, and the values that they have given to attributes, by the indices of the steps.
+#[derive(Default)]
+pub(crate) struct Steps {
+    pub(crate) log: Vec<Logged>,
+    pub(crate) values: Vec<RecordedValues>,
+}
+
+impl Steps {
+    /// Appends the steps of parts that ran side by side: by cost, each part in its own order.
+    pub(crate) fn append(&mut self, parts: impl Iterator<Item = Steps>) {
+        let (mut merged, mut values) = (Vec::new(), Vec::new());
+        for (part, steps) in parts.enumerate() {
+            let mut front = 0;
+            merged.extend(steps.log.into_iter().map(|done| {
+                if let Logged::Contraction(done) = &done {
+                    front = front.max(done.front);
+                }
+                (front, part as u32, done)
+            }));
+            values.push((0, steps.values.into_iter().peekable()));
+        }
+        merged.sort_by_key(|&(front, ..)| front);
+        self.log.reserve(merged.len());
+        for (_, part, done) in merged {
+            let (number, values) = &mut values[part as usize];
+            while let Some(next) = values.next_if(|next| next.number == *number) {
+                self.values.push(RecordedValues { number: self.log.len(), ..next });
             }
-            (front, done)
-        }));
+            *number += 1;
+            self.log.push(done);
+        }
     }
-    merged.sort_by_key(|&(front, _)| front);
-    merged.into_iter().map(|(_, done)| done).collect()
 }
 
 /// Repeats logged contractions on a surface and shows them to an observer.

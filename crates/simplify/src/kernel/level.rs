@@ -3,7 +3,7 @@
 use meshlod_mesh::{Mesh, VertexId};
 use rayon::prelude::*;
 
-use crate::kernel::attributes::AttributeModel;
+use crate::kernel::attributes::AttributeStore;
 use crate::kernel::contraction_log::InputNames;
 use crate::kernel::mesh::vertex::NO_VERTEX;
 use crate::kernel::setup::vertex_order::{is_face, numbers};
@@ -13,7 +13,7 @@ use crate::kernel::setup::vertex_order::{is_face, numbers};
 /// vertices, if there are any.
 pub(crate) fn level(
     names: InputNames<'_>,
-    model: &impl AttributeModel,
+    attributes: &impl AttributeStore,
     split: Option<&[[u32; 3]]>,
 ) -> (Mesh, Vec<u32>) {
     let InputNames { mesh, order, store, .. } = names;
@@ -38,7 +38,7 @@ pub(crate) fn level(
     let corner = |v: u32| VertexId(ids[names.input(v).index()]);
     level.faces = faces.iter().map(|&(_, [a, b, c])| [corner(a), corner(b), corner(c)]).collect();
     let kept: Vec<u32> = faces.iter().map(|&(face, _)| face).collect();
-    level.attributes = model.attributes(kept.iter().map(|&i| (i, of_input(i as usize))));
+    level.attributes = attributes.attributes(kept.iter().map(|&i| (i, of_input(i as usize))));
     level.materials = mesh.materials.as_ref().map(|labels| labels.select(&kept));
     level.face_layers = mesh.select_face_layers(&kept);
     level.objects = mesh.objects.as_ref().map(|labels| labels.select(&kept));
@@ -49,7 +49,7 @@ pub(crate) fn level(
 /// vertex.
 pub(crate) fn workspace(
     names: InputNames<'_>,
-    model: &impl AttributeModel,
+    attributes: &impl AttributeStore,
     split: Option<&[[u32; 3]]>,
 ) -> Mesh {
     let InputNames { mesh, order, store, .. } = names;
@@ -63,7 +63,7 @@ pub(crate) fn workspace(
     Mesh {
         positions: all.map(place).collect(),
         faces: faces.clone().map(now).collect(),
-        attributes: model.all_attributes(faces),
+        attributes: attributes.all_attributes(faces),
         materials: mesh.materials.clone(),
         objects: mesh.objects.clone(),
         face_layers: mesh.face_layers.clone(),

@@ -13,12 +13,12 @@ use std::ops::Range;
 use glam::Vec3;
 use rayon::prelude::*;
 
-use crate::kernel::attributes::AttributeModel;
+use crate::kernel::attributes::{AttributeModel, AttributeStore};
 use crate::kernel::bound::ErrorBound;
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse_loop::{CollapseLoop, are_parts_stuck, is_seen};
 use crate::kernel::components::Components;
-use crate::kernel::contraction_log::{Logged, merge};
+use crate::kernel::contraction_log::Steps;
 use crate::kernel::handles::Handles;
 use crate::kernel::mesh::one_ring::{GHOST, LongRing, VertexStore, Vertices};
 use crate::kernel::mesh::vertex::VertexFlags;
@@ -80,10 +80,9 @@ impl Default for Whole {
 }
 
 /// A surface in parts.
-pub(crate) struct Partition<A> {
+pub(crate) struct Partition<S> {
     pub(crate) store: VertexStore,
-    /// Attribute model of each part.
-    pub(crate) models: Vec<A>,
+    pub(crate) attributes: S,
     pub(crate) live_faces: usize,
     /// Square of the largest error estimate so far, in the frame's units.
     pub(crate) error: f64,
@@ -95,7 +94,7 @@ pub(crate) struct Partition<A> {
     /// Long rings of copies, which are in no part until all vertices are in one.
     long_of_copies: Vec<LongRing>,
     /// Steps done so far, if an observer wants them.
-    pub(crate) log: Option<Vec<Logged>>,
+    pub(crate) log: Option<Steps>,
     /// True if an observer also wants the values of attributes.
     pub(crate) records_values: bool,
     parts: Vec<PartState>,
@@ -114,11 +113,11 @@ struct PartState {
     waiting: Vec<u32>,
 }
 
-impl<A: AttributeModel> Partition<A> {
-    pub(crate) fn new(store: VertexStore, model: A, live_faces: usize, whole: Whole) -> Self {
+impl<S: AttributeStore> Partition<S> {
+    pub(crate) fn new(store: VertexStore, attributes: S, live_faces: usize, whole: Whole) -> Self {
         let are_many = whole.components.as_ref().is_some_and(|all| all.are_many(live_faces));
         let part = if whole.ties.is_some() || are_many { usize::MAX } else { MAX_PART };
-        let mut this = Self { whole, ..Self::of_at_most(part, store, model, live_faces) };
+        let mut this = Self { whole, ..Self::of_at_most(part, store, attributes, live_faces) };
         if this.parts.len() > 1 {
             this.whole.components.iter_mut().for_each(Components::lose_count);
         }
@@ -126,16 +125,21 @@ impl<A: AttributeModel> Partition<A> {
     }
 
     /// Splits the surface into parts of at most `part` vertices.
-    fn of_at_most(part: usize, mut store: VertexStore, model: A, live_faces: usize) -> Self {
+    pub(in crate::kernel) fn of_at_most(
+        part: usize,
+        mut store: VertexStore,
+        attributes: S,
+        live_faces: usize,
+    ) -> Self {
         let mut count = 1;
-        while A::IN_PARTS && store.own().div_ceil(count) > part {
+        while store.own().div_ceil(count) > part {
             count *= MERGED_PARTS;
         }
         let long = std::mem::take(&mut store.long);
         let mut partition = Self {
             parts: cut(&store, count),
             store,
-            models: model.for_parts(count),
+            attributes,
             live_faces,
             error: 0.0,
             contractions: 0,
@@ -147,6 +151,7 @@ impl<A: AttributeModel> Partition<A> {
             records_values: false,
         };
         partition.hand_out(long);
+        partition.cut_attributes();
         partition.cost_all_vertices();
         partition
     }
@@ -214,8 +219,9 @@ impl<A: AttributeModel> Partition<A> {
     pub(crate) fn is_near_limit(&mut self) -> bool {
         // Twice as far as any step may go: scans with many handles that stay are farther off than once.
         let is_far = self.parts.len() == 1 && is_seen(self.error as f32 / 4.0, self.whole.room);
-        let are_stuck =
-            |collapse_loop: &mut CollapseLoop<'_, A>| are_parts_stuck(&mut collapse_loop.vertices);
+        let are_stuck = |collapse_loop: &mut CollapseLoop<'_, S::Part<'_>>| {
+            are_parts_stuck(&mut collapse_loop.vertices)
+        };
         is_far && self.loops().first_mut().is_some_and(|(whole, _)| are_stuck(whole))
     }
 
@@ -238,7 +244,7 @@ impl<A: AttributeModel> Partition<A> {
         let stop = (faces + FACES_LEFT_PER_WAITING * waiting).max(FACES_PER_WAITING * waiting);
         let mut live = self.live_faces;
         let mut log = self.log.take();
-        let mut loops: Vec<CollapseLoop<'_, A>> =
+        let mut loops: Vec<CollapseLoop<'_, S::Part<'_>>> =
             self.loops().into_iter().map(|(collapse_loop, _)| collapse_loop).collect();
         if let Some(bound) = bound {
             let lengths: Vec<usize> = loops.iter().map(|e| e.vertices.all.len()).collect();
@@ -255,15 +261,14 @@ impl<A: AttributeModel> Partition<A> {
             if let Some(log) = &mut log {
                 loops.iter_mut().for_each(|collapse_loop| collapse_loop.log = Some(Vec::new()));
                 live = step.run(&mut loops, live, stop);
-                log.extend(merge(
-                    loops.iter_mut().filter_map(|collapse_loop| collapse_loop.log.take()),
-                ));
+                log.append(loops.iter_mut().map(take_steps));
             } else {
                 live = step.run(&mut loops, live, stop);
             }
             gone(before - live);
         }
         let done: Vec<Done> = loops.iter().map(Done::of).collect();
+        drop(loops);
         done.iter().for_each(|done| self.add(done));
         self.live_faces = live;
         self.log = log;
@@ -275,10 +280,13 @@ impl<A: AttributeModel> Partition<A> {
         let (live_faces, log) = (self.live_faces, self.log.take());
         let mut loops = self.loops();
         let Some((collapse_loop, _)) = loops.first_mut() else { return };
-        (collapse_loop.live_faces, collapse_loop.log) = (live_faces, log);
+        collapse_loop.live_faces = live_faces;
+        collapse_loop.log = log.map(|steps| steps.log);
+        let is_logged = collapse_loop.log.is_some();
         collapse_loop.retrace(retrace);
         let (done, live_faces) = (Done::of(collapse_loop), collapse_loop.live_faces);
-        let log = collapse_loop.log.take();
+        let log = is_logged.then(|| take_steps(collapse_loop));
+        drop(loops);
         self.add(&done);
         (self.live_faces, self.log) = (live_faces, log);
         self.refusals += retrace.refusals;
@@ -318,6 +326,7 @@ impl<A: AttributeModel> Partition<A> {
         if let [lists] = &mut lists[..] {
             lists.push(std::mem::take(&mut self.long_of_copies));
         }
+        self.cut_attributes();
         let work = self.loops().into_par_iter().zip(lists);
         work.for_each(|((mut collapse_loop, waiting), lists): (_, Vec<_>)| {
             lists.into_iter().for_each(|lists| collapse_loop.vertices.adopt(lists));
@@ -333,13 +342,14 @@ impl<A: AttributeModel> Partition<A> {
     }
 
     /// Returns a loop for each part, with the part's waiting vertices.
-    fn loops(&mut self) -> Vec<(CollapseLoop<'_, A>, &mut Vec<u32>)> {
+    fn loops(&mut self) -> Vec<(CollapseLoop<'_, S::Part<'_>>, &mut Vec<u32>)> {
         let first_copy = self.store.first_copy();
         let (error, room, records_values) = (self.error, self.whole.room, self.records_values);
         let VertexStore { all, copied, split, protection, .. } = &mut self.store;
         let mut rest = &mut all[..];
         let mut loops = Vec::with_capacity(self.parts.len());
-        for (part, model) in self.parts.iter_mut().zip(&mut self.models) {
+        let models = self.attributes.parts(self.parts.len());
+        for (part, model) in self.parts.iter_mut().zip(models) {
             let PartState { vertices, queue, long, edge_ring, deferral, debts, waiting } = part;
             let (all, others) = rest.split_at_mut(vertices.len());
             rest = others;
@@ -358,6 +368,12 @@ impl<A: AttributeModel> Partition<A> {
             collapse_loop.handles = self.whole.handles.as_mut();
         }
         loops
+    }
+
+    /// Cuts the attributes like the vertices.
+    fn cut_attributes(&mut self) {
+        let ranges: Vec<_> = self.parts.iter().map(|part| part.vertices.clone()).collect();
+        self.attributes.cut(&ranges);
     }
 
     /// Gives the long rings to the parts of their vertices.
@@ -394,6 +410,12 @@ fn cut(store: &VertexStore, count: usize) -> Vec<PartState> {
 fn has_far_neighbours(vertices: &Vertices, v: u32) -> bool {
     let ids = vertices.ids();
     vertices.neighbours(v).iter().any(|w| *w != GHOST && !ids.contains(w))
+}
+
+/// Takes the steps that a loop has done since its log was begun.
+fn take_steps<A: AttributeModel>(collapse_loop: &mut CollapseLoop<'_, A>) -> Steps {
+    let log = collapse_loop.log.take().unwrap_or_default();
+    Steps { log, values: collapse_loop.model.recorded() }
 }
 
 /// Counts and totals of the work of a loop.

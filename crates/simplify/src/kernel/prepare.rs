@@ -5,11 +5,11 @@ use meshlod_mesh::{Bounds, Lock, Mesh, VertexId};
 
 use crate::clean;
 use crate::held::Held;
-use crate::kernel::attributes::AttributeModel;
+use crate::kernel::attributes::AttributeStore;
 use crate::kernel::attributes::bare::NoAttributes;
 use crate::kernel::attributes::corners::Corners;
 use crate::kernel::attributes::layers::AttributeLayers;
-use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
+use crate::kernel::attributes::wedge_store::WedgeStore;
 use crate::kernel::components::{Components, Pieces};
 use crate::kernel::handles::{Handles, PER_CUT, genus};
 use crate::kernel::mesh::local_frame::Frame;
@@ -237,9 +237,9 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
         self.fans.faces
     }
 
-    fn run<A: AttributeModel + 'm>(self, model: A) -> Box<dyn Run + 'm> {
+    fn run<S: AttributeStore + 'm>(self, attributes: S) -> Box<dyn Run + 'm> {
         let Self { mesh, frame, order, fans, faces, whole, polish, .. } = self;
-        let partition = Partition::new(fans.store, model, fans.faces, whole);
+        let partition = Partition::new(fans.store, attributes, fans.faces, whole);
         Box::new(KernelRun::new(KernelInput { mesh, frame, order, faces, polish }, partition))
     }
 }
@@ -274,8 +274,9 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
     ) -> Box<dyn Run + 'm> {
         let faces = numbers(self.mesh, &self.order, self.faces.as_deref());
         let vertices = &mut self.fans.store.whole();
-        let model = WedgeQuadrics::<M, K>::new(layers, corners, vertices, faces);
-        self.run(WedgeQuadrics { seams_hold, ..model })
+        let mut wedges = WedgeStore::<M, K>::new(layers, corners, vertices, faces);
+        wedges.hold_seams(seams_hold);
+        self.run(wedges)
     }
 }
 

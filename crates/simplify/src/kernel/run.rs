@@ -9,10 +9,10 @@ use meshlod_spatial::{Bvh, Mates};
 use crate::clean;
 use crate::engine::policy::{Observe, Stop};
 use crate::excess::{Excess, ExcessFace};
-use crate::kernel::attributes::AttributeModel;
+use crate::kernel::attributes::AttributeStore;
 use crate::kernel::bound::ErrorBound;
 use crate::kernel::bound::input_surface::InputSurface;
-use crate::kernel::contraction_log::{InputNames, Logged, replay};
+use crate::kernel::contraction_log::{InputNames, Logged, Steps, replay};
 use crate::kernel::handles::Handles;
 use crate::kernel::level::{level, live_faces, workspace};
 use crate::kernel::mesh::local_frame::Frame;
@@ -44,9 +44,9 @@ pub(crate) struct KernelInput<'m> {
 }
 
 /// A mesh being simplified by the kernel.
-pub(crate) struct KernelRun<'m, A> {
+pub(crate) struct KernelRun<'m, S> {
     source: KernelInput<'m>,
-    partition: Partition<A>,
+    partition: Partition<S>,
     /// Smallest error bound that has refused an edge since all edges were last made eligible.
     refused_above: f64,
     /// Input surface, if an error bound has been asked for.
@@ -62,8 +62,8 @@ pub(crate) struct KernelRun<'m, A> {
     surface: OnceCell<Surface>,
 }
 
-impl<'m, A: AttributeModel> KernelRun<'m, A> {
-    pub(crate) fn new(source: KernelInput<'m>, partition: Partition<A>) -> Self {
+impl<'m, S: AttributeStore> KernelRun<'m, S> {
+    pub(crate) fn new(source: KernelInput<'m>, partition: Partition<S>) -> Self {
         // Edges between ties are contracted together, which steps do not tell.
         let steps = partition.whole.ties.is_none().then(Vec::new);
         let lowered = (f64::INFINITY, Vec::new());
@@ -84,7 +84,7 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
 
     /// Returns the current mesh, and the id there of each input vertex.
     fn numbered_level(&self) -> (Mesh, Vec<u32>) {
-        level(self.names(), &self.partition.models[0], self.faces())
+        level(self.names(), &self.partition.attributes, self.faces())
     }
 
     /// Returns for each vertex of a level whether a pin or a tie holds it, given the ids of the
@@ -120,7 +120,7 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
 
     /// Returns the factor from the kernel's costs to model units.
     fn cost_unit(&self) -> f64 {
-        self.source.frame.unit.powi(A::Metric::METHOD.cost_power())
+        self.source.frame.unit.powi(S::Metric::METHOD.cost_power())
     }
 
     /// Returns the last bucket that holds costs of at most `cost`. The cost of a bucket is its
@@ -174,8 +174,7 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
         let log = self.contract(faces, stop, observer);
         let is_unchanged = self.partition.live_faces == at_first;
         match (log, self.surface.take()) {
-            (Some(log), Some(mut surface)) => {
-                let values = self.partition.models[0].recorded();
+            (Some(Steps { log, values }), Some(mut surface)) => {
                 let components = self.partition.whole.components.as_ref();
                 replay((&log, &values), components, self.names(), &mut surface, observer);
                 self.surface = surface.into();
@@ -188,28 +187,23 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
     }
 
     /// Simplifies to this number of faces, and returns the log if the observer wants to see it.
-    fn contract(
-        &mut self,
-        faces: usize,
-        stop: &Stop,
-        observer: &mut dyn Observe,
-    ) -> Option<Vec<Logged>> {
+    fn contract(&mut self, faces: usize, stop: &Stop, observer: &mut dyn Observe) -> Option<Steps> {
         let is_shown = observer.needs_surface();
         let is_bounded = stop.error < f64::INFINITY;
         if is_shown {
             self.steps = None;
-            self.partition.log = Some(Vec::new());
+            self.partition.log = Some(Steps::default());
         } else if is_bounded {
             // A part of this bound says nothing about another.
             if stop.error != self.lowered.0 {
                 self.lowered = (stop.error, Vec::new());
             }
-            self.partition.log = self.steps.take();
+            self.partition.log = self.steps.take().map(|log| Steps { log, ..Steps::default() });
         }
         self.partition.records_values = is_shown;
         self.try_again_within(stop.error);
         let last = self.last_bucket(stop.cost);
-        let refused = |partition: &Partition<A>| partition.refusals.count(Refusal::Error);
+        let refused = |partition: &Partition<S>| partition.refusals.count(Refusal::Error);
         let (refused_before, at_first) = (refused(&self.partition), self.partition.live_faces);
         let Self { source, partition, input, lowered, .. } = &mut *self;
         let mut bound =
@@ -221,7 +215,8 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
         let is_unchanged = self.partition.live_faces == at_first;
         let mut log = self.partition.log.take();
         if !is_shown {
-            self.steps = log.take().or(self.steps.take().filter(|_| is_unchanged));
+            self.steps =
+                log.take().map(|steps| steps.log).or(self.steps.take().filter(|_| is_unchanged));
         }
         log
     }
@@ -238,7 +233,7 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
 
     /// Builds the current surface.
     fn new_surface(&self) -> Surface {
-        surface_of(&workspace(self.names(), &self.partition.models[0], self.faces()))
+        surface_of(&workspace(self.names(), &self.partition.attributes, self.faces()))
     }
 }
 
@@ -275,7 +270,7 @@ fn bound<'o>(
     if stop.is_compared { bound.compared() } else { bound }
 }
 
-impl<A: AttributeModel> Run for KernelRun<'_, A> {
+impl<S: AttributeStore> Run for KernelRun<'_, S> {
     fn run(&mut self, stop: &Stop, observer: &mut dyn Observe) {
         self.advance(stop.faces, stop, observer);
         self.near_limit = stop.error == f64::INFINITY && self.partition.is_near_limit();
@@ -293,9 +288,8 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
         let log = self.contract(stop.faces, stop, observer);
         self.near_limit = stop.error == f64::INFINITY && self.partition.is_near_limit();
         let done = (self.tally(), self.live_faces());
-        let Self { source, mut partition, surface, .. } = *self;
-        let Some(log) = log else { return done };
-        let values = partition.models[0].recorded();
+        let Self { source, partition, surface, .. } = *self;
+        let Some(Steps { log, values }) = log else { return done };
         let own = partition.store.own();
         let (store, whole) = partition.without_vertices();
         let kept = surface.into_inner().filter(|_| !is_input);
@@ -333,7 +327,7 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
         if self.input.get().is_some() {
             return (level, 0.0);
         }
-        if self.source.polish && A::Metric::METHOD == Method::LindstromTurk {
+        if self.source.polish && S::Metric::METHOD == Method::LindstromTurk {
             self.polish(&mut level, &ids);
         }
         let names = self.names();
@@ -368,9 +362,10 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
     }
 
     fn follow(&mut self, retrace: Retrace) {
-        self.partition.log = Some(Vec::with_capacity(retrace.steps.len()));
+        let log = Vec::with_capacity(retrace.steps.len());
+        self.partition.log = Some(Steps { log, ..Steps::default() });
         self.partition.retrace(&retrace);
-        self.steps = self.partition.log.take();
+        self.steps = self.partition.log.take().map(|steps| steps.log);
         let Retrace { refused_above, error, parts, input, .. } = retrace;
         (self.refused_above, self.lowered, self.input) = (refused_above, (error, parts), input);
     }

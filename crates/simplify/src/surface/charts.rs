@@ -9,7 +9,12 @@ use meshlod_mesh::{Layer, LayerKind, VertexId, WedgeId};
 
 /// Returns true if a layer holds normals or tangents, which wedges keep when their vertex moves.
 pub(crate) fn is_shading(layer: &Layer) -> bool {
-    matches!(layer.kind, LayerKind::Normal | LayerKind::Tangent)
+    is_shading_kind(layer.kind)
+}
+
+/// Returns true for the kinds of layers that hold directions.
+pub(crate) fn is_shading_kind(kind: LayerKind) -> bool {
+    matches!(kind, LayerKind::Normal | LayerKind::Tangent)
 }
 
 /// Returns the chart of every wedge, as the lowest wedge of its vertex in it. `labels` holds the

@@ -4,6 +4,27 @@ use glam::DVec3;
 use meshlod_mesh::{Layer, LayerKind, WedgeId};
 use meshlod_spatial::Triangle;
 
+/// A layer of values that are looked up by wedge.
+pub(crate) trait LayerValues {
+    fn kind(&self) -> LayerKind;
+    fn width(&self) -> usize;
+    fn of(&self, wedge: WedgeId) -> &[f32];
+}
+
+impl LayerValues for Layer {
+    fn kind(&self) -> LayerKind {
+        self.kind
+    }
+
+    fn width(&self) -> usize {
+        self.width
+    }
+
+    fn of(&self, wedge: WedgeId) -> &[f32] {
+        self.of(wedge)
+    }
+}
+
 /// Point in a face, given by the wedges at its corners and barycentric weights.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Place {
@@ -25,7 +46,7 @@ impl Place {
 
     /// Interpolates value `i` of a layer linearly.
     #[inline]
-    fn mean(&self, layer: &Layer, i: usize) -> f64 {
+    fn mean(&self, layer: &impl LayerValues, i: usize) -> f64 {
         // A value of zero weight may be infinite.
         let of = |k: usize| self.shares[k] * f64::from(layer.of(self.wedges[k])[i]);
         (0..3).filter(|&k| self.shares[k] > 0.0).map(of).sum()
@@ -65,7 +86,7 @@ fn along_longest(point: DVec3, triangle: &Triangle) -> [f64; 3] {
 
 /// Appends the values of all layers at a point, layer by layer. At a corner they are exactly the
 /// corner's values.
-pub(crate) fn interpolate(layers: &[Layer], place: &Place, out: &mut Vec<f32>) {
+pub(crate) fn interpolate(layers: &[impl LayerValues], place: &Place, out: &mut Vec<f32>) {
     if let Some(k) = place.corner() {
         out.extend(layers.iter().flat_map(|layer| layer.of(place.wedges[k])));
         return;
@@ -74,22 +95,22 @@ pub(crate) fn interpolate(layers: &[Layer], place: &Place, out: &mut Vec<f32>) {
     for layer in layers {
         let linear = |i| place.mean(layer, i) as f32;
         let nearest = layer.of(place.wedges[place.nearest()]);
-        match layer.kind {
+        match layer.kind() {
             LayerKind::Normal | LayerKind::Tangent => direction(layer, place, nearest, out),
             // Written below, together with their weights.
             LayerKind::Joints(_) => out.extend_from_slice(nearest),
             LayerKind::Label => out.extend_from_slice(majority(layer, place)),
-            _ => out.extend((0..layer.width).map(linear)),
+            _ => out.extend((0..layer.width()).map(linear)),
         }
     }
-    if layers.iter().any(|layer| matches!(layer.kind, LayerKind::Joints(_))) {
+    if layers.iter().any(|layer| matches!(layer.kind(), LayerKind::Joints(_))) {
         skin(layers, place, &mut out[start..]);
     }
 }
 
 /// Returns the values that corners of the greatest total weight have, those of the nearest corner
 /// among equals.
-fn majority<'l>(layer: &'l Layer, place: &Place) -> &'l [f32] {
+fn majority<'l>(layer: &'l impl LayerValues, place: &Place) -> &'l [f32] {
     let values = place.wedges.map(|wedge| layer.of(wedge));
     let weight = |of: usize| -> f64 {
         (0..3).filter(|&k| values[k] == values[of]).map(|k| place.shares[k]).sum()
@@ -104,7 +125,7 @@ fn majority<'l>(layer: &'l Layer, place: &Place) -> &'l [f32] {
 
 /// Writes a unit vector, or the nearest corner's where the three cancel. Components beyond the
 /// third, such as the handedness of a tangent, cannot be averaged and stay the nearest corner's.
-fn direction(layer: &Layer, place: &Place, nearest: &[f32], out: &mut Vec<f32>) {
+fn direction(layer: &impl LayerValues, place: &Place, nearest: &[f32], out: &mut Vec<f32>) {
     let start = out.len();
     out.extend_from_slice(nearest);
     let sum = DVec3::from([0, 1, 2].map(|i| place.mean(layer, i)));
@@ -119,7 +140,7 @@ type Influence = (f32, f64);
 
 /// Interpolates skinning influences. Joints are names and never averaged: the influences of the
 /// corners are combined, and the strongest that fit are kept and scaled to the original total.
-fn skin(layers: &[Layer], place: &Place, out: &mut [f32]) {
+fn skin(layers: &[impl LayerValues], place: &Place, out: &mut [f32]) {
     let mut influences: Vec<Influence> = Vec::with_capacity(24);
     let mut all = 0.0;
     for (joints, weights) in sets(layers) {
@@ -170,14 +191,14 @@ impl Range {
 
 /// Pairs each layer of joints with the layer of weights of the same number; together they form one
 /// list of influences.
-fn sets(layers: &[Layer]) -> impl Iterator<Item = (Range, Range)> + '_ {
+fn sets(layers: &[impl LayerValues]) -> impl Iterator<Item = (Range, Range)> + '_ {
     let range = |layer: usize| {
-        let start = layers[..layer].iter().map(|before| before.width).sum();
-        Range { layer, start, width: layers[layer].width }
+        let start = layers[..layer].iter().map(|before| before.width()).sum();
+        Range { layer, start, width: layers[layer].width() }
     };
     layers.iter().enumerate().filter_map(move |(i, joints)| {
-        let LayerKind::Joints(number) = joints.kind else { return None };
-        let weights = layers.iter().position(|l| l.kind == LayerKind::Weights(number))?;
+        let LayerKind::Joints(number) = joints.kind() else { return None };
+        let weights = layers.iter().position(|l| l.kind() == LayerKind::Weights(number))?;
         Some((range(i), range(weights)))
     })
 }

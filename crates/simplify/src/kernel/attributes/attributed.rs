@@ -1,4 +1,6 @@
-//! [`AttributeModel`] for quadrics at the wedges.
+//! [`AttributeModel`] and [`AttributeStore`] for quadrics at the wedges.
+
+use std::ops::Range;
 
 use meshlod_mesh::Attributes;
 
@@ -8,7 +10,8 @@ use crate::kernel::attributes::attribute_quadric::{
 use crate::kernel::attributes::update_at_seams::UpdateAtSeams;
 use crate::kernel::attributes::uv_flips::UvFlipsAtSeams;
 use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
-use crate::kernel::attributes::{AttributeModel, RecordedValues};
+use crate::kernel::attributes::wedge_store::WedgeStore;
+use crate::kernel::attributes::{AttributeModel, AttributeStore, RecordedValues};
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends};
 use crate::kernel::handles::PER_CUT;
@@ -23,15 +26,10 @@ use crate::refusal::Refusal;
 impl<M: Metric, const K: usize> AttributeModel for WedgeQuadrics<'_, M, K> {
     type Metric = M;
 
-    const IN_PARTS: bool = false;
-
-    fn for_parts(self, _: usize) -> Vec<Self> {
-        vec![self]
-    }
-
     #[inline(always)]
     fn add_attribute_quadrics(&self, sides: [EdgeSide<u32>; 2], edges: &mut EdgeQuadrics) {
-        add_attribute_quadrics(sides, |slot| self.quadric(slot), edges);
+        let quadric = |v: u32| self.quadrics.of_vertex(v).unwrap_or(&self.none);
+        add_attribute_quadrics(sides, quadric, edges);
     }
 
     #[inline(always)]
@@ -50,7 +48,7 @@ impl<M: Metric, const K: usize> AttributeModel for WedgeQuadrics<'_, M, K> {
     }
 
     fn hold_seams(&mut self) -> bool {
-        !std::mem::replace(&mut self.seams_hold, true)
+        !std::mem::replace(self.seams_hold, true)
     }
 
     #[inline(always)]
@@ -101,19 +99,19 @@ impl<M: Metric, const K: usize> AttributeModel for WedgeQuadrics<'_, M, K> {
     fn part(&mut self, vertices: &Vertices, copies: [[u32; 2]; PER_CUT]) -> Self::Whole {
         let whole = copies.map(|[v, _]| *self.quadric(v));
         for [v, copy] in copies {
-            self.quadrics[copy as usize] = self.quadrics[v as usize];
-            self.layers.copy_all_uncosted(copy, v);
-            self.merged_into[copy as usize] = copy;
+            *self.quadrics.get_mut(copy) = *self.quadric(v);
+            self.carried.copy_all(copy, v);
+            *self.merged_into.get_mut(copy) = copy;
         }
         for v in copies.into_iter().flatten() {
-            self.quadrics[v as usize] = self.renewed(vertices, v);
+            *self.quadrics.get_mut(v) = self.renewed(vertices, v);
         }
         whole
     }
 
     fn rejoin(&mut self, vertices: [u32; PER_CUT], whole: Self::Whole) {
         for (v, quadric) in vertices.into_iter().zip(whole) {
-            self.quadrics[v as usize] = quadric;
+            *self.quadrics.get_mut(v) = quadric;
         }
     }
 
@@ -123,27 +121,42 @@ impl<M: Metric, const K: usize> AttributeModel for WedgeQuadrics<'_, M, K> {
         quadric.squares[0].x.to_bits() ^ quadric.channels.last().map_or(0, |last| last.w.to_bits())
     }
 
+    fn record(&mut self, vertex: u32) {
+        if self.corners.are_given {
+            self.record_values(vertex);
+        }
+        self.record.steps += 1;
+    }
+
+    fn skip_record(&mut self) {
+        self.record.steps += 1;
+    }
+
+    fn recorded(&mut self) -> Vec<RecordedValues> {
+        std::mem::take(self.record).values
+    }
+}
+
+impl<M: Metric, const K: usize> AttributeStore for WedgeStore<'_, M, K> {
+    type Metric = M;
+    type Part<'p>
+        = WedgeQuadrics<'p, M, K>
+    where
+        Self: 'p;
+
+    fn cut(&mut self, parts: &[Range<usize>]) {
+        self.cut_into(parts);
+    }
+
+    fn parts(&mut self, count: usize) -> Vec<WedgeQuadrics<'_, M, K>> {
+        self.in_parts(count)
+    }
+
     fn attributes(&self, faces: impl Iterator<Item = (u32, [u32; 3])>) -> Option<Attributes> {
         self.corners.are_given.then(|| self.to_attributes(faces))
     }
 
     fn all_attributes(&self, faces: impl Iterator<Item = [u32; 3]>) -> Option<Attributes> {
         self.corners.are_given.then(|| self.to_all_attributes(faces))
-    }
-
-    fn record(&mut self, vertex: u32) {
-        if self.corners.are_given {
-            self.record_values(vertex);
-        }
-        self.logged += 1;
-    }
-
-    fn skip_record(&mut self) {
-        self.logged += 1;
-    }
-
-    fn recorded(&mut self) -> Vec<RecordedValues> {
-        self.logged = 0;
-        std::mem::take(&mut self.record)
     }
 }

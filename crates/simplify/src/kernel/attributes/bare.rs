@@ -1,8 +1,10 @@
 //! [`AttributeModel`] for a surface without attributes. It compiles to nothing.
 
+use std::ops::Range;
+
 use meshlod_mesh::Attributes;
 
-use crate::kernel::attributes::{AttributeModel, RecordedValues};
+use crate::kernel::attributes::{AttributeModel, AttributeStore, RecordedValues};
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends, Mobility};
 use crate::kernel::handles::PER_CUT;
@@ -20,12 +22,6 @@ pub(crate) struct NoAttributes<M>(pub(crate) M);
 
 impl<M: Metric> AttributeModel for NoAttributes<M> {
     type Metric = M;
-
-    const IN_PARTS: bool = true;
-
-    fn for_parts(self, parts: usize) -> Vec<Self> {
-        vec![self; parts]
-    }
 
     #[inline(always)]
     fn add_attribute_quadrics(&self, _: [EdgeSide<u32>; 2], _: &mut EdgeQuadrics) {}
@@ -71,14 +67,6 @@ impl<M: Metric> AttributeModel for NoAttributes<M> {
         0
     }
 
-    fn attributes(&self, _: impl Iterator<Item = (u32, [u32; 3])>) -> Option<Attributes> {
-        None
-    }
-
-    fn all_attributes(&self, _: impl Iterator<Item = [u32; 3]>) -> Option<Attributes> {
-        None
-    }
-
     #[inline(always)]
     fn record(&mut self, _: u32) {}
 
@@ -86,6 +74,28 @@ impl<M: Metric> AttributeModel for NoAttributes<M> {
 
     fn recorded(&mut self) -> Vec<RecordedValues> {
         Vec::new()
+    }
+}
+
+impl<M: Metric> AttributeStore for NoAttributes<M> {
+    type Metric = M;
+    type Part<'p>
+        = Self
+    where
+        Self: 'p;
+
+    fn cut(&mut self, _: &[Range<usize>]) {}
+
+    fn parts(&mut self, count: usize) -> Vec<Self> {
+        vec![*self; count]
+    }
+
+    fn attributes(&self, _: impl Iterator<Item = (u32, [u32; 3])>) -> Option<Attributes> {
+        None
+    }
+
+    fn all_attributes(&self, _: impl Iterator<Item = [u32; 3]>) -> Option<Attributes> {
+        None
     }
 }
 

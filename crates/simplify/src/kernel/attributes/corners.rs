@@ -1,10 +1,12 @@
 //! The wedges at the corners of the input's faces.
 
 use std::borrow::Cow;
+use std::ops::Range;
 
 use meshlod_mesh::{Layer, Mesh, WedgeId};
 use rustc_hash::FxHashMap;
 
+use crate::kernel::attributes::slots::SlotRanges;
 use crate::kernel::mesh::vertex::NO_VERTEX;
 use crate::kernel::setup::vertex_order::is_face;
 use crate::surface::wedges::labels;
@@ -127,6 +129,30 @@ impl<'m> Corners<'m> {
     pub(crate) fn wedge(&self, slot: u32) -> u32 {
         let other = || self.others[slot as usize - self.first.len()].1;
         self.first.get(slot as usize).copied().unwrap_or_else(other)
+    }
+
+    /// Returns the wedge of a slot; that of a vertex of a cut comes after those of the input.
+    pub(crate) fn wedge_of(&self, slot: u32) -> u32 {
+        match self.wedge(slot) {
+            NO_VERTEX => (self.own + self.split.len()) as u32 + 1 + slot,
+            wedge => wedge,
+        }
+    }
+
+    /// Returns true if a wedge is one of the input, or was split from one.
+    pub(crate) fn is_of_input(&self, wedge: u32) -> bool {
+        (wedge as usize) < self.own + self.split.len()
+    }
+
+    /// Returns the ranges of the slots of the vertices in a range.
+    pub(crate) fn slots_of(&self, vertices: Range<usize>) -> SlotRanges {
+        let at = |v: usize| self.others.partition_point(|&(of, _)| (of as usize) < v);
+        SlotRanges { others: at(vertices.start)..at(vertices.end), vertices }
+    }
+
+    /// Returns the number of vertices, which have the first slots.
+    pub(crate) fn vertices(&self) -> usize {
+        self.first.len()
     }
 
     /// Returns the chart of each slot, which is the first slot of its vertex in the chart. Empty if

@@ -9,7 +9,6 @@ use meshlod_mesh::{Layer, LayerKind, Mesh, WedgeId};
 use crate::kernel::mesh::local_frame::Frame;
 use crate::options::AttributeWeights;
 use crate::surface::charts::is_shading;
-use crate::surface::interpolate::{Place, interpolate};
 
 /// Largest absolute value of a channel, in the frame's units.
 const MAX_LENGTH: f64 = 1e9;
@@ -34,10 +33,16 @@ pub(crate) struct AttributeLayers<'m> {
     costed: Vec<CostedLayer>,
     /// Weight of lengths in uv relative to lengths on the surface.
     pub(crate) uv_weight: f32,
-    /// Values by slot of the layers that are not, or not fully, held by channels.
-    uncosted: Vec<Layer>,
-    /// Indices of these layers.
-    uncosted_of: Vec<usize>,
+    /// Layers that are not, or not fully, held by channels.
+    pub(crate) uncosted: Vec<UncostedLayer>,
+}
+
+/// A layer whose values are held by slot, beside the channels.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct UncostedLayer {
+    layer: usize,
+    pub(crate) kind: LayerKind,
+    pub(crate) width: usize,
 }
 
 /// A surviving slot with the input wedge it came from. `moved` is false if it still has that
@@ -82,7 +87,9 @@ impl<'m> AttributeLayers<'m> {
             }
         }
         let uv_weight = weights.uv as f32;
-        Self { layers, costed, uv_weight, uncosted: Vec::new(), uncosted_of: Vec::new() }
+        let mut this = Self { layers, costed, uv_weight, uncosted: Vec::new() };
+        this.find_uncosted();
+        this
     }
 
     /// Returns the number of attribute channels.
@@ -95,27 +102,32 @@ impl<'m> AttributeLayers<'m> {
         self.costed.iter().filter(|costed| costed.is_uv).map(|costed| costed.channels.start)
     }
 
-    /// Returns true if some attribute values are not held by channels.
-    pub(crate) fn has_uncosted(&self) -> bool {
-        !self.uncosted.is_empty()
+    fn find_uncosted(&mut self) {
+        let Self { layers, costed, .. } = &*self;
+        let is_held = |i: usize, width: usize| {
+            costed.iter().any(|costed| costed.layer == i && costed.channels.len() == width)
+        };
+        let uncosted = layers.iter().enumerate().filter(|(i, layer)| !is_held(*i, layer.width));
+        let uncosted = uncosted.map(|(layer, &Layer { kind, width, .. })| UncostedLayer {
+            layer,
+            kind,
+            width,
+        });
+        self.uncosted = uncosted.collect();
     }
 
-    /// Stores the values of these wedges that channels do not hold, by slot. A slot without a wedge
+    /// Returns for each of the uncosted layers its values at these wedges. A slot without a wedge
     /// has zeros.
-    pub(crate) fn fill(&mut self, wedges: &[u32]) {
-        for (i, layer) in self.layers.iter().enumerate() {
-            let width = layer.width;
-            let holds = |costed: &CostedLayer| costed.layer == i && costed.channels.len() == width;
-            if self.costed.iter().any(holds) {
-                continue;
-            }
+    pub(crate) fn uncosted_values(&self, wedges: &[u32]) -> Vec<Vec<f32>> {
+        let values = |&UncostedLayer { layer, width, .. }: &UncostedLayer| {
             let mut values = vec![0.0; width * wedges.len()];
             for (slot, &wedge) in wedges.iter().enumerate().filter(|(_, w)| **w != u32::MAX) {
-                values[slot * width..][..width].copy_from_slice(layer.of(WedgeId(wedge)));
+                values[slot * width..][..width]
+                    .copy_from_slice(self.layers[layer].of(WedgeId(wedge)));
             }
-            self.uncosted.push(Layer { kind: layer.kind, name: String::new(), width, values });
-            self.uncosted_of.push(i);
-        }
+            values
+        };
+        self.uncosted.iter().map(values).collect()
     }
 
     /// Returns the channels of a wedge. NaN and infinity become zero, and lengths are clamped such
@@ -157,31 +169,6 @@ impl<'m> AttributeLayers<'m> {
         }
     }
 
-    /// Copies the values that channels do not hold, except shading, from another slot.
-    pub(crate) fn copy_uncosted(&mut self, slot: u32, other: u32) {
-        self.copy_where(slot, other, |layer| !is_shading(layer));
-    }
-
-    /// Copies all values that channels do not hold from another slot.
-    pub(crate) fn copy_all_uncosted(&mut self, slot: u32, other: u32) {
-        self.copy_where(slot, other, |_| true);
-    }
-
-    /// Copies joints and their weights from another slot: all wedges of a vertex move as one.
-    pub(crate) fn copy_skin(&mut self, slot: u32, other: u32) {
-        self.copy_where(slot, other, |layer| {
-            matches!(layer.kind, LayerKind::Joints(_) | LayerKind::Weights(_))
-        });
-    }
-
-    /// Copies the values of some of the layers that channels do not hold from another slot.
-    fn copy_where(&mut self, slot: u32, other: u32, is_copied: impl Fn(&Layer) -> bool) {
-        for layer in self.uncosted.iter_mut().filter(|layer| is_copied(layer)) {
-            let from = other as usize * layer.width;
-            layer.values.copy_within(from..from + layer.width, slot as usize * layer.width);
-        }
-    }
-
     /// Returns the layers in which all wedges of a chart agree; `None` if no layer is shading, so
     /// that each wedge is its own chart.
     pub(crate) fn textures(&self) -> Option<Vec<&'m Layer>> {
@@ -189,27 +176,16 @@ impl<'m> AttributeLayers<'m> {
         any_shading.then(|| self.layers.iter().filter(|layer| !is_shading(layer)).collect())
     }
 
-    /// Interpolates the values that channels do not hold at a place between slots.
-    pub(crate) fn uncosted_at(&self, place: &Place, values: &mut Vec<f32>) {
-        interpolate(&self.uncosted, place, values);
-    }
-
-    /// Gives a slot the first values found by [`Self::uncosted_at`]. Returns the remaining ones.
-    pub(crate) fn set_uncosted<'v>(&mut self, slot: u32, mut values: &'v [f32]) -> &'v [f32] {
-        for layer in &mut self.uncosted {
-            let (these, others) = values.split_at(layer.width);
-            layer.of_mut(WedgeId(slot)).copy_from_slice(these);
-            values = others;
-        }
-        values
-    }
-
-    /// Returns the attribute layers of the surviving slots.
-    pub(crate) fn layers<const K: usize>(&self, left: &[SurvivingWedge<K>]) -> Vec<Layer> {
+    /// Returns the attribute layers of the surviving slots. `uncosted` are the values of the uncosted
+    /// layer with this number at a slot.
+    pub(crate) fn layers<'v, const K: usize>(
+        &self,
+        left: &[SurvivingWedge<K>],
+        uncosted: impl Fn(usize, u32) -> &'v [f32],
+    ) -> Vec<Layer> {
         let of_layer = |(i, layer): (usize, &Layer)| {
             let costed = self.costed.iter().find(|costed| costed.layer == i);
-            let uncosted =
-                self.uncosted_of.iter().position(|&of| of == i).map(|r| &self.uncosted[r]);
+            let carried = self.uncosted.iter().position(|uncosted| uncosted.layer == i);
             let mut values = Vec::with_capacity(left.len() * layer.width);
             for SurvivingWedge { slot, wedge, moved, channels, .. } in left {
                 if !moved {
@@ -217,8 +193,8 @@ impl<'m> AttributeLayers<'m> {
                     continue;
                 }
                 let start = values.len();
-                match uncosted {
-                    Some(uncosted) => values.extend_from_slice(uncosted.of(WedgeId(*slot))),
+                match carried {
+                    Some(number) => values.extend_from_slice(uncosted(number, *slot)),
                     None => values.resize(start + layer.width, 0.0),
                 }
                 if let Some(CostedLayer { channels: at, scale, .. }) = costed {

@@ -1,16 +1,18 @@
-//! Attributes in the kernel: the trait [`AttributeModel`], its implementation by quadrics at the
-//! wedges, and [`NoAttributes`](bare::NoAttributes), which compiles to nothing.
+//! Attributes in the kernel: the traits [`AttributeStore`] for a surface and [`AttributeModel`] for a
+//! part of it, their implementation by quadrics at the wedges, and
+//! [`NoAttributes`](bare::NoAttributes), which compiles to nothing.
 //!
 //! | files, in reading order | hold |
 //! |---|---|
 //! | `bare`, `attributed` | the two implementations: start with `attributed` |
 //! | `layers`, `attribute_quadric`, `wedge_quadrics` | costed layers as channels, and a quadric at each wedge |
+//! | `wedge_store`, `slots` | the quadrics of all wedges, cut into parts |
 //! | `corners`, `import_export` | from the corners of the input to slots, and back |
 //! | `scratch`, `face_wedges`, `seam_sectors`, `wedge_pairs` | the slots around an edge, and which become one |
 //! | `new_values`, `update_smooth`, `update_at_seams` | a contraction: new values, then new quadrics |
 //! | `seam_costs` | what seams cost |
 //! | `uv_flips` | faces that would flip in texture space |
-//! | `uncosted_layers` | layers outside the metric |
+//! | `uncosted_layers`, `uncosted_values` | layers outside the metric |
 
 pub(crate) mod attribute_quadric;
 pub(crate) mod attributed;
@@ -23,12 +25,17 @@ pub(crate) mod new_values;
 pub(crate) mod scratch;
 pub(crate) mod seam_costs;
 pub(crate) mod seam_sectors;
+pub(crate) mod slots;
 pub(crate) mod uncosted_layers;
+pub(crate) mod uncosted_values;
 pub(crate) mod update_at_seams;
 pub(crate) mod update_smooth;
 pub(crate) mod uv_flips;
 pub(crate) mod wedge_pairs;
 pub(crate) mod wedge_quadrics;
+pub(crate) mod wedge_store;
+
+use std::ops::Range;
 
 use meshlod_mesh::{Attributes, WedgeId};
 
@@ -43,16 +50,37 @@ use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
 use crate::kernel::simd::LANES;
 use crate::refusal::Refusal;
 
-/// Attribute model of a surface, as needed for costs and contractions.
-pub(crate) trait AttributeModel: Sized + Send + Sync {
+/// Attributes of a whole surface.
+pub(crate) trait AttributeStore: Send + Sync {
     /// Error metric of the geometry.
     type Metric: Metric;
 
-    /// True if the surface may be split into parts.
-    const IN_PARTS: bool;
+    /// Attributes of a part of the surface.
+    type Part<'p>: AttributeModel<Metric = Self::Metric>
+    where
+        Self: 'p;
 
-    /// Splits the model for this number of parts.
-    fn for_parts(self, parts: usize) -> Vec<Self>;
+    /// Cuts the attributes anew, by ranges of the vertices in order. What is beyond the last range
+    /// is in no part.
+    fn cut(&mut self, parts: &[Range<usize>]);
+
+    /// Borrows the `count` parts.
+    fn parts(&mut self, count: usize) -> Vec<Self::Part<'_>>;
+
+    /// Returns the current attributes of these faces, given by their indices and their corners in
+    /// the kernel's vertices.
+    fn attributes(&self, faces: impl Iterator<Item = (u32, [u32; 3])>) -> Option<Attributes>;
+
+    /// Returns the current attributes of all faces, dead ones included, with every wedge at its
+    /// index.
+    fn all_attributes(&self, faces: impl Iterator<Item = [u32; 3]>) -> Option<Attributes>;
+}
+
+/// Attribute model of a part of a surface, as needed for costs and contractions. Of the attributes
+/// of other parts it knows nothing.
+pub(crate) trait AttributeModel: Sized + Send + Sync {
+    /// Error metric of the geometry.
+    type Metric: Metric;
 
     /// Adds to the quadrics of eight edges the attribute error that remains with the best values.
     fn add_attribute_quadrics(&self, sides: [EdgeSide<u32>; 2], edges: &mut EdgeQuadrics);
@@ -106,14 +134,6 @@ pub(crate) trait AttributeModel: Sized + Send + Sync {
 
     /// Reads what will soon be needed of a vertex.
     fn prefetch(&self, v: u32) -> u32;
-
-    /// Returns the current attributes of these faces, given by their indices and their corners in
-    /// the kernel's vertices.
-    fn attributes(&self, faces: impl Iterator<Item = (u32, [u32; 3])>) -> Option<Attributes>;
-
-    /// Returns the current attributes of all faces, dead ones included, with every wedge at its
-    /// index.
-    fn all_attributes(&self, faces: impl Iterator<Item = [u32; 3]>) -> Option<Attributes>;
 
     /// Records the values that a contraction has given to a vertex.
     fn record(&mut self, vertex: u32);

@@ -88,16 +88,16 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
 
     /// Assigns slots to the chart they join, and copies its textures outside the channels.
     pub(crate) fn update_charts(&mut self, wedge_pairs: &WedgePairs) {
-        let Self { scratch, charts, layers, .. } = self;
+        let Self { scratch, charts, carried, .. } = self;
         if charts.is_empty() {
             return;
         }
         for &NewValues { slot, leader, .. } in &scratch.renewed {
-            let chart = charts[leader as usize];
-            charts[slot as usize] = chart;
+            let chart = charts.at(leader);
+            *charts.get_mut(slot) = chart;
             let mut leaders = wedge_pairs.pairs().iter().map(|pair| pair[0]);
-            if let Some(other) = leaders.find(|&other| charts[other as usize] == chart) {
-                layers.copy_uncosted(slot, other);
+            if let Some(other) = leaders.find(|&other| charts.at(other) == chart) {
+                carried.copy_textures(slot, other);
             }
         }
     }

@@ -4,6 +4,7 @@
 //! others are flagged and have a list of sectors, which are runs of faces with one wedge,
 //! counter-clockwise.
 
+use crate::kernel::attributes::slots::Slots;
 use crate::kernel::collapse::WedgeSides;
 use crate::kernel::mesh::one_ring::{LONG, Vertices, index_in, index_in_ring};
 use crate::kernel::mesh::vertex::{RING, VertexFlags};
@@ -15,20 +16,22 @@ pub(crate) struct Sector {
     pub(crate) slot: u32,
 }
 
-/// Sectors of the vertices that have several wedges.
-#[derive(Default)]
-pub(crate) struct SeamSectors {
+/// Value in place of the index of a list for a vertex that has none.
+pub(crate) const NO_LIST: u32 = u32::MAX;
+
+/// Sectors of the vertices of a part that have several wedges.
+pub(crate) struct SeamSectors<'p> {
     /// Index of each vertex's list; empty in a mesh without seams.
-    of_vertex: Vec<u32>,
-    lists: Vec<Vec<Sector>>,
+    pub(crate) of_vertex: Slots<'p, u32>,
+    pub(crate) lists: &'p mut Vec<Vec<Sector>>,
 }
 
-impl SeamSectors {
+impl SeamSectors<'_> {
     /// Returns the sectors of a vertex; none if it has one wedge in the slot of its own id.
     #[inline(always)]
     pub(crate) fn of(&self, v: u32) -> &[Sector] {
-        match self.of_vertex.get(v as usize) {
-            Some(&list) if list != u32::MAX => &self.lists[list as usize],
+        match self.of_vertex.of_vertex(v) {
+            Some(&list) if list != NO_LIST => &self.lists[list as usize],
             _ => &[],
         }
     }
@@ -70,14 +73,11 @@ impl SeamSectors {
 
     /// Sets the slots of a vertex, given for the face that begins at each neighbour. Returns
     /// whether there is any slot other than its own id.
-    pub(crate) fn set(&mut self, v: u32, (ring, slots): (&[u32], &[u32]), vertices: usize) -> bool {
+    pub(crate) fn set(&mut self, v: u32, (ring, slots): (&[u32], &[u32])) -> bool {
         let (own, last) = (slots[0], slots[slots.len() - 1]);
         let any = own != v || slots.iter().any(|&slot| slot != own);
-        if any && self.of_vertex.is_empty() {
-            self.of_vertex = vec![u32::MAX; vertices];
-        }
-        let Some(list) = self.of_vertex.get_mut(v as usize) else { return any };
-        if *list == u32::MAX {
+        let list = self.of_vertex.of_vertex_mut(v);
+        if *list == NO_LIST {
             if !any {
                 return false;
             }
@@ -102,8 +102,8 @@ impl SeamSectors {
     /// where its dying face begins; a sector of that face alone is removed. Returns whether there
     /// is still any slot other than its own id.
     pub(crate) fn rename(&mut self, v: u32, gone: u32, kept: u32, first: Option<u32>) -> bool {
-        let sectors = match self.of_vertex.get(v as usize) {
-            Some(&list) if list != u32::MAX => &mut self.lists[list as usize],
+        let sectors = match self.of_vertex.of_vertex(v) {
+            Some(&list) if list != NO_LIST => &mut self.lists[list as usize],
             _ => return false,
         };
         if let Some(first) = first {

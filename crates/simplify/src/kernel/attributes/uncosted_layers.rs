@@ -22,7 +22,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         slots: Option<&FaceWedges>,
     ) {
         let moves = !collapse.keeps_values() || collapse.ends.cuts_seam;
-        if self.layers.has_uncosted() && moves {
+        if !self.carried.is_empty() && moves {
             self.move_all_uncosted(edge_ring, collapse, slots);
         }
     }
@@ -47,18 +47,18 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
                 .min_by(|&i, &k| squares[i].total_cmp(&squares[k]));
             if let Some(i) = nearest {
                 let place = place(edge_ring, collapse, i, slots);
-                self.layers.uncosted_at(&place, &mut values);
+                self.carried.at(&place, &mut values);
             }
             nearest.is_some()
         });
         // Only now: until here the old values were needed.
         let mut left = &values[..];
         for &[slot, _] in &taken {
-            left = self.layers.set_uncosted(slot, left);
+            left = self.carried.set(slot, left);
         }
         let [first, _] = collapse.ends.wedge_pairs.pairs()[0];
         for &[slot, _] in taken.iter().filter(|[slot, merged]| slot == merged) {
-            self.layers.copy_skin(slot, first);
+            self.carried.copy_skin(slot, first);
         }
         (self.scratch.uncosted, self.scratch.taken) = (values, taken);
     }

@@ -49,10 +49,10 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         let constraint = self.add_constraints(vertices, edge_ring, collapse, &slots);
         self.update_quadrics(edge_ring, collapse, &slots);
         for &[s0, s1] in wedge_pairs.pairs() {
-            self.merged_into[s1 as usize] = s0;
+            *self.merged_into.get_mut(s1) = s0;
         }
         for renewed in &self.scratch.renewed {
-            self.merged_into[renewed.slot as usize] = renewed.slot;
+            *self.merged_into.get_mut(renewed.slot) = renewed.slot;
         }
         self.update_sectors(vertices, edge_ring, [v0, v1], &slots.apexes);
         self.scratch.slots = slots;
@@ -67,8 +67,8 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         scratch.quadric_changes::<M, true>(edge_ring, collapse.displacement, [&[0.0; K]; 3]);
         for (wing, of) in [0, edge_ring.of_v0].into_iter().zip(slots.dying) {
             if edge_ring.ghost != Some(wing) {
-                let [v0, v1, other] = of.map(|slot| quadrics[slot as usize].values());
-                quadrics[of[2] as usize].take(&dying_quadric::<M, K>(
+                let [v0, v1, other] = of.map(|slot| quadrics.get_mut(slot).values());
+                quadrics.get_mut(of[2]).take(&dying_quadric::<M, K>(
                     edge_ring,
                     wing,
                     [&v0, &v1, &other],
@@ -83,13 +83,13 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
             for (value, row) in values.iter_mut().zip(&scratch.after) {
                 *value = row[i];
             }
-            quadrics[slot as usize] = AttributeQuadric::of_values(values);
+            *quadrics.get_mut(slot) = AttributeQuadric::of_values(values);
         }
         for i in (0..edge_ring.len).filter(|&i| edge_ring.is_face(i)) {
             let [_, a, b] = slots.spokes[i];
-            quadrics[a as usize].add(&scratch.changes[i]);
-            quadrics[b as usize].add(&scratch.changes[i]);
-            quadrics[apexes[i] as usize].add(&scratch.new[i]);
+            quadrics.get_mut(a).add(&scratch.changes[i]);
+            quadrics.get_mut(b).add(&scratch.changes[i]);
+            quadrics.get_mut(apexes[i]).add(&scratch.new[i]);
         }
     }
 
@@ -174,7 +174,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
             }
         }
         if is_seam(vertices, v0) || is_seam(vertices, v1) {
-            let any = self.seams.set(v0, (edge_ring.ids(), apexes), vertices.all.len());
+            let any = self.seams.set(v0, (edge_ring.ids(), apexes));
             let flags = &mut vertices.get_mut(v0).flags;
             if any { flags.set(VertexFlags::SEAM) } else { flags.clear(VertexFlags::SEAM) }
         }

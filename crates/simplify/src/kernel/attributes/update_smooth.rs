@@ -33,7 +33,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
             let change = scratch.changes[i];
             let id = edge_ring.ids[i];
             if id != GHOST {
-                let quadric = &mut quadrics[id as usize];
+                let quadric = quadrics.of_vertex_mut(id);
                 quadric.add(&last);
                 quadric.add(&change);
             }
@@ -41,7 +41,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         }
         for wing in [0, edge_ring.of_v0] {
             if edge_ring.ghost != Some(wing) {
-                let quadric = &mut quadrics[edge_ring.ids[wing] as usize];
+                let quadric = quadrics.of_vertex_mut(edge_ring.ids[wing]);
                 quadric.take(&dying_quadric::<M, K>(
                     edge_ring,
                     wing,
@@ -49,10 +49,10 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
                 ));
             }
         }
-        quadrics[v0 as usize] = new;
-        self.merged_into[v1 as usize] = v0;
+        *quadrics.of_vertex_mut(v0) = new;
+        *self.merged_into.of_vertex_mut(v1) = v0;
         if collapse.displacement != Vec3::ZERO {
-            self.merged_into[v0 as usize] = v0;
+            *self.merged_into.of_vertex_mut(v0) = v0;
         }
     }
 }

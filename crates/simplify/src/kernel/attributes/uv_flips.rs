@@ -57,7 +57,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         let Self { quadrics, scratch, none, layers, .. } = self;
         for i in 0..=edge_ring.len.next_multiple_of(LANES) {
             let id = edge_ring.ids[if i < edge_ring.len { i } else { 0 }];
-            let quadric = quadrics.get(id as usize).unwrap_or(none);
+            let quadric = quadrics.of_vertex(id).unwrap_or(none);
             for (row, channel) in scratch.first.iter_mut().zip(&quadric.channels) {
                 row[i] = channel.w;
             }
@@ -78,7 +78,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         self.find_values(collapse);
         let Self { quadrics, scratch, none, layers, .. } = self;
         for i in 0..edge_ring.len {
-            let of = |slot: u32| quadrics.get(slot as usize).unwrap_or(none).values();
+            let of = |slot: u32| quadrics.get(slot).unwrap_or(none).values();
             let [was, a, b] = scratch.slots.spokes[i].map(of);
             let apex = scratch.slots.apexes[i];
             let renewed = scratch.renewed.iter().find(|renewed| renewed.slot == apex);

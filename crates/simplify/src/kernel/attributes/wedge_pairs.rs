@@ -25,7 +25,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         if leaves || goes {
             return Ok(self.turned([v, target], wedge_pairs, [leaves, goes], moves));
         }
-        if self.seams_hold {
+        if *self.seams_hold {
             return Err(Refusal::Seam);
         }
         self.ends_across_seams([v, target], wedge_pairs, moves)
@@ -79,7 +79,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         let wedge_pairs = self.one_each(wedge_pairs);
         let mobility = match moves[usize::from(turns)] {
             _ if leaves && goes => Mobility::Free,
-            true if self.seams_hold => Mobility::AlongNormal,
+            true if *self.seams_hold => Mobility::AlongNormal,
             true => Mobility::Leaning,
             false => Mobility::Fixed,
         };

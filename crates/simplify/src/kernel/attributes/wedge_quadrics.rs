@@ -15,38 +15,47 @@ use crate::kernel::attributes::corners::Corners;
 use crate::kernel::attributes::layers::AttributeLayers;
 use crate::kernel::attributes::scratch::Scratch;
 use crate::kernel::attributes::seam_sectors::SeamSectors;
+use crate::kernel::attributes::slots::Slots;
+use crate::kernel::attributes::uncosted_values::CarriedLayers;
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
 use crate::kernel::metric::Metric;
 
-/// Quadrics of all wedges of a surface.
-pub(crate) struct WedgeQuadrics<'m, M, const K: usize> {
+/// Quadrics of the wedges of a part of the surface.
+pub(crate) struct WedgeQuadrics<'p, M, const K: usize> {
     /// Metric of the geometry, which also weights faces for attributes.
     pub(crate) metric: PhantomData<M>,
     /// Quadrics by slot.
-    pub(crate) quadrics: Vec<AttributeQuadric<K>>,
+    pub(crate) quadrics: Slots<'p, AttributeQuadric<K>>,
     /// By slot: the slot it was merged into, itself if it has new values, `NO_VERTEX` if it has
     /// those of the input.
-    pub(crate) merged_into: Vec<u32>,
-    pub(crate) seams: SeamSectors,
+    pub(crate) merged_into: Slots<'p, u32>,
+    pub(crate) seams: SeamSectors<'p>,
     /// Whether no seam gives way.
-    pub(crate) seams_hold: bool,
+    pub(crate) seams_hold: &'p mut bool,
     /// Chart of each slot, see [`WedgeQuadrics::chart`]; empty if each slot is its own.
-    pub(crate) charts: Vec<u32>,
-    pub(crate) layers: AttributeLayers<'m>,
-    pub(crate) corners: Corners<'m>,
-    pub(crate) scratch: Box<Scratch<K>>,
+    pub(crate) charts: Slots<'p, u32>,
+    pub(crate) layers: &'p AttributeLayers<'p>,
+    pub(crate) carried: CarriedLayers<'p>,
+    pub(crate) corners: &'p Corners<'p>,
+    pub(crate) scratch: &'p mut Scratch<K>,
     /// Values given by contractions, if an observer wants them.
-    pub(crate) record: Vec<RecordedValues>,
-    /// Number of logged contractions.
-    pub(crate) logged: usize,
-    /// Quadric of a slot that does not exist.
+    pub(crate) record: &'p mut Record,
+    /// Quadric of a slot that does not exist, or not in this part.
     pub(crate) none: AttributeQuadric<K>,
+}
+
+/// Values given by contractions since they were last taken.
+#[derive(Default)]
+pub(crate) struct Record {
+    pub(crate) values: Vec<RecordedValues>,
+    /// Number of logged steps.
+    pub(crate) steps: usize,
 }
 
 impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     #[inline(always)]
     pub(crate) fn quadric(&self, slot: u32) -> &AttributeQuadric<K> {
-        self.quadrics.get(slot as usize).unwrap_or(&self.none)
+        self.quadrics.get(slot).unwrap_or(&self.none)
     }
 
     /// Returns the quadric of a vertex by the faces in its ring, of which none is at a seam.
@@ -73,6 +82,6 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     /// obstacle.
     #[inline]
     pub(crate) fn chart(&self, slot: u32) -> u32 {
-        self.charts.get(slot as usize).copied().unwrap_or(slot)
+        self.charts.get(slot).copied().unwrap_or(slot)
     }
 }

@@ -35,10 +35,10 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
                 batch.push(v, w, w > v && w != GHOST);
             }
             if !batch.has_room(MAX_RING) {
-                batch.cost_all(vertices, *model, &mut report);
+                batch.cost_all(vertices, model, &mut report);
             }
         }
-        batch.cost_all(vertices, *model, report);
+        batch.cost_all(vertices, model, report);
         for (v, least) in vertices.ids().zip(least) {
             let vertex = vertices.get_mut(v);
             if vertex.len > 0 && !vertex.flags.any(VertexFlags::OUTER) {
@@ -87,7 +87,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
     #[inline(always)]
     pub(super) fn requeue(&mut self, v: u32, front: u16, known: Option<(u32, u16)>) {
         self.vertices.refresh(v);
-        let Cheapest { mut bucket, target } = cheapest(&self.vertices, self.model, v);
+        let Cheapest { mut bucket, target } = cheapest(&self.vertices, &self.model, v);
         if let Some((of, least)) = known
             && of == target
         {

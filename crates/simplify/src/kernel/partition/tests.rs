@@ -5,6 +5,7 @@ use meshlod_samples as samples;
 
 use super::*;
 use crate::kernel::attributes::bare::NoAttributes;
+use crate::kernel::contraction_log::Logged;
 use crate::kernel::mesh::local_frame::Frame;
 use crate::kernel::metric::Metric;
 use crate::kernel::metric::swept_volume::SweptVolume;
@@ -117,10 +118,10 @@ fn levels_on_the_way_have_few_untouched_vertices() {
     let mut untouched: Vec<bool> = all.iter().map(|v| v.flags.any(VertexFlags::OUTER)).collect();
     let mut fine = untouched.iter().filter(|&&is| is).count();
     let mut live = all.len();
-    test.partition.log = Some(Vec::new());
+    test.partition.log = Some(Steps::default());
     test.partition.run(100, NONE, None, &mut |_| ());
     assert!(fine > 500 && test.partition.live_faces <= 100);
-    for done in test.partition.log.unwrap() {
+    for done in test.partition.log.unwrap().log {
         live -= 1;
         let Logged::Contraction(done) = done else { continue };
         for v in [done.kept, done.gone] {

@@ -10,7 +10,7 @@ use crate::kernel::mesh::vertex::VertexFlags;
 use crate::kernel::metric::Metric;
 use crate::kernel::metric::edge_quadric::EdgeSide;
 use crate::kernel::metric::swept_volume::SweptVolume;
-use crate::kernel::partition::{Partition, Whole};
+use crate::kernel::partition::Partition;
 use crate::kernel::schedule::edge_costs::costs;
 use crate::kernel::setup::build_rings::Fans;
 use crate::kernel::setup::vertex_order::Order;
@@ -62,7 +62,7 @@ fn with_flat_normals(mut mesh: Mesh) -> Mesh {
 }
 
 /// The vertex order, the rings, and the quadrics with K channels of a mesh.
-fn start<const K: usize>(mesh: &Mesh) -> (Order, Fans, WedgeQuadrics<'_, SweptVolume, K>) {
+fn start<const K: usize>(mesh: &Mesh) -> (Order, Fans, WedgeStore<'_, SweptVolume, K>) {
     let frame = Frame::new(mesh, &mesh.bounds());
     let (order, places) = Order::new(mesh, &frame);
     let face = |i: usize| order.face(&mesh.faces[i]);
@@ -71,7 +71,7 @@ fn start<const K: usize>(mesh: &Mesh) -> (Order, Fans, WedgeQuadrics<'_, SweptVo
     let mut fans = Fans::new::<SweptVolume>((&places, Vec::new()), count, face, weight);
     let corners = Corners::new(mesh, numbers(), mesh.positions.len()).unwrap();
     let layers = AttributeLayers::new(mesh, &frame, &AttributeWeights::DEFAULT, K);
-    let wedges = WedgeQuadrics::new(layers, corners, &mut fans.store.whole(), numbers());
+    let wedges = WedgeStore::new(layers, corners, &mut fans.store.whole(), numbers());
     (order, fans, wedges)
 }
 
@@ -101,39 +101,29 @@ fn check_quadrics(mesh: &Mesh, faces: usize) {
 }
 
 fn check_quadrics_with(mesh: &Mesh, faces: usize, seams_hold: bool) {
+    for part in [usize::MAX, 150] {
+        check_quadrics_in_parts(mesh, faces, (seams_hold, part));
+    }
+}
+
+fn check_quadrics_in_parts(mesh: &Mesh, faces: usize, (seams_hold, part): (bool, usize)) {
     let (order, fans, mut wedges) = start::<2>(mesh);
-    wedges.seams_hold = seams_hold;
+    wedges.hold_seams(seams_hold);
     let numbers = || mesh.faces.iter().map(|face| order.face(face));
-    let mut partition = Partition::new(fans.store, wedges, fans.faces, Whole::default());
+    let mut partition = Partition::of_at_most(part, fans.store, wedges, fans.faces);
     partition.run(faces, u16::MAX, None, &mut |_| ());
     assert!(partition.live_faces <= faces && partition.live_faces > faces / 2);
-    let Partition { mut store, mut models, .. } = partition;
-    let (model, live_vertices) = (models.remove(0), store.live_vertices());
+    partition.unite();
+    let Partition { mut store, mut attributes, .. } = partition;
+    let live_vertices = store.live_vertices();
     let vertices = store.whole();
-    let live = model.live_slots();
-    let mut again = WedgeQuadrics {
-        metric: PhantomData::<SweptVolume>,
-        quadrics: model
-            .quadrics
-            .iter()
-            .map(|quadric| AttributeQuadric::of_values(quadric.values()))
-            .collect(),
-        merged_into: Vec::new(),
-        seams: SeamSectors::default(),
-        seams_hold: true,
-        charts: Vec::new(),
-        layers: AttributeLayers::new(
-            mesh,
-            &Frame::new(mesh, &mesh.bounds()),
-            &AttributeWeights::NONE,
-            0,
-        ),
-        corners: Corners::new(mesh, numbers(), mesh.positions.len()).unwrap(),
-        scratch: Scratch::new(),
-        record: Vec::new(),
-        logged: 0,
-        none: AttributeQuadric::EMPTY,
-    };
+    let live = attributes.live_slots();
+    let model = attributes.whole();
+    let (_, _, mut again) = start::<2>(mesh);
+    let mut again = again.whole();
+    for slot in 0..live.len() as u32 {
+        *again.quadrics.get_mut(slot) = AttributeQuadric::of_values(model.quadric(slot).values());
+    }
     let mut seam_faces = 0;
     for (i, face) in numbers().enumerate() {
         let now = face.map(|v| live_vertices[v as usize]);
@@ -155,9 +145,9 @@ fn check_quadrics_with(mesh: &Mesh, faces: usize, seams_hold: bool) {
             assert_eq!(a, b, "one place in uv");
         }
     }
-    for (found, wanted) in
-        model.quadrics.iter().zip(&again.quadrics).filter(|(_, w)| w.weight() > 0.0)
-    {
+    let both = |slot: u32| (model.quadric(slot), again.quadric(slot));
+    let all = (0..live.len() as u32).map(both);
+    for (found, wanted) in all.filter(|(_, wanted)| wanted.weight() > 0.0) {
         let apart = |a: glam::Vec4, b: glam::Vec4| (a - b).abs().max_element();
         // Slivers are left with rounding errors, as edges have a length of about one.
         let most = 1e-3 * (wanted.squares[0].max_element() + wanted.weight()) + 1e-6;
@@ -187,8 +177,9 @@ fn eight_edges_at_seams_cost_the_same_as_one_by_one() {
     let (mut free, mut held, mut cut) = (0, 0, 0);
     let charts = octants(samples::torus(400));
     for mesh in [halved(samples::knot(3000)), faceted(samples::torus(1000)), grid, charts] {
-        let (_, mut fans, mut wedges) = start::<5>(&mesh);
-        wedges.seams_hold = false;
+        let (_, mut fans, mut store) = start::<5>(&mesh);
+        store.hold_seams(false);
+        let wedges = store.whole();
         let mut vertices = fans.store.whole();
         for v in vertices.ids().step_by(7) {
             vertices.get_mut(v).flags.set(VertexFlags::PINNED);
@@ -240,7 +231,8 @@ fn slit(mesh: Mesh) -> Mesh {
 #[test]
 fn a_crease_that_ends_keeps_both_normals() {
     let mesh = slit(samples::torus(1000));
-    let (_, mut fans, wedges) = start::<5>(&mesh);
+    let (_, mut fans, mut store) = start::<5>(&mesh);
+    let wedges = store.whole();
     let vertices = fans.store.whole();
     let mut at_the_end = 0;
     for v in vertices.ids().filter(|&v| is_seam(&vertices, v)) {
