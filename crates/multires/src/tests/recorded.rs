@@ -1,4 +1,4 @@
-//! What the end of a run shows, and what is told of a forest without refining it.
+//! Contractions that the end of a run shows, and facts of a forest that is not refined.
 
 use meshlod_fixtures as fixtures;
 use meshlod_mesh::{Mesh, VertexId};

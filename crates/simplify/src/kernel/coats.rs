@@ -7,8 +7,6 @@ use std::collections::HashMap;
 
 use glam::Vec3;
 
-use crate::kernel::components::NO_COMPONENT;
-
 /// Sums over a component that say whether another is its other coat.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Imprint {
@@ -47,10 +45,9 @@ impl Imprint {
     }
 }
 
-/// Returns the other coat of each component, or [`NO_COMPONENT`]. Each component is the coat of at
-/// most one other.
-pub(crate) fn pair(imprints: &[Imprint]) -> Vec<u32> {
-    let mut coats = vec![NO_COMPONENT; imprints.len()];
+/// Returns the other coat of each component, if it has one. Each is the coat of at most one other.
+pub(crate) fn pair(imprints: &[Imprint]) -> Vec<Option<u32>> {
+    let mut coats = vec![None; imprints.len()];
     let mut alone: HashMap<_, Vec<u32>> = HashMap::new();
     for (i, imprint) in (0..).zip(imprints) {
         let (common, direction) = imprint.split();
@@ -60,8 +57,8 @@ pub(crate) fn pair(imprints: &[Imprint]) -> Vec<u32> {
         let opposite = alone.get_mut(&(common, direction.wrapping_neg()));
         match opposite.and_then(Vec::pop) {
             Some(other) => {
-                coats[i as usize] = other;
-                coats[other as usize] = i;
+                coats[i as usize] = Some(other);
+                coats[other as usize] = Some(i);
             }
             None => alone.entry((common, direction)).or_default().push(i),
         }
@@ -103,11 +100,9 @@ mod tests {
         let back = imprint(&[[3, 1, 0], [2, 3, 0]], 0.0);
         let other_diagonal = imprint(&[[1, 0, 2], [3, 1, 2]], 0.0);
         let beside = imprint(&[[3, 1, 0], [2, 3, 0]], 1.0);
-        let none = NO_COMPONENT;
-        assert_eq!(pair(&[front, beside, back]), [2, none, 0]);
-        assert_eq!(pair(&[front, front, back, back]), [3, 2, 1, 0]);
-        assert_eq!(pair(&[front, other_diagonal]), [1, 0]);
-        assert_eq!(pair(&[front, back, front, back]), [1, 0, 3, 2]);
+        assert_eq!(pair(&[front, beside, back]), [Some(2), None, Some(0)]);
+        assert_eq!(pair(&[front, front, back, back]), [3, 2, 1, 0].map(Some));
+        assert_eq!(pair(&[front, other_diagonal]), [1, 0].map(Some));
     }
 
     #[test]
@@ -117,7 +112,7 @@ mod tests {
         let inside_out = shell.map(|[a, b, c]| [a, c, b]);
         let [front, back] =
             [shell, inside_out].map(|faces| Imprint::of(&[0, 1, 2, 3], &faces, place));
-        assert_eq!(pair(&[front, back]), [1, 0]);
-        assert_eq!(pair(&[front, front]), [NO_COMPONENT; 2]);
+        assert_eq!(pair(&[front, back]), [1, 0].map(Some));
+        assert_eq!(pair(&[front, front]), [None; 2]);
     }
 }

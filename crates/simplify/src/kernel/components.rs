@@ -22,7 +22,7 @@ use crate::kernel::setup::vertex_order::{Order, is_face};
 const EARLY_SHARE: usize = 32;
 
 /// Component of vertices without faces.
-pub(crate) const NO_COMPONENT: u32 = u32::MAX;
+const NO_COMPONENT: u32 = u32::MAX;
 
 /// A connected component of the input.
 #[derive(Clone, Debug)]
@@ -37,8 +37,8 @@ pub(crate) struct Component {
     is_held: bool,
     /// Number of faces at first.
     faces: u32,
-    /// The component that is its other coat, or [`NO_COMPONENT`].
-    coat: u32,
+    /// The component that is its other coat.
+    coat: Option<u32>,
     vertices: Range<usize>,
 }
 
@@ -168,7 +168,7 @@ impl Components {
             bucket(cost).min(last_bucket())
         };
         let is_beyond = |mean_square: f32| bucket_of(mean_square) > last;
-        match self.samples.measure([component, coat], &self.input, is_beyond) {
+        match self.samples.measure([component, coat.unwrap_or(component)], &self.input, is_beyond) {
             Ok(apart) => VanishingCost::Exactly(bucket_of(apart.mean), apart),
             Err(least) => VanishingCost::AtLeast(bucket_of(least)),
         }
@@ -320,7 +320,7 @@ impl Component {
             protection: if protected { all.protection } else { 1.0 },
             is_held: held,
             faces: faces.len() as u32,
-            coat: NO_COMPONENT,
+            coat: None,
             vertices,
         }
     }
