@@ -185,11 +185,12 @@ impl<'m> Corners<'m> {
         charts
     }
 
-    /// Returns the input wedge from which a wedge was split, or the wedge itself.
+    /// Returns the input wedge from which a wedge was split, or the wedge itself; [`NO_VERTEX`] for those
+    /// of cuts.
     pub(crate) fn source(&self, wedge: u32) -> u32 {
         match (wedge as usize).checked_sub(self.own) {
-            Some(split) if wedge != NO_VERTEX => self.split[split],
-            _ => wedge,
+            Some(split) => self.split.get(split).copied().unwrap_or(NO_VERTEX),
+            None => wedge,
         }
     }
 }

@@ -112,7 +112,7 @@ impl<'m, M: Metric, const K: usize> WedgeStore<'m, M, K> {
     /// Returns the values in a slot, or the input's values of a wedge without a slot.
     fn left(&self, slot: u32, own: u32) -> SurvivingWedge<K> {
         let is_wedge = self.corners.is_of_input(own);
-        let wedge = if is_wedge { self.corners.source(own) } else { NO_VERTEX };
+        let wedge = self.corners.source(own);
         if slot == NO_VERTEX {
             return SurvivingWedge { slot: 0, own, wedge, moved: !is_wedge, channels: [0.0; K] };
         }
