@@ -32,8 +32,7 @@ pub use conditioned_scene::ConditionedScene;
 pub use constraints::{Constraints, VertexLocking};
 #[cfg(feature = "check")]
 pub use contacts::scene_locks;
-pub(crate) use exact_volume::closed_volume_of_distinct;
-pub use exact_volume::{closed_volume, conserve_volumes, digits_of};
+pub use exact_volume::{closed_volume, closed_volume_of_distinct, conserve_volumes, digits_of};
 #[cfg(feature = "check")]
 pub use fuse::{FuseReport, fuse_scene};
 pub use locks::join_locks;
