@@ -92,7 +92,8 @@ fn count(program: &PathBuf, arguments: &str, folder: &Path) -> Result<f64> {
     counter.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).arg(program);
     let output = meshlod(counter, arguments, folder).output().context("valgrind")?;
     let printed = String::from_utf8_lossy(&output.stderr);
-    ensure!(output.status.success(), "meshlod {arguments}: {printed}");
+    let last = printed.lines().last().unwrap_or_default();
+    ensure!(output.status.success(), "meshlod {arguments}: {}; {last}", output.status);
     collected(&printed).context("callgrind counted nothing")
 }
 
