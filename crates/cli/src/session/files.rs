@@ -215,13 +215,23 @@ fn place_of(path: &Path) -> PathBuf {
     })
 }
 
+/// File that is made to try whether a folder is writable. Its name is always the same, so that the next
+/// run removes what one that was killed has left.
+const TRIED: &str = ".meshlod-tried";
+
 /// Creates a folder if it is missing, and fails if it is not writable.
 pub fn make_folder(folder: &Path) -> Result<(), Failure> {
     check_folder(folder)?;
-    let tried = folder.join(format!(".{}", std::process::id()));
+    let tried = folder.join(TRIED);
+    // Another run may try at the same time.
+    let unless = |kind: io::ErrorKind| {
+        move |error: io::Error| if error.kind() == kind { Ok(()) } else { Err(error) }
+    };
     fs::create_dir_all(folder)
-        .and_then(|()| fs::File::create_new(&tried))
-        .and_then(|_| fs::remove_file(&tried))
+        .and_then(|()| {
+            fs::File::create_new(&tried).map(drop).or_else(unless(io::ErrorKind::AlreadyExists))
+        })
+        .and_then(|()| fs::remove_file(&tried).or_else(unless(io::ErrorKind::NotFound)))
         .map_err(|error| Failure::at(folder, error))
 }
 

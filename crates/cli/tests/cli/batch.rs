@@ -223,6 +223,7 @@ fn a_batch_that_was_killed_goes_on() {
     // As of a process that was killed while it wrote.
     fs::create_dir_all(run.path("out")).unwrap();
     fs::write(run.path("out/.7.ply.4194305-4"), "half").unwrap();
+    fs::write(run.path("out/.meshlod-tried"), "").unwrap();
     fs::remove_file(run.path("out/7.ply")).unwrap_or_default();
     let json = run.json(&arguments);
     assert_eq!(json["files"], 40, "{json}");
