@@ -44,13 +44,7 @@ pub fn section() -> Result<String> {
 }
 
 fn scans() -> Result<Table> {
-    let mut table = Table::new([
-        "mesh to 10 %, method",
-        "ours, s",
-        "million faces/s",
-        "meshoptimizer, s",
-        "speed ratio",
-    ]);
+    let mut table = ratios("mesh to 10 %, method");
     let plain = |method| (method, Options { method, ..Options::default() });
     for file in SCANS {
         let Some(mesh) = crate::read(file)? else { continue };
@@ -77,13 +71,7 @@ fn scans() -> Result<Table> {
 }
 
 fn with_attributes() -> Result<Table> {
-    let mut table = Table::new([
-        "model to 10 %",
-        "ours, s",
-        "million faces/s",
-        "meshoptimizer, s",
-        "speed ratio",
-    ]);
+    let mut table = ratios("model to 10 %");
     let settings = Settings { update: Update::All, ..textured::PEER };
     for model in textured::MODELS {
         let Some(scene) = crate::read_scene(model)? else { continue };
@@ -104,10 +92,9 @@ fn with_attributes() -> Result<Table> {
 
 fn threads() -> Result<Table> {
     let mut table = Table::new(["mesh to 10 %", "faces", "one thread, s", "two, s", "ratio"]);
-    let sample = |name: &str, mesh: Mesh| (name.to_owned(), mesh);
     let mut all = vec![
-        sample("terrain with colours", samples::terrain(500_000)),
-        sample("fish with charts", samples::fish(500_000)),
+        ("terrain with colours".to_owned(), samples::terrain(500_000)),
+        ("fish with charts".to_owned(), samples::fish(500_000)),
     ];
     for file in SCANS {
         all.extend(crate::read(file)?.map(|mesh| (file.to_owned(), mesh)));
@@ -123,6 +110,11 @@ fn threads() -> Result<Table> {
         table.row([name, mesh.faces.len().to_string(), first, second, format!("{:.2}", one / two)]);
     }
     Ok(table)
+}
+
+/// Returns a table for [`row`]s of what the first column names.
+fn ratios(what: &str) -> Table {
+    Table::new([what, "ours, s", "million faces/s", "meshoptimizer, s", "speed ratio"])
 }
 
 fn row(what: &str, mesh: &Mesh, Ratio { ours, theirs, ratio }: Ratio) -> Vec<String> {

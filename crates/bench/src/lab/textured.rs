@@ -14,7 +14,7 @@ use meshlod::{Constraints, Scene, Topology};
 use crate::lab::table::Table;
 use crate::peer::{Settings, SimplifyOptions, Update, simplify_with_attributes};
 
-/// Models with charts and materials, but for copies.
+/// Models with charts or materials.
 pub const MODELS: [&str; 5] =
     ["flight-helmet/FlightHelmet.gltf", "duck.glb", "pirate.obj", "spot.obj", "fish-bream.obj"];
 /// The most accurate methods, and one that moves no vertex, as meshoptimizer does.

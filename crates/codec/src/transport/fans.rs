@@ -55,7 +55,7 @@ impl FanTable {
         let mut sizes = [0; FANS];
         let mut part = 1.0;
         for new in 0..=MAX_NEW {
-            let size = |step_: Step| f64::from(step(new).symbol(step_).size);
+            let size = |taken: Step| f64::from(step(new).symbol(taken).size);
             let ends = [size(Step::Previous), size(Step::Nothing)];
             let rare = match new {
                 MAX_NEW => whole - ends[0] - ends[1],

@@ -3,9 +3,8 @@
 //! Without its back a leaf cannot be seen from behind, though no point of it is any farther from
 //! the surface. So a component is not measured against its other coat.
 
-use std::collections::HashMap;
-
 use glam::Vec3;
+use rustc_hash::FxHashMap;
 
 /// Sums over a component that say whether another is its other coat.
 #[derive(Clone, Copy, Debug, Default)]
@@ -48,7 +47,7 @@ impl Imprint {
 /// Returns the other coat of each component, if it has one. Each is the coat of at most one other.
 pub(crate) fn pair(imprints: &[Imprint]) -> Vec<Option<u32>> {
     let mut coats = vec![None; imprints.len()];
-    let mut alone: HashMap<_, Vec<u32>> = HashMap::new();
+    let mut alone: FxHashMap<_, Vec<u32>> = FxHashMap::default();
     for (i, imprint) in (0..).zip(imprints) {
         let (common, direction) = imprint.split();
         if direction == 0 {
